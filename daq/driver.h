@@ -1,0 +1,99 @@
+/* Instrument drivers: protocols as state machines over bytes, without ports or clocks.
+ *
+ * A driver turns received bytes into samples (`receive`), and tells what to send (`start`, `tick`,
+ * `command`). It never reads a port or a clock: times come in as arguments, so the same driver
+ * decodes live bytes and recorded ones and gives the same samples bit for bit. The core allocates
+ * `state_size` zeroed bytes and calls `init` with the instrument's settings. A NULL operation is
+ * not supported by the instrument.
+ */
+#ifndef WB_DAQ_DRIVER_H
+#define WB_DAQ_DRIVER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "daq/rig.h"
+#include "daq/sample.h"
+
+enum wb_role {
+    WB_ROLE_LOAD,
+    WB_ROLE_MOCAP,
+    WB_ROLE_STAGE
+};
+
+/* "load", "mocap", "stage". */
+const char *wb_role_name(enum wb_role role);
+
+/* Bytes to send, in order. The loop that owns the stream empties it. Each entry is written with
+ * one wb_stream_write(). */
+#define WB_OUTBOX_BYTES 2048
+#define WB_OUTBOX_ENTRIES 16
+struct wb_outbox {
+    size_t n_bytes, n_entries;
+    size_t ends[WB_OUTBOX_ENTRIES]; /* end offset of each entry */
+    uint8_t bytes[WB_OUTBOX_BYTES];
+};
+
+/* Appends one entry; false when it does not fit (nothing is appended then). */
+bool wb_outbox_add(struct wb_outbox *outbox, const void *bytes, size_t n);
+bool wb_outbox_add_text(struct wb_outbox *outbox, const char *text);
+void wb_outbox_clear(struct wb_outbox *outbox);
+
+/* What a stage can be told. */
+enum wb_stage_command {
+    WB_STAGE_COMMAND_JOG,        /* relative move by `distance` (m, positive raises the deflection:
+                                    the clamp goes down) at `speed` (m/s) */
+    WB_STAGE_COMMAND_HOLD,       /* feed hold, a real-time byte */
+    WB_STAGE_COMMAND_JOG_CANCEL, /* a real-time byte */
+    WB_STAGE_COMMAND_SOFT_RESET, /* a real-time byte */
+    WB_STAGE_COMMAND_HOME,
+    WB_STAGE_COMMAND_UNLOCK,
+    WB_STAGE_COMMAND_STATUS /* ask for a report now */
+};
+
+struct wb_channel {
+    const char *name;     /* "force", "position", "markers" */
+    const char *quantity; /* "force", "length" */
+    const char *unit;     /* SI, "N", "m" */
+};
+
+struct wb_driver {
+    const char *name;    /* protocol name in rig files: "generic", "mt-sics", "natnet", "grbl" */
+    const char *summary; /* one line */
+    enum wb_role role;
+    size_t state_size;
+    const struct wb_channel *channels;
+    int n_channels;
+
+    /* Prepares zeroed state for the rig's settings of this role. */
+    enum wb_status (*init)(void *state, const struct wb_rig *rig);
+    /* What to send once the stream is open (connect, start streaming, wake up). */
+    void (*start)(void *state, int64_t now_ns, struct wb_outbox *outbox);
+    /* Consumes one read or datagram that arrived at t_ns. Never fails: bad bytes become remarks. */
+    void (*receive)(void *state, int64_t t_ns, const uint8_t *bytes, size_t n,
+                    const struct wb_sink *sink);
+    /* Called at least every 20 ms: polls, keepalives, clock probes, retries of the handshake. */
+    void (*tick)(void *state, int64_t now_ns, struct wb_outbox *outbox);
+    /* Stage only. WB_ERR_BUSY when a previous line was not answered yet (real-time bytes are
+     * always accepted). */
+    enum wb_status (*command)(void *state, enum wb_stage_command command, double distance,
+                              double speed, struct wb_outbox *outbox);
+    /* True once the instrument answered and delivers samples. */
+    bool (*ready)(const void *state);
+    /* What to send before closing (stop streaming, disconnect). */
+    void (*stop)(void *state, struct wb_outbox *outbox);
+};
+
+/* All drivers, and lookup by role and protocol name (NULL when there is none). */
+extern const struct wb_driver *const wb_drivers[];
+extern const int wb_n_drivers;
+const struct wb_driver *wb_driver_find(enum wb_role role, const char *protocol);
+
+extern const struct wb_driver wb_driver_generic;
+extern const struct wb_driver wb_driver_mtsics;
+extern const struct wb_driver wb_driver_natnet;
+extern const struct wb_driver wb_driver_grbl;
+
+#endif

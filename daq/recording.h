@@ -1,0 +1,131 @@
+/* Recordings: the raw bytes with their arrival times, in an SQLite database `NAME.wbr`.
+ *
+ * Tables (schema 1): meta(key, value), stream(id, role, address, protocol, settings),
+ * chunk(stream, seq, t_ns, bytes, crc32), event(t_ns, kind, text),
+ * clock(stream, t_host_ns, t_device, rtt_ns). application_id is 0x57425231 ("WBR1"),
+ * user_version is the schema. WAL while recording; closing checkpoints and sets
+ * journal_mode=DELETE, so that a finished file can be read from a read-only folder.
+ * `.wbr.zst` is the same file compressed with zstd; opening takes both.
+ *
+ * The only file that includes sqlite3.h, zlib.h and zstd.h is recording.c (and its own parts).
+ */
+#ifndef WB_DAQ_RECORDING_H
+#define WB_DAQ_RECORDING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "daq/driver.h"
+
+#define WB_RECORDING_SCHEMA 1
+
+struct wb_recording; /* opaque; used by one thread */
+
+/* --- writing --- */
+
+/* Creates a new recording; WB_ERR_EXISTS if the path exists (a recording is never overwritten). */
+WB_MUST_CHECK enum wb_status wb_recording_create(struct wb_recording **out, const char *path);
+
+/* Sets one meta value (text); replaces an earlier one. */
+WB_MUST_CHECK enum wb_status wb_recording_set_meta(struct wb_recording *recording, const char *key,
+                                                   const char *value);
+
+/* Declares a stream; *id receives its number (0, 1, ...). */
+WB_MUST_CHECK enum wb_status wb_recording_add_stream(struct wb_recording *recording,
+                                                     enum wb_role role, const char *address,
+                                                     const char *protocol, const char *settings,
+                                                     int *id);
+
+/* One read or datagram, verbatim. Appends are grouped in a transaction until wb_recording_flush()
+ * (the caller flushes every 100 ms). WB_ERR_IO when the disk is full: what was flushed before
+ * stays readable. */
+WB_MUST_CHECK enum wb_status wb_recording_append_chunk(struct wb_recording *recording, int stream,
+                                                       int64_t seq, int64_t t_ns,
+                                                       const void *bytes, size_t n);
+WB_MUST_CHECK enum wb_status wb_recording_append_event(struct wb_recording *recording,
+                                                       int64_t t_ns, const char *kind,
+                                                       const char *text);
+WB_MUST_CHECK enum wb_status wb_recording_append_clock(struct wb_recording *recording, int stream,
+                                                       int64_t t_host_ns, double t_device,
+                                                       int64_t rtt_ns);
+WB_MUST_CHECK enum wb_status wb_recording_flush(struct wb_recording *recording);
+
+/* Flushes, checkpoints, leaves one plain file, and frees. Accepts NULL. For a recording opened for
+ * reading it only frees. */
+WB_MUST_CHECK enum wb_status wb_recording_close(struct wb_recording *recording);
+
+/* --- reading --- */
+
+/* Opens for reading; a `.zst` is decompressed into an unlinked temporary file. A file that is not
+ * a recording, or of a newer schema, is refused with the reason. A truncated or damaged database
+ * is opened as far as SQLite can read it. */
+WB_MUST_CHECK enum wb_status wb_recording_open(struct wb_recording **out, const char *path);
+
+/* Text of a meta key into an allocated string (caller frees); WB_ERR_NOT_FOUND without logging
+ * when the key is not there. */
+WB_MUST_CHECK enum wb_status wb_recording_meta(struct wb_recording *recording, const char *key,
+                                               char **value);
+
+struct wb_recording_stream {
+    int id;
+    enum wb_role role;
+    char address[160];
+    char protocol[32];
+};
+
+int wb_recording_n_streams(const struct wb_recording *recording);
+const struct wb_recording_stream *wb_recording_stream_at(const struct wb_recording *recording,
+                                                         int index);
+
+struct wb_chunk {
+    int stream;
+    int64_t seq, t_ns;
+    const uint8_t *bytes; /* valid until the next call */
+    size_t n;
+    uint32_t crc32;  /* stored */
+    bool intact;     /* stored CRC equals the computed one */
+};
+
+struct wb_event {
+    int64_t t_ns;
+    char kind[32];
+    char text[1024];
+};
+
+struct wb_clock_row {
+    int stream;
+    int64_t t_host_ns;
+    double t_device;
+    int64_t rtt_ns;
+};
+
+/* Visits all chunks in order of arrival (t_ns, then stream, then seq). A visitor returns a status;
+ * anything but WB_OK ends the walk and is returned. WB_ERR_DATA (logged) when the database breaks
+ * off; everything before has been visited. */
+WB_MUST_CHECK enum wb_status
+wb_recording_each_chunk(struct wb_recording *recording,
+                        enum wb_status (*visit)(void *context, const struct wb_chunk *chunk),
+                        void *context);
+WB_MUST_CHECK enum wb_status
+wb_recording_each_event(struct wb_recording *recording,
+                        enum wb_status (*visit)(void *context, const struct wb_event *event),
+                        void *context);
+WB_MUST_CHECK enum wb_status
+wb_recording_each_clock(struct wb_recording *recording,
+                        enum wb_status (*visit)(void *context, const struct wb_clock_row *row),
+                        void *context);
+/* Visits all meta keys in alphabetical order. */
+WB_MUST_CHECK enum wb_status
+wb_recording_each_meta(struct wb_recording *recording,
+                       enum wb_status (*visit)(void *context, const char *key, const char *value),
+                       void *context);
+
+/* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. */
+WB_MUST_CHECK enum wb_status wb_recording_sha256(const char *path, char hex[65]);
+
+/* Compresses a closed recording to `target` (.wbr.zst), written atomically. */
+WB_MUST_CHECK enum wb_status wb_recording_compress(const char *path, const char *target);
+
+#endif

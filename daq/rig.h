@@ -1,0 +1,120 @@
+/* The bench as its rig file describes it. Every key is in docs/file-formats.md.
+ *
+ *     name: paper bench
+ *     gravity_m_s2: 9.80665            # optional, standard gravity
+ *     load_cell:
+ *       address: serial:/dev/ttyUSB0,9600,8n1
+ *       protocol: generic              # or mt-sics
+ *       capacity_g: 20
+ *       overload_percent: 150          # of the capacity: what the cell still reads
+ *       serial_number: LS270-1234
+ *       calibration_date: 2026-01-15
+ *       filter_delay_ms: 50
+ *       filter_delay_uncertainty_ms: 5
+ *       ...generic line protocol: delimiter, column, unit, scale, offset, sign, terminator,
+ *          poll_command, poll_period_ms, start_command, tare_command, unstable_tokens,
+ *          overload_tokens, decimal_comma, settle_ms
+ *     mocap:
+ *       address: udp:192.168.1.10:1510,group=239.255.42.99:1511
+ *       protocol: natnet
+ *       up: y                          # axis that points up: y or z
+ *     stage:
+ *       address: serial:/dev/ttyACM0,115200,8n1
+ *       protocol: grbl
+ *       axis: X
+ *       down: +1                       # sign of the axis when the clamp goes down
+ *       travel_mm: 60                  # usable travel from the start position
+ *       speed_mm_s: 1
+ *     limits:
+ *       force_mN: 280
+ *       travel_mm: 58
+ *       stream_lost_s: 1
+ *     virtual: true                    # only written by `wirebench rig`
+ *     time_scale: 1
+ *     truth: {...}                     # only written by `wirebench rig`; no analysis reads it
+ */
+#ifndef WB_DAQ_RIG_H
+#define WB_DAQ_RIG_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+#define WB_RIG_TEXT 160
+#define WB_RIG_TOKENS 8
+
+struct wb_rig_load_cell {
+    char address[WB_RIG_TEXT];
+    char protocol[32];
+    double capacity;        /* N */
+    double overload;        /* N: the largest force it still reads (capacity x overload_percent) */
+    char serial_number[64];
+    char calibration_date[32];
+    double filter_delay;    /* s */
+    double filter_delay_uncertainty; /* s */
+    double noise;           /* N, expected standard deviation; 0 unknown */
+    /* Generic line protocol. */
+    char delimiter;         /* 0: whole line is one value */
+    int column;             /* from 1, with a delimiter */
+    char unit[16];          /* wins over the line's unit; "" takes the line's */
+    double scale, offset;   /* force = sign (scale value + offset) after the unit */
+    int sign;               /* +1: tension reads positive */
+    char terminator[8];     /* "cr", "lf", "crlf", "idle" */
+    int64_t idle_gap_ns;    /* for "idle" */
+    char poll_command[32];  /* with C escapes resolved; "" streams by itself */
+    int64_t poll_period_ns;
+    char start_command[32];
+    char tare_command[32];
+    char unstable_tokens[WB_RIG_TOKENS][16];
+    char overload_tokens[WB_RIG_TOKENS][16];
+    bool decimal_comma;
+    int64_t settle_ns;      /* ignore bytes for so long after opening */
+};
+
+struct wb_rig_mocap {
+    char address[WB_RIG_TEXT];
+    char protocol[32];
+    char up;                /* 'y' or 'z' */
+    double marker_noise;    /* m, expected standard deviation; 0 unknown */
+    double frame_rate;      /* 1/s, expected; 0 unknown */
+};
+
+struct wb_rig_stage {
+    char address[WB_RIG_TEXT];
+    char protocol[32];
+    char axis;              /* 'X', 'Y' or 'Z' */
+    int down;               /* +1 or -1 */
+    double travel;          /* m, usable downward travel from where the test starts */
+    double speed;           /* m/s */
+};
+
+struct wb_rig_limits {
+    double force;           /* N; 0: the cell's overload */
+    double travel;          /* m; 0: the stage's travel */
+    double stream_lost;     /* s */
+};
+
+struct wb_rig_strand {
+    double length;          /* m */
+    double counterweight;   /* kg */
+};
+
+struct wb_rig {
+    char name[WB_RIG_TEXT];
+    double gravity;         /* m/s2 */
+    struct wb_rig_load_cell load_cell;
+    struct wb_rig_mocap mocap;
+    struct wb_rig_stage stage;
+    struct wb_rig_limits limits;
+    struct wb_rig_strand strand;
+    bool is_virtual;
+    double time_scale;      /* 1 on a real bench: the rig's clocks run so many times faster */
+};
+
+/* Reads a rig file; errors name file, line and key. */
+WB_MUST_CHECK enum wb_status wb_rig_read(const char *path, struct wb_rig *rig);
+/* The same from text (a recording's meta); `origin` stands for the file in errors. */
+WB_MUST_CHECK enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig);
+
+#endif

@@ -1,0 +1,32 @@
+/* A specimen: one piece of a wire, as its YAML file describes it.
+ *
+ *     wire: type1                  # name in fixtures/wires, or a path
+ *     length_mm: 85
+ *     sample: 1
+ *     markers_mm: [0, 14.2, 28.3, 42.5, 56.7, 70.8, 85]   # arc length of each; the first on the
+ *                                                         # clamp, the last at the strand's knot
+ *     marker_offset_mm: 1.0        # from the wire's axis, along its local normal
+ *     marker_offset_uncertainty_mm: 0.1   # optional
+ */
+#ifndef WB_DAQ_SPECIMEN_H
+#define WB_DAQ_SPECIMEN_H
+
+#include "base/status.h"
+
+#define WB_SPECIMEN_MAX_MARKERS 32
+
+struct wb_specimen {
+    char wire[160];
+    double length;       /* m */
+    int sample;
+    int n_markers;       /* 2..WB_SPECIMEN_MAX_MARKERS */
+    double markers[WB_SPECIMEN_MAX_MARKERS]; /* m, ascending, first 0, last = length */
+    double marker_offset;                    /* m */
+    double marker_offset_uncertainty;        /* m */
+};
+
+WB_MUST_CHECK enum wb_status wb_specimen_read(const char *path, struct wb_specimen *specimen);
+WB_MUST_CHECK enum wb_status wb_specimen_parse(const char *text, const char *origin,
+                                               struct wb_specimen *specimen);
+
+#endif

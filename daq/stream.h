@@ -1,0 +1,54 @@
+/* Byte streams: serial ports, pseudo-terminals, UDP, memory, behind one table.
+ *
+ * Addresses are `scheme:rest`:
+ *     serial:/dev/ttyUSB0,9600,8n1[,dtr=off]   a real port through libserialport
+ *     pty:/dev/pts/5[,9600,8n1]                a pseudo-terminal through termios
+ *     udp:HOST:PORT                            unicast: datagrams to and from HOST:PORT
+ *     udp:HOST:PORT,group=ADDR:PORT[,interface=ADDR]   commands to HOST:PORT, data from a
+ *                                              multicast group, joined on that interface
+ *     memory:                                  bytes pushed in by the caller (replay, tests)
+ * All streams are non-blocking. A stream is used by one thread.
+ */
+#ifndef WB_DAQ_STREAM_H
+#define WB_DAQ_STREAM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+struct wb_stream; /* opaque */
+
+/* At most this many bytes come from one read: the largest UDP payload. */
+#define WB_STREAM_READ_MAX 65536
+
+/* Opens the address. On failure *out is NULL and one message says what to do (for a permission
+ * error, which group to join). */
+WB_MUST_CHECK enum wb_status wb_stream_open(struct wb_stream **out, const char *address);
+void wb_stream_close(struct wb_stream *stream); /* accepts NULL */
+
+/* The address it was opened with; owned by the stream. */
+const char *wb_stream_address(const struct wb_stream *stream);
+
+/* Descriptors to poll for reading, at most two (UDP with a group has two); returns how many.
+ * A memory stream has none. */
+int wb_stream_descriptors(const struct wb_stream *stream, int descriptors[2]);
+
+/* Reads what is there: one datagram, or the bytes that wait, up to `size`. *n is 0 when nothing
+ * waits. WB_ERR_IO when the device went away. */
+WB_MUST_CHECK enum wb_status wb_stream_read(struct wb_stream *stream, void *buffer, size_t size,
+                                            size_t *n);
+
+/* Writes all bytes (a datagram on UDP). A port that cannot take them within 50 ms fails with
+ * WB_ERR_TIMEOUT; nothing is retried behind the caller's back. */
+WB_MUST_CHECK enum wb_status wb_stream_write(struct wb_stream *stream, const void *bytes, size_t n);
+
+/* Memory streams only: appends one run of bytes to be read by wb_stream_read(), one run a call,
+ * as datagrams are. */
+WB_MUST_CHECK enum wb_status wb_stream_memory_push(struct wb_stream *stream, const void *bytes,
+                                                   size_t n);
+
+/* Memory streams only: takes what was written with wb_stream_write() so far, up to `size`. */
+size_t wb_stream_memory_take_written(struct wb_stream *stream, void *buffer, size_t size);
+
+#endif
