@@ -5,19 +5,19 @@
 
 #include <stdint.h>
 
-#define WB_MM 1e-3              /* m */
-#define WB_G 1e-3               /* kg: one gram */
-#define WB_MG 1e-6              /* kg: one milligram */
-#define WB_MPA 1e6              /* Pa */
-#define WB_GPA 1e9              /* Pa */
-#define WB_G_PER_CM3 1e3        /* kg/m3 */
-#define WB_NMM 1e-3             /* N m: one newton millimetre */
-#define WB_MN 1e-3              /* N: one millinewton */
-#define WB_PERCENT 1e-2         /* 1 */
-#define WB_PPM 1e-6             /* 1 */
+#define WB_MM 1e-3                     /* m */
+#define WB_G 1e-3                      /* kg: one gram */
+#define WB_MG 1e-6                     /* kg: one milligram */
+#define WB_MPA 1e6                     /* Pa */
+#define WB_GPA 1e9                     /* Pa */
+#define WB_G_PER_CM3 1e3               /* kg/m3 */
+#define WB_NMM 1e-3                    /* N m: one newton millimetre */
+#define WB_MN 1e-3                     /* N: one millinewton */
+#define WB_PERCENT 1e-2                /* 1 */
+#define WB_PPM 1e-6                    /* 1 */
 #define WB_DEGREE 0.017453292519943295 /* rad */
-#define WB_POUND 0.45359237     /* kg: the international pound, exact */
-#define WB_OUNCE 0.028349523125 /* kg: the international ounce, exact */
+#define WB_POUND 0.45359237            /* kg: the international pound, exact */
+#define WB_OUNCE 0.028349523125        /* kg: the international ounce, exact */
 #define WB_POUND_FORCE 4.4482216152605 /* N, exact */
 #define WB_STANDARD_GRAVITY 9.80665    /* m/s2, exact by definition */
 

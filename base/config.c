@@ -1,0 +1,337 @@
+#include "base/config.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <yaml.h>
+
+#include "base/file.h"
+#include "base/number.h"
+
+#define WB_LOG_DOMAIN "config"
+
+/* A handle on one YAML node; the document holds one for each, in the order of libyaml's own. */
+struct wb_config_node {
+    const struct wb_config *config;
+    yaml_node_t *yaml;
+};
+
+struct wb_config {
+    char *origin;
+    yaml_document_t document;
+    bool loaded;
+    struct wb_config_node *nodes;
+};
+
+static const struct wb_config_node *node_of(const struct wb_config *config, int yaml_index)
+{
+    return &config->nodes[yaml_index - 1];
+}
+
+static enum wb_status load(struct wb_config *config, const char *text)
+{
+    yaml_parser_t parser;
+    if (!yaml_parser_initialize(&parser))
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", config->origin);
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
+    enum wb_status status = WB_OK;
+    if (!yaml_parser_load(&parser, &config->document)) {
+        const char *const what = parser.problem ? parser.problem : "not YAML";
+        status =
+            wb_fail(WB_ERR_FORMAT, "%s:%zu: %s%s%s", config->origin, parser.problem_mark.line + 1,
+                    what, parser.context ? " " : "", parser.context ? parser.context : "");
+    } else {
+        config->loaded = true;
+        if (!yaml_document_get_root_node(&config->document))
+            status = wb_fail(WB_ERR_FORMAT, "%s: the file is empty", config->origin);
+    }
+    yaml_parser_delete(&parser);
+    return status;
+}
+
+enum wb_status wb_config_parse(struct wb_config **out, const char *text, const char *origin)
+{
+    *out = NULL;
+    struct wb_config *config = calloc(1, sizeof *config);
+    if (!config)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", origin);
+    config->origin = strdup(origin);
+    enum wb_status status =
+        config->origin ? load(config, text) : wb_fail(WB_ERR_MEMORY, "out of memory");
+    if (status == WB_OK) {
+        const size_t n = (size_t)(config->document.nodes.top - config->document.nodes.start);
+        config->nodes = calloc(n, sizeof *config->nodes);
+        if (!config->nodes)
+            status = wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", origin);
+        for (size_t i = 0; config->nodes && i < n; i++)
+            config->nodes[i] = (struct wb_config_node){config, config->document.nodes.start + i};
+    }
+    if (status != WB_OK) {
+        wb_config_destroy(config);
+        return status;
+    }
+    *out = config;
+    return WB_OK;
+}
+
+enum wb_status wb_config_read(struct wb_config **out, const char *path)
+{
+    *out = NULL;
+    char *text;
+    size_t size;
+    WB_TRY(wb_file_read(path, &text, &size));
+    enum wb_status status;
+    if (strlen(text) != size)
+        status = wb_fail(WB_ERR_FORMAT, "'%s' is not a text file", path);
+    else
+        status = wb_config_parse(out, text, path);
+    free(text);
+    return status;
+}
+
+void wb_config_destroy(struct wb_config *config)
+{
+    if (!config)
+        return;
+    if (config->loaded)
+        yaml_document_delete(&config->document);
+    free(config->nodes);
+    free(config->origin);
+    free(config);
+}
+
+const struct wb_config_node *wb_config_root(const struct wb_config *config)
+{
+    return node_of(config, 1);
+}
+
+const char *wb_config_origin(const struct wb_config_node *node)
+{
+    return node->config->origin;
+}
+
+int wb_config_line(const struct wb_config_node *node)
+{
+    return (int)node->yaml->start_mark.line + 1;
+}
+
+enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *key,
+                                const char *format, ...)
+{
+    char message[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s%s%s", wb_config_origin(node), wb_config_line(node),
+                   key ? key : "", key ? ": " : "", message);
+}
+
+const char *wb_config_scalar(const struct wb_config_node *node)
+{
+    if (node->yaml->type != YAML_SCALAR_NODE)
+        return NULL;
+    /* A scalar with a NUL inside ("\0") would end early: treat it as no scalar. */
+    const char *const text = (const char *)node->yaml->data.scalar.value;
+    return strlen(text) == node->yaml->data.scalar.length ? text : NULL;
+}
+
+int wb_config_entries(const struct wb_config_node *map)
+{
+    if (map->yaml->type != YAML_MAPPING_NODE)
+        return -1;
+    return (int)(map->yaml->data.mapping.pairs.top - map->yaml->data.mapping.pairs.start);
+}
+
+const struct wb_config_node *wb_config_entry(const struct wb_config_node *map, int index,
+                                             const char **name)
+{
+    const yaml_node_pair_t *const pair = map->yaml->data.mapping.pairs.start + index;
+    const char *const text = wb_config_scalar(node_of(map->config, pair->key));
+    *name = text ? text : "";
+    return node_of(map->config, pair->value);
+}
+
+int wb_config_length(const struct wb_config_node *sequence)
+{
+    if (sequence->yaml->type != YAML_SEQUENCE_NODE)
+        return -1;
+    return (int)(sequence->yaml->data.sequence.items.top -
+                 sequence->yaml->data.sequence.items.start);
+}
+
+const struct wb_config_node *wb_config_item(const struct wb_config_node *sequence, int index)
+{
+    return node_of(sequence->config, sequence->yaml->data.sequence.items.start[index]);
+}
+
+static enum wb_status read_number(const struct wb_config_node *node,
+                                  const struct wb_config_key *key, double *value)
+{
+    const char *const text = wb_config_scalar(node);
+    double number;
+    if (!text)
+        return wb_config_refuse(node, key->name, "expected a number");
+    if (!wb_number_parse(text, &number))
+        return wb_config_refuse(node, key->name,
+                                "expected a plain number (the unit stands in the key's name), "
+                                "not '%s'",
+                                text);
+    if (number < key->minimum || number > key->maximum)
+        return wb_config_refuse(node, key->name, "%s is out of range, expected %g to %g", text,
+                                key->minimum, key->maximum);
+    *value = number * key->factor;
+    return WB_OK;
+}
+
+static enum wb_status read_integer(const struct wb_config_node *node,
+                                   const struct wb_config_key *key)
+{
+    const char *const text = wb_config_scalar(node);
+    long number;
+    if (!text || !wb_number_parse_integer(text, &number))
+        return wb_config_refuse(node, key->name, "expected a whole number%s%s",
+                                text ? ", not " : "", text ? text : "");
+    if ((double)number < key->minimum || (double)number > key->maximum)
+        return wb_config_refuse(node, key->name, "%ld is out of range, expected %g to %g", number,
+                                key->minimum, key->maximum);
+    *(int *)key->target = (int)number;
+    return WB_OK;
+}
+
+static enum wb_status read_boolean(const struct wb_config_node *node,
+                                   const struct wb_config_key *key)
+{
+    const char *const text = wb_config_scalar(node);
+    const bool yes = text && strcmp(text, "true") == 0;
+    if (!yes && !(text && strcmp(text, "false") == 0))
+        return wb_config_refuse(node, key->name, "expected true or false");
+    *(bool *)key->target = yes;
+    return WB_OK;
+}
+
+static enum wb_status read_text(const struct wb_config_node *node, const struct wb_config_key *key)
+{
+    const char *const text = wb_config_scalar(node);
+    if (!text)
+        return wb_config_refuse(node, key->name, "expected a text");
+    if (strlen(text) >= key->size)
+        return wb_config_refuse(node, key->name, "text too long, at most %zu bytes", key->size - 1);
+    strcpy(key->target, text);
+    return WB_OK;
+}
+
+static enum wb_status read_choice(const struct wb_config_node *node,
+                                  const struct wb_config_key *key)
+{
+    const char *const text = wb_config_scalar(node);
+    char expected[256] = "";
+    for (int i = 0; key->choices[i]; i++) {
+        if (text && strcmp(text, key->choices[i]) == 0) {
+            *(int *)key->target = i;
+            return WB_OK;
+        }
+        const size_t used = strlen(expected);
+        snprintf(expected + used, sizeof expected - used, "%s%s", i ? ", " : "", key->choices[i]);
+    }
+    return wb_config_refuse(node, key->name, "expected one of %s%s%s", expected,
+                            text ? ", not " : "", text ? text : "");
+}
+
+static enum wb_status read_value(const struct wb_config_node *node, const struct wb_config_key *key)
+{
+    switch (key->type) {
+    case WB_CONFIG_TYPE_NUMBER:
+        return read_number(node, key, key->target);
+    case WB_CONFIG_TYPE_INTEGER:
+        return read_integer(node, key);
+    case WB_CONFIG_TYPE_BOOLEAN:
+        return read_boolean(node, key);
+    case WB_CONFIG_TYPE_TEXT:
+        return read_text(node, key);
+    case WB_CONFIG_TYPE_CHOICE:
+        return read_choice(node, key);
+    case WB_CONFIG_TYPE_NODE:
+        *(const struct wb_config_node **)key->target = node;
+        return WB_OK;
+    case WB_CONFIG_TYPE_IGNORED:
+        return WB_OK;
+    }
+    return WB_ERR_ARGUMENT;
+}
+
+static enum wb_status refuse_unknown(const struct wb_config_node *value, const char *name,
+                                     const struct wb_config_key *keys, size_t n_keys)
+{
+    char known[768] = "";
+    for (size_t i = 0; i < n_keys; i++) {
+        const size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", keys[i].name);
+    }
+    return wb_config_refuse(value, name, "unknown key; known here: %s", known);
+}
+
+/* Finds the entry of `name`; refuses a second one. */
+static enum wb_status find_entry(const struct wb_config_node *map, const char *name,
+                                 const struct wb_config_node **found)
+{
+    *found = NULL;
+    for (int i = 0; i < wb_config_entries(map); i++) {
+        const char *other;
+        const struct wb_config_node *const value = wb_config_entry(map, i, &other);
+        if (strcmp(name, other) != 0)
+            continue;
+        if (*found)
+            return wb_config_refuse(value, name, "given twice, first in line %d",
+                                    wb_config_line(*found));
+        *found = value;
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_config_map(const struct wb_config_node *map, const struct wb_config_key *keys,
+                             size_t n_keys)
+{
+    if (wb_config_entries(map) < 0)
+        return wb_config_refuse(map, NULL, "expected keys with values");
+    for (int i = 0; i < wb_config_entries(map); i++) {
+        const char *name;
+        const struct wb_config_node *const value = wb_config_entry(map, i, &name);
+        size_t k = 0;
+        while (k < n_keys && strcmp(keys[k].name, name) != 0)
+            k++;
+        if (k == n_keys)
+            return refuse_unknown(value, name, keys, n_keys);
+    }
+    for (size_t k = 0; k < n_keys; k++) {
+        const struct wb_config_node *value;
+        WB_TRY(find_entry(map, keys[k].name, &value));
+        if (keys[k].present)
+            *keys[k].present = value != NULL;
+        if (value)
+            WB_TRY(read_value(value, &keys[k]));
+        else if (!keys[k].optional)
+            return wb_config_refuse(map, keys[k].name, "this key is missing");
+        else if (keys[k].type == WB_CONFIG_TYPE_NODE)
+            *(const struct wb_config_node **)keys[k].target = NULL;
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_config_numbers(const struct wb_config_node *sequence,
+                                 const struct wb_config_key *key, int least, int most,
+                                 double *values, int *n)
+{
+    const int length = wb_config_length(sequence);
+    if (length < 0)
+        return wb_config_refuse(sequence, key->name, "expected a list of numbers");
+    if (length < least || length > most)
+        return wb_config_refuse(sequence, key->name, "%d numbers given, expected %d to %d", length,
+                                least, most);
+    for (int i = 0; i < length; i++)
+        WB_TRY(read_number(wb_config_item(sequence, i), key, &values[i]));
+    *n = length;
+    return WB_OK;
+}

@@ -1,0 +1,147 @@
+/* YAML settings with types: every key has a type, a unit in its name, a range and a default, and
+ * every error names file, line and key.
+ *
+ *     struct wb_config *config;
+ *     WB_TRY(wb_config_read(&config, "rig.yaml"));
+ *     const struct wb_config_key keys[] = {
+ *         WB_CONFIG_NUMBER("length_mm", &length, WB_MM, 1.0, 1e4),
+ *         WB_CONFIG_OPTIONAL_TEXT("notes", notes, ""),
+ *     };
+ *     status = wb_config_map(wb_config_root(config), keys, WB_COUNT(keys));
+ *     wb_config_destroy(config);
+ *
+ * wb_config_map() refuses unknown keys, double keys, missing required keys, wrong types and values
+ * out of range. Numbers are strict decimals: `85 mm`, `nan` and `0x10` are refused.
+ */
+#ifndef WB_BASE_CONFIG_H
+#define WB_BASE_CONFIG_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+
+#define WB_COUNT(array) (sizeof(array) / sizeof((array)[0]))
+
+struct wb_config;      /* one document, owned by the caller */
+struct wb_config_node; /* a map, sequence or scalar in it; owned by the document */
+
+/* Reads a file, or parses a text in which `origin` stands for the file in messages. */
+WB_MUST_CHECK enum wb_status wb_config_read(struct wb_config **out, const char *path);
+WB_MUST_CHECK enum wb_status wb_config_parse(struct wb_config **out, const char *text,
+                                             const char *origin);
+void wb_config_destroy(struct wb_config *config); /* accepts NULL */
+
+/* The top node. Its file name, and a node's line (from 1). */
+const struct wb_config_node *wb_config_root(const struct wb_config *config);
+const char *wb_config_origin(const struct wb_config_node *node);
+int wb_config_line(const struct wb_config_node *node);
+
+enum wb_config_type {
+    WB_CONFIG_TYPE_NUMBER,  /* double *, times `factor` to SI; range is in the file's unit */
+    WB_CONFIG_TYPE_INTEGER, /* int * */
+    WB_CONFIG_TYPE_BOOLEAN, /* bool *: true or false */
+    WB_CONFIG_TYPE_TEXT,    /* char[size] */
+    WB_CONFIG_TYPE_CHOICE,  /* int *: index into `choices`, a NULL-terminated list */
+    WB_CONFIG_TYPE_NODE,    /* const struct wb_config_node **: any value, for nested reading */
+    WB_CONFIG_TYPE_IGNORED  /* any value, not looked at */
+};
+
+struct wb_config_key {
+    const char *name;
+    enum wb_config_type type;
+    bool optional; /* when absent the target is left as it was */
+    void *target;
+    size_t size;             /* of a text target */
+    double factor;           /* file unit to SI */
+    double minimum, maximum; /* of a number, in the file's unit; of an integer */
+    const char *const *choices;
+    bool *present; /* set when the key was given; may be NULL */
+};
+
+#define WB_CONFIG_NUMBER(key, pointer, unit_factor, low, high)                                     \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_NUMBER, .target = (pointer), .factor = (unit_factor),  \
+        .minimum = (low), .maximum = (high)                                                        \
+    }
+#define WB_CONFIG_OPTIONAL_NUMBER(key, pointer, unit_factor, low, high)                            \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_NUMBER, .optional = true, .target = (pointer),         \
+        .factor = (unit_factor), .minimum = (low), .maximum = (high)                               \
+    }
+#define WB_CONFIG_INTEGER(key, pointer, low, high)                                                 \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_INTEGER, .target = (pointer), .minimum = (low),        \
+        .maximum = (high)                                                                          \
+    }
+#define WB_CONFIG_OPTIONAL_INTEGER(key, pointer, low, high)                                        \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_INTEGER, .optional = true, .target = (pointer),        \
+        .minimum = (low), .maximum = (high)                                                        \
+    }
+#define WB_CONFIG_OPTIONAL_BOOLEAN(key, pointer)                                                   \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_BOOLEAN, .optional = true, .target = (pointer)         \
+    }
+/* `array` must be a char array, not a pointer. */
+#define WB_CONFIG_TEXT(key, array)                                                                 \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_TEXT, .target = (array), .size = sizeof(array)         \
+    }
+#define WB_CONFIG_OPTIONAL_TEXT(key, array)                                                        \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_TEXT, .optional = true, .target = (array),             \
+        .size = sizeof(array)                                                                      \
+    }
+#define WB_CONFIG_CHOICE(key, pointer, list)                                                       \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_CHOICE, .target = (pointer), .choices = (list)         \
+    }
+#define WB_CONFIG_OPTIONAL_CHOICE(key, pointer, list)                                              \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_CHOICE, .optional = true, .target = (pointer),         \
+        .choices = (list)                                                                          \
+    }
+#define WB_CONFIG_NODE(key, pointer)                                                               \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_NODE, .target = (void *)(pointer)                      \
+    }
+/* The pointer is set to NULL when the key is absent. */
+#define WB_CONFIG_OPTIONAL_NODE(key, pointer)                                                      \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_NODE, .optional = true, .target = (void *)(pointer)    \
+    }
+#define WB_CONFIG_IGNORED(key)                                                                     \
+    {                                                                                              \
+        .name = key, .type = WB_CONFIG_TYPE_IGNORED, .optional = true                              \
+    }
+
+/* Reads a map by its table of keys. */
+WB_MUST_CHECK enum wb_status wb_config_map(const struct wb_config_node *map,
+                                           const struct wb_config_key *keys, size_t n_keys);
+
+/* Sequences: length (-1 when the node is not one), and items. */
+int wb_config_length(const struct wb_config_node *sequence);
+const struct wb_config_node *wb_config_item(const struct wb_config_node *sequence, int index);
+
+/* Reads a sequence of numbers, each times `factor` and within the range of the file's unit, into
+ * `values`; *n receives how many, at least `least` and at most `most`. `name` is for messages. */
+WB_MUST_CHECK enum wb_status wb_config_numbers(const struct wb_config_node *sequence,
+                                               const struct wb_config_key *key, int least, int most,
+                                               double *values, int *n);
+
+/* A scalar as text (owned by the document); NULL when the node is not a scalar. */
+const char *wb_config_scalar(const struct wb_config_node *node);
+
+/* Entry of a map that is read without a table: name and value at an index; the number of entries
+ * (-1 when the node is not a map). */
+int wb_config_entries(const struct wb_config_node *map);
+const struct wb_config_node *wb_config_entry(const struct wb_config_node *map, int index,
+                                             const char **name);
+
+/* Logs "FILE:LINE: KEY: message" and evaluates to WB_ERR_FORMAT; `key` may be NULL. For checks
+ * that a table cannot express. */
+enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *key,
+                                const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+#endif

@@ -1,0 +1,238 @@
+#include "base/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define WB_LOG_DOMAIN "file"
+
+static enum wb_status status_of_errno(int error)
+{
+    switch (error) {
+    case ENOENT:
+    case ENOTDIR:
+        return WB_ERR_NOT_FOUND;
+    case EACCES:
+    case EPERM:
+    case EROFS:
+        return WB_ERR_PERMISSION;
+    case EEXIST:
+        return WB_ERR_EXISTS;
+    case ENOMEM:
+        return WB_ERR_MEMORY;
+    default:
+        return WB_ERR_IO;
+    }
+}
+
+static enum wb_status fail_errno(const char *what, const char *path)
+{
+    const int error = errno;
+    return wb_fail(status_of_errno(error), "cannot %s '%s': %s", what, path, strerror(error));
+}
+
+static enum wb_status read_stream(FILE *file, const char *path, char **bytes, size_t *size)
+{
+    size_t length = 0, capacity = 1 << 14;
+    char *buffer = malloc(capacity);
+    while (buffer) {
+        length += fread(buffer + length, 1, capacity - length - 1, file);
+        if (length < capacity - 1)
+            break;
+        char *larger = capacity > ((size_t)1 << 31) ? NULL : realloc(buffer, capacity *= 2);
+        if (!larger)
+            free(buffer);
+        buffer = larger;
+    }
+    if (!buffer)
+        return wb_fail(WB_ERR_MEMORY, "'%s' is too large to be read whole", path);
+    if (ferror(file)) {
+        free(buffer);
+        return fail_errno("read", path);
+    }
+    buffer[length] = '\0';
+    *bytes = buffer;
+    if (size)
+        *size = length;
+    return WB_OK;
+}
+
+enum wb_status wb_file_read(const char *path, char **bytes, size_t *size)
+{
+    FILE *file = fopen(path, "rbe");
+    if (!file)
+        return fail_errno("open", path);
+    const enum wb_status status = read_stream(file, path, bytes, size);
+    fclose(file);
+    return status;
+}
+
+static enum wb_status write_all(int descriptor, const char *path, const void *bytes, size_t size)
+{
+    const char *position = bytes;
+    while (size > 0) {
+        const ssize_t n = write(descriptor, position, size);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return fail_errno("write", path);
+        position += n;
+        size -= (size_t)n;
+    }
+    if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS)
+        return fail_errno("write", path);
+    return WB_OK;
+}
+
+enum wb_status wb_file_write(const char *path, const void *bytes, size_t size)
+{
+    char temporary[WB_PATH];
+    if (snprintf(temporary, sizeof temporary, "%s.XXXXXX", path) >= (int)sizeof temporary)
+        return wb_fail(WB_ERR_ARGUMENT, "path too long: '%s'", path);
+    const int descriptor = mkostemp(temporary, O_CLOEXEC);
+    if (descriptor < 0)
+        return fail_errno("create a file beside", path);
+    enum wb_status status = write_all(descriptor, path, bytes, size);
+    /* mkostemp() makes private files; outputs follow the umask as other programs' do. */
+    const mode_t mask = umask(0);
+    umask(mask);
+    if (status == WB_OK && fchmod(descriptor, 0666 & ~mask) != 0)
+        status = fail_errno("set the mode of", path);
+    if (close(descriptor) != 0 && status == WB_OK)
+        status = fail_errno("write", path);
+    if (status == WB_OK && rename(temporary, path) != 0)
+        status = fail_errno("replace", path);
+    if (status != WB_OK)
+        unlink(temporary);
+    return status;
+}
+
+bool wb_file_exists(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+bool wb_file_is_folder(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+enum wb_status wb_file_make_folder(const char *path)
+{
+    char part[WB_PATH];
+    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part)
+        return wb_fail(WB_ERR_ARGUMENT, "path too long: '%s'", path);
+    for (char *slash = strchr(part + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        if (mkdir(part, 0777) != 0 && errno != EEXIST)
+            return fail_errno("make the folder", part);
+        *slash = '/';
+    }
+    if (mkdir(part, 0777) != 0 && errno != EEXIST)
+        return fail_errno("make the folder", part);
+    if (!wb_file_is_folder(path))
+        return wb_fail(WB_ERR_EXISTS, "'%s' is not a folder", path);
+    return WB_OK;
+}
+
+static bool folder_is_empty(const char *path)
+{
+    DIR *folder = opendir(path);
+    if (!folder)
+        return true;
+    int entries = 0;
+    while (entries < 3 && readdir(folder))
+        entries++;
+    closedir(folder);
+    return entries <= 2; /* "." and ".." */
+}
+
+enum wb_status wb_file_prepare_output(const char *path, bool force)
+{
+    if (!force && wb_file_exists(path) && !wb_file_is_folder(path))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists and is not a folder", path);
+    if (!force && !folder_is_empty(path))
+        return wb_fail(WB_ERR_EXISTS,
+                       "folder '%s' is not empty; give another, or --force to overwrite", path);
+    return wb_file_make_folder(path);
+}
+
+enum wb_status wb_file_join(char path[WB_PATH], const char *folder, const char *name)
+{
+    const bool alone = name[0] == '/' || folder[0] == '\0';
+    const int length = alone ? snprintf(path, WB_PATH, "%s", name)
+                             : snprintf(path, WB_PATH, "%s/%s", folder, name);
+    if (length >= WB_PATH)
+        return wb_fail(WB_ERR_ARGUMENT, "path too long: '%s/%s'", folder, name);
+    return WB_OK;
+}
+
+void wb_file_folder(char folder[WB_PATH], const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        snprintf(folder, WB_PATH, ".");
+    else if (slash == path)
+        snprintf(folder, WB_PATH, "/");
+    else
+        snprintf(folder, WB_PATH, "%.*s", (int)(slash - path), path);
+}
+
+const char *wb_file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+enum wb_status wb_file_find_data(char path[WB_PATH], const char *name)
+{
+    const char *const given = getenv("WIREBENCH_DATA");
+    const char *const places[] = {given ? given : "", WB_SOURCE_ROOT, WB_DATA_FOLDER};
+    for (size_t i = given ? 0 : 1; i < sizeof places / sizeof places[0]; i++) {
+        char candidate[WB_PATH];
+        WB_TRY(wb_file_join(candidate, places[i], name));
+        if (wb_file_exists(candidate)) {
+            memcpy(path, candidate, sizeof candidate);
+            return WB_OK;
+        }
+    }
+    return WB_ERR_NOT_FOUND;
+}
+
+static bool is_path(const char *name)
+{
+    const size_t length = strlen(name);
+    return strchr(name, '/') || (length > 5 && strcmp(name + length - 5, ".yaml") == 0);
+}
+
+enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind, const char *name,
+                                    const char *beside)
+{
+    char candidate[WB_PATH];
+    if (is_path(name)) {
+        if (beside) {
+            WB_TRY(wb_file_join(path, beside, name));
+            if (wb_file_exists(path))
+                return WB_OK;
+        }
+        WB_TRY(wb_file_join(path, "", name));
+        if (wb_file_exists(path) || wb_file_find_data(path, name) == WB_OK)
+            return WB_OK;
+        return wb_fail(WB_ERR_NOT_FOUND, "no file '%s'%s%s", name, beside ? ", here or in " : "",
+                       beside ? beside : "");
+    }
+    if (snprintf(candidate, sizeof candidate, "fixtures/%s/%s.yaml", kind, name) >=
+        (int)sizeof candidate)
+        return wb_fail(WB_ERR_ARGUMENT, "name too long: '%s'", name);
+    if (wb_file_find_data(path, candidate) == WB_OK)
+        return WB_OK;
+    return wb_fail(WB_ERR_NOT_FOUND,
+                   "no '%s' among the shipped %s (no %s); give a path to your own file", name, kind,
+                   candidate);
+}

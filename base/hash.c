@@ -1,0 +1,57 @@
+#include "base/hash.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <glib.h>
+
+#define WB_LOG_DOMAIN "hash"
+
+static void finish(GChecksum *checksum, char hex[WB_SHA256_TEXT])
+{
+    snprintf(hex, WB_SHA256_TEXT, "%s", g_checksum_get_string(checksum));
+    g_checksum_free(checksum);
+}
+
+enum wb_status wb_hash_descriptor(int descriptor, const char *name, char hex[WB_SHA256_TEXT])
+{
+    if (lseek(descriptor, 0, SEEK_SET) < 0)
+        return wb_fail(WB_ERR_IO, "cannot read '%s': %s", name, strerror(errno));
+    GChecksum *checksum = g_checksum_new(G_CHECKSUM_SHA256);
+    for (;;) {
+        unsigned char block[65536];
+        const ssize_t n = read(descriptor, block, sizeof block);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0) {
+            g_checksum_free(checksum);
+            return wb_fail(WB_ERR_IO, "cannot read '%s': %s", name, strerror(errno));
+        }
+        if (n == 0)
+            break;
+        g_checksum_update(checksum, block, (gssize)n);
+    }
+    finish(checksum, hex);
+    return WB_OK;
+}
+
+enum wb_status wb_hash_file(const char *path, char hex[WB_SHA256_TEXT])
+{
+    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0)
+        return wb_fail(errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO, "cannot open '%s': %s", path,
+                       strerror(errno));
+    const enum wb_status status = wb_hash_descriptor(descriptor, path, hex);
+    close(descriptor);
+    return status;
+}
+
+void wb_hash_bytes(const void *bytes, size_t n, char hex[WB_SHA256_TEXT])
+{
+    GChecksum *checksum = g_checksum_new(G_CHECKSUM_SHA256);
+    g_checksum_update(checksum, bytes, (gssize)n);
+    finish(checksum, hex);
+}

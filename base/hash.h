@@ -1,0 +1,18 @@
+/* SHA-256 of files and bytes (GLib's GChecksum). */
+#ifndef WB_BASE_HASH_H
+#define WB_BASE_HASH_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+/* Lower-case hex and a NUL. */
+#define WB_SHA256_TEXT 65
+
+WB_MUST_CHECK enum wb_status wb_hash_file(const char *path, char hex[WB_SHA256_TEXT]);
+/* From an open descriptor, from its start to its end; the offset is left at the end. */
+WB_MUST_CHECK enum wb_status wb_hash_descriptor(int descriptor, const char *name,
+                                                char hex[WB_SHA256_TEXT]);
+void wb_hash_bytes(const void *bytes, size_t n, char hex[WB_SHA256_TEXT]);
+
+#endif

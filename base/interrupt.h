@@ -1,0 +1,17 @@
+/* Ctrl-C as a flag that loops test, so that the stage stops first and the recording closes. */
+#ifndef WB_BASE_INTERRUPT_H
+#define WB_BASE_INTERRUPT_H
+
+#include <stdbool.h>
+
+/* From now on SIGINT, SIGTERM and SIGHUP set the flag. System calls are interrupted, not
+ * restarted, so a poll() wakes up. */
+void wb_interrupt_install(void);
+
+/* True once a signal came. */
+bool wb_interrupted(void);
+
+/* Sets or clears the flag without a signal (tests, a stop key). */
+void wb_interrupt_set(bool interrupted);
+
+#endif

@@ -1,0 +1,67 @@
+/* JSON values: built to be written, or read from a file. jansson stays behind json.c.
+ *
+ * Builders return nothing and never fail visibly: running out of memory, or setting into something
+ * that is not an object or array, is remembered (by the thread, until its next wb_json_create()),
+ * and wb_json_format() reports it. So build one document at a time in a thread. Numbers
+ * that are not finite become null. Keys keep the order in which they were set.
+ */
+#ifndef WB_BASE_JSON_H
+#define WB_BASE_JSON_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+struct wb_json; /* a document or a value in it */
+
+/* A new document whose root is an object; NULL when out of memory (all functions accept NULL). */
+struct wb_json *wb_json_create(void);
+void wb_json_destroy(struct wb_json *root);
+
+/* Sets a member of an object. The text is copied; NULL text becomes null. */
+void wb_json_set_text(struct wb_json *object, const char *key, const char *text);
+void wb_json_set_number(struct wb_json *object, const char *key, double value);
+void wb_json_set_integer(struct wb_json *object, const char *key, int64_t value);
+void wb_json_set_boolean(struct wb_json *object, const char *key, bool value);
+
+/* Adds an empty object or array as a member; the returned handle belongs to the document. */
+struct wb_json *wb_json_set_object(struct wb_json *object, const char *key);
+struct wb_json *wb_json_set_array(struct wb_json *object, const char *key);
+
+/* Appends to an array. */
+void wb_json_append_text(struct wb_json *array, const char *text);
+void wb_json_append_number(struct wb_json *array, double value);
+struct wb_json *wb_json_append_object(struct wb_json *array);
+struct wb_json *wb_json_append_array(struct wb_json *array);
+
+/* Sets a deep copy of `value` (any document's) as a member. */
+void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value);
+
+/* Text of the document (caller frees), indented by two spaces, with a final newline, doubles that
+ * read back the same. WB_ERR_MEMORY when the document failed while it was built. */
+WB_MUST_CHECK enum wb_status wb_json_format(const struct wb_json *root, char **text);
+/* The same into a file, atomically. */
+WB_MUST_CHECK enum wb_status wb_json_write(const struct wb_json *root, const char *path);
+
+/* Reads a document whose root is an object; errors name file and line. */
+WB_MUST_CHECK enum wb_status wb_json_read(struct wb_json **root, const char *path);
+WB_MUST_CHECK enum wb_status wb_json_parse(struct wb_json **root, const char *text,
+                                           const char *origin);
+
+/* Reading: each returns false and leaves the target when the member is missing or of another
+ * kind. Text is owned by the document. */
+bool wb_json_get_text(const struct wb_json *object, const char *key, const char **text);
+bool wb_json_get_number(const struct wb_json *object, const char *key, double *value);
+bool wb_json_get_integer(const struct wb_json *object, const char *key, int64_t *value);
+bool wb_json_get_boolean(const struct wb_json *object, const char *key, bool *value);
+/* Member object or array, item of an array; NULL when missing. Length of an array, 0 otherwise. */
+struct wb_json *wb_json_get(const struct wb_json *object, const char *key);
+size_t wb_json_length(const struct wb_json *array);
+struct wb_json *wb_json_item(const struct wb_json *array, size_t index);
+/* An item or value itself as number or text. */
+bool wb_json_number(const struct wb_json *value, double *number);
+bool wb_json_text(const struct wb_json *value, const char **text);
+
+#endif

@@ -1,0 +1,29 @@
+/* One live line on a terminal: what, how far, rate and time left. Silent when stderr is not a
+ * terminal. Redrawn at most ten times a second. */
+#ifndef WB_BASE_PROGRESS_H
+#define WB_BASE_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct wb_progress {
+    const char *label, *unit; /* borrowed */
+    double total;             /* 0: unknown */
+    int64_t started_ns, drawn_ns;
+    bool on_terminal, drawn;
+};
+
+/* `unit` is the plural of what is counted ("steps"). */
+void wb_progress_start(struct wb_progress *progress, const char *label, const char *unit,
+                       double total);
+
+/* Tells how much is done; `note` (may be NULL) is put at the end of the line. */
+void wb_progress_update(struct wb_progress *progress, double done, const char *note);
+
+/* Clears the line. */
+void wb_progress_finish(struct wb_progress *progress);
+
+/* Host monotonic clock, ns. */
+int64_t wb_progress_now_ns(void);
+
+#endif

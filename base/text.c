@@ -1,0 +1,93 @@
+#include "base/text.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool reserve(struct wb_text *text, size_t more)
+{
+    if (text->failed)
+        return false;
+    if (more > SIZE_MAX / 2 - text->length - 1) {
+        text->failed = true;
+        return false;
+    }
+    const size_t needed = text->length + more + 1;
+    if (needed <= text->capacity)
+        return true;
+    size_t capacity = text->capacity ? text->capacity : 256;
+    while (capacity < needed)
+        capacity *= 2;
+    char *bytes = realloc(text->bytes, capacity);
+    if (!bytes) {
+        text->failed = true;
+        return false;
+    }
+    text->bytes = bytes;
+    text->capacity = capacity;
+    return true;
+}
+
+void wb_text_append(struct wb_text *text, const char *format, ...)
+{
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    const int length = vsnprintf(NULL, 0, format, arguments);
+    va_end(arguments);
+    if (length < 0)
+        text->failed = true;
+    else if (reserve(text, (size_t)length)) {
+        vsnprintf(text->bytes + text->length, (size_t)length + 1, format, again);
+        text->length += (size_t)length;
+    }
+    va_end(again);
+}
+
+void wb_text_append_bytes(struct wb_text *text, const void *bytes, size_t n)
+{
+    if (!reserve(text, n))
+        return;
+    if (n > 0)
+        memcpy(text->bytes + text->length, bytes, n);
+    text->length += n;
+    text->bytes[text->length] = '\0';
+}
+
+void wb_text_append_escaped(struct wb_text *text, const char *raw)
+{
+    for (; *raw; raw++) {
+        switch (*raw) {
+        case '&':
+            wb_text_append_bytes(text, "&amp;", 5);
+            break;
+        case '<':
+            wb_text_append_bytes(text, "&lt;", 4);
+            break;
+        case '>':
+            wb_text_append_bytes(text, "&gt;", 4);
+            break;
+        case '"':
+            wb_text_append_bytes(text, "&quot;", 6);
+            break;
+        case '\'':
+            wb_text_append_bytes(text, "&#39;", 5);
+            break;
+        default:
+            wb_text_append_bytes(text, raw, 1);
+        }
+    }
+}
+
+const char *wb_text_string(const struct wb_text *text)
+{
+    return text->bytes ? text->bytes : "";
+}
+
+void wb_text_release(struct wb_text *text)
+{
+    free(text->bytes);
+    *text = (struct wb_text){0};
+}

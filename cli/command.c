@@ -1,0 +1,88 @@
+#include "cli/command.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/number.h"
+
+#define WB_LOG_DOMAIN "command"
+
+static const struct argp_option help_options[] = {
+    {"help", 'h', NULL, 0, "Show this help", -1},
+    {"usage", 'U', NULL, 0, "Show a short usage message", -1},
+    {0},
+};
+
+static error_t parse_help(int key, char *argument, struct argp_state *state)
+{
+    (void)argument;
+    switch (key) {
+    case 'h':
+        argp_state_help(state, stdout, ARGP_HELP_STD_HELP);
+        return 0;
+    case 'U':
+        argp_state_help(state, stdout, ARGP_HELP_USAGE | ARGP_HELP_EXIT_OK);
+        return 0;
+    case ARGP_KEY_INIT:
+        /* The one child is the command's own parser. */
+        state->child_inputs[0] = state->input;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+void wb_command_parse(const struct argp *argp, int argc, char **argv, void *input)
+{
+    char name[64];
+    snprintf(name, sizeof name, "wirebench %s", argv[0]);
+    argv[0] = name;
+    argp_err_exit_status = WB_EXIT_USAGE;
+    const struct argp_child children[] = {{.argp = argp}, {0}};
+    const struct argp with_help = {
+        .options = help_options,
+        .parser = parse_help,
+        .args_doc = argp->args_doc,
+        .doc = argp->doc,
+        .children = children,
+    };
+    if (argp_parse(&with_help, argc, argv, ARGP_NO_HELP, NULL, input) != 0)
+        exit(WB_EXIT_USAGE);
+}
+
+double wb_command_number(struct argp_state *state, const char *option, const char *text,
+                         double minimum, double maximum)
+{
+    double value = 0.0;
+    if (!wb_number_parse(text, &value) || value < minimum || value > maximum)
+        argp_error(state, "%s: expected a number from %g to %g, not '%s'", option, minimum, maximum,
+                   text);
+    return value;
+}
+
+int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
+                       int maximum)
+{
+    long value = 0;
+    if (!wb_number_parse_integer(text, &value) || value < minimum || value > maximum)
+        argp_error(state, "%s: expected a whole number from %d to %d, not '%s'", option, minimum,
+                   maximum, text);
+    return (int)value;
+}
+
+int wb_command_exit(enum wb_status status)
+{
+    return status == WB_OK ? WB_EXIT_OK : WB_EXIT_FAILED;
+}
+
+int wb_command_print_json(struct wb_json *root)
+{
+    char *text;
+    const enum wb_status status = wb_json_format(root, &text);
+    wb_json_destroy(root);
+    if (status != WB_OK)
+        return WB_EXIT_FAILED;
+    fputs(text, stdout);
+    free(text);
+    return WB_EXIT_OK;
+}

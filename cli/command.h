@@ -1,0 +1,56 @@
+/* What every command of the tool shares: the table's entry, exit codes, option parsing.
+ *
+ * How to add one: write cli/cmd_NAME.c with its argp options and `int wb_cmd_NAME(int, char **)`
+ * (usage, option table, parse, call the library, print; no numerics), declare it below, and add it
+ * to the table in main.c and to cli/meson.build. docs/ gets its manual page from the same argp.
+ */
+#ifndef WB_CLI_COMMAND_H
+#define WB_CLI_COMMAND_H
+
+#include <argp.h>
+#include <stdbool.h>
+
+#include "base/json.h"
+#include "base/status.h"
+
+enum {
+    WB_EXIT_OK = 0,
+    WB_EXIT_FAILED = 1,
+    WB_EXIT_USAGE = 2,
+    WB_EXIT_INCOMPLETE = 3, /* usable but incomplete: data lost, stopped by a limit or Ctrl-C,
+                               cut short by non-convergence */
+    WB_EXIT_LIMIT = 4       /* all written, but a limit of the campaign was exceeded */
+};
+
+/* Parses a command's options. argv[0] is the command's name; -h, --help and --usage are added.
+ * Exits with WB_EXIT_USAGE on wrong usage, as argp does. */
+void wb_command_parse(const struct argp *argp, int argc, char **argv, void *input);
+
+/* For use inside an argp parser: reads the argument of an option as a number within
+ * [minimum, maximum], or a whole number, or stops with a usage error that names the option. */
+double wb_command_number(struct argp_state *state, const char *option, const char *text,
+                         double minimum, double maximum);
+int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
+                       int maximum);
+
+/* The exit code of a failed library call: WB_EXIT_FAILED (its message was logged). */
+int wb_command_exit(enum wb_status status);
+
+/* Prints the document on stdout and destroys it; returns an exit code. */
+int wb_command_print_json(struct wb_json *root);
+
+int wb_cmd_align(int argc, char **argv);
+int wb_cmd_calibrate(int argc, char **argv);
+int wb_cmd_export(int argc, char **argv);
+int wb_cmd_info(int argc, char **argv);
+int wb_cmd_quicklook(int argc, char **argv);
+int wb_cmd_record(int argc, char **argv);
+int wb_cmd_replay(int argc, char **argv);
+int wb_cmd_report(int argc, char **argv);
+int wb_cmd_rig(int argc, char **argv);
+int wb_cmd_solve(int argc, char **argv);
+int wb_cmd_stage(int argc, char **argv);
+int wb_cmd_validate(int argc, char **argv);
+int wb_cmd_verify(int argc, char **argv);
+
+#endif

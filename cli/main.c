@@ -1,0 +1,60 @@
+/* wirebench: one tool, one table of commands. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/version.h"
+#include "cli/command.h"
+
+#define WB_LOG_DOMAIN "main"
+
+struct command {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *summary;
+};
+
+static const struct command commands[] = {};
+
+static void print_usage(FILE *file)
+{
+    fprintf(file, "Usage: wirebench COMMAND [options]\n"
+                  "Records cantilever bending tests of wires, replays and aligns them, calibrates\n"
+                  "a beam model against them and prints the calibration report.\n\n");
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
+        fprintf(file, "  %-10s %s\n", commands[i].name, commands[i].summary);
+    fprintf(file, "\n  -h, --help     this help; `wirebench COMMAND --help` for one command\n"
+                  "  -V, --version  version and revision\n");
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    int code = command->run(argc, argv);
+    /* A full disk behind a pipe or redirection shows only when stdout is flushed. */
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == WB_EXIT_OK) {
+        wb_error("cannot write to standard output: %s", strerror(errno));
+        code = WB_EXIT_FAILED;
+    }
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    const char *const name = argc > 1 ? argv[1] : "";
+    if (strcmp(name, "-h") == 0 || strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
+        print_usage(stdout);
+        return WB_EXIT_OK;
+    }
+    if (strcmp(name, "-V") == 0 || strcmp(name, "--version") == 0) {
+        printf("wirebench %s (%s)\n", wb_version(), wb_version_revision());
+        return WB_EXIT_OK;
+    }
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        if (strcmp(name, commands[i].name) == 0)
+            return run(&commands[i], argc - 1, argv + 1);
+    }
+    if (argc > 1)
+        wb_error("no command '%s'", name);
+    print_usage(stderr);
+    return WB_EXIT_USAGE;
+}
