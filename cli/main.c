@@ -14,15 +14,17 @@ struct command {
     const char *summary;
 };
 
-static const struct command commands[] = {};
+static const struct command commands[] = {
+    {0},
+};
 
 static void print_usage(FILE *file)
 {
     fprintf(file, "Usage: wirebench COMMAND [options]\n"
                   "Records cantilever bending tests of wires, replays and aligns them, calibrates\n"
                   "a beam model against them and prints the calibration report.\n\n");
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
-        fprintf(file, "  %-10s %s\n", commands[i].name, commands[i].summary);
+    for (const struct command *command = commands; command->name; command++)
+        fprintf(file, "  %-10s %s\n", command->name, command->summary);
     fprintf(file, "\n  -h, --help     this help; `wirebench COMMAND --help` for one command\n"
                   "  -V, --version  version and revision\n");
 }
@@ -49,9 +51,9 @@ int main(int argc, char **argv)
         printf("wirebench %s (%s)\n", wb_version(), wb_version_revision());
         return WB_EXIT_OK;
     }
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        if (strcmp(name, commands[i].name) == 0)
-            return run(&commands[i], argc - 1, argv + 1);
+    for (const struct command *command = commands; command->name; command++) {
+        if (strcmp(name, command->name) == 0)
+            return run(command, argc - 1, argv + 1);
     }
     if (argc > 1)
         wb_error("no command '%s'", name);
