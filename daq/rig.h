@@ -11,13 +11,20 @@
  *       calibration_date: 2026-01-15
  *       filter_delay_ms: 50
  *       filter_delay_uncertainty_ms: 5
- *       ...generic line protocol: delimiter, column, unit, scale, offset, sign, terminator,
- *          poll_command, poll_period_ms, start_command, tare_command, unstable_tokens,
+ *       noise_mg: 10                   # optional, expected standard deviation
+ *       check_mass_g: 10               # optional, known mass for the check of the cell
+ *       check_tolerance_percent: 1     # optional
+ *       sign: +1                       # +1: tension reads positive
+ *       poll_period_ms: 100            # optional, absent: the instrument streams by itself
+ *       ...generic line protocol: delimiter, column, unit, scale, offset, terminator,
+ *          idle_gap_ms, poll_command, start_command, tare_command, unstable_tokens,
  *          overload_tokens, decimal_comma, settle_ms
  *     mocap:
  *       address: udp:192.168.1.10:1510,group=239.255.42.99:1511
  *       protocol: natnet
  *       up: y                          # axis that points up: y or z
+ *       marker_noise_mm: 0.1           # optional, expected standard deviation
+ *       frame_rate_hz: 120             # optional, expected
  *     stage:
  *       address: serial:/dev/ttyACM0,115200,8n1
  *       protocol: grbl
@@ -25,7 +32,10 @@
  *       down: +1                       # sign of the axis when the clamp goes down
  *       travel_mm: 60                  # usable travel from the start position
  *       speed_mm_s: 1
- *     limits:
+ *     strand:                          # optional, absent: the tip hangs on the cell itself
+ *       length_mm: 760
+ *       counterweight_g: 2.7
+ *     limits:                          # optional
  *       force_mN: 280
  *       travel_mm: 58
  *       stream_lost_s: 1
@@ -54,13 +64,15 @@ struct wb_rig_load_cell {
     double filter_delay;    /* s */
     double filter_delay_uncertainty; /* s */
     double noise;           /* N, expected standard deviation; 0 unknown */
+    double check_mass;      /* kg, known mass to check the cell with; 0 none */
+    double check_tolerance; /* fraction of the check mass */
     /* Generic line protocol. */
     char delimiter;         /* 0: whole line is one value */
     int column;             /* from 1, with a delimiter */
     char unit[16];          /* wins over the line's unit; "" takes the line's */
-    double scale, offset;   /* force = sign (scale value + offset) after the unit */
+    double scale, offset;   /* force = sign (scale value + offset) unit: both in the line's unit */
     int sign;               /* +1: tension reads positive */
-    char terminator[8];     /* "cr", "lf", "crlf", "idle" */
+    char terminator[8];     /* "cr", "lf", "crlf", "idle"; "any" or "": CR or LF */
     int64_t idle_gap_ns;    /* for "idle" */
     char poll_command[32];  /* with C escapes resolved; "" streams by itself */
     int64_t poll_period_ns;
@@ -69,7 +81,7 @@ struct wb_rig_load_cell {
     char unstable_tokens[WB_RIG_TOKENS][16];
     char overload_tokens[WB_RIG_TOKENS][16];
     bool decimal_comma;
-    int64_t settle_ns;      /* ignore bytes for so long after opening */
+    int64_t settle_ns;      /* ignore bytes for so long after the first that came */
 };
 
 struct wb_rig_mocap {
@@ -96,7 +108,7 @@ struct wb_rig_limits {
 };
 
 struct wb_rig_strand {
-    double length;          /* m */
+    double length;          /* m; 0: no strand, the force at the tip is vertical */
     double counterweight;   /* kg */
 };
 

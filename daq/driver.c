@@ -1,0 +1,55 @@
+#include "daq/driver.h"
+
+#include <string.h>
+
+#include "base/config.h"
+
+const struct wb_driver *const wb_drivers[] = {
+    &wb_driver_generic,
+    &wb_driver_mtsics,
+    &wb_driver_natnet,
+    &wb_driver_grbl,
+};
+const int wb_n_drivers = (int)WB_COUNT(wb_drivers);
+
+const char *wb_role_name(enum wb_role role)
+{
+    switch (role) {
+    case WB_ROLE_LOAD:
+        return "load";
+    case WB_ROLE_MOCAP:
+        return "mocap";
+    case WB_ROLE_STAGE:
+        return "stage";
+    }
+    return "unknown";
+}
+
+const struct wb_driver *wb_driver_find(enum wb_role role, const char *protocol)
+{
+    for (int i = 0; i < wb_n_drivers; i++)
+        if (wb_drivers[i]->role == role && strcmp(wb_drivers[i]->name, protocol) == 0)
+            return wb_drivers[i];
+    return NULL;
+}
+
+bool wb_outbox_add(struct wb_outbox *outbox, const void *bytes, size_t n)
+{
+    if (n == 0 || outbox->n_entries == WB_OUTBOX_ENTRIES || n > WB_OUTBOX_BYTES - outbox->n_bytes)
+        return false;
+    memcpy(outbox->bytes + outbox->n_bytes, bytes, n);
+    outbox->n_bytes += n;
+    outbox->ends[outbox->n_entries++] = outbox->n_bytes;
+    return true;
+}
+
+bool wb_outbox_add_text(struct wb_outbox *outbox, const char *text)
+{
+    return wb_outbox_add(outbox, text, strlen(text));
+}
+
+void wb_outbox_clear(struct wb_outbox *outbox)
+{
+    outbox->n_bytes = 0;
+    outbox->n_entries = 0;
+}

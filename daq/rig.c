@@ -1,0 +1,381 @@
+#include "daq/rig.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/config.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "rig"
+
+static const char *const load_protocols[] = {"generic", "mt-sics", NULL};
+static const char *const mocap_protocols[] = {"natnet", NULL};
+static const char *const stage_protocols[] = {"grbl", NULL};
+static const char *const terminators[] = {"any", "cr", "lf", "crlf", "idle", NULL};
+static const char *const ups[] = {"y", "z", NULL};
+static const char *const axes[] = {"X", "Y", "Z", NULL};
+
+static const char *const wire_schemes[] = {"serial:", "pty:", "memory:", NULL};
+static const char *const network_schemes[] = {"udp:", "memory:", NULL};
+
+/* Refuses an address whose scheme the role cannot use; the rest is the stream's to judge. */
+static enum wb_status check_address(const struct wb_config_node *map, const char *address,
+                                    const char *const *schemes)
+{
+    char expected[64] = "";
+    for (int i = 0; schemes[i]; i++) {
+        if (strncmp(address, schemes[i], strlen(schemes[i])) == 0)
+            return WB_OK;
+        const size_t used = strlen(expected);
+        snprintf(expected + used, sizeof expected - used, "%s%s", i ? " or " : "", schemes[i]);
+    }
+    return wb_config_refuse(map, "address", "expected an address that starts with %s, not '%s'",
+                            expected, address);
+}
+
+static enum wb_status check_sign(const struct wb_config_node *map, const char *key, int sign)
+{
+    if (sign == 0)
+        return wb_config_refuse(map, key, "expected +1 or -1");
+    return WB_OK;
+}
+
+/* A date as YYYY-MM-DD, so that every reader understands it alike. */
+static enum wb_status check_date(const struct wb_config_node *map, const char *key,
+                                 const char *date)
+{
+    int year, month, day, end = 0;
+    if (date[0] == '\0')
+        return WB_OK;
+    if (strlen(date) != 10 || sscanf(date, "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3 ||
+        end != 10 || !isdigit((unsigned char)date[5]) || !isdigit((unsigned char)date[8]) ||
+        month < 1 || month > 12 || day < 1 || day > 31)
+        return wb_config_refuse(map, key, "expected a date as YYYY-MM-DD, not '%s'", date);
+    return WB_OK;
+}
+
+static int hex_value(char c)
+{
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    if (c >= 'a' && c <= 'f')
+        return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F')
+        return c - 'A' + 10;
+    return -1;
+}
+
+/* Resolves \r, \n, \t, \\ and \xNN in place. YAML does this only between double quotes. */
+static enum wb_status resolve_escapes(const struct wb_config_node *map, const char *key, char *text)
+{
+    char *out = text;
+    for (const char *in = text; *in; in++) {
+        if (*in != '\\') {
+            *out++ = *in;
+            continue;
+        }
+        in++;
+        int high, low;
+        if (*in == 'r') {
+            *out++ = '\r';
+        } else if (*in == 'n') {
+            *out++ = '\n';
+        } else if (*in == 't') {
+            *out++ = '\t';
+        } else if (*in == '\\') {
+            *out++ = '\\';
+        } else if (*in == 'x' && (high = hex_value(in[1])) >= 0 && (low = hex_value(in[2])) >= 0 &&
+                   high + low > 0) {
+            *out++ = (char)(high * 16 + low);
+            in += 2;
+        } else {
+            return wb_config_refuse(map, key,
+                                    "expected one of \\r \\n \\t \\\\ \\xNN after a backslash");
+        }
+    }
+    *out = '\0';
+    return WB_OK;
+}
+
+/* A list of short words, kept as they are. */
+static enum wb_status read_tokens(const struct wb_config_node *list, const char *key,
+                                  char tokens[WB_RIG_TOKENS][16])
+{
+    if (!list)
+        return WB_OK;
+    const int n = wb_config_length(list);
+    if (n < 0)
+        return wb_config_refuse(list, key, "expected a list of words, such as [OL, EC]");
+    if (n > WB_RIG_TOKENS)
+        return wb_config_refuse(list, key, "%d words given, expected at most %d", n, WB_RIG_TOKENS);
+    for (int i = 0; i < n; i++) {
+        const char *const word = wb_config_scalar(wb_config_item(list, i));
+        if (!word || word[0] == '\0' || strlen(word) >= sizeof tokens[0] || strpbrk(word, " \t"))
+            return wb_config_refuse(wb_config_item(list, i), key,
+                                    "expected a word of 1 to %zu characters without blanks",
+                                    sizeof tokens[0] - 1);
+        strcpy(tokens[i], word);
+    }
+    return WB_OK;
+}
+
+/* The generic line protocol's keys as they stand in the file. */
+struct line_keys {
+    char delimiter[8];
+    int terminator;
+    double poll_period, idle_gap, settle; /* s */
+    const struct wb_config_node *unstable, *overload;
+    bool has_column, has_decimal_comma, has_scale, has_offset, has_terminator, has_settle;
+};
+
+static enum wb_status read_delimiter(const struct wb_config_node *map, const char *text,
+                                     char *delimiter)
+{
+    if (strcmp(text, "tab") == 0)
+        *delimiter = '\t';
+    else if (strlen(text) == 1 && !isalnum((unsigned char)text[0]) && !strchr("+-.", text[0]))
+        *delimiter = text[0];
+    else if (text[0] != '\0')
+        return wb_config_refuse(
+            map, "delimiter", "expected one character such as ',' or ';', or tab, not '%s'", text);
+    return WB_OK;
+}
+
+/* What no single key can tell: keys that need or forbid each other. */
+static enum wb_status check_line_keys(const struct wb_config_node *map,
+                                      const struct line_keys *keys,
+                                      const struct wb_rig_load_cell *cell)
+{
+    if (strcmp(cell->protocol, "generic") != 0) {
+        const bool foreign = keys->has_column || keys->has_decimal_comma || keys->has_scale ||
+                             keys->has_offset || keys->has_terminator || keys->has_settle ||
+                             keys->delimiter[0] || cell->unit[0] || cell->poll_command[0] ||
+                             cell->start_command[0] || cell->tare_command[0] || keys->unstable ||
+                             keys->overload;
+        if (foreign)
+            return wb_config_refuse(map, NULL,
+                                    "keys of the generic line protocol are given, but protocol is "
+                                    "%s: remove them or write protocol: generic",
+                                    cell->protocol);
+        return WB_OK;
+    }
+    if (keys->has_column != (cell->delimiter != 0))
+        return wb_config_refuse(map, keys->has_column ? "column" : "delimiter",
+                                "delimiter and column belong together, one of them is missing");
+    if (cell->decimal_comma && cell->delimiter == ',')
+        return wb_config_refuse(map, "decimal_comma",
+                                "a comma cannot be both the delimiter and the decimal sign");
+    if ((cell->poll_command[0] != '\0') != (cell->poll_period_ns > 0))
+        return wb_config_refuse(map, cell->poll_command[0] ? "poll_period_ms" : "poll_command",
+                                "poll_command and poll_period_ms belong together, this one is "
+                                "missing");
+    if (cell->scale == 0.0)
+        return wb_config_refuse(map, "scale", "expected anything but 0");
+    return WB_OK;
+}
+
+static enum wb_status finish_line_keys(const struct wb_config_node *map, struct line_keys *keys,
+                                       struct wb_rig_load_cell *cell)
+{
+    strcpy(cell->terminator, terminators[keys->terminator]);
+    cell->poll_period_ns = wb_ns_from_seconds(keys->poll_period);
+    cell->idle_gap_ns = wb_ns_from_seconds(keys->idle_gap);
+    cell->settle_ns = wb_ns_from_seconds(keys->settle);
+    WB_TRY(read_delimiter(map, keys->delimiter, &cell->delimiter));
+    WB_TRY(resolve_escapes(map, "poll_command", cell->poll_command));
+    WB_TRY(resolve_escapes(map, "start_command", cell->start_command));
+    WB_TRY(resolve_escapes(map, "tare_command", cell->tare_command));
+    WB_TRY(read_tokens(keys->unstable, "unstable_tokens", cell->unstable_tokens));
+    WB_TRY(read_tokens(keys->overload, "overload_tokens", cell->overload_tokens));
+    return check_line_keys(map, keys, cell);
+}
+
+static enum wb_status read_load_cell(const struct wb_config_node *map, double gravity,
+                                     struct wb_rig_load_cell *cell)
+{
+    int protocol = 0;
+    double capacity_mass = 0.0, overload_fraction = 1.0, noise_mass = 0.0;
+    bool has_grams, has_newtons;
+    struct line_keys keys = {.idle_gap = 0.02};
+    cell->scale = 1.0;
+    cell->sign = 1;
+    cell->check_tolerance = 0.01;
+    const struct wb_config_key table[] = {
+        WB_CONFIG_TEXT("address", cell->address),
+        WB_CONFIG_CHOICE("protocol", &protocol, load_protocols),
+        {"capacity_g", WB_CONFIG_TYPE_NUMBER, true, &capacity_mass, 0, WB_G, 0.1, 1e6, NULL,
+         &has_grams},
+        {"capacity_N", WB_CONFIG_TYPE_NUMBER, true, &cell->capacity, 0, 1.0, 1e-3, 1e4, NULL,
+         &has_newtons},
+        WB_CONFIG_OPTIONAL_NUMBER("overload_percent", &overload_fraction, WB_PERCENT, 100.0,
+                                  1000.0),
+        WB_CONFIG_OPTIONAL_TEXT("serial_number", cell->serial_number),
+        WB_CONFIG_OPTIONAL_TEXT("calibration_date", cell->calibration_date),
+        WB_CONFIG_NUMBER("filter_delay_ms", &cell->filter_delay, 1e-3, 0.0, 5000.0),
+        WB_CONFIG_NUMBER("filter_delay_uncertainty_ms", &cell->filter_delay_uncertainty, 1e-3, 0.0,
+                         5000.0),
+        WB_CONFIG_OPTIONAL_NUMBER("noise_mg", &noise_mass, WB_MG, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("check_mass_g", &cell->check_mass, WB_G, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("check_tolerance_percent", &cell->check_tolerance, WB_PERCENT,
+                                  0.001, 50.0),
+        WB_CONFIG_OPTIONAL_INTEGER("sign", &cell->sign, -1, 1),
+        WB_CONFIG_OPTIONAL_NUMBER("poll_period_ms", &keys.poll_period, 1e-3, 1.0, 10000.0),
+        WB_CONFIG_OPTIONAL_TEXT("delimiter", keys.delimiter),
+        {"column", WB_CONFIG_TYPE_INTEGER, true, &cell->column, 0, 0.0, 1.0, 64.0, NULL,
+         &keys.has_column},
+        WB_CONFIG_OPTIONAL_TEXT("unit", cell->unit),
+        {"scale", WB_CONFIG_TYPE_NUMBER, true, &cell->scale, 0, 1.0, -1e12, 1e12, NULL,
+         &keys.has_scale},
+        {"offset", WB_CONFIG_TYPE_NUMBER, true, &cell->offset, 0, 1.0, -1e12, 1e12, NULL,
+         &keys.has_offset},
+        {"terminator", WB_CONFIG_TYPE_CHOICE, true, &keys.terminator, 0, 0.0, 0.0, 0.0, terminators,
+         &keys.has_terminator},
+        WB_CONFIG_OPTIONAL_NUMBER("idle_gap_ms", &keys.idle_gap, 1e-3, 1.0, 10000.0),
+        WB_CONFIG_OPTIONAL_TEXT("poll_command", cell->poll_command),
+        WB_CONFIG_OPTIONAL_TEXT("start_command", cell->start_command),
+        WB_CONFIG_OPTIONAL_TEXT("tare_command", cell->tare_command),
+        WB_CONFIG_OPTIONAL_NODE("unstable_tokens", &keys.unstable),
+        WB_CONFIG_OPTIONAL_NODE("overload_tokens", &keys.overload),
+        {"decimal_comma", WB_CONFIG_TYPE_BOOLEAN, true, &cell->decimal_comma, 0, 0.0, 0.0, 0.0,
+         NULL, &keys.has_decimal_comma},
+        {"settle_ms", WB_CONFIG_TYPE_NUMBER, true, &keys.settle, 0, 1e-3, 0.0, 60000.0, NULL,
+         &keys.has_settle},
+    };
+    WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
+    if (has_grams == has_newtons)
+        return wb_config_refuse(map, has_grams ? "capacity_N" : "capacity_g",
+                                "expected exactly one of capacity_g and capacity_N");
+    if (has_grams)
+        cell->capacity = capacity_mass * gravity;
+    cell->overload = cell->capacity * overload_fraction;
+    cell->noise = noise_mass * gravity;
+    strcpy(cell->protocol, load_protocols[protocol]);
+    WB_TRY(check_address(map, cell->address, wire_schemes));
+    WB_TRY(check_date(map, "calibration_date", cell->calibration_date));
+    WB_TRY(check_sign(map, "sign", cell->sign));
+    return finish_line_keys(map, &keys, cell);
+}
+
+static enum wb_status read_mocap(const struct wb_config_node *map, struct wb_rig_mocap *mocap)
+{
+    int protocol = 0, up = 0;
+    const struct wb_config_key table[] = {
+        WB_CONFIG_TEXT("address", mocap->address),
+        WB_CONFIG_CHOICE("protocol", &protocol, mocap_protocols),
+        WB_CONFIG_CHOICE("up", &up, ups),
+        WB_CONFIG_OPTIONAL_NUMBER("marker_noise_mm", &mocap->marker_noise, WB_MM, 0.0, 100.0),
+        WB_CONFIG_OPTIONAL_NUMBER("frame_rate_hz", &mocap->frame_rate, 1.0, 1.0, 10000.0),
+    };
+    WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
+    strcpy(mocap->protocol, mocap_protocols[protocol]);
+    mocap->up = ups[up][0];
+    return check_address(map, mocap->address, network_schemes);
+}
+
+static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig_stage *stage)
+{
+    int protocol = 0, axis = 0;
+    const struct wb_config_key table[] = {
+        WB_CONFIG_TEXT("address", stage->address),
+        WB_CONFIG_CHOICE("protocol", &protocol, stage_protocols),
+        WB_CONFIG_CHOICE("axis", &axis, axes),
+        WB_CONFIG_INTEGER("down", &stage->down, -1, 1),
+        WB_CONFIG_NUMBER("travel_mm", &stage->travel, WB_MM, 0.1, 5000.0),
+        WB_CONFIG_NUMBER("speed_mm_s", &stage->speed, WB_MM, 0.001, 1000.0),
+    };
+    WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
+    strcpy(stage->protocol, stage_protocols[protocol]);
+    stage->axis = axes[axis][0];
+    WB_TRY(check_sign(map, "down", stage->down));
+    return check_address(map, stage->address, wire_schemes);
+}
+
+static enum wb_status read_strand(const struct wb_config_node *map, struct wb_rig_strand *strand)
+{
+    if (!map)
+        return WB_OK;
+    const struct wb_config_key table[] = {
+        WB_CONFIG_NUMBER("length_mm", &strand->length, WB_MM, 1.0, 100000.0),
+        WB_CONFIG_NUMBER("counterweight_g", &strand->counterweight, WB_G, 0.0, 100000.0),
+    };
+    return wb_config_map(map, table, WB_COUNT(table));
+}
+
+static enum wb_status read_limits(const struct wb_config_node *map, struct wb_rig *rig)
+{
+    struct wb_rig_limits *const limits = &rig->limits;
+    limits->stream_lost = 1.0;
+    if (!map)
+        return WB_OK;
+    const struct wb_config_key table[] = {
+        WB_CONFIG_OPTIONAL_NUMBER("force_mN", &limits->force, WB_MN, 0.001, 1e7),
+        WB_CONFIG_OPTIONAL_NUMBER("travel_mm", &limits->travel, WB_MM, 0.1, 5000.0),
+        WB_CONFIG_OPTIONAL_NUMBER("stream_lost_s", &limits->stream_lost, 1.0, 0.05, 60.0),
+    };
+    WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
+    /* A limit beyond what the instrument can do would never stop anything. */
+    if (limits->force > rig->load_cell.overload * (1.0 + 1e-9))
+        return wb_config_refuse(map, "force_mN",
+                                "%g mN is more than the load cell reads (capacity times "
+                                "overload_percent is %g mN)",
+                                limits->force / WB_MN, rig->load_cell.overload / WB_MN);
+    if (limits->travel > rig->stage.travel * (1.0 + 1e-9))
+        return wb_config_refuse(map, "travel_mm", "%g mm is more than the stage's travel of %g mm",
+                                limits->travel / WB_MM, rig->stage.travel / WB_MM);
+    return WB_OK;
+}
+
+static enum wb_status read_root(const struct wb_config_node *root, struct wb_rig *rig)
+{
+    const struct wb_config_node *load_cell, *mocap, *stage, *strand, *limits;
+    rig->gravity = WB_STANDARD_GRAVITY;
+    rig->time_scale = 1.0;
+    const struct wb_config_key table[] = {
+        WB_CONFIG_TEXT("name", rig->name),
+        WB_CONFIG_OPTIONAL_NUMBER("gravity_m_s2", &rig->gravity, 1.0, 9.7, 9.9),
+        WB_CONFIG_NODE("load_cell", &load_cell),
+        WB_CONFIG_NODE("mocap", &mocap),
+        WB_CONFIG_NODE("stage", &stage),
+        WB_CONFIG_OPTIONAL_NODE("strand", &strand),
+        WB_CONFIG_OPTIONAL_NODE("limits", &limits),
+        WB_CONFIG_OPTIONAL_BOOLEAN("virtual", &rig->is_virtual),
+        WB_CONFIG_OPTIONAL_NUMBER("time_scale", &rig->time_scale, 1.0, 0.01, 1000.0),
+        WB_CONFIG_IGNORED("truth"),
+    };
+    WB_TRY(wb_config_map(root, table, WB_COUNT(table)));
+    if (!rig->is_virtual && rig->time_scale != 1.0)
+        return wb_config_refuse(root, "time_scale",
+                                "only a virtual rig's clocks can run faster: remove this key");
+    WB_TRY(read_load_cell(load_cell, rig->gravity, &rig->load_cell));
+    WB_TRY(read_mocap(mocap, &rig->mocap));
+    WB_TRY(read_stage(stage, &rig->stage));
+    WB_TRY(read_strand(strand, &rig->strand));
+    return read_limits(limits, rig);
+}
+
+static enum wb_status take(struct wb_config *config, struct wb_rig *rig)
+{
+    struct wb_rig read;
+    memset(&read, 0, sizeof read);
+    const enum wb_status status = read_root(wb_config_root(config), &read);
+    wb_config_destroy(config);
+    if (status == WB_OK)
+        *rig = read;
+    return status;
+}
+
+enum wb_status wb_rig_read(const char *path, struct wb_rig *rig)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path));
+    return take(config, rig);
+}
+
+enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_parse(&config, text, origin));
+    return take(config, rig);
+}
