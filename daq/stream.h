@@ -7,6 +7,10 @@
  *     udp:HOST:PORT,group=ADDR:PORT[,interface=ADDR]   commands to HOST:PORT, data from a
  *                                              multicast group, joined on that interface
  *     memory:                                  bytes pushed in by the caller (replay, tests)
+ * After a port's path, in any order: baud rate (default 9600), frame (default 8n1), dtr=on|off,
+ * rts=on|off, flow=none|xonxoff|rtscts. The path may be a link such as /dev/serial/by-id/...
+ * A group of 255.255.255.255:PORT takes a server's broadcasts; `interface` is an address or a
+ * name such as eth0.
  * All streams are non-blocking. A stream is used by one thread.
  */
 #ifndef WB_DAQ_STREAM_H
@@ -42,6 +46,10 @@ WB_MUST_CHECK enum wb_status wb_stream_read(struct wb_stream *stream, void *buff
 /* Writes all bytes (a datagram on UDP). A port that cannot take them within 50 ms fails with
  * WB_ERR_TIMEOUT; nothing is retried behind the caller's back. */
 WB_MUST_CHECK enum wb_status wb_stream_write(struct wb_stream *stream, const void *bytes, size_t n);
+
+/* Datagrams that the kernel threw away because they were not read in time, since opening; 0 for
+ * streams that cannot tell. Known after the read that follows the loss. */
+uint64_t wb_stream_kernel_drops(const struct wb_stream *stream);
 
 /* Memory streams only: appends one run of bytes to be read by wb_stream_read(), one run a call,
  * as datagrams are. */

@@ -1,0 +1,153 @@
+/* Pseudo-terminals (and any other terminal) through termios: libserialport wants a sysfs entry and
+ * modem lines, which pseudo-terminals lack. */
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "daq/stream_private.h"
+
+#define WB_LOG_DOMAIN "stream"
+
+struct pty_state {
+    int descriptor;
+    char path[256];
+};
+
+static const struct {
+    int baud;
+    speed_t speed;
+} speeds[] = {{50, B50},         {75, B75},         {110, B110},        {134, B134},
+              {150, B150},       {200, B200},       {300, B300},        {600, B600},
+              {1200, B1200},     {1800, B1800},     {2400, B2400},      {4800, B4800},
+              {9600, B9600},     {19200, B19200},   {38400, B38400},    {57600, B57600},
+              {115200, B115200}, {230400, B230400}, {460800, B460800},  {500000, B500000},
+              {576000, B576000}, {921600, B921600}, {1000000, B1000000}};
+
+static speed_t find_speed(int baud)
+{
+    for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
+        if (speeds[i].baud == baud)
+            return speeds[i].speed;
+    }
+    return 0;
+}
+
+static enum wb_status apply_line(int descriptor, const struct wb_stream_line *line)
+{
+    struct termios settings;
+    if (tcgetattr(descriptor, &settings) < 0)
+        return wb_fail(WB_ERR_IO, "'%s' is not a terminal: %s", line->path, strerror(errno));
+    cfmakeraw(&settings);
+    speed_t speed = find_speed(line->baud);
+    if (speed == 0)
+        return wb_fail(WB_ERR_ARGUMENT, "baud rate %d of '%s' is not a standard one", line->baud,
+                       line->path);
+    cfsetispeed(&settings, speed);
+    cfsetospeed(&settings, speed);
+    static const tcflag_t sizes[] = {CS5, CS6, CS7, CS8};
+    settings.c_cflag &= ~(tcflag_t)(CSIZE | PARENB | PARODD | CSTOPB | CRTSCTS);
+    settings.c_cflag |= sizes[line->bits - 5] | CLOCAL | CREAD;
+    if (line->parity != 'n')
+        settings.c_cflag |= PARENB;
+    if (line->parity == 'o')
+        settings.c_cflag |= PARODD;
+    if (line->stop == 2)
+        settings.c_cflag |= CSTOPB;
+    if (line->flow == 'r')
+        settings.c_cflag |= CRTSCTS;
+    if (line->flow == 'x')
+        settings.c_iflag |= IXON | IXOFF;
+    settings.c_cc[VMIN] = 0;
+    settings.c_cc[VTIME] = 0;
+    if (tcsetattr(descriptor, TCSANOW, &settings) < 0)
+        return wb_fail(WB_ERR_IO, "line settings of '%s' cannot be set: %s", line->path,
+                       strerror(errno));
+    return WB_OK;
+}
+
+static enum wb_status pty_open(void *state, const char *rest)
+{
+    struct pty_state *pty = state;
+    struct wb_stream_line line;
+    WB_TRY(wb_stream_parse_line(rest, &line));
+    int descriptor = open(line.path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0)
+        return wb_stream_fail_open(line.path, errno, "");
+    enum wb_status status = wb_stream_lock(descriptor, line.path);
+    if (status == WB_OK)
+        status = apply_line(descriptor, &line);
+    if (status != WB_OK) {
+        close(descriptor);
+        return status;
+    }
+    pty->descriptor = descriptor;
+    memcpy(pty->path, line.path, sizeof pty->path);
+    return WB_OK;
+}
+
+static void pty_close(void *state)
+{
+    struct pty_state *pty = state;
+    close(pty->descriptor);
+}
+
+static int pty_descriptors(const void *state, int descriptors[2])
+{
+    const struct pty_state *pty = state;
+    descriptors[0] = pty->descriptor;
+    return 1;
+}
+
+static enum wb_status pty_read(void *state, void *buffer, size_t size, size_t *n)
+{
+    struct pty_state *pty = state;
+    *n = 0;
+    for (;;) {
+        ssize_t got = read(pty->descriptor, buffer, size);
+        if (got > 0) {
+            *n = (size_t)got;
+            return WB_OK;
+        }
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0 && errno != EAGAIN && errno != EIO)
+            return wb_fail(WB_ERR_IO, "reading '%s' failed: %s", pty->path, strerror(errno));
+        if ((got < 0 && errno == EIO) || wb_stream_gone(pty->descriptor))
+            return wb_fail(WB_ERR_IO, "'%s' went away: its other side was closed", pty->path);
+        return WB_OK;
+    }
+}
+
+static enum wb_status pty_write(void *state, const void *bytes, size_t n)
+{
+    struct pty_state *pty = state;
+    int64_t deadline_ns = wb_stream_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    size_t done = 0;
+    while (done < n) {
+        ssize_t put = write(pty->descriptor, (const char *)bytes + done, n - done);
+        if (put > 0) {
+            done += (size_t)put;
+            continue;
+        }
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put < 0 && errno != EAGAIN)
+            return wb_fail(WB_ERR_IO, "writing to '%s' failed: %s", pty->path, strerror(errno));
+        if (!wb_stream_wait_writable(pty->descriptor, deadline_ns))
+            return wb_fail(WB_ERR_TIMEOUT, "'%s' took only %zu of %zu bytes within 50 ms",
+                           pty->path, done, n);
+    }
+    return WB_OK;
+}
+
+const struct wb_stream_kind wb_stream_pty = {
+    .scheme = "pty",
+    .state_size = sizeof(struct pty_state),
+    .open = pty_open,
+    .close = pty_close,
+    .descriptors = pty_descriptors,
+    .read = pty_read,
+    .write = pty_write,
+};
