@@ -1,0 +1,80 @@
+/* Calibration of the 1D elastoplastic beam against loading curves, section 4.1 of the paper.
+ *
+ * E from eq. 10, sigma_Y from eq. 11 (elastic zone and yield point are settings), n0 and K0 from
+ * eqs. 12-16, then Nelder-Mead (GSL nmsimplex2) over K and n from the paper's simplex on E_L2 of
+ * eq. 17, with the beam under the test's real loading and the samples' mean natural shape. E and
+ * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size test
+ * sees both.
+ */
+#ifndef WB_ANALYSIS_CALIBRATE_H
+#define WB_ANALYSIS_CALIBRATE_H
+
+#include <stdbool.h>
+
+#include "analysis/curve.h"
+#include "analysis/dataset.h"
+#include "base/status.h"
+#include "fe/material.h"
+
+struct wb_calibrate_settings {
+    double elastic_zone;    /* deflection over length for eq. 10; default 0.05 */
+    double yield_point;     /* the same for eq. 11; 0 (default): as elastic_zone */
+    double size_tolerance;  /* stop when the simplex' size is below, in units of (K0, n0); 1e-4 */
+    double error_tolerance; /* stop when E_L2 is below, relative to its scale F_max
+                               sqrt(delta_max); default 1e-4 */
+    int max_iterations;     /* default 200 per start */
+    bool straight;          /* ignore the natural shape */
+    bool restart;           /* restart once from the optimum; default true */
+    double step;            /* m, deflection step of the comparison grid; default 0.5 mm */
+    int n_elements;         /* 0: 50 */
+    int n_fibres;           /* 0: 20 */
+    /* Called after each iteration; may be NULL. Returns false to stop (Ctrl-C). */
+    bool (*progress)(void *context, int evaluation, double error, double size);
+    void *progress_context;
+};
+
+void wb_calibrate_default_settings(struct wb_calibrate_settings *settings);
+
+enum wb_calibrate_end {
+    WB_CALIBRATE_SIZE,       /* the simplex became small */
+    WB_CALIBRATE_ERROR,      /* the error became small */
+    WB_CALIBRATE_ITERATIONS, /* the iterations ran out */
+    WB_CALIBRATE_STOPPED     /* by the caller */
+};
+const char *wb_calibrate_end_text(enum wb_calibrate_end end);
+
+/* One evaluation of the optimiser's path. */
+struct wb_calibrate_step {
+    double strength_coefficient, hardening_exponent; /* Pa, 1: best vertex so far */
+    double error; /* E_L2 over F_max sqrt(delta_max), 1: comparable with an RMS */
+    double size;  /* simplex size */
+};
+
+struct wb_calibrate_result {
+    struct wb_material material;                                 /* the calibrated law */
+    struct wb_test_info info;                                    /* the test it was calibrated on */
+    double first_strength_coefficient, first_hardening_exponent; /* K0, n0 */
+    /* Standard uncertainties of E, sigma_Y, K, n from the scatter between samples (jackknife over
+     * the samples, each recalibrated from the optimum); NaN with one sample. */
+    double deviation[4];
+    enum wb_calibrate_end end;
+    bool restarted;                      /* the restart was made */
+    double restart_moved;                /* largest relative change of K and n by the restart, 1 */
+    int evaluations, failed_evaluations; /* beam runs; of them not converged (penalised) */
+    int n_path;
+    struct wb_calibrate_step *path; /* (n_path), owned */
+    double rms;         /* eq. 19 of the final model on the same curve, over its F_max */
+    double max_error;   /* largest of eq. 18 */
+    double scatter_rms; /* RMS over deflection of the samples' standard deviation over F_max: what
+                           the scatter between samples explains */
+    double cpu_s;
+};
+
+/* Calibrates on the average curve of `n` datasets. Unusable data (yield not reached, too few
+ * points, reversed sign, ...) is WB_ERR_DATA with the reason. */
+WB_MUST_CHECK enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
+                                              const struct wb_dataset *const *datasets, int n,
+                                              const struct wb_calibrate_settings *settings);
+void wb_calibrate_result_release(struct wb_calibrate_result *result);
+
+#endif

@@ -1,0 +1,106 @@
+/* Dataset: one test as force-deflection rows and shapes, wherever it came from.
+ *
+ * On disk a folder: dataset.json (provenance), force_deflection.csv, shape.csv. A bench test, an
+ * imported file and a simulation all end here, and calibration cannot tell them apart.
+ *
+ * Frame: clamp at the origin, x along the straight wire, y upwards. Deflection is the tip's y.
+ * `tension` is the strand's; `force` is its vertical part less its value at zero deflection on the
+ * first loading. Slack rows are left out of every fit.
+ */
+#ifndef WB_ANALYSIS_DATASET_H
+#define WB_ANALYSIS_DATASET_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/json.h"
+#include "base/status.h"
+
+enum wb_phase {
+    WB_PHASE_LOAD,
+    WB_PHASE_UNLOAD,
+    WB_PHASE_SLACK
+};
+
+/* "load", "unload", "slack". */
+const char *wb_phase_name(enum wb_phase phase);
+
+/* One row of force_deflection.csv:
+ * t_s,cycle,phase,deflection_mm,tension_N,force_N,stage_mm,tip_x_mm,tip_angle_rad
+ * Columns a source does not have are NaN, written as empty fields. */
+struct wb_row {
+    double t;  /* s since the first row's clock zero, bench time */
+    int cycle; /* from 1 */
+    enum wb_phase phase;
+    double deflection; /* m */
+    double tension;    /* N */
+    double force;      /* N */
+    double stage;      /* m, commanded travel; NaN unknown */
+    double tip_x;      /* m */
+    double tip_angle;  /* rad; NaN unknown */
+};
+
+/* One row of shape.csv: t_s,deflection_mm,marker,s_mm,x_mm,y_mm. Missing markers have no row:
+ * gaps stay gaps. */
+struct wb_shape_row {
+    double t, deflection; /* s, m: of the frame */
+    int marker;           /* from 0, the clamp's */
+    double s;             /* m, arc length along the wire */
+    double x, y;          /* m, on the wire's axis */
+};
+
+/* What every consumer needs of the test, kept typed; the same stands in dataset.json. */
+struct wb_test_info {
+    char wire[64];          /* name of the product */
+    int sample;             /* 0 for an average or a simulation without samples */
+    double length;          /* m */
+    double outer_diameter;  /* m */
+    double mass_per_length; /* kg/m */
+    double poissons_ratio;  /* 1 */
+    double strand_length;   /* m; 0: vertical dead force, no strand */
+    double counterweight;   /* kg */
+    double gravity;         /* m/s2 towards -y; 0 when weight is not in the data */
+    double rest_level;      /* m; NaN when there was no rest below the tip */
+    /* Natural shape as a polynomial of the stress-free angle: theta0(s) = sum_i b_i (s/L)^(i+1),
+     * rad. n = 0: straight. */
+    int n_natural_shape;
+    double natural_shape[4];
+    bool is_virtual;    /* from a virtual rig */
+    bool is_simulation; /* from `solve` */
+};
+
+struct wb_dataset {
+    struct wb_test_info info;
+    size_t n_rows, n_shape_rows;
+    struct wb_row *rows;             /* (n_rows), owned */
+    struct wb_shape_row *shape_rows; /* (n_shape_rows), owned */
+    /* The whole of dataset.json: name, provenance (recordings with sha256, tool revision,
+     * settings), corrections with their sizes, cpu_s of a simulation, ... ; owned. `info` wins over
+     * it when the dataset is written. */
+    struct wb_json *document;
+};
+
+/* Natural (stress-free) tip offset of the shape polynomial, m: integral of sin(theta0). */
+double wb_dataset_bow(const struct wb_test_info *info);
+/* Natural curvature theta0'(s), 1/m, in the form that wb_cantilever_model wants; `context` is a
+ * const struct wb_test_info *. */
+double wb_dataset_natural_curvature(void *context, double arc_length);
+
+/* Makes an empty dataset with a fresh document; release with wb_dataset_release(). */
+WB_MUST_CHECK enum wb_status wb_dataset_init(struct wb_dataset *dataset);
+void wb_dataset_release(struct wb_dataset *dataset); /* accepts a zeroed one */
+
+/* Appends a row; doubles the memory as needed. */
+WB_MUST_CHECK enum wb_status wb_dataset_add_row(struct wb_dataset *dataset,
+                                                const struct wb_row *row);
+WB_MUST_CHECK enum wb_status wb_dataset_add_shape_row(struct wb_dataset *dataset,
+                                                      const struct wb_shape_row *row);
+
+/* Reads or writes a folder. Writing makes it (refused when not empty unless `force`) and writes
+ * each file atomically. Reading errors name file, line and column. */
+WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder,
+                                              bool force);
+WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder);
+
+#endif

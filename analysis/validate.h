@@ -1,0 +1,52 @@
+/* Validation of calibrated properties on other datasets: eqs. 18 and 19, the linear elastic
+ * prediction for contrast, and the distance of shapes. */
+#ifndef WB_ANALYSIS_VALIDATE_H
+#define WB_ANALYSIS_VALIDATE_H
+
+#include "analysis/curve.h"
+#include "analysis/dataset.h"
+#include "analysis/properties.h"
+#include "base/status.h"
+
+/* A computed loading curve on the grid of a measured one, and shapes of the same model. */
+struct wb_prediction {
+    int n;         /* as the curve's */
+    int n_reached; /* points reached before the solver gave up; n when all converged */
+    double *force; /* (n) N, zeroed at zero deflection; NaN beyond n_reached; owned */
+    double *error; /* (n) eq. 18: |measured - computed| / F_max; owned */
+    double rms;    /* eq. 19 over 0..max_deflection, F_max of the measured average */
+    double max_error;
+    double rms_from_5mm; /* the same over what lies beyond 5 mm, where the zero matters less */
+};
+
+struct wb_validate_result {
+    struct wb_curve curve; /* measured average; owned */
+    struct wb_prediction elastoplastic, elastic;
+    double shape_rms; /* m: RMS distance of measured markers from the computed axis at the same
+                         deflection, first loading; NaN without shapes */
+    double shape_max; /* m */
+    int n_shape_points;
+    double scatter_rms; /* as in calibrate */
+    struct wb_test_info info;
+    double cpu_s;
+};
+
+struct wb_validate_settings {
+    bool straight;            /* ignore the natural shape */
+    double step;              /* m; 0: 0.5 mm */
+    int n_elements, n_fibres; /* 0: defaults */
+};
+
+WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
+                                             const struct wb_properties *properties,
+                                             const struct wb_dataset *const *datasets, int n,
+                                             const struct wb_validate_settings *settings);
+void wb_validate_result_release(struct wb_validate_result *result);
+
+/* Computed shape of the model at a deflection, for drawing: n points at equal arc length into x
+ * and y (m). WB_ERR_CONVERGENCE when the model cannot reach it. */
+WB_MUST_CHECK enum wb_status wb_validate_shape(const struct wb_properties *properties,
+                                               const struct wb_test_info *info, double deflection,
+                                               int n, double *x, double *y);
+
+#endif
