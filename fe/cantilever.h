@@ -24,11 +24,11 @@
 
 /* What the control value of wb_cantilever_move() means. */
 enum wb_cantilever_control {
-    WB_CONTROL_DEFLECTION, /* y of the tip, m */
-    WB_CONTROL_STAGE,      /* downward travel of the clamp's stage, m; needs a strand */
-    WB_CONTROL_DEAD_FORCE, /* vertical tip force, N; no strand, no unilateral contact */
+    WB_CONTROL_DEFLECTION,     /* y of the tip, m */
+    WB_CONTROL_STAGE,          /* downward travel of the clamp's stage, m; needs a strand */
+    WB_CONTROL_DEAD_FORCE,     /* vertical tip force, N; no strand, no unilateral contact */
     WB_CONTROL_FOLLOWER_FORCE, /* tip force that stays normal to the wire, N */
-    WB_CONTROL_TIP_MOMENT  /* N m */
+    WB_CONTROL_TIP_MOMENT      /* N m */
 };
 
 struct wb_cantilever_model {
@@ -39,18 +39,19 @@ struct wb_cantilever_model {
      * function of arc length; NULL is straight. Called at creation only. */
     double (*natural_curvature)(void *context, double arc_length);
     void *curvature_context;
-    double strand_length;       /* m; 0: the tip force is vertical and may push (no slack) */
-    double counterweight;       /* kg, hung at the tip */
-    double mass_per_length;     /* kg/m */
+    double strand_length;        /* m; 0: the tip force is vertical and may push (no slack) */
+    double counterweight;        /* kg, hung at the tip */
+    double mass_per_length;      /* kg/m */
     double gravity_x, gravity_y; /* m/s2; (0, -9.80665) is the bench; (0, 0) ignores weight */
-    double rest_level;          /* m: y of a rest below the tip, see has_rest */
-    bool has_rest;              /* the tip, when it comes down, rests at rest_level (no friction) */
+    double rest_level;           /* m: y of a rest below the tip, see has_rest */
+    bool has_rest; /* the tip, when it comes down, rests at rest_level (no friction) */
 };
 
 struct wb_cantilever_settings {
-    double force_tolerance;  /* residual of forces over the largest internal force, 1; 0: 1e-9 */
-    int max_iterations;      /* per step; 0: 25 */
-    double smallest_step;    /* fraction of the requested move below which it gives up; 0: 1e-4 */
+    double force_tolerance; /* residual of forces over the largest internal force, 1; 0: 1e-9 */
+    int max_iterations;     /* per step; 0: 25 */
+    double smallest_step;   /* fraction of the requested move below which it gives up; 0: 1e-4 */
+    bool reference_kernel;  /* slow exact fibre law, for tests and benchmarks */
 };
 
 enum wb_cantilever_end {
@@ -61,22 +62,23 @@ enum wb_cantilever_end {
 /* One equilibrium. */
 struct wb_cantilever_point {
     enum wb_cantilever_end end;
-    double control;     /* the value reached, in the unit of the control */
-    double deflection;  /* y of the tip, m */
-    double tip_x;       /* m */
-    double tip_angle;   /* rad */
-    double tension;     /* strand tension or vertical tip force, N; never zeroed */
+    double control;        /* the value reached, in the unit of the control */
+    double deflection;     /* y of the tip, m */
+    double tip_x;          /* m */
+    double tip_angle;      /* rad */
+    double tension;        /* strand tension or vertical tip force, N; never zeroed */
     double vertical_force; /* vertical part of the tension, N */
-    double root_moment; /* N m, internal moment at the clamp's first integration point,
-                           extrapolated to the clamp by equilibrium */
-    bool slack;         /* the strand carries nothing */
-    bool resting;       /* the tip lies on the rest */
-    int iterations;     /* Newton iterations spent, all sub-steps together */
-    double residual;    /* last relative residual */
+    double root_moment;    /* N m, internal moment at the clamp's first integration point,
+                              extrapolated to the clamp by equilibrium */
+    bool slack;            /* the strand carries nothing */
+    bool resting;          /* the tip lies on the rest */
+    int iterations;        /* Newton iterations spent, all sub-steps together */
+    double residual;       /* last relative residual */
 };
 
 struct wb_cantilever; /* opaque: model copy, mesh, state, workspace */
 
+/* All zero (to be filled in) but for the bench's gravity, (0, -9.80665). */
 void wb_cantilever_default_model(struct wb_cantilever_model *model);
 
 /* Takes all memory. `settings` may be NULL. On failure *out is NULL. */

@@ -19,7 +19,7 @@ struct wb_fibre {
 
 struct wb_section {
     int n_fibres;
-    struct wb_fibre *fibres;       /* (n_fibres), owned */
+    struct wb_fibre *fibres; /* (n_fibres), owned */
     int n_materials;
     struct wb_material *materials; /* (n_materials), owned */
     double shear_stiffness;        /* G A k, N, elastic */
@@ -40,6 +40,10 @@ WB_MUST_CHECK enum wb_status wb_section_add_ring(struct wb_section *section, dou
                                                  double outer_diameter,
                                                  const struct wb_material *material,
                                                  double area_fraction, int n);
+
+/* G times the circle's shear factor (Cowper), Pa: what one m2 of `material` adds to
+ * shear_stiffness. */
+double wb_section_shear_modulus(const struct wb_material *material);
 
 /* Frees what the section owns; accepts a zeroed section. */
 void wb_section_release(struct wb_section *section);

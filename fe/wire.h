@@ -22,11 +22,11 @@
 
 struct wb_wire {
     char name[64];
-    double conductor_diameter; /* m */
-    double outer_diameter;     /* m */
-    double density;            /* kg/m3, homogenised over the outer diameter */
-    bool has_properties;       /* the file gave `properties` */
-    char source[160];          /* where the properties come from */
+    double conductor_diameter;   /* m */
+    double outer_diameter;       /* m */
+    double density;              /* kg/m3, homogenised over the outer diameter */
+    bool has_properties;         /* the file gave `properties` */
+    char source[160];            /* where the properties come from */
     struct wb_material material; /* WB_HARDENING_ISOTROPIC_POWER when has_properties */
 };
 
