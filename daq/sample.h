@@ -10,12 +10,12 @@
 /* One reading of a load cell. `force` is as the instrument sent it, times sign and scale of the
  * rig file: not tared, no drift or delay removed. */
 struct wb_load_sample {
-    int64_t t_ns;     /* host monotonic, arrival of the read that completed the line */
-    uint64_t index;   /* counts decoded readings of this stream from 0 */
-    double force;     /* N, tension positive; NaN when not valid */
-    bool valid;       /* false: overload, underload or an error line */
-    bool unstable;    /* the instrument called it unstable; still valid */
-    bool overload;    /* over or under range: an interlock, never a number */
+    int64_t t_ns;      /* host monotonic, arrival of the read that completed the line */
+    uint64_t index;    /* counts decoded readings of this stream from 0 */
+    double force;      /* N, tension positive; NaN when not valid */
+    bool valid;        /* false: overload, underload or an error line */
+    bool unstable;     /* the instrument called it unstable; still valid */
+    bool overload;     /* over or under range: an interlock, never a number */
     bool unit_changed; /* the unit on the line differs from the first one seen: an alarm */
 };
 
@@ -41,13 +41,15 @@ struct wb_marker {
 
 /* One frame of motion capture: the labelled markers only (the legacy list repeats them). */
 struct wb_mocap_frame {
-    int64_t t_ns;           /* host monotonic, arrival of the datagram */
+    int64_t t_ns; /* host monotonic, arrival of the datagram */
     int32_t frame_number;
-    double t_device;        /* s, the server's own capture stamp; NaN when it has none */
+    double t_device;              /* s, the server's own capture stamp; NaN when it has none */
+    double t_clock;               /* s, camera_data_received on the clock that the probes read;
+                                     NaN when unknown (before NatNet 3.0) */
     uint64_t camera_mid_exposure; /* server ticks, 0 when unknown (NatNet >= 3.0) */
     uint64_t camera_data_received;
     uint64_t transmit;
-    int16_t params;         /* bit 0 recording, 1 models changed, 2 live, 3 bitstream changed */
+    int16_t params; /* bit 0 recording, 1 models changed, 2 live, 3 bitstream changed */
     int n_markers;
     struct wb_marker markers[WB_MAX_MARKERS];
 };
