@@ -13,6 +13,8 @@
 
 #include <cmocka.h>
 
+#include "base/log.h"
+
 /* Fails unless |actual - expected| <= tolerance (absolute). */
 #define assert_close(actual, expected, tolerance)                                                  \
     do {                                                                                           \
@@ -25,5 +27,12 @@
 /* Fails unless |actual - expected| <= fraction * |expected|. */
 #define assert_close_relative(actual, expected, fraction)                                          \
     assert_close((actual), (expected), (fraction)*fabs(expected))
+
+/* A sink for messages that a test provokes on purpose: wb_log_set_sink(discard_message, NULL). */
+static inline void discard_message(void *context, enum wb_log_level level, const char *domain,
+                                   const char *message)
+{
+    (void)context, (void)level, (void)domain, (void)message;
+}
 
 #endif

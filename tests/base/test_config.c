@@ -1,0 +1,192 @@
+#include "tests/check.h"
+
+#include "base/config.h"
+#include "base/units.h"
+
+static char last_message[2048];
+static int messages;
+
+static void remember(void *context, enum wb_log_level level, const char *domain,
+                     const char *message)
+{
+    (void)context, (void)level, (void)domain;
+    snprintf(last_message, sizeof last_message, "%s", message);
+    messages++;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    messages = 0;
+    last_message[0] = '\0';
+    wb_log_set_sink(remember, NULL);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    wb_log_set_sink(NULL, NULL);
+    return 0;
+}
+
+struct sample {
+    double length;
+    int count;
+    bool flag, count_given;
+    char name[8];
+    int colour;
+    const struct wb_config_node *list;
+};
+
+static enum wb_status read_sample(const char *text, struct sample *sample)
+{
+    static const char *const colours[] = {"red", "blue", NULL};
+    *sample = (struct sample){.length = -1.0, .count = -1};
+    struct wb_config *config;
+    WB_TRY(wb_config_parse(&config, text, "test.yaml"));
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_NUMBER("length_mm", &sample->length, WB_MM, 1.0, 1000.0),
+        {.name = "count",
+         .type = WB_CONFIG_TYPE_INTEGER,
+         .optional = true,
+         .target = &sample->count,
+         .minimum = 0,
+         .maximum = 9,
+         .present = &sample->count_given},
+        WB_CONFIG_OPTIONAL_BOOLEAN("flag", &sample->flag),
+        WB_CONFIG_OPTIONAL_TEXT("name", sample->name),
+        WB_CONFIG_OPTIONAL_CHOICE("colour", &sample->colour, colours),
+        WB_CONFIG_OPTIONAL_NODE("list", &sample->list),
+        WB_CONFIG_IGNORED("truth"),
+    };
+    const enum wb_status status = wb_config_map(wb_config_root(config), keys, WB_COUNT(keys));
+    wb_config_destroy(config);
+    return status;
+}
+
+static void values_become_si(void **state)
+{
+    (void)state;
+    struct sample sample;
+    assert_int_equal(read_sample("length_mm: 85\ncount: 3\nflag: true\nname: abc\ncolour: blue\n"
+                                 "truth: {a: [1, 2]}\n",
+                                 &sample),
+                     WB_OK);
+    assert_close(sample.length, 0.085, 1e-15);
+    assert_int_equal(sample.count, 3);
+    assert_true(sample.count_given);
+    assert_true(sample.flag);
+    assert_string_equal(sample.name, "abc");
+    assert_int_equal(sample.colour, 1);
+    assert_null(sample.list);
+    assert_int_equal(messages, 0);
+}
+
+static void absent_optional_keys_leave_their_target(void **state)
+{
+    (void)state;
+    struct sample sample;
+    assert_int_equal(read_sample("length_mm: 85", &sample), WB_OK);
+    assert_int_equal(sample.count, -1);
+    assert_false(sample.count_given);
+}
+
+static void errors_name_file_line_and_key(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *place, *reason;
+    } cases[] = {
+        {"length_mm: 85 mm", "test.yaml:1: length_mm", "expected a plain number"},
+        {"length_mm: nan", "test.yaml:1: length_mm", "expected a plain number"},
+        {"\nlength_mm: 0x20", "test.yaml:2: length_mm", "expected a plain number"},
+        {"length_mm: 0.5", "test.yaml:1: length_mm", "out of range, expected 1 to 1000"},
+        {"length_mm: [1]", "test.yaml:1: length_mm", "expected a number"},
+        {"count: 3", "test.yaml:1: length_mm", "this key is missing"},
+        {"length_mm: 85\nlenght: 3", "test.yaml:2: lenght", "unknown key; known here: length_mm"},
+        {"length_mm: 85\nlength_mm: 86", "test.yaml:2: length_mm", "given twice, first in line 1"},
+        {"length_mm: 85\ncount: 1.5", "test.yaml:2: count", "expected a whole number"},
+        {"length_mm: 85\ncount: 12", "test.yaml:2: count", "out of range"},
+        {"length_mm: 85\nflag: yes", "test.yaml:2: flag", "true or false"},
+        {"length_mm: 85\nname: abcdefgh", "test.yaml:2: name", "text too long"},
+        {"length_mm: 85\ncolour: green", "test.yaml:2: colour", "one of red, blue, not green"},
+        {"- 1\n- 2", "test.yaml:1: ", "expected keys with values"},
+        {"a: b: c", "test.yaml:1: ", "mapping"},
+        {"a: [1, 2", "test.yaml:", ""},
+        {"", "test.yaml: ", "empty"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct sample sample;
+        messages = 0;
+        assert_int_equal(read_sample(cases[i].text, &sample), WB_ERR_FORMAT);
+        assert_int_equal(messages, 1);
+        assert_non_null(strstr(last_message, cases[i].place));
+        assert_non_null(strstr(last_message, cases[i].reason));
+    }
+}
+
+static void lists_of_numbers_are_checked(void **state)
+{
+    (void)state;
+    struct wb_config *config;
+    const struct wb_config_key key = {
+        .name = "markers_mm", .factor = WB_MM, .minimum = 0.0, .maximum = 100.0};
+    double values[4];
+    int n = 0;
+    assert_int_equal(wb_config_parse(&config, "[0, 14.2, 85]", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 2, 4, values, &n), WB_OK);
+    assert_int_equal(n, 3);
+    assert_close(values[1], 0.0142, 1e-15);
+    assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 2, 2, values, &n),
+                     WB_ERR_FORMAT);
+    wb_config_destroy(config);
+    assert_int_equal(wb_config_parse(&config, "[0, 200]", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 1, 4, values, &n),
+                     WB_ERR_FORMAT);
+    wb_config_destroy(config);
+}
+
+static void a_missing_file_is_named(void **state)
+{
+    (void)state;
+    struct wb_config *config;
+    assert_int_equal(wb_config_read(&config, "/no/such/file.yaml"), WB_ERR_NOT_FOUND);
+    assert_null(config);
+    assert_non_null(strstr(last_message, "/no/such/file.yaml"));
+    assert_int_equal(messages, 1);
+}
+
+/* Not a proof, but it has found slips: mutations of a valid text never crash the reader. */
+static void mangled_texts_never_crash(void **state)
+{
+    (void)state;
+    static const char seed[] = "length_mm: 85\ncount: &a 3\nlist: [*a, {b: c}, 'd']\nname: \"x\"\n";
+    uint32_t random = 12345;
+    for (int i = 0; i < 20000; i++) {
+        char text[sizeof seed];
+        memcpy(text, seed, sizeof seed);
+        for (int k = 0; k < 3; k++) {
+            random = random * 1664525u + 1013904223u;
+            text[(random >> 8) % (sizeof seed - 1)] = (char)(random >> 24);
+        }
+        struct sample sample;
+        const enum wb_status status = read_sample(text, &sample);
+        assert_true(status == WB_OK || status == WB_ERR_FORMAT);
+    }
+}
+
+#define fact(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        fact(values_become_si),
+        fact(absent_optional_keys_leave_their_target),
+        fact(errors_name_file_line_and_key),
+        fact(lists_of_numbers_are_checked),
+        fact(a_missing_file_is_named),
+        fact(mangled_texts_never_crash),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

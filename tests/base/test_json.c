@@ -1,0 +1,92 @@
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "base/json.h"
+
+static void a_document_reads_back(void **state)
+{
+    (void)state;
+    struct wb_json *root = wb_json_create();
+    wb_json_set_text(root, "wire", "type \"1\" \xc2\xb5");
+    wb_json_set_number(root, "force_N", 0.1);
+    wb_json_set_integer(root, "t_ns", INT64_MAX);
+    wb_json_set_boolean(root, "virtual", true);
+    struct wb_json *points = wb_json_set_array(root, "points");
+    wb_json_append_number(points, 1.0 / 3.0);
+    wb_json_set_number(wb_json_append_object(points), "x", -2.0);
+    char *text;
+    assert_int_equal(wb_json_format(root, &text), WB_OK);
+    wb_json_destroy(root);
+
+    struct wb_json *again;
+    assert_int_equal(wb_json_parse(&again, text, "text"), WB_OK);
+    free(text);
+    const char *wire;
+    double number;
+    int64_t integer;
+    bool flag;
+    assert_true(wb_json_get_text(again, "wire", &wire));
+    assert_string_equal(wire, "type \"1\" \xc2\xb5");
+    assert_true(wb_json_get_number(again, "force_N", &number) && number == 0.1);
+    assert_true(wb_json_get_integer(again, "t_ns", &integer) && integer == INT64_MAX);
+    assert_true(wb_json_get_boolean(again, "virtual", &flag) && flag);
+    const struct wb_json *const list = wb_json_get(again, "points");
+    assert_int_equal(wb_json_length(list), 2);
+    assert_true(wb_json_number(wb_json_item(list, 0), &number) && number == 1.0 / 3.0);
+    assert_true(wb_json_get_number(wb_json_item(list, 1), "x", &number) && number == -2.0);
+    assert_false(wb_json_get_number(again, "wire", &number));
+    assert_false(wb_json_get_number(again, "absent", &number));
+    wb_json_destroy(again);
+}
+
+static void what_json_cannot_say_becomes_null_or_ascii(void **state)
+{
+    (void)state;
+    struct wb_json *root = wb_json_create();
+    wb_json_set_number(root, "a", NAN);
+    wb_json_set_text(root, "b", NULL);
+    wb_json_set_text(root, "c", "\xff!");
+    char *text;
+    assert_int_equal(wb_json_format(root, &text), WB_OK);
+    assert_string_equal(text, "{\n  \"a\": null,\n  \"b\": null,\n  \"c\": \"?!\"\n}\n");
+    free(text);
+    wb_json_destroy(root);
+}
+
+static void a_lost_value_is_reported_when_written(void **state)
+{
+    (void)state;
+    struct wb_json *root = wb_json_create();
+    wb_json_set_number(wb_json_set_object(NULL, "nowhere"), "a", 1.0);
+    char *text;
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_json_format(root, &text), WB_ERR_MEMORY);
+    wb_log_set_sink(NULL, NULL);
+    wb_json_destroy(root);
+}
+
+static void bad_json_is_refused(void **state)
+{
+    (void)state;
+    wb_log_set_sink(discard_message, NULL);
+    static const char *const cases[] = {"", "[1]", "{\"a\": 1, \"a\": 2}", "{\"a\": nan}", "{"};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct wb_json *root;
+        assert_int_equal(wb_json_parse(&root, cases[i], "text"), WB_ERR_FORMAT);
+        assert_null(root);
+    }
+    wb_log_set_sink(NULL, NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_document_reads_back),
+        cmocka_unit_test(what_json_cannot_say_becomes_null_or_ascii),
+        cmocka_unit_test(a_lost_value_is_reported_when_written),
+        cmocka_unit_test(bad_json_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

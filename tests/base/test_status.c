@@ -1,0 +1,85 @@
+#include "tests/check.h"
+
+#include "base/status.h"
+
+#define WB_LOG_DOMAIN "test"
+
+struct seen {
+    int messages;
+    enum wb_log_level level;
+    char domain[32], message[256];
+};
+
+static void remember(void *context, enum wb_log_level level, const char *domain,
+                     const char *message)
+{
+    struct seen *seen = context;
+    seen->messages++;
+    seen->level = level;
+    snprintf(seen->domain, sizeof seen->domain, "%s", domain);
+    snprintf(seen->message, sizeof seen->message, "%s", message);
+}
+
+static enum wb_status refuse(int number)
+{
+    return wb_fail(WB_ERR_DATA, "number %d refused", number);
+}
+
+static enum wb_status call_refuse(int *after)
+{
+    WB_TRY(refuse(7));
+    *after = 1;
+    return WB_OK;
+}
+
+static void failing_logs_one_message_and_travels_up(void **state)
+{
+    (void)state;
+    struct seen seen = {0};
+    wb_log_set_sink(remember, &seen);
+    int after = 0;
+    assert_int_equal(call_refuse(&after), WB_ERR_DATA);
+    wb_log_set_sink(NULL, NULL);
+    assert_int_equal(after, 0);
+    assert_int_equal(seen.messages, 1);
+    assert_int_equal(seen.level, WB_LOG_ERROR);
+    assert_string_equal(seen.domain, "test");
+    assert_string_equal(seen.message, "number 7 refused");
+}
+
+static void every_status_has_its_own_text(void **state)
+{
+    (void)state;
+    for (int a = WB_OK; a >= WB_ERR_CONVERGENCE; a--) {
+        assert_string_not_equal(wb_status_text(a), "unknown status");
+        for (int b = a - 1; b >= WB_ERR_CONVERGENCE; b--)
+            assert_string_not_equal(wb_status_text(a), wb_status_text(b));
+    }
+    assert_string_equal(wb_status_text(-99), "unknown status");
+}
+
+static void messages_above_the_threshold_are_dropped(void **state)
+{
+    (void)state;
+    struct seen seen = {0};
+    wb_log_set_sink(remember, &seen);
+    wb_debug("not delivered at the usual threshold");
+    assert_int_equal(seen.messages, 0);
+    wb_log_set_threshold(WB_LOG_ERROR);
+    wb_warn("not delivered either");
+    assert_int_equal(seen.messages, 0);
+    wb_error("delivered");
+    assert_int_equal(seen.messages, 1);
+    wb_log_set_threshold(WB_LOG_INFO);
+    wb_log_set_sink(NULL, NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(failing_logs_one_message_and_travels_up),
+        cmocka_unit_test(every_status_has_its_own_text),
+        cmocka_unit_test(messages_above_the_threshold_are_dropped),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,49 @@
+#include "tests/check.h"
+
+#include "base/text.h"
+
+static void text_grows_by_appending(void **state)
+{
+    (void)state;
+    struct wb_text text = {0};
+    assert_string_equal(wb_text_string(&text), "");
+    for (int i = 0; i < 1000; i++)
+        wb_text_append(&text, "%d,", i % 10);
+    assert_int_equal(text.length, 2000);
+    assert_int_equal(strlen(wb_text_string(&text)), 2000);
+    assert_memory_equal(wb_text_string(&text), "0,1,2,", 6);
+    assert_false(text.failed);
+    wb_text_release(&text);
+    assert_int_equal(text.length, 0);
+}
+
+static void markup_is_escaped(void **state)
+{
+    (void)state;
+    struct wb_text text = {0};
+    wb_text_append_escaped(&text, "a<b> & \"c\" 'd'");
+    assert_string_equal(wb_text_string(&text), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
+    wb_text_release(&text);
+}
+
+static void an_impossible_size_is_remembered_as_failure(void **state)
+{
+    (void)state;
+    struct wb_text text = {0};
+    wb_text_append(&text, "kept");
+    wb_text_append_bytes(&text, "x", SIZE_MAX);
+    wb_text_append(&text, "ignored");
+    assert_true(text.failed);
+    assert_string_equal(wb_text_string(&text), "kept");
+    wb_text_release(&text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(text_grows_by_appending),
+        cmocka_unit_test(markup_is_escaped),
+        cmocka_unit_test(an_impossible_size_is_remembered_as_failure),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
