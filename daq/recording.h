@@ -7,7 +7,8 @@
  * journal_mode=DELETE, so that a finished file can be read from a read-only folder.
  * `.wbr.zst` is the same file compressed with zstd; opening takes both.
  *
- * The only file that includes sqlite3.h, zlib.h and zstd.h is recording.c (and its own parts).
+ * Closing sets meta 'closed' to the UTC time; without it the recording ended by a crash, a power
+ * cut or a full disk. Only recording_*.c include sqlite3.h, zlib.h and zstd.h.
  */
 #ifndef WB_DAQ_RECORDING_H
 #define WB_DAQ_RECORDING_H
@@ -32,7 +33,8 @@ WB_MUST_CHECK enum wb_status wb_recording_create(struct wb_recording **out, cons
 WB_MUST_CHECK enum wb_status wb_recording_set_meta(struct wb_recording *recording, const char *key,
                                                    const char *value);
 
-/* Declares a stream; *id receives its number (0, 1, ...). */
+/* Declares a stream (texts are cut to the sizes of struct wb_recording_stream); *id receives its
+ * number (0, 1, ...). */
 WB_MUST_CHECK enum wb_status wb_recording_add_stream(struct wb_recording *recording,
                                                      enum wb_role role, const char *address,
                                                      const char *protocol, const char *settings,
@@ -42,15 +44,17 @@ WB_MUST_CHECK enum wb_status wb_recording_add_stream(struct wb_recording *record
  * (the caller flushes every 100 ms). WB_ERR_IO when the disk is full: what was flushed before
  * stays readable. */
 WB_MUST_CHECK enum wb_status wb_recording_append_chunk(struct wb_recording *recording, int stream,
-                                                       int64_t seq, int64_t t_ns,
-                                                       const void *bytes, size_t n);
-WB_MUST_CHECK enum wb_status wb_recording_append_event(struct wb_recording *recording,
-                                                       int64_t t_ns, const char *kind,
-                                                       const char *text);
+                                                       int64_t seq, int64_t t_ns, const void *bytes,
+                                                       size_t n);
+WB_MUST_CHECK enum wb_status wb_recording_append_event(struct wb_recording *recording, int64_t t_ns,
+                                                       const char *kind, const char *text);
 WB_MUST_CHECK enum wb_status wb_recording_append_clock(struct wb_recording *recording, int stream,
                                                        int64_t t_host_ns, double t_device,
                                                        int64_t rtt_ns);
 WB_MUST_CHECK enum wb_status wb_recording_flush(struct wb_recording *recording);
+
+/* Once a write failed, all further ones return the same status without another message, and the
+ * recording counts as not closed properly. */
 
 /* Flushes, checkpoints, leaves one plain file, and frees. Accepts NULL. For a recording opened for
  * reading it only frees. */
@@ -62,6 +66,9 @@ WB_MUST_CHECK enum wb_status wb_recording_close(struct wb_recording *recording);
  * a recording, or of a newer schema, is refused with the reason. A truncated or damaged database
  * is opened as far as SQLite can read it. */
 WB_MUST_CHECK enum wb_status wb_recording_open(struct wb_recording **out, const char *path);
+
+/* False when the recording was not closed properly (crash, full disk) or the file is cut short. */
+bool wb_recording_is_complete(const struct wb_recording *recording);
 
 /* Text of a meta key into an allocated string (caller frees); WB_ERR_NOT_FOUND without logging
  * when the key is not there. */
@@ -78,14 +85,16 @@ struct wb_recording_stream {
 int wb_recording_n_streams(const struct wb_recording *recording);
 const struct wb_recording_stream *wb_recording_stream_at(const struct wb_recording *recording,
                                                          int index);
+/* The settings text the stream was declared with; "" when none. */
+const char *wb_recording_stream_settings(const struct wb_recording *recording, int index);
 
 struct wb_chunk {
     int stream;
     int64_t seq, t_ns;
     const uint8_t *bytes; /* valid until the next call */
     size_t n;
-    uint32_t crc32;  /* stored */
-    bool intact;     /* stored CRC equals the computed one */
+    uint32_t crc32; /* stored */
+    bool intact;    /* stored CRC equals the computed one */
 };
 
 struct wb_event {
@@ -101,8 +110,10 @@ struct wb_clock_row {
     int64_t rtt_ns;
 };
 
-/* Visits all chunks in order of arrival (t_ns, then stream, then seq). A visitor returns a status;
- * anything but WB_OK ends the walk and is returned. WB_ERR_DATA (logged) when the database breaks
+/* Visits all chunks in order of arrival (t_ns, then stream, then seq; ties in the order of
+ * writing). A visitor returns a status;
+ * anything but WB_OK ends the walk and is returned. Events and clock rows are visited in order of
+ * time as well. WB_ERR_DATA (logged) when the database breaks
  * off; everything before has been visited. */
 WB_MUST_CHECK enum wb_status
 wb_recording_each_chunk(struct wb_recording *recording,
@@ -125,7 +136,9 @@ wb_recording_each_meta(struct wb_recording *recording,
 /* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. */
 WB_MUST_CHECK enum wb_status wb_recording_sha256(const char *path, char hex[65]);
 
-/* Compresses a closed recording to `target` (.wbr.zst), written atomically. */
+/* Compresses a closed recording to `target` (.wbr.zst), written atomically; the same recording and
+ * zstd release give the same bytes. WB_ERR_EXISTS when the target exists, WB_ERR_BUSY when the
+ * recording was not closed. */
 WB_MUST_CHECK enum wb_status wb_recording_compress(const char *path, const char *target);
 
 #endif

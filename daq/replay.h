@@ -16,9 +16,11 @@ struct wb_replay_counts {
 /* Decodes the whole recording into `sink`, in order of arrival, with the drivers named by its
  * streams and the settings of its rig. Damaged chunks (CRC) are counted, remarked and skipped.
  * `rate` 0 runs as fast as it can; otherwise 1 is the speed of the recording, and the call sleeps
- * between chunks (interruptible, see base/interrupt.h: then WB_OK and the counts so far). */
-WB_MUST_CHECK enum wb_status wb_replay_run(struct wb_recording *recording,
-                                           const struct wb_rig *rig, const struct wb_sink *sink,
-                                           double rate, struct wb_replay_counts *counts);
+ * between chunks (interruptible, see base/interrupt.h: then WB_OK and the counts so far). A stream
+ * whose protocol no driver knows is left out with a warning. When the database breaks off,
+ * WB_ERR_DATA is returned after all before it was delivered. *counts is written in every case. */
+WB_MUST_CHECK enum wb_status wb_replay_run(struct wb_recording *recording, const struct wb_rig *rig,
+                                           const struct wb_sink *sink, double rate,
+                                           struct wb_replay_counts *counts);
 
 #endif

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
-#include <time.h>
 
+#include "base/progress.h"
 #include "daq/stream_private.h"
 
 #define WB_LOG_DOMAIN "stream"
@@ -228,17 +228,10 @@ bool wb_stream_gone(int descriptor)
     return poll(&wait, 1, 0) > 0 && (wait.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
-int64_t wb_stream_now_ns(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * INT64_C(1000000000) + now.tv_nsec;
-}
-
 bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns)
 {
     for (;;) {
-        int64_t left_ns = deadline_ns - wb_stream_now_ns();
+        int64_t left_ns = deadline_ns - wb_progress_now_ns();
         if (left_ns <= 0)
             return false;
         struct timespec left = {.tv_sec = (time_t)(left_ns / 1000000000),

@@ -60,10 +60,7 @@ WB_MUST_CHECK enum wb_status wb_stream_lock(int descriptor, const char *path);
 /* After a read of 0 bytes: true when the device hung up or went away. */
 bool wb_stream_gone(int descriptor);
 
-/* Host CLOCK_MONOTONIC. */
-int64_t wb_stream_now_ns(void);
-
-/* Waits until the descriptor takes bytes or `deadline_ns` passed; false then. */
+/* Waits until the descriptor takes bytes or `deadline_ns` (host monotonic) passed; false then. */
 bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns);
 
 #endif

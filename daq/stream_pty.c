@@ -6,6 +6,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "base/progress.h"
 #include "daq/stream_private.h"
 
 #define WB_LOG_DOMAIN "stream"
@@ -123,7 +124,7 @@ static enum wb_status pty_read(void *state, void *buffer, size_t size, size_t *n
 static enum wb_status pty_write(void *state, const void *bytes, size_t n)
 {
     struct pty_state *pty = state;
-    int64_t deadline_ns = wb_stream_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
     size_t done = 0;
     while (done < n) {
         ssize_t put = write(pty->descriptor, (const char *)bytes + done, n - done);

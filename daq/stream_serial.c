@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <termios.h>
 
+#include "base/progress.h"
 #include "daq/stream_private.h"
 
 #define WB_LOG_DOMAIN "stream"
@@ -197,7 +198,7 @@ static enum wb_status serial_read(void *state, void *buffer, size_t size, size_t
 static enum wb_status serial_write(void *state, const void *bytes, size_t n)
 {
     struct serial_state *serial = state;
-    int64_t deadline_ns = wb_stream_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
     size_t done = 0;
     while (done < n) {
         errno = 0;

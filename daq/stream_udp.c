@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "base/progress.h"
 #include "daq/stream_private.h"
 
 #define WB_LOG_DOMAIN "stream"
@@ -293,7 +294,7 @@ static enum wb_status udp_read(void *state, void *buffer, size_t size, size_t *n
 static enum wb_status udp_write(void *state, const void *bytes, size_t n)
 {
     struct udp_state *udp = state;
-    int64_t deadline_ns = wb_stream_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
     for (;;) {
         ssize_t put =
             sendto(udp->command, bytes, n, 0, (struct sockaddr *)&udp->host, sizeof udp->host);

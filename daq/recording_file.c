@@ -1,0 +1,219 @@
+/* Recordings as files: compressed and plain, temporary files, checksums. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "daq/recording_private.h"
+
+#define WB_LOG_DOMAIN "recording"
+
+/* Stored once, read often: decompression is as fast at any level. */
+#define COMPRESSION_LEVEL 19
+
+bool wb_recording_is_zstd(const uint8_t *bytes, size_t n)
+{
+    static const uint8_t magic[] = {0x28, 0xb5, 0x2f, 0xfd};
+    return n >= sizeof magic && memcmp(bytes, magic, sizeof magic) == 0;
+}
+
+enum wb_status wb_recording_temporary(char *path, size_t size, int *descriptor)
+{
+    const char *folder = getenv("TMPDIR");
+    if (!folder || !folder[0])
+        folder = "/tmp";
+    int n = snprintf(path, size, "%s/wirebench-XXXXXX", folder);
+    if (n < 0 || (size_t)n >= size)
+        return wb_fail(WB_ERR_ARGUMENT, "the temporary folder's name is too long");
+    *descriptor = mkostemp(path, O_CLOEXEC);
+    if (*descriptor < 0)
+        return wb_fail(WB_ERR_IO, "no temporary file in '%s': %s", folder, strerror(errno));
+    return WB_OK;
+}
+
+static enum wb_status write_all(int to, const void *bytes, size_t n, const char *what)
+{
+    size_t done = 0;
+    while (done < n) {
+        ssize_t put = write(to, (const char *)bytes + done, n - done);
+        if (put > 0)
+            done += (size_t)put;
+        else if (put == 0 || errno != EINTR)
+            return wb_fail(WB_ERR_IO, "cannot write %s: %s", what, strerror(put ? errno : ENOSPC));
+    }
+    return WB_OK;
+}
+
+/* One block of the compressed file; *n is 0 at its end. */
+static enum wb_status read_block(int from, void *block, size_t size, const char *path, size_t *n)
+{
+    for (;;) {
+        ssize_t got = read(from, block, size);
+        if (got >= 0) {
+            *n = (size_t)got;
+            return WB_OK;
+        }
+        if (errno != EINTR)
+            return wb_fail(WB_ERR_IO, "cannot read '%s': %s", path, strerror(errno));
+    }
+}
+
+struct decompression {
+    ZSTD_DStream *stream;
+    void *in, *out;
+    size_t in_size, out_size;
+};
+
+static enum wb_status decompress_all(struct decompression *d, int from, int to, const char *path,
+                                     bool *whole)
+{
+    size_t left = 1; /* 0 once a frame is complete */
+    for (;;) {
+        ZSTD_inBuffer in = {.src = d->in};
+        WB_TRY(read_block(from, d->in, d->in_size, path, &in.size));
+        if (in.size == 0) {
+            *whole = left == 0;
+            return WB_OK;
+        }
+        while (in.pos < in.size) {
+            ZSTD_outBuffer out = {.dst = d->out, .size = d->out_size};
+            left = ZSTD_decompressStream(d->stream, &out, &in);
+            WB_TRY(write_all(to, d->out, out.pos,
+                             "a decompressed recording to the temporary "
+                             "folder ($TMPDIR)"));
+            if (ZSTD_isError(left)) {
+                *whole = false;
+                return WB_OK;
+            }
+        }
+    }
+}
+
+enum wb_status wb_recording_decompress(int from, int to, const char *path, bool *whole)
+{
+    struct decompression d = {.in_size = ZSTD_DStreamInSize(), .out_size = ZSTD_DStreamOutSize()};
+    d.stream = ZSTD_createDStream();
+    d.in = malloc(d.in_size);
+    d.out = malloc(d.out_size);
+    enum wb_status status = WB_OK;
+    if (!d.stream || !d.in || !d.out)
+        status = wb_fail(WB_ERR_MEMORY, "out of memory decompressing '%s'", path);
+    else
+        status = decompress_all(&d, from, to, path, whole);
+    ZSTD_freeDStream(d.stream);
+    free(d.in);
+    free(d.out);
+    return status;
+}
+
+static enum wb_status open_file(const char *path, int *descriptor)
+{
+    *descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (*descriptor >= 0)
+        return WB_OK;
+    return wb_fail(errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO, "cannot read '%s': %s", path,
+                   strerror(errno));
+}
+
+static enum wb_status hash_compressed(int from, const char *path, char hex[65])
+{
+    char temporary[WB_PATH];
+    int to = -1;
+    bool whole = true;
+    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
+    unlink(temporary);
+    enum wb_status status = wb_recording_decompress(from, to, path, &whole);
+    if (status == WB_OK && !whole)
+        status = wb_fail(WB_ERR_DATA, "'%s' is damaged: its compressed data breaks off", path);
+    if (status == WB_OK)
+        status = wb_hash_descriptor(to, path, hex);
+    close(to);
+    return status;
+}
+
+enum wb_status wb_recording_sha256(const char *path, char hex[65])
+{
+    int descriptor;
+    WB_TRY(open_file(path, &descriptor));
+    uint8_t magic[4];
+    ssize_t n = pread(descriptor, magic, sizeof magic, 0);
+    enum wb_status status;
+    if (n > 0 && wb_recording_is_zstd(magic, (size_t)n))
+        status = hash_compressed(descriptor, path, hex);
+    else
+        status = wb_hash_descriptor(descriptor, path, hex);
+    close(descriptor);
+    return status;
+}
+
+/* What follows a recording that was not closed holds a part of it. */
+static bool has_wal(const char *path)
+{
+    char wal[WB_PATH];
+    int n = snprintf(wal, sizeof wal, "%s-wal", path);
+    return n > 0 && (size_t)n < sizeof wal && access(wal, F_OK) == 0;
+}
+
+static enum wb_status write_compressed(const char *target, const void *bytes, size_t size)
+{
+    char temporary[WB_PATH];
+    int n = snprintf(temporary, sizeof temporary, "%s.XXXXXX", target);
+    if (n < 0 || (size_t)n >= sizeof temporary)
+        return wb_fail(WB_ERR_ARGUMENT, "path '%.100s...' is too long", target);
+    int to = mkostemp(temporary, O_CLOEXEC);
+    if (to < 0)
+        return wb_fail(WB_ERR_IO, "cannot write beside '%s': %s", target, strerror(errno));
+    enum wb_status status = write_all(to, bytes, size, target);
+    if (status == WB_OK && (fchmod(to, 0644) != 0 || fsync(to) != 0))
+        status = wb_fail(WB_ERR_IO, "cannot write '%s': %s", target, strerror(errno));
+    close(to);
+    /* link() fails where the name exists, which rename() would overwrite. */
+    if (status == WB_OK && link(temporary, target) != 0)
+        status = wb_fail(errno == EEXIST ? WB_ERR_EXISTS : WB_ERR_IO, "cannot make '%s': %s",
+                         target, strerror(errno));
+    unlink(temporary);
+    return status;
+}
+
+enum wb_status wb_recording_compress(const char *path, const char *target)
+{
+    if (has_wal(path))
+        return wb_fail(WB_ERR_BUSY, "'%s' is being recorded or was not closed", path);
+    if (wb_file_exists(target))
+        return wb_fail(WB_ERR_EXISTS,
+                       "'%s' exists: a recording is never overwritten; choose another name",
+                       target);
+    char *bytes = NULL;
+    size_t size = 0;
+    WB_TRY(wb_file_read(path, &bytes, &size));
+    if (size < 16 || memcmp(bytes, "SQLite format 3", 16) != 0) {
+        free(bytes);
+        return wb_fail(WB_ERR_FORMAT, "'%s' is not a recording", path);
+    }
+    size_t bound = ZSTD_compressBound(size);
+    void *packed = malloc(bound);
+    ZSTD_CCtx *context = ZSTD_createCCtx();
+    enum wb_status status = WB_OK;
+    if (!packed || !context) {
+        status = wb_fail(WB_ERR_MEMORY, "out of memory compressing '%s'", path);
+    } else {
+        ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, COMPRESSION_LEVEL);
+        ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
+        size_t n = ZSTD_compress2(context, packed, bound, bytes, size);
+        if (ZSTD_isError(n))
+            status =
+                wb_fail(WB_ERR_IO, "'%s' cannot be compressed: %s", path, ZSTD_getErrorName(n));
+        else
+            status = write_compressed(target, packed, n);
+    }
+    ZSTD_freeCCtx(context);
+    free(packed);
+    free(bytes);
+    return status;
+}
