@@ -76,7 +76,7 @@ static double shear_sum(const struct wb_fibres *f)
 void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *materials)
 {
     memcpy(f->materials, materials, (size_t)f->n_materials * sizeof *materials);
-    f->yield_strain = INFINITY;
+    f->yield_strain = (double)INFINITY;
     f->EA = f->ES = f->EI = 0.0;
     for (int b = 0; b < f->n_materials; b++) {
         const struct wb_material *m = &f->materials[b];

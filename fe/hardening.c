@@ -91,7 +91,7 @@ void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_mat
     for (int i = 0; i < WB_HARDENING_TERMS; i++)
         node[i] = 0.5 * cos(M_PI * (i + 0.5) / WB_HARDENING_TERMS);
 
-    double q = NAN;
+    double q = (double)NAN;
     for (long long piece = 0; piece < table->pieces; piece++) {
         const uint64_t low_bits = (uint64_t)(table->first + piece) << table->shift;
         const uint64_t high_bits = (uint64_t)(table->first + piece + 1) << table->shift;
