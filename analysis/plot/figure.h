@@ -1,0 +1,114 @@
+/* Figures: described once, drawn on any surface (a part of a PDF page, an SVG, a PNG).
+ *
+ *     struct wb_figure *figure;
+ *     WB_TRY(wb_figure_create(&figure, "type1-cycles", 480.0, 240.0));
+ *     struct wb_panel *panel = wb_figure_add_panel(figure);
+ *     wb_figure_set_axes(panel, "Deflection (mm)", "Force (mN)");
+ *     wb_figure_add_line(panel, "cycle 1", n, x, y, &style);
+ *     status = wb_figure_write_svg(figure, "curve.svg");
+ *     wb_figure_destroy(figure);
+ *
+ * Values are given in the units that the axes' labels name. Labels, titles and legend entries are
+ * Pango markup (<i>, <sub>, <sup>, <b>; &amp; for &). A NaN in a series breaks its line. Builders
+ * copy what they are given, return nothing and never fail visibly: running out of memory is
+ * remembered and reported when the figure is drawn. The same description gives the same bytes.
+ *
+ * Legends and insets are placed where they cover no data: in the emptiest corner, else as near to a
+ * corner as they fit, else outside of the axes. A figure is used by one thread at a time.
+ */
+#ifndef WB_ANALYSIS_PLOT_FIGURE_H
+#define WB_ANALYSIS_PLOT_FIGURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "analysis/plot/palette.h"
+#include "base/status.h"
+#include "base/text.h"
+
+struct wb_figure; /* opaque; owns its panels */
+struct wb_panel;  /* one pair of axes; owned by its figure */
+
+enum wb_figure_dash {
+    WB_DASH_SOLID,
+    WB_DASH_DASHED,
+    WB_DASH_DOTTED,
+    WB_DASH_MIXED
+};
+
+enum wb_figure_marker {
+    WB_MARKER_NONE,
+    WB_MARKER_CIRCLE,
+    WB_MARKER_SQUARE,
+    WB_MARKER_TRIANGLE,
+    WB_MARKER_DIAMOND,
+    WB_MARKER_RING
+};
+
+/* How a series looks; lengths in points of 1/72 inch. */
+struct wb_figure_style {
+    struct wb_colour colour;
+    double width; /* of the line; 0: no line */
+    enum wb_figure_dash dash;
+    enum wb_figure_marker marker;
+    double marker_size; /* 0: 4 */
+};
+
+/* `name` is a file name without ending: letters, digits, '-' and '_'. Size in points. */
+WB_MUST_CHECK enum wb_status wb_figure_create(struct wb_figure **out, const char *name,
+                                              double width, double height);
+void wb_figure_destroy(struct wb_figure *figure); /* accepts NULL */
+
+const char *wb_figure_name(const struct wb_figure *figure);
+double wb_figure_width(const struct wb_figure *figure);
+double wb_figure_height(const struct wb_figure *figure);
+
+/* A small line below the axes that says where the data come from ("measured (virtual rig)"). */
+void wb_figure_set_footer(struct wb_figure *figure, const char *markup);
+
+/* Panels stand side by side in the order they were added, each with equal width. */
+struct wb_panel *wb_figure_add_panel(struct wb_figure *figure);
+/* A small panel within another; one at most. */
+struct wb_panel *wb_figure_add_inset(struct wb_panel *panel);
+
+void wb_figure_set_axes(struct wb_panel *panel, const char *x_label, const char *y_label);
+void wb_figure_set_title(struct wb_panel *panel, const char *markup);
+/* Ranges of the axes; NaN chooses that bound from the data. */
+void wb_figure_set_x_range(struct wb_panel *panel, double low, double high);
+void wb_figure_set_y_range(struct wb_panel *panel, double low, double high);
+void wb_figure_set_logarithmic_y(struct wb_panel *panel);
+/* The same length for a unit on both axes (shapes). */
+void wb_figure_set_equal_aspect(struct wb_panel *panel);
+/* A second scale on the right whose values are those of y times `factor` (> 0). */
+void wb_figure_set_right_axis(struct wb_panel *panel, const char *label, double factor);
+/* No frame, ticks and labels: a drawing. */
+void wb_figure_hide_axes(struct wb_panel *panel);
+
+/* Series, drawn in the order bands, lines, points. `label` NULL: not in the legend. */
+void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, const double *x,
+                        const double *y, const struct wb_figure_style *style);
+void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
+                        const double *low, const double *high, struct wb_colour colour);
+/* A horizontal line over the whole width. */
+void wb_figure_add_level(struct wb_panel *panel, const char *label, double y,
+                         const struct wb_figure_style *style);
+/* A text whose left (-1), middle (0) or right (1) end stands at a point. */
+void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup);
+
+/* Draws into memory. SVG: ids are made of the figure's name, so several may stand in one HTML
+ * page. PNG: `scale` pixels for a point. PDF: one page of the figure's size; `date_utc` (ISO 8601)
+ * becomes the file's date, NULL a fixed one. */
+WB_MUST_CHECK enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg);
+WB_MUST_CHECK enum wb_status wb_figure_png(const struct wb_figure *figure, double scale,
+                                           struct wb_text *png);
+WB_MUST_CHECK enum wb_status wb_figure_pdf(const struct wb_figure *figure, const char *date_utc,
+                                           struct wb_text *pdf);
+
+/* The same into files, atomically. */
+WB_MUST_CHECK enum wb_status wb_figure_write_svg(const struct wb_figure *figure, const char *path);
+WB_MUST_CHECK enum wb_status wb_figure_write_png(const struct wb_figure *figure, double scale,
+                                                 const char *path);
+WB_MUST_CHECK enum wb_status wb_figure_write_pdf(const struct wb_figure *figure,
+                                                 const char *date_utc, const char *path);
+
+#endif

@@ -1,0 +1,129 @@
+#include "analysis/plot/scale.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void fit_logarithmic(struct wb_scale *scale, double low, double high)
+{
+    if (!(low > 0.0) || !(high > 0.0)) {
+        low = 0.1;
+        high = 1.0;
+    }
+    const double room = fmax(0.03 * log10(high / low), 0.05);
+    scale->low = low * pow(10.0, -room);
+    scale->high = high * pow(10.0, room);
+    /* At least one power of ten must be seen, or the axis has no label. */
+    const double decade = pow(10.0, floor(log10(scale->high)));
+    if (decade < scale->low) {
+        const double above = 10.0 * decade;
+        if (scale->low / decade < above / scale->high)
+            scale->low = decade;
+        else
+            scale->high = above;
+    }
+}
+
+void wb_scale_fit(struct wb_scale *scale, double low, double high, bool logarithmic)
+{
+    memset(scale, 0, sizeof *scale);
+    scale->logarithmic = logarithmic;
+    if (!isfinite(low) || !isfinite(high) || low > high) {
+        low = 0.0;
+        high = 1.0;
+    }
+    if (logarithmic) {
+        fit_logarithmic(scale, low, high);
+        return;
+    }
+    if (low >= 0.0 && low < 0.35 * high)
+        low = 0.0;
+    if (high <= 0.0 && high > 0.35 * low)
+        high = 0.0;
+    if (!(high - low > 1e-12 * fmax(fabs(low), fabs(high)))) {
+        const double half = low == 0.0 ? 1.0 : 0.5 * fabs(low);
+        low -= half;
+        high += half;
+    }
+    const double room = 0.04 * (high - low);
+    scale->low = low == 0.0 ? 0.0 : low - room;
+    scale->high = high == 0.0 ? 0.0 : high + room;
+}
+
+/* 1, 2, 2.5 or 5 times a power of ten, the smallest that is not below `least`. */
+static double nice_step(double least, int *decimals)
+{
+    static const double factors[] = {1.0, 2.0, 2.5, 5.0, 10.0};
+    int exponent = (int)floor(log10(least));
+    const double power = pow(10.0, exponent);
+    int i = 0;
+    while (i < 4 && factors[i] * power < least * (1.0 - 1e-9))
+        i++;
+    if (i == 4)
+        exponent++;
+    *decimals = exponent < 0 ? -exponent : 0;
+    if (i == 2 && exponent < 1)
+        (*decimals)++;
+    return factors[i] * power;
+}
+
+static void place_powers(struct wb_scale *scale, int most)
+{
+    const int first = (int)ceil(log10(scale->low) - 1e-9);
+    const int last = (int)floor(log10(scale->high) + 1e-9);
+    int stride = 1;
+    while ((last - first) / stride + 1 > most)
+        stride++;
+    for (int i = first; i <= last && scale->n_ticks < WB_SCALE_TICKS; i += stride) {
+        scale->ticks[scale->n_ticks] = pow(10.0, i);
+        char *const label = scale->labels[scale->n_ticks++];
+        if (i >= -2 && i <= 3)
+            snprintf(label, WB_SCALE_TEXT, "%.*f", i < 0 ? -i : 0, pow(10.0, i));
+        else
+            snprintf(label, WB_SCALE_TEXT, "10<sup>%s%d</sup>", i < 0 ? "\xe2\x88\x92" : "",
+                     i < 0 ? -i : i);
+    }
+}
+
+static void place_steps(struct wb_scale *scale, int most)
+{
+    const double span = scale->high - scale->low;
+    int decimals = 0;
+    const double step = nice_step(span / most, &decimals);
+    const double slack = 1e-9 * span;
+    for (double k = ceil((scale->low - slack) / step);
+         k * step <= scale->high + slack && scale->n_ticks < WB_SCALE_TICKS; k += 1.0) {
+        const double value = k == 0.0 ? 0.0 : k * step;
+        scale->ticks[scale->n_ticks] = value;
+        char *const label = scale->labels[scale->n_ticks++];
+        char digits[WB_SCALE_TEXT - 4];
+        if (decimals > 6 || fabs(value) >= 1e7)
+            snprintf(digits, sizeof digits, "%.3g", fabs(value));
+        else
+            snprintf(digits, sizeof digits, "%.*f", decimals, fabs(value));
+        /* A true minus sign is as wide as a figure. */
+        snprintf(label, WB_SCALE_TEXT, "%s%s", value < 0.0 ? "\xe2\x88\x92" : "", digits);
+    }
+}
+
+void wb_scale_place_ticks(struct wb_scale *scale, int most)
+{
+    if (most < 2)
+        most = 2;
+    if (most > WB_SCALE_TICKS - 2)
+        most = WB_SCALE_TICKS - 2;
+    scale->n_ticks = 0;
+    if (scale->logarithmic)
+        place_powers(scale, most);
+    else
+        place_steps(scale, most);
+}
+
+double wb_scale_position(const struct wb_scale *scale, double value)
+{
+    if (!scale->logarithmic)
+        return (value - scale->low) / (scale->high - scale->low);
+    if (!(value > 0.0))
+        return NAN;
+    return log(value / scale->low) / log(scale->high / scale->low);
+}
