@@ -350,6 +350,33 @@ static inline void add_product(double *restrict v, double sign, const double *A,
         v[r] += sign * (A[3 * r] * b[0] + A[3 * r + 1] * b[1] + A[3 * r + 2] * b[2]);
 }
 
+/* Positions of an element's middle and last node from its first node, its rotations, and a, b at
+ * the Gauss points: (x', y') = R(t) (a, b), and x' is linear within the element. */
+static void place_nodes(const struct wb_beam *beam, struct wb_beam_node *node, const double *a,
+                        const double *b)
+{
+    const double h = beam->element_length;
+    double x_[POINTS], y_[POINTS];
+
+    for (int g = 0; g < POINTS; g++) {
+        const double *N = beam->shape.N[g];
+        const double t = N[0] * node[0].t + N[1] * node[1].t + N[2] * node[2].t;
+        const double c = cos(t), s = sin(t);
+        x_[g] = a[g] * c - b[g] * s;
+        y_[g] = a[g] * s + b[g] * c;
+    }
+    const double mean_x = 0.5 * (x_[0] + x_[1]), mean_y = 0.5 * (y_[0] + y_[1]);
+    const double slope_x = 0.5 * sqrt(3.0) * (x_[1] - x_[0]);
+    const double slope_y = 0.5 * sqrt(3.0) * (y_[1] - y_[0]);
+    node[1].x = node[0].x + 0.5 * h * (mean_x - 0.5 * slope_x);
+    node[1].y = node[0].y + 0.5 * h * (mean_y - 0.5 * slope_y);
+    node[2].x = node[0].x + h * mean_x;
+    node[2].y = node[0].y + h * mean_y;
+}
+
+/* An increment is applied to rotations and strains, not to positions, which then follow from them.
+ * Adding it to positions would stretch a turning element by half the square of its turn, far beyond
+ * yield, and the next tangent would be that of a wire torn in tension. */
 double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rotation)
 {
     static const double clamp[3] = {0.0, 0.0, 0.0};
@@ -366,17 +393,25 @@ double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rota
     for (int e = 0; e < beam->n_elements; e++) {
         const struct middle *m = &beam->middles[e];
         const double *first = e > 0 ? d[e - 1] : clamp;
+        const double *last = d[e];
         double middle[3] = {-m->w[0], -m->w[1], -m->w[2]};
         add_product(middle, -1.0, m->W1, first);
-        add_product(middle, -1.0, m->W3, d[e]);
+        add_product(middle, -1.0, m->W3, last);
 
-        struct wb_beam_node *node = beam->trial + 2 * e + 1;
-        node[0].x += scale * middle[0];
-        node[0].y += scale * middle[1];
-        node[0].t += scale * middle[2];
-        node[1].x += scale * d[e][0];
-        node[1].y += scale * d[e][1];
-        node[1].t += scale * d[e][2];
+        double a[POINTS], b[POINTS];
+        for (int g = 0; g < POINTS; g++) {
+            const struct wb_beam_point *p = &beam->points[e * POINTS + g];
+            const double *N = beam->shape.N[g], *dN = beam->shape.dN[g];
+            const double x_ = dN[0] * first[0] + dN[1] * middle[0] + dN[2] * last[0];
+            const double y_ = dN[0] * first[1] + dN[1] * middle[1] + dN[2] * last[1];
+            const double t = N[0] * first[2] + N[1] * middle[2] + N[2] * last[2];
+            a[g] = p->a + scale * (p->cosine * x_ + p->sine * y_ + p->b * t);
+            b[g] = p->b + scale * (p->cosine * y_ - p->sine * x_ - p->a * t);
+        }
+        struct wb_beam_node *node = beam->trial + 2 * e;
+        node[1].t += scale * middle[2];
+        node[2].t += scale * last[2];
+        place_nodes(beam, node, a, b);
     }
     return scale;
 }
@@ -388,11 +423,21 @@ void wb_beam_revert(struct wb_beam *beam)
 
 void wb_beam_extrapolate(struct wb_beam *beam, double ratio)
 {
-    for (int i = 0; i < beam->n_nodes; i++) {
-        const struct wb_beam_node *now = &beam->committed[i], *was = &beam->earlier[i];
-        beam->trial[i].x = now->x + ratio * (now->x - was->x);
-        beam->trial[i].y = now->y + ratio * (now->y - was->y);
-        beam->trial[i].t = now->t + ratio * (now->t - was->t);
+    for (int e = 0; e < beam->n_elements; e++) {
+        double a[POINTS], b[POINTS];
+        for (int g = 0; g < POINTS; g++) {
+            struct wb_beam_point now, was;
+            wb_beam_element_kinematics(&beam->shape, g, beam->committed + 2 * e, &now);
+            wb_beam_element_kinematics(&beam->shape, g, beam->earlier + 2 * e, &was);
+            a[g] = now.a + ratio * (now.a - was.a);
+            b[g] = now.b + ratio * (now.b - was.b);
+        }
+        struct wb_beam_node *node = beam->trial + 2 * e;
+        for (int i = 1; i < WB_BEAM_ELEMENT_NODES; i++) {
+            const double now = beam->committed[2 * e + i].t, was = beam->earlier[2 * e + i].t;
+            node[i].t = now + ratio * (now - was);
+        }
+        place_nodes(beam, node, a, b);
     }
 }
 

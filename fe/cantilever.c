@@ -23,6 +23,9 @@ enum {
 /* A Newton iteration turns no node by more than this, rad. */
 static const double most_rotation = 0.5;
 
+/* Iterations of a step that may be held back by it. */
+static const int most_held_back = 3;
+
 /* Everything that acts at the tip besides the clamp's distant hand. */
 struct loads {
     double tension;  /* strand, or vertical force, N */
@@ -40,6 +43,7 @@ struct state {
     enum wb_cantilever_control control;
     double value;     /* of the control */
     double last_step; /* its last increment; 0: nothing to extrapolate from */
+    double fraction;  /* of the last move that its last step was */
 };
 
 struct wb_cantilever {
@@ -151,7 +155,7 @@ void wb_cantilever_destroy(struct wb_cantilever *cantilever)
 void wb_cantilever_reset(struct wb_cantilever *cantilever)
 {
     wb_beam_reset(cantilever->beam);
-    cantilever->state = (struct state){.mode = TAUT};
+    cantilever->state = (struct state){.mode = TAUT, .fraction = 1.0};
     cantilever->loads = cantilever->state.loads;
 }
 
@@ -325,22 +329,26 @@ static int tip_system(struct wb_cantilever *c, const struct step *step, const st
     return n;
 }
 
-/* Newton's method from the trial state; true when it converged. */
+/* Newton's method from the trial state; true when it converged. An iteration that had to be held
+ * back is a sign of a step too long: after a few it gives up, because a shorter step is cheaper. */
 static bool solve(struct wb_cantilever *c, const struct step *step)
 {
     struct strand strand;
     double r[3];
+    int held_back = 0;
 
     for (int iteration = 0;; iteration++) {
         if (check_balance(c, step, &strand, r))
             return true;
-        if (iteration == c->settings.max_iterations || !isfinite(c->residual))
+        if (iteration == c->settings.max_iterations || held_back == most_held_back ||
+            !isfinite(c->residual))
             return false;
 
         double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
         const int n = tip_system(c, step, &strand, A, b);
         wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
         const double scale = wb_beam_advance(c->beam, b, most_rotation);
+        held_back += scale < 1.0;
 
         int next = 3;
         if (drives_tip(step->control) && (step->mode & TAUT))
@@ -522,7 +530,8 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
     const bool continues = c->state.has_control && c->state.control == control;
     const double start = continues ? c->state.value : present_value(c, control);
     const double weight = c->state.loads.weight;
-    double done = 0.0, fraction = 1.0;
+    double done = 0.0, fraction = fmin(1.0, 4.0 * c->state.fraction);
+    bool failed = false;
 
     point->end = WB_CANTILEVER_CONVERGED;
     while (done < 1.0) {
@@ -536,10 +545,13 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
         };
         if (settle(c, step)) {
             accept(c, &step, from);
+            c->state.fraction = fraction;
             done = next;
-            fraction *= 2.0;
+            fraction = failed ? fraction : 2.0 * fraction;
+            failed = false;
             continue;
         }
+        failed = true;
         fraction *= 0.5;
         if (fraction < c->settings.smallest_step) {
             point->end = WB_CANTILEVER_NOT_CONVERGED;

@@ -17,8 +17,8 @@
 
 enum {
     WB_HARDENING_TERMS = 8,          /* coefficients of a piece; one cache line */
-    WB_HARDENING_LOWEST_OCTAVE = -8, /* the table begins at c / sigma_Y = 2^-8 */
-    WB_HARDENING_OCTAVES = 16,
+    WB_HARDENING_LOWEST_OCTAVE = -6, /* the table begins at c / sigma_Y = 2^-6 */
+    WB_HARDENING_OCTAVES = 18,
     WB_HARDENING_MAX_PIECES = 64 /* in an octave, as a power of two */
 };
 
