@@ -57,71 +57,71 @@
 struct wb_rig_load_cell {
     char address[WB_RIG_TEXT];
     char protocol[32];
-    double capacity;        /* N */
-    double overload;        /* N: the largest force it still reads (capacity x overload_percent) */
+    double capacity; /* N */
+    double overload; /* N: the largest force it still reads (capacity x overload_percent) */
     char serial_number[64];
     char calibration_date[32];
-    double filter_delay;    /* s */
+    double filter_delay;             /* s */
     double filter_delay_uncertainty; /* s */
-    double noise;           /* N, expected standard deviation; 0 unknown */
-    double check_mass;      /* kg, known mass to check the cell with; 0 none */
-    double check_tolerance; /* fraction of the check mass */
+    double noise;                    /* N, expected standard deviation; 0 unknown */
+    double check_mass;               /* kg, known mass to check the cell with; 0 none */
+    double check_tolerance;          /* fraction of the check mass */
     /* Generic line protocol. */
-    char delimiter;         /* 0: whole line is one value */
-    int column;             /* from 1, with a delimiter */
-    char unit[16];          /* wins over the line's unit; "" takes the line's */
-    double scale, offset;   /* force = sign (scale value + offset) unit: both in the line's unit */
-    int sign;               /* +1: tension reads positive */
-    char terminator[8];     /* "cr", "lf", "crlf", "idle"; "any" or "": CR or LF */
-    int64_t idle_gap_ns;    /* for "idle" */
-    char poll_command[32];  /* with C escapes resolved; "" streams by itself */
+    char delimiter;        /* 0: whole line is one value */
+    int column;            /* from 1, with a delimiter */
+    char unit[16];         /* wins over the line's unit; "" takes the line's */
+    double scale, offset;  /* force = sign (scale value + offset) unit: both in the line's unit */
+    int sign;              /* +1: tension reads positive */
+    char terminator[8];    /* "cr", "lf", "crlf", "idle"; "any" or "": CR or LF */
+    int64_t idle_gap_ns;   /* for "idle" */
+    char poll_command[32]; /* with C escapes resolved; "" streams by itself */
     int64_t poll_period_ns;
     char start_command[32];
     char tare_command[32];
     char unstable_tokens[WB_RIG_TOKENS][16];
     char overload_tokens[WB_RIG_TOKENS][16];
     bool decimal_comma;
-    int64_t settle_ns;      /* ignore bytes for so long after the first that came */
+    int64_t settle_ns; /* ignore bytes for so long after the first that came */
 };
 
 struct wb_rig_mocap {
     char address[WB_RIG_TEXT];
     char protocol[32];
-    char up;                /* 'y' or 'z' */
-    double marker_noise;    /* m, expected standard deviation; 0 unknown */
-    double frame_rate;      /* 1/s, expected; 0 unknown */
+    char up;             /* 'y' or 'z' */
+    double marker_noise; /* m, expected standard deviation; 0 unknown */
+    double frame_rate;   /* 1/s, expected; 0 unknown */
 };
 
 struct wb_rig_stage {
     char address[WB_RIG_TEXT];
     char protocol[32];
-    char axis;              /* 'X', 'Y' or 'Z' */
-    int down;               /* +1 or -1 */
-    double travel;          /* m, usable downward travel from where the test starts */
-    double speed;           /* m/s */
+    char axis;     /* 'X', 'Y' or 'Z' */
+    int down;      /* +1 or -1 */
+    double travel; /* m, usable downward travel from where the test starts */
+    double speed;  /* m/s */
 };
 
 struct wb_rig_limits {
-    double force;           /* N; 0: the cell's overload */
-    double travel;          /* m; 0: the stage's travel */
-    double stream_lost;     /* s */
+    double force;       /* N; 0: the cell's overload */
+    double travel;      /* m; 0: the stage's travel */
+    double stream_lost; /* s */
 };
 
 struct wb_rig_strand {
-    double length;          /* m; 0: no strand, the force at the tip is vertical */
-    double counterweight;   /* kg */
+    double length;        /* m; 0: no strand, the force at the tip is vertical */
+    double counterweight; /* kg */
 };
 
 struct wb_rig {
     char name[WB_RIG_TEXT];
-    double gravity;         /* m/s2 */
+    double gravity; /* m/s2 */
     struct wb_rig_load_cell load_cell;
     struct wb_rig_mocap mocap;
     struct wb_rig_stage stage;
     struct wb_rig_limits limits;
     struct wb_rig_strand strand;
     bool is_virtual;
-    double time_scale;      /* 1 on a real bench: the rig's clocks run so many times faster */
+    double time_scale; /* 1 on a real bench: the rig's clocks run so many times faster */
 };
 
 /* Reads a rig file; errors name file, line and key. */

@@ -17,9 +17,9 @@
 
 struct wb_specimen {
     char wire[160];
-    double length;       /* m */
+    double length; /* m */
     int sample;
-    int n_markers;       /* 2..WB_SPECIMEN_MAX_MARKERS */
+    int n_markers;                           /* 2..WB_SPECIMEN_MAX_MARKERS */
     double markers[WB_SPECIMEN_MAX_MARKERS]; /* m, ascending, first 0, last = length */
     double marker_offset;                    /* m */
     double marker_offset_uncertainty;        /* m */

@@ -1,0 +1,129 @@
+#include "daq/loadcell.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void wb_loadcell_remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
+                        const char *kind, const char *format, ...)
+{
+    if (!sink->remark)
+        return;
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    sink->remark(sink->context, level, t_ns, kind, text);
+}
+
+bool wb_loadcell_worth_saying(uint64_t n)
+{
+    while (n > 3 && n % 10 == 0)
+        n /= 10;
+    return n <= 3;
+}
+
+char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size)
+{
+    size_t n = 0;
+    for (; n < line->n && n + 1 < size; n++)
+        text[n] = line->bytes[n] >= 0x20 && line->bytes[n] < 0x7f ? line->bytes[n] : '?';
+    text[n] = '\0';
+    return text;
+}
+
+static void refuse(struct wb_loadcell *loadcell, int64_t t_ns, const char *reason,
+                   const struct wb_line_buffer *line, const struct wb_sink *sink)
+{
+    char text[64];
+    loadcell->n_refused++;
+    if (wb_loadcell_worth_saying(loadcell->n_refused))
+        wb_loadcell_remark(
+            sink, WB_LOG_WARNING, t_ns, "refused", "line '%s' refused: %s; %" PRIu64 " so far",
+            wb_loadcell_printable(line, text, sizeof text), reason, loadcell->n_refused);
+}
+
+/* Keeps the unit's history; true when the line's unit is not the first one seen. A line without a
+ * unit says nothing (some scales leave it out while unstable). */
+static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *unit,
+                       const struct wb_sink *sink)
+{
+    if (unit[0] == '\0')
+        return strcmp(loadcell->last_unit, loadcell->first_unit) != 0;
+    if (loadcell->first_unit[0] == '\0') {
+        strcpy(loadcell->first_unit, unit);
+        strcpy(loadcell->last_unit, unit);
+    }
+    if (strcmp(loadcell->last_unit, unit) != 0)
+        wb_loadcell_remark(sink, WB_LOG_ERROR, t_ns, "unit", "the unit changed from %s to %s",
+                           loadcell->last_unit, unit);
+    strcpy(loadcell->last_unit, unit);
+    return strcmp(loadcell->first_unit, unit) != 0;
+}
+
+static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample *sample,
+                             const struct wb_line_buffer *line, const struct wb_sink *sink)
+{
+    char text[64];
+    sample->overload = true;
+    loadcell->n_overloads++;
+    if (!loadcell->overloaded)
+        wb_loadcell_remark(sink, WB_LOG_ERROR, sample->t_ns, "overload",
+                           "the load cell is out of range: '%s'",
+                           wb_loadcell_printable(line, text, sizeof text));
+    loadcell->overloaded = true;
+    loadcell->n_samples++;
+    if (sink->load)
+        sink->load(sink->context, sample);
+}
+
+void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
+                         const struct wb_line_reading *reading, const struct wb_line_buffer *line,
+                         const struct wb_sink *sink)
+{
+    const struct wb_rig_load_cell *const cell = &loadcell->rig.load_cell;
+    struct wb_load_sample sample = {
+        .t_ns = t_ns,
+        .index = loadcell->n_samples,
+        .force = (double)NAN,
+        .unstable = reading->unstable,
+    };
+    if (reading->kind == WB_LINE_EMPTY)
+        return;
+    if (reading->kind == WB_LINE_REFUSED) {
+        refuse(loadcell, t_ns, reading->reason, line, sink);
+        return;
+    }
+    if (reading->kind == WB_LINE_OVERLOAD) {
+        deliver_overload(loadcell, &sample, line, sink);
+        return;
+    }
+    /* A line without a unit goes by the last one: the scale's unit is not known to have changed. */
+    struct wb_line_reading complete = *reading;
+    if (complete.unit[0] == '\0')
+        strcpy(complete.unit, loadcell->last_unit);
+    double force;
+    if (!wb_line_force(&complete, cell, loadcell->rig.gravity, &force)) {
+        refuse(loadcell, t_ns,
+               complete.unit[0] ? "its unit is not known: set load_cell.unit"
+                                : "it has no unit: set load_cell.unit",
+               line, sink);
+        return;
+    }
+    sample.unit_changed = watch_unit(loadcell, t_ns, reading->unit, sink);
+    if (cell->overload > 0.0 && !(fabs(force) <= cell->overload)) {
+        deliver_overload(loadcell, &sample, line, sink);
+        return;
+    }
+    /* With a unit of the rig file's own, a line in another unit than before is worth nothing. */
+    sample.valid = !(sample.unit_changed && cell->unit[0]);
+    if (sample.valid)
+        sample.force = force;
+    loadcell->overloaded = false;
+    loadcell->n_samples++;
+    if (sink->load)
+        sink->load(sink->context, &sample);
+}

@@ -1,0 +1,60 @@
+/* One line of a load cell or scale: what it says, as a pure function on text.
+ *
+ * The generic line protocol takes what most indicators, scales and hobby amplifiers print: words
+ * before the number (`ST,GS,`, `S S`, `Reading:`), the number with its sign possibly apart from it,
+ * a unit, and a mark of stability after it. Overload, by word or by value, is looked for first:
+ * `OL,+9999999E+19` is no number. A comma in a number is refused unless the rig file says that this
+ * instrument writes decimal commas.
+ */
+#ifndef WB_DAQ_LOADCELL_LINE_H
+#define WB_DAQ_LOADCELL_LINE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "daq/rig.h"
+
+enum wb_line_kind {
+    WB_LINE_EMPTY,    /* nothing but blanks */
+    WB_LINE_VALUE,    /* a reading */
+    WB_LINE_OVERLOAD, /* over or under range */
+    WB_LINE_REFUSED   /* an error code, a banner, something else; `reason` says what */
+};
+
+struct wb_line_reading {
+    enum wb_line_kind kind;
+    double value;       /* as printed, in `unit` */
+    char unit[16];      /* as printed; "" when the line has none */
+    bool unstable;      /* the line calls it unstable, or dynamic */
+    const char *reason; /* static text, when refused */
+};
+
+/* Bytes on their way to be a line. All zero is empty. */
+struct wb_line_buffer {
+    char bytes[256];
+    size_t n;
+    bool overlong; /* bytes were dropped: the line is no line */
+};
+
+/* Appends a byte; true when it ends the line, which then stands in the buffer until it is cleared.
+ * `terminator` is the rig file's: "cr", "lf", "crlf" (LF ends, the CR before it is a blank), "any"
+ * or "" (CR or LF), "idle" (no byte ends a line, silence does). */
+bool wb_line_buffer_push(struct wb_line_buffer *buffer, uint8_t byte, const char *terminator);
+void wb_line_buffer_clear(struct wb_line_buffer *buffer);
+
+/* Reads one line of `length` bytes without its terminator. Uses of `cell`: delimiter, column,
+ * decimal_comma, unstable_tokens, overload_tokens. */
+void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_cell *cell,
+                    struct wb_line_reading *reading);
+
+/* Newtons per unit: of force units (N, mN, kN, uN, lbF, ozF, gf, kgf) themselves, of mass units (g,
+ * kg, mg, t, lb, oz, ct) under `gravity` (m/s2). False when the unit is not known. */
+bool wb_line_unit_factor(const char *unit, double gravity, double *newtons);
+
+/* Force in N: sign x (scale x value + offset) x unit, with the unit of the rig file if it has one,
+ * else the line's own. False when there is no unit, or an unknown one. */
+bool wb_line_force(const struct wb_line_reading *reading, const struct wb_rig_load_cell *cell,
+                   double gravity, double *force);
+
+#endif

@@ -1,0 +1,482 @@
+/* The NatNet client: handshake, keepalive, clock probes, frames.
+ *
+ * What is decoded depends on received bytes and their times only, never on what was sent: the
+ * server's answer to an echo carries our own stamp, and its answers to queries come in the order of
+ * `queries`. So a replay, which sends nothing, yields the same samples and probes.
+ */
+#include "daq/driver.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "daq/natnet.h"
+#include "daq/natnet_encode.h"
+
+#define CONNECT_PERIOD_NS (500 * WB_NS_PER_MS)
+#define QUERY_PERIOD_NS (1000 * WB_NS_PER_MS)
+#define KEEPALIVE_PERIOD_NS (1000 * WB_NS_PER_MS)
+#define SILENCE_NS (3000 * WB_NS_PER_MS) /* then we connect anew */
+#define BURST_PROBES 8
+#define BURST_PERIOD_NS (64 * WB_NS_PER_MS)
+#define PROBE_PERIOD_NS (1000 * WB_NS_PER_MS)
+#define PROBE_MAX_NS (1000 * WB_NS_PER_MS) /* an older answer says nothing about the clock */
+
+enum query {
+    QUERY_UNITS,
+    QUERY_FRAME_RATE,
+    N_QUERIES
+};
+static const char *const queries[N_QUERIES] = {"UnitsToMillimeters", "FrameRate"};
+
+/* Remarks that are made once a connection. */
+enum {
+    SAID_EARLY = 1 << 0,
+    SAID_NO_LABELLED = 1 << 1,
+    SAID_SKIPPED = 1 << 2,
+    SAID_TOO_MANY = 1 << 3,
+    SAID_NOT_FINITE = 1 << 4,
+    SAID_NOT_LIVE = 1 << 5,
+    SAID_UNKNOWN = 1 << 6
+};
+
+struct natnet_state {
+    struct wb_rig rig;
+    /* From received bytes. */
+    bool connected;
+    struct wb_natnet_version version;
+    struct wb_natnet_server server;
+    int n_answers;       /* to queries */
+    double units_factor; /* server's length unit in m */
+    uint64_t n_frames, n_refused;
+    int64_t last_receive_ns;
+    unsigned said;
+    /* For sending. */
+    int64_t next_connect_ns, next_query_ns, next_keepalive_ns, next_probe_ns;
+    int64_t receive_seen_ns, receive_noticed_ns;
+    int n_connects, n_probes, n_asked;
+    struct wb_natnet_frame frame;
+};
+
+static const struct wb_channel channels[] = {{"markers", "length", "m"}};
+
+static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
+                   const char *kind, const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
+                   const char *kind, const char *format, ...)
+{
+    if (!sink->remark)
+        return;
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    sink->remark(sink->context, level, t_ns, kind, text);
+}
+
+/* True the first time since the server was found. */
+static bool first_time(struct natnet_state *state, unsigned what)
+{
+    const bool first = !(state->said & what);
+    state->said |= what;
+    return first;
+}
+
+/* --- server info --- */
+
+/* Compares where the server sends with where the rig file listens. */
+static void check_group(const struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
+{
+    const struct wb_natnet_server *const server = &state->server;
+    const char *const address = state->rig.mocap.address;
+    const char *const listed = strstr(address, ",group=");
+    if (!server->has_connection || strncmp(address, "udp:", 4) != 0)
+        return;
+    char group[32];
+    snprintf(group, sizeof group, "%u.%u.%u.%u:%u", server->group[0], server->group[1],
+             server->group[2], server->group[3], server->data_port);
+    if (!server->multicast) {
+        if (listed)
+            remark(sink, WB_LOG_WARNING, t_ns, "group",
+                   "the server streams unicast: the group in mocap.address will stay silent");
+        return;
+    }
+    if (!listed) {
+        remark(sink, WB_LOG_WARNING, t_ns, "group",
+               "the server streams to the multicast group %s: add ',group=%s' to mocap.address",
+               group, group);
+        return;
+    }
+    const size_t n = strlen(group);
+    const char *const value = listed + strlen(",group=");
+    if (strncmp(value, group, n) != 0 || (value[n] != '\0' && value[n] != ','))
+        remark(sink, WB_LOG_WARNING, t_ns, "group",
+               "the server streams to the multicast group %s, not the one in mocap.address", group);
+}
+
+/* A version and what it means for us. */
+static void remark_version(const struct natnet_state *state, int64_t t_ns,
+                           const struct wb_sink *sink)
+{
+    const struct wb_natnet_version version = state->version;
+    char name[64];
+    size_t n = 0;
+    for (; n + 1 < sizeof name && state->server.name[n]; n++) {
+        const char c = state->server.name[n];
+        name[n] = c >= 0x20 && c < 0x7f ? c : '?';
+    }
+    name[n] = '\0';
+    const uint8_t *const app = state->server.app_version;
+    remark(sink, WB_LOG_INFO, t_ns, "connected", "'%s' %u.%u.%u.%u, NatNet %u.%u", name, app[0],
+           app[1], app[2], app[3], version.major, version.minor);
+    if (wb_natnet_version_at_least(version, 4, 2))
+        remark(sink, WB_LOG_WARNING, t_ns, "version",
+               "NatNet %u.%u is newer than 4.1, the newest we know: sections are skipped by size",
+               version.major, version.minor);
+    else if (!wb_natnet_version_at_least(version, 2, 5))
+        remark(sink, WB_LOG_WARNING, t_ns, "version",
+               "NatNet %u.%u is older than 2.5, the oldest we know: markers may be missing",
+               version.major, version.minor);
+}
+
+static void receive_server(struct natnet_state *state, int64_t t_ns,
+                           const struct wb_natnet_packet *packet, const struct wb_sink *sink,
+                           struct wb_natnet_fault *fault)
+{
+    struct wb_natnet_server server;
+    memset(&server, 0, sizeof server);
+    if (wb_natnet_decode_server(packet, &server, fault) != WB_OK)
+        return;
+    /* Repeated answers to repeated questions change nothing. */
+    if (state->connected && memcmp(&server, &state->server, sizeof server) == 0)
+        return;
+    if (state->connected)
+        remark(sink, WB_LOG_WARNING, t_ns, "server", "the server announces itself anew");
+    state->server = server;
+    state->version = (struct wb_natnet_version){server.natnet_version[0], server.natnet_version[1]};
+    state->connected = true;
+    state->n_answers = 0;
+    state->units_factor = 1.0;
+    state->said = 0;
+    remark_version(state, t_ns, sink);
+    check_group(state, t_ns, sink);
+}
+
+/* --- answers --- */
+
+static void take_units(struct natnet_state *state, float units, int64_t t_ns,
+                       const struct wb_sink *sink)
+{
+    if (!(units > 0.0F) || !isfinite(units)) {
+        remark(sink, WB_LOG_WARNING, t_ns, "units",
+               "the server does not tell its unit of length; metres are assumed");
+        return;
+    }
+    state->units_factor = (double)units * WB_MM;
+    if (units == 1000.0F)
+        state->units_factor = 1.0;
+    else
+        remark(sink, WB_LOG_WARNING, t_ns, "units",
+               "the server's unit of length is %g mm: positions are converted to metres",
+               (double)units);
+}
+
+static void take_frame_rate(const struct natnet_state *state, float rate, int64_t t_ns,
+                            const struct wb_sink *sink)
+{
+    const double expected = state->rig.mocap.frame_rate;
+    remark(sink, WB_LOG_INFO, t_ns, "rate", "the server captures %g frames a second", (double)rate);
+    if (expected > 0.0 && !(fabs((double)rate - expected) <= 0.005 * expected))
+        remark(sink, WB_LOG_WARNING, t_ns, "rate",
+               "the server captures %g frames a second, the rig file expects %g", (double)rate,
+               expected);
+}
+
+/* An answer does not repeat its question: they come one at a time, in the order asked. */
+static void receive_response(struct natnet_state *state, int64_t t_ns,
+                             const struct wb_natnet_packet *packet, const struct wb_sink *sink,
+                             struct wb_natnet_fault *fault)
+{
+    struct wb_natnet_response response = {0};
+    const bool unknown = packet->message == WB_NATNET_UNRECOGNIZED_REQUEST;
+    if (!unknown && wb_natnet_decode_response(packet, &response, fault) != WB_OK)
+        return;
+    if (!state->connected || state->n_answers == N_QUERIES)
+        return;
+    const enum query query = (enum query)state->n_answers++;
+    if (unknown || !response.is_number)
+        remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not answer '%s'", queries[query]);
+    if (query == QUERY_UNITS)
+        take_units(state, response.real, t_ns, sink);
+    else if (response.is_number)
+        take_frame_rate(state, response.real, t_ns, sink);
+}
+
+/* Server ticks as seconds of its clock, without losing the last digits of a long uptime. */
+static double seconds_of_ticks(uint64_t ticks, uint64_t frequency)
+{
+    return (double)(ticks / frequency) + (double)(ticks % frequency) / (double)frequency;
+}
+
+static void receive_echo(const struct natnet_state *state, int64_t t_ns,
+                         const struct wb_natnet_packet *packet, const struct wb_sink *sink,
+                         struct wb_natnet_fault *fault)
+{
+    uint64_t stamp = 0, ticks = 0;
+    if (wb_natnet_decode_echo(packet, &stamp, &ticks, fault) != WB_OK)
+        return;
+    if (!state->connected || state->server.clock_frequency == 0 || !sink->probe)
+        return;
+    if (stamp > (uint64_t)INT64_MAX || t_ns < (int64_t)stamp ||
+        t_ns - (int64_t)stamp > PROBE_MAX_NS)
+        return;
+    const struct wb_clock_probe probe = {
+        .t_sent_ns = (int64_t)stamp,
+        .t_received_ns = t_ns,
+        .t_device = seconds_of_ticks(ticks, state->server.clock_frequency),
+    };
+    sink->probe(sink->context, &probe);
+}
+
+/* --- frames --- */
+
+static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
+{
+    const struct wb_natnet_frame *const frame = &state->frame;
+    if (frame->n_labelled == 0 && frame->n_others > 0 && first_time(state, SAID_NO_LABELLED))
+        remark(sink, WB_LOG_WARNING, t_ns, "markers",
+               "no labelled markers are streamed, only the legacy list: switch on labelled and "
+               "unlabelled markers in the server's streaming settings");
+    if (frame->n_labelled > frame->mocap.n_markers && first_time(state, SAID_TOO_MANY))
+        remark(sink, WB_LOG_WARNING, t_ns, "markers", "%d markers in a frame, %d are kept",
+               frame->n_labelled, frame->mocap.n_markers);
+    if (frame->skipped > 0 && first_time(state, SAID_SKIPPED))
+        remark(sink, WB_LOG_INFO, t_ns, "version",
+               "%zu bytes a frame are of sections we do not know and skip", frame->skipped);
+    if (wb_natnet_version_at_least(state->version, 2, 6) && !(frame->mocap.params & 4) &&
+        first_time(state, SAID_NOT_LIVE))
+        remark(sink, WB_LOG_INFO, t_ns, "mode",
+               "the server does not flag its frames as live: it may be playing back a take");
+}
+
+/* Positions to metres, and what is no position to a missing marker. */
+static void mend_markers(struct natnet_state *state, int64_t t_ns, const struct wb_sink *sink)
+{
+    struct wb_mocap_frame *const mocap = &state->frame.mocap;
+    for (int i = 0; i < mocap->n_markers; i++) {
+        struct wb_marker *const marker = &mocap->markers[i];
+        bool finite = true;
+        for (int k = 0; k < 3; k++) {
+            if (state->units_factor != 1.0)
+                marker->position[k] = (float)((double)marker->position[k] * state->units_factor);
+            finite = finite && isfinite(marker->position[k]);
+        }
+        if (state->units_factor != 1.0) {
+            marker->size = (float)((double)marker->size * state->units_factor);
+            marker->residual = (float)((double)marker->residual * state->units_factor);
+        }
+        if (finite)
+            continue;
+        marker->params |= WB_MARKER_OCCLUDED;
+        if (first_time(state, SAID_NOT_FINITE))
+            remark(sink, WB_LOG_WARNING, t_ns, "markers",
+                   "marker %" PRId32 " has no finite position: such are taken as occluded",
+                   marker->id);
+    }
+}
+
+static void receive_frame(struct natnet_state *state, int64_t t_ns,
+                          const struct wb_natnet_packet *packet, const struct wb_sink *sink,
+                          struct wb_natnet_fault *fault)
+{
+    if (!state->connected) {
+        if (first_time(state, SAID_EARLY))
+            remark(sink, WB_LOG_INFO, t_ns, "early",
+                   "frames come before the server told its version: they are not decoded");
+        return;
+    }
+    struct wb_mocap_frame *const mocap = &state->frame.mocap;
+    if (wb_natnet_decode_frame(packet, state->version, &state->frame, fault) != WB_OK)
+        return;
+    mocap->t_ns = t_ns;
+    if (state->server.clock_frequency > 0 && mocap->camera_data_received > 0)
+        mocap->t_clock =
+            seconds_of_ticks(mocap->camera_data_received, state->server.clock_frequency);
+    mend_markers(state, t_ns, sink);
+    remark_frame(state, t_ns, sink);
+    state->n_frames++;
+    if (sink->mocap)
+        sink->mocap(sink->context, mocap);
+}
+
+/* --- the driver's operations --- */
+
+static enum wb_status init(void *opaque, const struct wb_rig *rig)
+{
+    struct natnet_state *const state = opaque;
+    state->rig = *rig;
+    state->units_factor = 1.0;
+    return WB_OK;
+}
+
+static void send_connect(struct natnet_state *state, int64_t now_ns, struct wb_outbox *outbox)
+{
+    uint8_t buffer[512];
+    /* Servers before 4.0 know the short form only, and some answer to it only. */
+    const bool extended = state->n_connects % 2 == 0;
+    const size_t n = wb_natnet_encode_connect(buffer, sizeof buffer, "wirebench", extended);
+    wb_outbox_add(outbox, buffer, n);
+    state->n_connects++;
+    state->next_connect_ns = now_ns + CONNECT_PERIOD_NS;
+}
+
+static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
+{
+    struct natnet_state *const state = opaque;
+    state->receive_noticed_ns = now_ns;
+    state->next_keepalive_ns = now_ns + KEEPALIVE_PERIOD_NS;
+    send_connect(state, now_ns, outbox);
+}
+
+/* True one in 1, 2, 3, 10, 100, ... so that a flood of faults does not become one of remarks. */
+static bool worth_saying(uint64_t n)
+{
+    while (n > 3 && n % 10 == 0)
+        n /= 10;
+    return n <= 3;
+}
+
+static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
+                    const struct wb_sink *sink)
+{
+    struct natnet_state *const state = opaque;
+    struct wb_natnet_packet packet = {0};
+    struct wb_natnet_fault fault = {0};
+    state->last_receive_ns = t_ns;
+    if (wb_natnet_decode_packet(bytes, n, &packet, &fault) == WB_OK) {
+        switch (packet.message) {
+        case WB_NATNET_SERVERINFO:
+            receive_server(state, t_ns, &packet, sink, &fault);
+            break;
+        case WB_NATNET_FRAMEOFDATA:
+            receive_frame(state, t_ns, &packet, sink, &fault);
+            break;
+        case WB_NATNET_ECHORESPONSE:
+            receive_echo(state, t_ns, &packet, sink, &fault);
+            break;
+        case WB_NATNET_RESPONSE:
+        case WB_NATNET_UNRECOGNIZED_REQUEST:
+            receive_response(state, t_ns, &packet, sink, &fault);
+            break;
+        case WB_NATNET_MESSAGESTRING: {
+            char text[256];
+            if (wb_natnet_decode_text(&packet, text, sizeof text, &fault) == WB_OK)
+                remark(sink, WB_LOG_INFO, t_ns, "message", "the server says: %s", text);
+            break;
+        }
+        case WB_NATNET_DISCONNECTBYTIMEOUT:
+            remark(sink, WB_LOG_WARNING, t_ns, "disconnected",
+                   "the server ended the connection for want of keepalives");
+            break;
+        case WB_NATNET_MODELDEF:
+            break;
+        default:
+            if (first_time(state, SAID_UNKNOWN))
+                remark(sink, WB_LOG_INFO, t_ns, "unknown", "message %d is not known and ignored",
+                       packet.message);
+        }
+    }
+    if (!fault.reason)
+        return;
+    state->n_refused++;
+    if (worth_saying(state->n_refused))
+        remark(sink, WB_LOG_WARNING, t_ns, "refused",
+               "datagram of %zu bytes (message %d, NatNet %u.%u) refused at byte %zu: %s; %" PRIu64
+               " so far",
+               n, packet.message, state->version.major, state->version.minor, fault.offset,
+               fault.reason, state->n_refused);
+}
+
+/* Clock probes: a burst to start with, then one a period (of the rig's own time). */
+static void send_probe(struct natnet_state *state, int64_t now_ns, struct wb_outbox *outbox)
+{
+    uint8_t buffer[32];
+    if (state->server.clock_frequency == 0 || now_ns < state->next_probe_ns || now_ns < 0)
+        return;
+    const size_t n = wb_natnet_encode_echo_request(buffer, sizeof buffer, (uint64_t)now_ns);
+    if (!wb_outbox_add(outbox, buffer, n))
+        return;
+    state->n_probes++;
+    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
+    const int64_t period = (int64_t)((double)PROBE_PERIOD_NS / scale);
+    state->next_probe_ns =
+        now_ns +
+        (state->n_probes < BURST_PROBES && period > BURST_PERIOD_NS ? BURST_PERIOD_NS : period);
+}
+
+static void send_query(struct natnet_state *state, int64_t now_ns, struct wb_outbox *outbox)
+{
+    uint8_t buffer[64];
+    const bool waits = state->n_asked > state->n_answers && now_ns < state->next_query_ns;
+    if (state->n_answers == N_QUERIES || waits)
+        return;
+    const size_t n = wb_natnet_encode_request(buffer, sizeof buffer, queries[state->n_answers]);
+    wb_outbox_add(outbox, buffer, n);
+    state->n_asked = state->n_answers + 1;
+    state->next_query_ns = now_ns + QUERY_PERIOD_NS;
+}
+
+static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
+{
+    struct natnet_state *const state = opaque;
+    uint8_t buffer[16];
+    if (state->last_receive_ns != state->receive_seen_ns) {
+        state->receive_seen_ns = state->last_receive_ns;
+        state->receive_noticed_ns = now_ns;
+    }
+    const bool silent = now_ns - state->receive_noticed_ns > SILENCE_NS;
+    if ((!state->connected || silent) && now_ns >= state->next_connect_ns)
+        send_connect(state, now_ns, outbox);
+    if (!state->connected)
+        return;
+    if (now_ns >= state->next_keepalive_ns) {
+        wb_outbox_add(outbox, buffer, wb_natnet_encode_keepalive(buffer, sizeof buffer));
+        state->next_keepalive_ns = now_ns + KEEPALIVE_PERIOD_NS;
+    }
+    send_query(state, now_ns, outbox);
+    send_probe(state, now_ns, outbox);
+}
+
+static bool ready(const void *opaque)
+{
+    const struct natnet_state *const state = opaque;
+    return state->connected && state->n_frames > 0;
+}
+
+static void stop(void *opaque, struct wb_outbox *outbox)
+{
+    const struct natnet_state *const state = opaque;
+    uint8_t buffer[16];
+    if (state->connected)
+        wb_outbox_add(outbox, buffer, wb_natnet_encode_disconnect(buffer, sizeof buffer));
+}
+
+const struct wb_driver wb_driver_natnet = {
+    .name = "natnet",
+    .summary = "OptiTrack NatNet client, protocol 2.5 to 4.1",
+    .role = WB_ROLE_MOCAP,
+    .state_size = sizeof(struct natnet_state),
+    .channels = channels,
+    .n_channels = 1,
+    .init = init,
+    .start = start,
+    .receive = receive,
+    .tick = tick,
+    .ready = ready,
+    .stop = stop,
+};

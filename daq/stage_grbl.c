@@ -1,0 +1,334 @@
+/* A GRBL stage: one line at a time, its reply awaited; reports, alarms and the banner come whenever
+ * they like and are told apart by their form. */
+#include "daq/driver.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "daq/grbl.h"
+
+#define WB_LOG_DOMAIN "stage"
+
+#define POLL_PERIOD_NS (200 * WB_NS_PER_MS)      /* GRBL advises 5 reports a second at most, */
+#define FAST_POLL_PERIOD_NS (100 * WB_NS_PER_MS) /* and 10 for a while are fine */
+#define FAST_POLL_NS (1000 * WB_NS_PER_MS)
+#define REPLY_NS (2000 * WB_NS_PER_MS) /* a line is answered in far less, but for homing */
+#define LINE_BYTES 256
+
+struct grbl_state {
+    struct wb_rig rig;
+    int axis; /* 0 to 2 */
+    /* Bytes of the line that is coming in. */
+    char line[LINE_BYTES];
+    size_t n_line;
+    bool overlong;
+    /* What the firmware told. */
+    bool answered;
+    bool position_lost, limit_pressed;
+    int alarm; /* last ALARM number, 0 none */
+    enum wb_stage_state state;
+    struct wb_grbl_offset offset;
+    uint64_t n_unknown;
+    /* The queue of replies: the one line that waits for its ok. */
+    char pending[96];
+    bool waits;
+    /* For sending. */
+    int64_t now_ns, sent_ns, next_poll_ns, fast_until_ns;
+};
+
+static const struct wb_channel channels[] = {{"position", "length", "m"}};
+
+static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
+                   const char *kind, const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
+                   const char *kind, const char *format, ...)
+{
+    if (!sink->remark)
+        return;
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    sink->remark(sink->context, level, t_ns, kind, text);
+}
+
+static enum wb_status init(void *opaque, const struct wb_rig *rig)
+{
+    struct grbl_state *const state = opaque;
+    state->rig = *rig;
+    if (rig->stage.axis < 'X' || rig->stage.axis > 'Z' || abs(rig->stage.down) != 1)
+        return wb_fail(WB_ERR_ARGUMENT, "the stage's axis must be X, Y or Z and down +1 or -1");
+    state->axis = rig->stage.axis - 'X';
+    return WB_OK;
+}
+
+/* --- receiving --- */
+
+static void deliver(const struct grbl_state *state, int64_t t_ns, double position,
+                    const struct wb_sink *sink)
+{
+    if (!sink->stage)
+        return;
+    const struct wb_stage_report report = {
+        .t_ns = t_ns, .state = state->state, .position = position, .alarm = state->alarm};
+    sink->stage(sink->context, &report);
+}
+
+static void receive_report(struct grbl_state *state, int64_t t_ns,
+                           const struct wb_grbl_report *report, const struct wb_sink *sink)
+{
+    double position_mm = (double)NAN;
+    wb_grbl_position(report, &state->offset, state->axis, &position_mm);
+    if (!state->answered)
+        remark(sink, WB_LOG_INFO, t_ns, "connected", "the stage answers, state %s", report->name);
+    state->answered = true;
+    if (report->state == WB_STAGE_ALARM && state->state != WB_STAGE_ALARM && state->alarm == 0)
+        remark(sink, WB_LOG_WARNING, t_ns, "locked",
+               "the stage is locked (state Alarm): home or unlock it");
+    if (report->limit[state->axis] && !state->limit_pressed)
+        remark(sink, WB_LOG_WARNING, t_ns, "switch", "the limit switch of axis %c is pressed",
+               state->rig.stage.axis);
+    state->limit_pressed = report->limit[state->axis];
+    /* Out of the alarm by $X or $H: the number is history. */
+    if (report->state != WB_STAGE_ALARM)
+        state->alarm = 0;
+    state->state = report->state;
+    deliver(state, t_ns, position_mm * WB_MM, sink);
+}
+
+static void receive_alarm(struct grbl_state *state, int64_t t_ns, int number,
+                          const struct wb_sink *sink)
+{
+    state->alarm = number > 0 ? number : 99;
+    state->state = WB_STAGE_ALARM;
+    state->waits = false;
+    state->position_lost = state->position_lost || wb_grbl_alarm_loses_position(number);
+    remark(sink, WB_LOG_ERROR, t_ns, "alarm", "ALARM:%d, %s", number, wb_grbl_alarm_text(number));
+    deliver(state, t_ns, (double)NAN, sink);
+}
+
+/* The firmware started anew: whatever it was asked is forgotten. */
+static void receive_banner(struct grbl_state *state, int64_t t_ns, const struct wb_grbl_line *line,
+                           const struct wb_sink *sink)
+{
+    if (state->answered && state->state != WB_STAGE_ALARM)
+        remark(sink, WB_LOG_WARNING, t_ns, "reset", "the stage was reset: %s", line->text);
+    else
+        remark(sink, WB_LOG_INFO, t_ns, "firmware", "%s", line->text);
+    state->waits = false;
+    state->offset.known = false;
+}
+
+static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct wb_grbl_line *line,
+                          const struct wb_sink *sink)
+{
+    state->answered = true;
+    if (line->kind == WB_GRBL_LINE_ERROR)
+        remark(sink, WB_LOG_ERROR, t_ns, "error", "error:%d, %s%s%s", line->number,
+               wb_grbl_error_text(line->number), state->waits ? ": " : "",
+               state->waits ? state->pending : "");
+    else if (state->waits && strcmp(state->pending, "$H") == 0 && state->position_lost) {
+        state->position_lost = false;
+        remark(sink, WB_LOG_INFO, t_ns, "homed", "the stage was homed, its position is known");
+    }
+    state->waits = false;
+}
+
+/* True one in 1, 2, 3, 10, 100, ... so that noise does not become a flood of remarks. */
+static bool worth_saying(uint64_t n)
+{
+    while (n > 3 && n % 10 == 0)
+        n /= 10;
+    return n <= 3;
+}
+
+static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb_sink *sink)
+{
+    struct wb_grbl_line line;
+    wb_grbl_decode(state->line, state->n_line, &line);
+    switch (line.kind) {
+    case WB_GRBL_LINE_OK:
+    case WB_GRBL_LINE_ERROR:
+        receive_reply(state, t_ns, &line, sink);
+        break;
+    case WB_GRBL_LINE_ALARM:
+        receive_alarm(state, t_ns, line.number, sink);
+        break;
+    case WB_GRBL_LINE_BANNER:
+        receive_banner(state, t_ns, &line, sink);
+        break;
+    case WB_GRBL_LINE_REPORT:
+        receive_report(state, t_ns, &line.report, sink);
+        break;
+    case WB_GRBL_LINE_MESSAGE:
+        remark(sink, WB_LOG_INFO, t_ns, "message", "%s", line.text);
+        break;
+    case WB_GRBL_LINE_SETTING:
+    case WB_GRBL_LINE_EMPTY:
+        break;
+    case WB_GRBL_LINE_UNKNOWN:
+        state->n_unknown++;
+        if (worth_saying(state->n_unknown))
+            remark(sink, WB_LOG_WARNING, t_ns, "refused",
+                   "line not understood: '%s'; %" PRIu64 " so far", line.text, state->n_unknown);
+    }
+}
+
+static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
+                    const struct wb_sink *sink)
+{
+    struct grbl_state *const state = opaque;
+    for (size_t i = 0; i < n; i++) {
+        if (bytes[i] != '\n') {
+            if (state->n_line < LINE_BYTES)
+                state->line[state->n_line++] = (char)bytes[i];
+            else
+                state->overlong = true;
+            continue;
+        }
+        if (state->overlong)
+            remark(sink, WB_LOG_WARNING, t_ns, "refused", "a line of more than %d bytes is dropped",
+                   LINE_BYTES);
+        else
+            receive_line(state, t_ns, sink);
+        state->n_line = 0;
+        state->overlong = false;
+    }
+}
+
+/* --- sending --- */
+
+static void poll_soon(struct grbl_state *state)
+{
+    state->next_poll_ns = state->now_ns;
+    state->fast_until_ns = state->now_ns + FAST_POLL_NS;
+}
+
+static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
+{
+    struct grbl_state *const state = opaque;
+    const uint8_t poll = WB_GRBL_STATUS;
+    state->now_ns = now_ns;
+    wb_outbox_add(outbox, &poll, 1);
+    state->next_poll_ns = now_ns + POLL_PERIOD_NS;
+}
+
+static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
+{
+    struct grbl_state *const state = opaque;
+    const uint8_t poll = WB_GRBL_STATUS;
+    state->now_ns = now_ns;
+    /* A lost reply must not lock the stage out for ever. */
+    if (state->waits && now_ns - state->sent_ns > REPLY_NS && strcmp(state->pending, "$H") != 0) {
+        wb_warn("the stage did not answer '%s' within %d ms", state->pending,
+                (int)(REPLY_NS / WB_NS_PER_MS));
+        state->waits = false;
+    }
+    if (now_ns < state->next_poll_ns || !wb_outbox_add(outbox, &poll, 1))
+        return;
+    const int64_t period = now_ns < state->fast_until_ns ? FAST_POLL_PERIOD_NS : POLL_PERIOD_NS;
+    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
+    state->next_poll_ns = now_ns + (int64_t)((double)period / scale);
+}
+
+static enum wb_status send_byte(struct wb_outbox *outbox, uint8_t byte)
+{
+    if (!wb_outbox_add(outbox, &byte, 1))
+        return wb_fail(WB_ERR_BUSY, "the stage's outbox is full");
+    return WB_OK;
+}
+
+/* Sends a line (with its newline) whose reply is then awaited. */
+static enum wb_status send_line(struct grbl_state *state, const char *text,
+                                struct wb_outbox *outbox)
+{
+    const size_t length = strcspn(text, "\n");
+    if (state->waits)
+        return wb_fail(WB_ERR_BUSY, "the stage has not answered '%s' yet", state->pending);
+    if (length >= sizeof state->pending || !wb_outbox_add_text(outbox, text))
+        return wb_fail(WB_ERR_BUSY, "the stage's outbox is full");
+    memcpy(state->pending, text, length);
+    state->pending[length] = '\0';
+    state->waits = true;
+    state->sent_ns = state->now_ns;
+    return WB_OK;
+}
+
+static enum wb_status send_jog(struct grbl_state *state, double distance, double speed,
+                               struct wb_outbox *outbox)
+{
+    char line[96];
+    if (!wb_grbl_format_jog(line, sizeof line, state->rig.stage.axis,
+                            distance * state->rig.stage.down, speed))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "cannot jog by %g mm at %g mm/s: at least 0.001 mm and a positive speed are "
+                       "needed",
+                       distance / WB_MM, speed / WB_MM);
+    return send_line(state, line, outbox);
+}
+
+static enum wb_status command(void *opaque, enum wb_stage_command what, double distance,
+                              double speed, struct wb_outbox *outbox)
+{
+    struct grbl_state *const state = opaque;
+    switch (what) {
+    case WB_STAGE_COMMAND_JOG:
+        return send_jog(state, distance, speed, outbox);
+    case WB_STAGE_COMMAND_HOLD:
+        poll_soon(state);
+        return send_byte(outbox, WB_GRBL_HOLD);
+    case WB_STAGE_COMMAND_RESUME:
+        return send_byte(outbox, WB_GRBL_RESUME);
+    case WB_STAGE_COMMAND_JOG_CANCEL:
+        poll_soon(state);
+        return send_byte(outbox, WB_GRBL_JOG_CANCEL);
+    case WB_STAGE_COMMAND_SOFT_RESET:
+        /* The firmware forgets what it was sent and will not answer it. */
+        state->waits = false;
+        poll_soon(state);
+        return send_byte(outbox, WB_GRBL_SOFT_RESET);
+    case WB_STAGE_COMMAND_HOME:
+        return send_line(state, "$H\n", outbox);
+    case WB_STAGE_COMMAND_UNLOCK:
+        return send_line(state, "$X\n", outbox);
+    case WB_STAGE_COMMAND_STATUS:
+        return send_byte(outbox, WB_GRBL_STATUS);
+    }
+    return wb_fail(WB_ERR_ARGUMENT, "unknown stage command %d", (int)what);
+}
+
+static bool ready(const void *opaque)
+{
+    const struct grbl_state *const state = opaque;
+    return state->answered && state->state != WB_STAGE_UNKNOWN;
+}
+
+static void stop(void *opaque, struct wb_outbox *outbox)
+{
+    /* Nothing streams. Whether the stage may go on moving is the caller's decision. */
+    (void)opaque;
+    (void)outbox;
+}
+
+const struct wb_driver wb_driver_grbl = {
+    .name = "grbl",
+    .summary = "stepper stage with GRBL 1.1",
+    .role = WB_ROLE_STAGE,
+    .state_size = sizeof(struct grbl_state),
+    .channels = channels,
+    .n_channels = 1,
+    .init = init,
+    .start = start,
+    .receive = receive,
+    .tick = tick,
+    .command = command,
+    .ready = ready,
+    .stop = stop,
+};
