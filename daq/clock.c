@@ -1,0 +1,334 @@
+#include "daq/clock.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "clock"
+
+#define BURST_NS WB_NS_PER_S
+#define LEAST_PROBE_SPAN 2.0 /* s */
+
+int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device)
+{
+    /* A far extrapolation (a damaged stamp) must not leave what an int64_t holds. */
+    const double seconds = line->slope * (device - line->device_zero);
+    if (!(fabs(seconds) < 1e9))
+        return line->host_zero_ns;
+    return line->host_zero_ns + wb_ns_from_seconds(seconds);
+}
+
+/* --- robust line --- */
+
+struct point {
+    double x, y;  /* device s and host s, both since the first point */
+    double width; /* round trip, s */
+};
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Median of n > 0 values, which are sorted in place. */
+static double median(double *values, size_t n)
+{
+    qsort(values, n, sizeof *values, compare_doubles);
+    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+struct fit {
+    double mean_x, mean_y, slope;
+    double sum_weight, sum_xx; /* weighted, about the mean */
+};
+
+/* Weighted line; a given slope is kept when `fixed`. */
+static void fit_weighted(const struct point *points, const double *weights, size_t n, bool fixed,
+                         struct fit *fit)
+{
+    double sum = 0.0, sum_x = 0.0, sum_y = 0.0, xx = 0.0, xy = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += weights[i];
+        sum_x += weights[i] * points[i].x;
+        sum_y += weights[i] * points[i].y;
+    }
+    fit->mean_x = sum_x / sum;
+    fit->mean_y = sum_y / sum;
+    for (size_t i = 0; i < n; i++) {
+        const double dx = points[i].x - fit->mean_x;
+        xx += weights[i] * dx * dx;
+        xy += weights[i] * dx * (points[i].y - fit->mean_y);
+    }
+    if (!fixed)
+        fit->slope = xy / xx;
+    fit->sum_weight = sum;
+    fit->sum_xx = xx;
+}
+
+static double residual(const struct fit *fit, const struct point *point)
+{
+    return point->y - fit->mean_y - fit->slope * (point->x - fit->mean_x);
+}
+
+/* Huber's weights from residuals: 1 within 1.345 robust standard deviations, falling beyond. */
+static void set_weights(const struct fit *fit, const struct point *points, size_t n,
+                        double *weights, double *work)
+{
+    for (size_t i = 0; i < n; i++)
+        work[i] = fabs(residual(fit, &points[i]));
+    const double scale = fmax(1.4826 * median(work, n), 1e-9);
+    for (size_t i = 0; i < n; i++) {
+        const double limit = 1.345 * scale, distance = fabs(residual(fit, &points[i]));
+        weights[i] = distance <= limit ? 1.0 : limit / distance;
+    }
+}
+
+/* Fits and tells the weighted standard deviation. `weights` and `work` are scratch of n each. */
+static double fit_robust(const struct point *points, size_t n, bool fixed, struct fit *fit,
+                         double *weights, double *work)
+{
+    for (size_t i = 0; i < n; i++)
+        weights[i] = 1.0;
+    fit_weighted(points, weights, n, fixed, fit);
+    for (int iteration = 0; iteration < 20; iteration++) {
+        set_weights(fit, points, n, weights, work);
+        fit_weighted(points, weights, n, fixed, fit);
+    }
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++)
+        sum += weights[i] * residual(fit, &points[i]) * residual(fit, &points[i]);
+    return sqrt(sum / fit->sum_weight);
+}
+
+/* --- probes --- */
+
+static int compare_probes(const void *a, const void *b)
+{
+    const struct wb_clock_probe *const x = a, *const y = b;
+    return (x->t_sent_ns > y->t_sent_ns) - (x->t_sent_ns < y->t_sent_ns);
+}
+
+static int64_t round_trip(const struct wb_clock_probe *probe)
+{
+    return probe->t_received_ns - probe->t_sent_ns;
+}
+
+/* Keeps the probe of the shortest round trip in each second; `probes` is sorted and compacted. */
+static size_t keep_best(struct wb_clock_probe *probes, size_t n)
+{
+    qsort(probes, n, sizeof *probes, compare_probes);
+    size_t n_kept = 0;
+    for (size_t i = 0; i < n;) {
+        size_t best = i, next = i;
+        while (next < n && probes[next].t_sent_ns - probes[i].t_sent_ns < BURST_NS) {
+            if (round_trip(&probes[next]) < round_trip(&probes[best]))
+                best = next;
+            next++;
+        }
+        probes[n_kept++] = probes[best];
+        i = next;
+    }
+    return n_kept;
+}
+
+static void fit_kept(struct wb_clock_line *line, const struct wb_clock_probe *kept, size_t n,
+                     double nominal_slope, struct point *points, double *weights, double *work)
+{
+    const int64_t zero_ns = kept[0].t_sent_ns;
+    for (size_t i = 0; i < n; i++) {
+        points[i].x = kept[i].t_device - kept[0].t_device;
+        points[i].width = wb_seconds_from_ns(round_trip(&kept[i]));
+        points[i].y = wb_seconds_from_ns(kept[i].t_sent_ns - zero_ns) + 0.5 * points[i].width;
+    }
+    const bool fixed =
+        n < 3 || wb_seconds_from_ns(kept[n - 1].t_sent_ns - zero_ns) < LEAST_PROBE_SPAN;
+    struct fit fit = {.slope = nominal_slope};
+    line->scatter = fit_robust(points, n, fixed, &fit, weights, work);
+    for (size_t i = 0; i < n; i++)
+        work[i] = points[i].width;
+    const double own_error = line->scatter / sqrt((double)n);
+    line->device_zero = kept[0].t_device + fit.mean_x;
+    line->host_zero_ns = zero_ns + wb_ns_from_seconds(fit.mean_y);
+    line->slope = fit.slope;
+    line->slope_uncertainty = fixed ? (double)NAN : line->scatter / sqrt(fit.sum_xx);
+    line->uncertainty = 0.5 * median(work, n) + own_error;
+    line->n_used = n;
+}
+
+enum wb_status wb_clock_fit_probes(struct wb_clock_line *line, const struct wb_clock_probe *probes,
+                                   size_t n, double nominal_slope)
+{
+    struct wb_clock_probe *const kept = malloc((n + 1) * sizeof *kept);
+    struct point *const points = malloc((n + 1) * sizeof *points);
+    double *const scratch = malloc((2 * n + 1) * sizeof *scratch);
+    enum wb_status status = WB_OK;
+    if (!kept || !points || !scratch) {
+        status = wb_fail(WB_ERR_MEMORY, "out of memory for %zu clock probes", n);
+    } else {
+        size_t n_usable = 0;
+        for (size_t i = 0; i < n; i++) {
+            if (isfinite(probes[i].t_device) && round_trip(&probes[i]) >= 0)
+                kept[n_usable++] = probes[i];
+        }
+        *line = (struct wb_clock_line){.n_points = n};
+        const size_t n_kept = keep_best(kept, n_usable);
+        if (n_kept > 0)
+            fit_kept(line, kept, n_kept, nominal_slope, points, scratch, scratch + n);
+        else
+            status = WB_ERR_DATA;
+    }
+    free(kept);
+    free(points);
+    free(scratch);
+    return status;
+}
+
+/* --- lower envelope --- */
+
+static double cross(const struct point *o, const struct point *a, const struct point *b)
+{
+    return (a->x - o->x) * (b->y - o->y) - (a->y - o->y) * (b->x - o->x);
+}
+
+/* Lower convex hull of points with ascending x (Andrew's chain), in place. */
+static size_t lower_hull(struct point *points, size_t n)
+{
+    size_t n_hull = 0;
+    for (size_t i = 0; i < n; i++) {
+        while (n_hull >= 2 && cross(&points[n_hull - 2], &points[n_hull - 1], &points[i]) <= 0.0)
+            n_hull--;
+        points[n_hull++] = points[i];
+    }
+    return n_hull;
+}
+
+/* The sum of distances of all points above a line depends on its height at their mean x only, so
+ * the best line below them is the hull's edge there. */
+static void choose_edge(const struct point *hull, size_t n, double mean_x, struct fit *fit)
+{
+    size_t edge = 0;
+    while (edge + 2 < n && hull[edge + 1].x < mean_x)
+        edge++;
+    fit->mean_x = hull[edge].x;
+    fit->mean_y = hull[edge].y;
+    fit->slope = (hull[edge + 1].y - hull[edge].y) / (hull[edge + 1].x - hull[edge].x);
+}
+
+/* With a given slope the lowest point carries the line. */
+static void choose_lowest(const struct point *points, size_t n, struct fit *fit)
+{
+    size_t lowest = 0;
+    for (size_t i = 1; i < n; i++) {
+        if (points[i].y - fit->slope * points[i].x <
+            points[lowest].y - fit->slope * points[lowest].x)
+            lowest = i;
+    }
+    fit->mean_x = points[lowest].x;
+    fit->mean_y = points[lowest].y;
+}
+
+enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *device,
+                                     const int64_t *host_ns, size_t n, double nominal_slope,
+                                     double least_span)
+{
+    if (n == 0)
+        return WB_ERR_DATA;
+    struct point *const points = malloc(n * sizeof *points);
+    double *const lateness = malloc(n * sizeof *lateness);
+    if (!points || !lateness) {
+        free(points);
+        free(lateness);
+        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu stamps", n);
+    }
+    double mean_x = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        points[i] = (struct point){.x = device[i] - device[0],
+                                   .y = wb_seconds_from_ns(host_ns[i] - host_ns[0])};
+        mean_x += points[i].x / (double)n;
+    }
+    struct fit fit = {.slope = nominal_slope};
+    const bool fixed = n < 3 || points[n - 1].x < least_span;
+    size_t n_hull = 1;
+    if (fixed) {
+        choose_lowest(points, n, &fit);
+    } else {
+        n_hull = lower_hull(points, n);
+        choose_edge(points, n_hull, mean_x, &fit);
+    }
+    for (size_t i = 0; i < n; i++)
+        lateness[i] = wb_seconds_from_ns(host_ns[i] - host_ns[0]) - fit.mean_y -
+                      fit.slope * (device[i] - device[0] - fit.mean_x);
+    *line = (struct wb_clock_line){
+        .device_zero = device[0] + fit.mean_x,
+        .host_zero_ns = host_ns[0] + wb_ns_from_seconds(fit.mean_y),
+        .slope = fit.slope,
+        .scatter = median(lateness, n),
+        .uncertainty = (double)NAN,
+        .slope_uncertainty = (double)NAN,
+        .n_points = n,
+        .n_used = n_hull,
+    };
+    /* Both ends of an edge may be early by about the scatter. */
+    if (!fixed)
+        line->slope_uncertainty = line->scatter / (device[n - 1] - device[0]);
+    free(points);
+    free(lateness);
+    return WB_OK;
+}
+
+/* --- segments --- */
+
+size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, double nominal_slope,
+                      double jump, size_t *starts, size_t most)
+{
+    size_t n_segments = 0;
+    for (size_t i = 0; i < n && n_segments < most; i++) {
+        const double device_step = i == 0 ? 0.0 : nominal_slope * (device[i] - device[i - 1]);
+        const double host_step = i == 0 ? 0.0 : wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]);
+        if (i == 0 || device_step < 0.0 || !(fabs(host_step - device_step) <= jump))
+            starts[n_segments++] = i;
+    }
+    return n_segments;
+}
+
+/* The least lateness of readings first..last-1 behind a constant rate. */
+static double least_lateness(const int64_t *host_ns, size_t first, size_t last, size_t zero,
+                             double period)
+{
+    double least = HUGE_VAL;
+    for (size_t i = first; i < last; i++) {
+        const double late =
+            wb_seconds_from_ns(host_ns[i] - host_ns[zero]) - ((double)i - (double)zero) * period;
+        least = fmin(least, late);
+    }
+    return least;
+}
+
+size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts, size_t most)
+{
+    enum {
+        WINDOW = 32
+    };
+    if (n == 0 || most == 0)
+        return 0;
+    const double period =
+        n > 1 ? wb_seconds_from_ns(host_ns[n - 1] - host_ns[0]) / (double)(n - 1) : 0.0;
+    size_t n_segments = 0;
+    starts[n_segments++] = 0;
+    for (size_t i = 1; i < n && n_segments < most; i++) {
+        /* A busy host is late by milliseconds now and then; lost readings are so for good. */
+        if (wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]) < fmax(2.5 * period, 5e-3))
+            continue;
+        const size_t start = starts[n_segments - 1];
+        const size_t before = i - start > WINDOW ? i - WINDOW : start;
+        const size_t after = n - i > WINDOW ? i + WINDOW : n;
+        const double shift = least_lateness(host_ns, i, after, i, period) -
+                             least_lateness(host_ns, before, i, i, period);
+        if (shift > fmax(0.8 * period, 3e-3))
+            starts[n_segments++] = i;
+    }
+    return n_segments;
+}
