@@ -124,6 +124,6 @@ double wb_scale_position(const struct wb_scale *scale, double value)
     if (!scale->logarithmic)
         return (value - scale->low) / (scale->high - scale->low);
     if (!(value > 0.0))
-        return NAN;
+        return (double)NAN;
     return log(value / scale->low) / log(scale->high / scale->low);
 }

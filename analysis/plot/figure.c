@@ -1,0 +1,274 @@
+#include "analysis/plot/figure.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/plot/figure_private.h"
+
+#define WB_LOG_DOMAIN "figure"
+
+static char *copy_text(struct wb_figure *figure, const char *text)
+{
+    if (!text)
+        return NULL;
+    char *const copy = strdup(text);
+    figure->failed |= !copy;
+    return copy;
+}
+
+static void replace_text(struct wb_figure *figure, char **target, const char *text)
+{
+    free(*target);
+    *target = copy_text(figure, text);
+}
+
+enum wb_status wb_figure_create(struct wb_figure **out, const char *name, double width,
+                                double height)
+{
+    *out = NULL;
+    for (const char *c = name; *c; c++) {
+        if (!isalnum((unsigned char)*c) && *c != '-' && *c != '_')
+            return wb_fail(WB_ERR_ARGUMENT, "'%s' cannot be the name of a figure", name);
+    }
+    if (!*name || !(width >= 60.0 && width <= 5000.0 && height >= 40.0 && height <= 5000.0))
+        return wb_fail(WB_ERR_ARGUMENT, "figure '%s': no name, or a size of %g x %g points", name,
+                       width, height);
+    struct wb_figure *figure = calloc(1, sizeof *figure);
+    if (!figure)
+        return wb_fail(WB_ERR_MEMORY, "out of memory making figure '%s'", name);
+    figure->name = copy_text(figure, name);
+    figure->width = width;
+    figure->height = height;
+    if (figure->failed) {
+        wb_figure_destroy(figure);
+        return wb_fail(WB_ERR_MEMORY, "out of memory making figure '%s'", name);
+    }
+    *out = figure;
+    return WB_OK;
+}
+
+static void destroy_panel(struct wb_panel *panel)
+{
+    if (!panel)
+        return;
+    for (int i = 0; i < panel->n_series; i++) {
+        free(panel->series[i].label);
+        free(panel->series[i].x);
+        free(panel->series[i].y);
+        free(panel->series[i].high);
+    }
+    free(panel->series);
+    free(panel->x_label);
+    free(panel->y_label);
+    free(panel->right_label);
+    free(panel->title);
+    destroy_panel(panel->inset);
+    free(panel);
+}
+
+void wb_figure_destroy(struct wb_figure *figure)
+{
+    if (!figure)
+        return;
+    for (int i = 0; i < figure->n_panels; i++)
+        destroy_panel(figure->panels[i]);
+    free(figure->name);
+    free(figure->footer);
+    free(figure);
+}
+
+const char *wb_figure_name(const struct wb_figure *figure)
+{
+    return figure->name;
+}
+
+double wb_figure_width(const struct wb_figure *figure)
+{
+    return figure->width;
+}
+
+double wb_figure_height(const struct wb_figure *figure)
+{
+    return figure->height;
+}
+
+void wb_figure_set_footer(struct wb_figure *figure, const char *markup)
+{
+    replace_text(figure, &figure->footer, markup);
+}
+
+static struct wb_panel *create_panel(struct wb_figure *figure)
+{
+    struct wb_panel *const panel = calloc(1, sizeof *panel);
+    if (!panel) {
+        figure->failed = true;
+        return NULL;
+    }
+    panel->figure = figure;
+    panel->x_range[0] = panel->x_range[1] = (double)NAN;
+    panel->y_range[0] = panel->y_range[1] = (double)NAN;
+    return panel;
+}
+
+struct wb_panel *wb_figure_add_panel(struct wb_figure *figure)
+{
+    if (figure->n_panels == WB_FIGURE_PANELS) {
+        figure->failed = true;
+        return NULL;
+    }
+    struct wb_panel *const panel = create_panel(figure);
+    if (panel)
+        figure->panels[figure->n_panels++] = panel;
+    return panel;
+}
+
+/* The other builders take a NULL panel, which is what running out of memory leaves behind. */
+struct wb_panel *wb_figure_add_inset(struct wb_panel *panel)
+{
+    if (!panel)
+        return NULL;
+    if (panel->inset || panel->is_inset) {
+        panel->figure->failed = true;
+        return NULL;
+    }
+    panel->inset = create_panel(panel->figure);
+    if (panel->inset)
+        panel->inset->is_inset = true;
+    return panel->inset;
+}
+
+void wb_figure_set_axes(struct wb_panel *panel, const char *x_label, const char *y_label)
+{
+    if (!panel)
+        return;
+    replace_text(panel->figure, &panel->x_label, x_label);
+    replace_text(panel->figure, &panel->y_label, y_label);
+}
+
+void wb_figure_set_title(struct wb_panel *panel, const char *markup)
+{
+    if (panel)
+        replace_text(panel->figure, &panel->title, markup);
+}
+
+void wb_figure_set_x_range(struct wb_panel *panel, double low, double high)
+{
+    if (!panel)
+        return;
+    panel->x_range[0] = low;
+    panel->x_range[1] = high;
+}
+
+void wb_figure_set_y_range(struct wb_panel *panel, double low, double high)
+{
+    if (!panel)
+        return;
+    panel->y_range[0] = low;
+    panel->y_range[1] = high;
+}
+
+void wb_figure_set_logarithmic_y(struct wb_panel *panel)
+{
+    if (panel)
+        panel->logarithmic_y = true;
+}
+
+void wb_figure_set_equal_aspect(struct wb_panel *panel)
+{
+    if (panel)
+        panel->equal_aspect = true;
+}
+
+void wb_figure_set_right_axis(struct wb_panel *panel, const char *label, double factor)
+{
+    if (!panel)
+        return;
+    replace_text(panel->figure, &panel->right_label, label);
+    panel->right_factor = factor > 0.0 && isfinite(factor) ? factor : 0.0;
+}
+
+void wb_figure_hide_axes(struct wb_panel *panel)
+{
+    if (panel)
+        panel->hidden_axes = true;
+}
+
+static struct wb_series *add_series(struct wb_panel *panel, enum wb_series_kind kind,
+                                    const char *label)
+{
+    if (!panel)
+        return NULL;
+    if (panel->n_series == panel->capacity) {
+        const int capacity = panel->capacity ? 2 * panel->capacity : 8;
+        struct wb_series *const larger =
+            realloc(panel->series, (size_t)capacity * sizeof *panel->series);
+        if (!larger) {
+            panel->figure->failed = true;
+            return NULL;
+        }
+        panel->series = larger;
+        panel->capacity = capacity;
+    }
+    struct wb_series *const series = &panel->series[panel->n_series++];
+    *series = (struct wb_series){.kind = kind, .label = copy_text(panel->figure, label)};
+    return series;
+}
+
+static double *copy_values(struct wb_figure *figure, const double *values, size_t n)
+{
+    double *const copy = malloc((n ? n : 1) * sizeof *copy);
+    if (!copy)
+        figure->failed = true;
+    else if (n)
+        memcpy(copy, values, n * sizeof *copy);
+    return copy;
+}
+
+void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, const double *x,
+                        const double *y, const struct wb_figure_style *style)
+{
+    struct wb_series *const series = add_series(panel, WB_SERIES_LINE, label);
+    if (!series)
+        return;
+    series->style = *style;
+    series->x = copy_values(panel->figure, x, n);
+    series->y = copy_values(panel->figure, y, n);
+    series->n = series->x && series->y ? n : 0;
+}
+
+void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
+                        const double *low, const double *high, struct wb_colour colour)
+{
+    struct wb_series *const series = add_series(panel, WB_SERIES_BAND, label);
+    if (!series)
+        return;
+    series->style.colour = colour;
+    series->x = copy_values(panel->figure, x, n);
+    series->y = copy_values(panel->figure, low, n);
+    series->high = copy_values(panel->figure, high, n);
+    series->n = series->x && series->y && series->high ? n : 0;
+}
+
+void wb_figure_add_level(struct wb_panel *panel, const char *label, double y,
+                         const struct wb_figure_style *style)
+{
+    struct wb_series *const series = add_series(panel, WB_SERIES_LEVEL, label);
+    if (!series)
+        return;
+    series->style = *style;
+    series->y = copy_values(panel->figure, &y, 1);
+    series->n = series->y ? 1 : 0;
+}
+
+void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup)
+{
+    struct wb_series *const series = add_series(panel, WB_SERIES_TEXT, markup);
+    if (!series)
+        return;
+    series->side = side;
+    series->x = copy_values(panel->figure, &x, 1);
+    series->y = copy_values(panel->figure, &y, 1);
+    series->n = series->x && series->y ? 1 : 0;
+}

@@ -1,0 +1,47 @@
+/* What a figure's description is made of, for the files that build and draw it. */
+#ifndef WB_ANALYSIS_PLOT_FIGURE_PRIVATE_H
+#define WB_ANALYSIS_PLOT_FIGURE_PRIVATE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "analysis/plot/figure.h"
+
+#define WB_FIGURE_PANELS 4
+
+enum wb_series_kind {
+    WB_SERIES_BAND,
+    WB_SERIES_LINE, /* and points */
+    WB_SERIES_LEVEL,
+    WB_SERIES_TEXT
+};
+
+struct wb_series {
+    enum wb_series_kind kind;
+    char *label; /* NULL: not in the legend; the text itself of WB_SERIES_TEXT; owned */
+    size_t n;
+    double *x, *y, *high; /* (n), owned; `high` of a band, whose low edge is y */
+    struct wb_figure_style style;
+    int side; /* of a text */
+};
+
+struct wb_panel {
+    struct wb_figure *figure;
+    struct wb_panel *inset; /* owned */
+    char *x_label, *y_label, *right_label, *title;
+    double right_factor;
+    double x_range[2], y_range[2]; /* NaN: from the data */
+    bool logarithmic_y, equal_aspect, hidden_axes, is_inset;
+    int n_series, capacity;
+    struct wb_series *series;
+};
+
+struct wb_figure {
+    char *name, *footer;
+    double width, height;
+    int n_panels;
+    struct wb_panel *panels[WB_FIGURE_PANELS];
+    bool failed; /* out of memory, or more panels than there are places */
+};
+
+#endif

@@ -1,0 +1,167 @@
+/* Figures as SVG, PNG and PDF: the surfaces behind the functions of figure.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+
+#include "analysis/plot/canvas.h"
+#include "analysis/plot/figure.h"
+#include "base/file.h"
+
+#define WB_LOG_DOMAIN "figure"
+
+/* Draws on a surface that writes somewhere else, and ends both. */
+static enum wb_status draw_on(cairo_surface_t *surface, const struct wb_figure *figure)
+{
+    cairo_t *const cairo = cairo_create(surface);
+    enum wb_status status = wb_canvas_draw_figure(cairo, figure, 0.0, 0.0);
+    if (status == WB_OK) {
+        cairo_show_page(cairo);
+        status = wb_canvas_status(cairo_status(cairo), wb_figure_name(figure));
+    }
+    cairo_destroy(cairo);
+    cairo_surface_finish(surface);
+    if (status == WB_OK)
+        status = wb_canvas_status(cairo_surface_status(surface), wb_figure_name(figure));
+    cairo_surface_destroy(surface);
+    return status;
+}
+
+/* The ids that Cairo gave, in the order of their first appearance. */
+struct id_list {
+    size_t n, capacity;
+    const char **starts; /* into the text */
+    size_t *lengths;
+    bool failed;
+};
+
+static size_t number_of_id(struct id_list *ids, const char *start, size_t length)
+{
+    for (size_t i = 0; i < ids->n; i++) {
+        if (ids->lengths[i] == length && memcmp(ids->starts[i], start, length) == 0)
+            return i;
+    }
+    if (ids->n == ids->capacity) {
+        const size_t capacity = ids->capacity ? 2 * ids->capacity : 64;
+        const char **const starts = realloc(ids->starts, capacity * sizeof *starts);
+        if (starts)
+            ids->starts = starts;
+        size_t *const lengths = realloc(ids->lengths, capacity * sizeof *lengths);
+        if (lengths)
+            ids->lengths = lengths;
+        if (!starts || !lengths) {
+            ids->failed = true;
+            return 0;
+        }
+        ids->capacity = capacity;
+    }
+    ids->starts[ids->n] = start;
+    ids->lengths[ids->n] = length;
+    return ids->n++;
+}
+
+/* Cairo's ids (glyph0-1, surface12) repeat from figure to figure and count over the whole process.
+ * Numbered anew behind the figure's name they are unique in a page and the same in every run. */
+static enum wb_status rename_ids(const struct wb_text *raw, const char *name, struct wb_text *svg)
+{
+    static const char *const openings[] = {" id=\"", "href=\"#", "url(#"};
+    static const char closings[] = {'"', '"', ')'};
+    struct id_list ids = {0};
+    const char *position = wb_text_string(raw);
+    while (*position && !ids.failed) {
+        const char *next = NULL;
+        char closing = 0;
+        for (size_t i = 0; i < 3; i++) {
+            const char *const found = strstr(position, openings[i]);
+            if (found && (!next || found + strlen(openings[i]) < next)) {
+                next = found + strlen(openings[i]);
+                closing = closings[i];
+            }
+        }
+        const char *const end = next ? strchr(next, closing) : NULL;
+        if (!end) {
+            wb_text_append_bytes(svg, position, strlen(position));
+            break;
+        }
+        wb_text_append_bytes(svg, position, (size_t)(next - position));
+        wb_text_append(svg, "%s-%zu", name, number_of_id(&ids, next, (size_t)(end - next)));
+        position = end;
+    }
+    free(ids.starts);
+    free(ids.lengths);
+    if (ids.failed || svg->failed)
+        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figure '%s'", name);
+    return WB_OK;
+}
+
+enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg)
+{
+    struct wb_text raw = {0};
+    cairo_surface_t *const surface = cairo_svg_surface_create_for_stream(
+        wb_canvas_append, &raw, wb_figure_width(figure), wb_figure_height(figure));
+    enum wb_status status = draw_on(surface, figure);
+    if (status == WB_OK)
+        status = rename_ids(&raw, wb_figure_name(figure), svg);
+    wb_text_release(&raw);
+    return status;
+}
+
+enum wb_status wb_figure_png(const struct wb_figure *figure, double scale, struct wb_text *png)
+{
+    const int width = (int)ceil(scale * wb_figure_width(figure));
+    const int height = (int)ceil(scale * wb_figure_height(figure));
+    cairo_surface_t *const surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    cairo_t *const cairo = cairo_create(surface);
+    cairo_set_source_rgb(cairo, 1.0, 1.0, 1.0);
+    cairo_paint(cairo);
+    cairo_scale(cairo, scale, scale);
+    enum wb_status status = wb_canvas_draw_figure(cairo, figure, 0.0, 0.0);
+    cairo_destroy(cairo);
+    if (status == WB_OK)
+        status = wb_canvas_status(cairo_surface_write_to_png_stream(surface, wb_canvas_append, png),
+                                  wb_figure_name(figure));
+    cairo_surface_destroy(surface);
+    return status;
+}
+
+enum wb_status wb_figure_pdf(const struct wb_figure *figure, const char *date_utc,
+                             struct wb_text *pdf)
+{
+    const char *const date = date_utc ? date_utc : "2000-01-01T00:00:00Z";
+    cairo_surface_t *const surface = cairo_pdf_surface_create_for_stream(
+        wb_canvas_append, pdf, wb_figure_width(figure), wb_figure_height(figure));
+    /* Cairo would take the time of the run. */
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, date);
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_MOD_DATE, date);
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, wb_figure_name(figure));
+    return draw_on(surface, figure);
+}
+
+static enum wb_status write_text(enum wb_status status, struct wb_text *text, const char *path)
+{
+    if (status == WB_OK)
+        status = wb_file_write(path, wb_text_string(text), text->length);
+    wb_text_release(text);
+    return status;
+}
+
+enum wb_status wb_figure_write_svg(const struct wb_figure *figure, const char *path)
+{
+    struct wb_text text = {0};
+    return write_text(wb_figure_svg(figure, &text), &text, path);
+}
+
+enum wb_status wb_figure_write_png(const struct wb_figure *figure, double scale, const char *path)
+{
+    struct wb_text text = {0};
+    return write_text(wb_figure_png(figure, scale, &text), &text, path);
+}
+
+enum wb_status wb_figure_write_pdf(const struct wb_figure *figure, const char *date_utc,
+                                   const char *path)
+{
+    struct wb_text text = {0};
+    return write_text(wb_figure_pdf(figure, date_utc, &text), &text, path);
+}
