@@ -15,6 +15,7 @@ struct command {
 };
 
 static const struct command commands[] = {
+    {"record", wb_cmd_record, "run a bending test on the bench and record it"},
     {0},
 };
 

@@ -1,0 +1,241 @@
+/* wirebench record: the paper's test, recorded. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/interrupt.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/live_line.h"
+#include "daq/bend_test.h"
+
+#define WB_LOG_DOMAIN "record"
+
+struct options {
+    struct wb_bend_test_request request;
+    bool json;
+};
+
+enum {
+    OPTION_SPECIMEN = 256,
+    OPTION_CYCLES,
+    OPTION_TRAVEL,
+    OPTION_OPERATOR,
+    OPTION_NOTES,
+    OPTION_JSON
+};
+
+static const struct argp_option argp_options[] = {
+    {"specimen", OPTION_SPECIMEN, "SPECIMEN.yaml", 0, "The piece of wire on the bench", 0},
+    {"output", 'o', "REC.wbr", 0, "The recording to write; it must not exist", 0},
+    {"cycles", OPTION_CYCLES, "N", 0, "Times down and back (default 1)", 0},
+    {"travel-mm", OPTION_TRAVEL, "D", 0, "How far down from the start position (default 53)", 0},
+    {"operator", OPTION_OPERATOR, "NAME", 0, "Who runs the test, for the recording", 0},
+    {"notes", OPTION_NOTES, "TEXT", 0, "Anything worth knowing later, for the recording", 0},
+    {"json", OPTION_JSON, NULL, 0, "Print the outcome as JSON", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const options = state->input;
+    struct wb_bend_test_request *const request = &options->request;
+    switch (key) {
+    case OPTION_SPECIMEN:
+        request->specimen_path = argument;
+        return 0;
+    case 'o':
+        request->output_path = argument;
+        return 0;
+    case OPTION_CYCLES:
+        request->cycles = wb_command_integer(state, "--cycles", argument, 1, 10000);
+        return 0;
+    case OPTION_TRAVEL:
+        request->travel = wb_command_number(state, "--travel-mm", argument, 0.1, 5000.0) * WB_MM;
+        return 0;
+    case OPTION_OPERATOR:
+        request->operator_name = argument;
+        return 0;
+    case OPTION_NOTES:
+        request->notes = argument;
+        return 0;
+    case OPTION_JSON:
+        options->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (request->rig_path)
+            argp_error(state, "one rig file is expected, '%s' is one too many", argument);
+        request->rig_path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!request->rig_path)
+            argp_error(state, "no rig file given");
+        if (!request->specimen_path)
+            argp_error(state, "no --specimen given");
+        if (!request->output_path)
+            argp_error(state, "no recording to write given (-o REC.wbr)");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = argp_options,
+    .parser = parse,
+    .args_doc = "RIG.yaml --specimen SPECIMEN.yaml -o REC.wbr",
+    .doc = "Runs a cantilever test and records it: connects to the instruments of the rig file, "
+           "checks the start (all markers seen, zero of the load cell sane, travel free, stage "
+           "ready), takes the tare, moves the clamp down and back, N times.\v"
+           "Mount the specimen with the strand slack: the stage's position when the test starts is "
+           "its start position. Every limit of the rig file (force, overload, travel, a silent "
+           "instrument, an alarm of the stage) stops the stage; the specimen then stays where it "
+           "is, and 'wirebench stage RIG.yaml release' frees it.\n\n"
+           "Keys while it runs: m marks the moment in the recording, q stops; Ctrl-C stops too. "
+           "The stage is stopped before the recording is closed.\n\n"
+           "Exit codes: 0 complete; 1 failed before the first cycle; 2 wrong usage; 3 stopped "
+           "early or data lost, what was recorded is usable.",
+};
+
+static void show(const struct wb_bend_test *test)
+{
+    struct wb_bend_test_status status;
+    wb_bend_test_status(test, &status);
+    const struct wb_acquisition_latest *const latest = status.latest;
+    char phase[32], force[64] = "force --", travel[32] = "travel --", markers[32] = "markers --";
+    if (status.cycle > 0)
+        snprintf(phase, sizeof phase, "%s %d/%d", status.phase, status.cycle, status.cycles);
+    else
+        snprintf(phase, sizeof phase, "%s", status.phase);
+    if (status.has_tension)
+        snprintf(force, sizeof force, "%.2f mN (%.3f g)", status.tension / WB_MN,
+                 status.tension / status.gravity / WB_G);
+    if (status.has_travel)
+        snprintf(travel, sizeof travel, "travel %.2f mm", status.travel / WB_MM);
+    if (latest->has_mocap)
+        snprintf(markers, sizeof markers, "markers %d/%d", latest->markers_seen,
+                 status.markers_expected);
+    const struct wb_acquisition_stream_state *const stream = latest->stream;
+    const uint64_t drops =
+        stream[WB_ROLE_LOAD].drops + stream[WB_ROLE_MOCAP].drops + stream[WB_ROLE_STAGE].drops;
+    const int seconds = (int)status.elapsed;
+    wb_live_line_show("%s%-9s  %s  %s  %s  %.0f+%.0f+%.0f/s  drops %" PRIu64 "  %d:%02d",
+                      status.is_virtual ? "[virtual rig] " : "", phase, force, travel, markers,
+                      stream[WB_ROLE_LOAD].rate, stream[WB_ROLE_MOCAP].rate,
+                      stream[WB_ROLE_STAGE].rate, drops, seconds / 60, seconds % 60);
+}
+
+static void obey(struct wb_bend_test *test, int key)
+{
+    if (key == 'm') {
+        wb_bend_test_mark(test, "key m");
+        wb_info("marked");
+    } else if (key == 'q') {
+        wb_bend_test_stop(test);
+    }
+}
+
+static void run(struct wb_bend_test *test)
+{
+    while (wb_bend_test_step(test, 20 * WB_NS_PER_MS) == WB_BEND_TEST_RUNNING) {
+        if (wb_live_line_due())
+            show(test);
+        obey(test, wb_live_line_key());
+    }
+}
+
+static const char *end_name(enum wb_bend_test_end end)
+{
+    static const char *const names[] = {"running", "done", "limit", "interrupted", "failed"};
+    return names[end];
+}
+
+/* What a stop leaves behind, and how to go on. */
+static void tell_stop(const struct wb_bend_test_result *result, const char *rig_path)
+{
+    if (result->end == WB_BEND_TEST_LIMIT)
+        wb_warn("stopped by a limit: %s", result->text);
+    else if (result->end == WB_BEND_TEST_INTERRUPTED)
+        wb_warn("%s", result->text);
+    else
+        wb_error("%s", result->text);
+    if (!result->standing)
+        wb_error("the stage did not confirm that it stands: switch off its power before you touch "
+                 "the bench");
+    else if (result->displaced && isfinite(result->travel))
+        wb_warn("the stage stands at %.2f mm and the specimen stays as it is; free it with "
+                "'wirebench stage %s release'",
+                result->travel / WB_MM, rig_path);
+    else if (result->displaced)
+        wb_warn("the specimen stays as it is; free it with 'wirebench stage %s release'", rig_path);
+}
+
+static int print_json(const struct wb_bend_test_result *result, const char *output)
+{
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "recording", result->recorded ? output : NULL);
+    wb_json_set_text(root, "end", end_name(result->end));
+    wb_json_set_text(root, "reason", result->text);
+    wb_json_set_boolean(root, "virtual_rig", result->is_virtual);
+    wb_json_set_integer(root, "cycles_done", result->cycles_done);
+    wb_json_set_number(root, "duration_s", result->duration);
+    wb_json_set_number(root, "tare_mN", result->tare / WB_MN);
+    wb_json_set_number(root, "peak_tension_mN", result->peak_tension / WB_MN);
+    wb_json_set_number(root, "travel_mm", result->travel / WB_MM);
+    wb_json_set_boolean(root, "stage_standing", result->standing);
+    wb_json_set_boolean(root, "soft_reset", result->soft_reset);
+    wb_json_set_number(root, "hold_latency_ms", result->hold_latency * 1e3);
+    wb_json_set_number(root, "confirm_latency_ms", result->confirm_latency * 1e3);
+    wb_json_set_integer(root, "load_readings", (int64_t)result->samples[WB_ROLE_LOAD]);
+    wb_json_set_integer(root, "mocap_frames", (int64_t)result->samples[WB_ROLE_MOCAP]);
+    wb_json_set_integer(root, "stage_reports", (int64_t)result->samples[WB_ROLE_STAGE]);
+    wb_json_set_integer(root, "drops", (int64_t)result->drops);
+    return wb_command_print_json(root);
+}
+
+static void print_summary(const struct wb_bend_test_result *result, const char *output)
+{
+    printf("%s: %s%d cycle%s, %.0f s, %" PRIu64 " readings, %" PRIu64 " frames, largest force "
+           "%.2f mN, %" PRIu64 " drops\n",
+           output, result->is_virtual ? "virtual rig, " : "", result->cycles_done,
+           result->cycles_done == 1 ? "" : "s", result->duration, result->samples[WB_ROLE_LOAD],
+           result->samples[WB_ROLE_MOCAP], result->peak_tension / WB_MN, result->drops);
+}
+
+static int exit_code(const struct wb_bend_test_result *result, enum wb_status status)
+{
+    if (result->end == WB_BEND_TEST_DONE && status == WB_OK && result->drops == 0)
+        return WB_EXIT_OK;
+    if (result->end == WB_BEND_TEST_INTERRUPTED)
+        return WB_EXIT_INCOMPLETE;
+    return result->started ? WB_EXIT_INCOMPLETE : WB_EXIT_FAILED;
+}
+
+int wb_cmd_record(int argc, char **argv)
+{
+    struct options options = {.json = false};
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    wb_bend_test_default_request(&options.request);
+    wb_command_parse(&argp, argc, argv, &options);
+    wb_interrupt_install();
+    if (wb_bend_test_open(&test, &options.request) != WB_OK)
+        return WB_EXIT_FAILED;
+    wb_live_line_open();
+    run(test);
+    wb_live_line_close();
+    const enum wb_status status = wb_bend_test_close(test, &result);
+    if (result.end != WB_BEND_TEST_DONE)
+        tell_stop(&result, options.request.rig_path);
+    if (result.drops > 0)
+        wb_warn("%" PRIu64 " reads were lost because the disk did not keep up", result.drops);
+    if (!result.recorded)
+        wb_info("nothing was recorded: '%s' was not kept", options.request.output_path);
+    const int code = exit_code(&result, status);
+    if (options.json && print_json(&result, options.request.output_path) != WB_EXIT_OK)
+        return WB_EXIT_FAILED;
+    if (!options.json && result.recorded)
+        print_summary(&result, options.request.output_path);
+    return code;
+}

@@ -1,0 +1,679 @@
+#include "daq/acquisition.h"
+
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/interrupt.h"
+#include "base/units.h"
+#include "daq/stream.h"
+
+#define WB_LOG_DOMAIN "acquisition"
+
+/* Drivers are promised a tick at least every 20 ms; this also bounds how late Ctrl-C is seen. */
+#define TICK_NS (20 * WB_NS_PER_MS)
+/* Reads of one stream in one step, so that a flood on one cannot starve the others. */
+#define READS_A_STEP 64
+#define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
+/* Remarks of one stream that are stored or shown in one second: a port full of rubbish would
+ * otherwise fill the disk with complaints. */
+#define REMARKS_A_SECOND 20
+
+struct line {
+    struct wb_acquisition *owner;
+    enum wb_role role;
+    const struct wb_driver *driver;
+    void *state;
+    struct wb_stream *stream;
+    int id; /* in the recording */
+    bool reported_lost, write_failed;
+    int64_t write_again_ns; /* after a port that took no bytes: not before */
+    uint64_t counted;       /* valid samples so far */
+    uint64_t rate_from;     /* counted at rate_ns */
+    int64_t rate_ns;
+    bool has_rate;
+    int64_t remark_second;
+    unsigned remarks, remarks_held;
+    uint64_t reported_drops;
+};
+
+struct wb_acquisition {
+    struct wb_rig rig;
+    struct wb_sink user;
+    struct wb_writer *writer;
+    int n_lines;
+    struct line lines[WB_INTERLOCK_ROLES];
+    struct line *by_role[WB_INTERLOCK_ROLES];
+    struct wb_interlock interlock;
+    struct wb_stop stop;
+    bool moving, started;
+    enum wb_stop_state reported_stop;
+    struct wb_acquisition_latest latest;
+    int64_t next_tick_ns;
+    struct wb_outbox outbox;
+    uint8_t buffer[WB_STREAM_READ_MAX];
+};
+
+int64_t wb_acquisition_now_ns(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (int64_t)time.tv_sec * WB_NS_PER_S + time.tv_nsec;
+}
+
+bool wb_acquisition_marker_measured(const struct wb_marker *marker)
+{
+    return (marker->params & (WB_MARKER_OCCLUDED | WB_MARKER_MODEL_FILLED)) == 0;
+}
+
+static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *text)
+{
+    if (a->writer)
+        wb_writer_push_event(a->writer, t_ns, kind, text);
+}
+
+void wb_acquisition_event(struct wb_acquisition *a, const char *kind, const char *format, ...)
+{
+    char text[sizeof((struct wb_event *)0)->text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    push_event(a, wb_acquisition_now_ns(), kind, text);
+}
+
+/* --- sending --- */
+
+/* A device that went away is not asked again; its silence is then known, not waited for. */
+static void lose_device(struct line *line)
+{
+    struct wb_acquisition *const a = line->owner;
+    a->latest.stream[line->role].gone = true;
+    a->interlock.lost[line->role] = true;
+}
+
+/* Writes what a driver wants to send. A port that took no bytes is left alone for a second, so that
+ * waiting for it cannot hold up the others; real-time bytes of the stage are always tried. */
+static enum wb_status send_outbox(struct line *line, bool urgent)
+{
+    struct wb_acquisition *const a = line->owner;
+    struct wb_outbox *const outbox = &a->outbox;
+    enum wb_status status = WB_OK;
+    const int64_t now_ns = wb_acquisition_now_ns();
+    size_t begin = 0;
+    if (a->latest.stream[line->role].gone)
+        status = WB_ERR_IO;
+    else if (!urgent && now_ns < line->write_again_ns)
+        status = WB_ERR_TIMEOUT;
+    for (size_t i = 0; status == WB_OK && i < outbox->n_entries; i++) {
+        status = wb_stream_write(line->stream, outbox->bytes + begin, outbox->ends[i] - begin);
+        begin = outbox->ends[i];
+        if (status == WB_ERR_TIMEOUT)
+            line->write_again_ns = now_ns + WB_NS_PER_S;
+        /* A datagram that finds no listener is not the end of a network stream. */
+        else if (status != WB_OK && line->role != WB_ROLE_MOCAP)
+            lose_device(line);
+    }
+    wb_outbox_clear(outbox);
+    return status;
+}
+
+static enum wb_status send_command(struct line *line, enum wb_stage_command command,
+                                   double distance, double speed)
+{
+    struct wb_acquisition *const a = line->owner;
+    wb_outbox_clear(&a->outbox);
+    const enum wb_status status =
+        line->driver->command(line->state, command, distance, speed, &a->outbox);
+    if (status != WB_OK) {
+        wb_outbox_clear(&a->outbox);
+        return status;
+    }
+    const bool urgent = command == WB_STAGE_COMMAND_HOLD || command == WB_STAGE_COMMAND_SOFT_RESET;
+    return send_outbox(line, urgent);
+}
+
+/* --- stopping --- */
+
+/* The interlock has tripped: the hold byte goes out before anything else. */
+static void hold_now(struct wb_acquisition *a)
+{
+    if (a->stop.state != WB_STOP_NONE)
+        return;
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    enum wb_status status = WB_OK;
+    if (stage && a->moving)
+        status = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
+    const int64_t now_ns = wb_acquisition_now_ns();
+    if (!stage || !a->moving)
+        wb_stop_settle(&a->stop, WB_STOP_STANDING, now_ns);
+    else
+        wb_stop_begin(&a->stop, now_ns);
+    if (stage && a->latest.stream[WB_ROLE_STAGE].gone && a->moving)
+        wb_stop_settle(&a->stop, WB_STOP_FAILED, now_ns);
+    if (a->interlock.reason != WB_INTERLOCK_INTERRUPT)
+        push_event(a, a->interlock.t_ns, "limit", a->interlock.text);
+    char text[200];
+    if (stage && a->moving && status == WB_OK) {
+        snprintf(text, sizeof text, "{\"reason\": \"%s\", \"latency_ms\": %.3f}",
+                 wb_interlock_reason_name(a->interlock.reason),
+                 (double)(now_ns - a->interlock.t_ns) / 1e6);
+        push_event(a, now_ns, "hold", text);
+    } else if (stage && a->moving) {
+        push_event(a, now_ns, "hold", "the hold byte could not be sent to the stage");
+    }
+}
+
+/* Once, when the stop is over: what came of it. */
+static void report_stop(struct wb_acquisition *a)
+{
+    if (!wb_stop_over(&a->stop) || a->reported_stop == a->stop.state)
+        return;
+    a->reported_stop = a->stop.state;
+    if (!a->moving)
+        return;
+    char text[200];
+    if (a->stop.state == WB_STOP_STANDING) {
+        snprintf(text, sizeof text, "{\"confirmed_ms\": %.3f, \"soft_reset\": %s}",
+                 (double)(a->stop.confirmed_ns - a->stop.hold_ns) / 1e6,
+                 a->stop.reset_ns ? "true" : "false");
+        a->moving = false;
+        push_event(a, a->stop.confirmed_ns, "stopped", text);
+    } else {
+        push_event(a, a->stop.confirmed_ns, "stopped",
+                   "not confirmed: the stage may still be moving");
+    }
+}
+
+static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
+{
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    if (!stage || a->stop.state == WB_STOP_NONE)
+        return;
+    const bool was_over = wb_stop_over(&a->stop);
+    enum wb_status status = WB_OK;
+    switch (wb_stop_tick(&a->stop, now_ns)) {
+    case WB_STOP_DO_ASK:
+        status = send_command(stage, WB_STAGE_COMMAND_STATUS, 0.0, 0.0);
+        break;
+    case WB_STOP_DO_RESET:
+        wb_warn("the stage did not confirm the hold within %d ms: soft reset",
+                (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
+        status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
+        push_event(a, wb_acquisition_now_ns(), "reset",
+                   status == WB_OK ? "hold not confirmed in time: soft reset sent"
+                                   : "the soft reset could not be sent");
+        break;
+    case WB_STOP_DO_NOTHING:
+        break;
+    }
+    if (!was_over && a->latest.stream[WB_ROLE_STAGE].gone)
+        wb_stop_settle(&a->stop, WB_STOP_FAILED, now_ns);
+    report_stop(a);
+}
+
+void wb_acquisition_stop(struct wb_acquisition *a, enum wb_interlock_reason reason,
+                         const char *text)
+{
+    if (wb_interlock_trip(&a->interlock, reason, wb_acquisition_now_ns(), text))
+        hold_now(a);
+}
+
+void wb_acquisition_clear_stop(struct wb_acquisition *a)
+{
+    const struct wb_interlock_settings settings = a->interlock.settings;
+    bool lost[WB_INTERLOCK_ROLES];
+    memcpy(lost, a->interlock.lost, sizeof lost);
+    wb_interlock_init(&a->interlock, &settings, wb_acquisition_now_ns());
+    memcpy(a->interlock.lost, lost, sizeof lost);
+    memset(&a->stop, 0, sizeof a->stop);
+    a->reported_stop = WB_STOP_NONE;
+}
+
+/* --- receiving: what the drivers deliver --- */
+
+static void on_load(void *context, const struct wb_load_sample *sample)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    if (wb_interlock_load(&a->interlock, sample))
+        hold_now(a);
+    a->latest.stream[WB_ROLE_LOAD].samples++;
+    if (sample->valid) {
+        line->counted++;
+        a->latest.has_load = true;
+        a->latest.load = *sample;
+    }
+    if (a->user.load)
+        a->user.load(a->user.context, sample);
+}
+
+static void on_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    if (wb_interlock_mocap(&a->interlock, frame->t_ns))
+        hold_now(a);
+    a->latest.stream[WB_ROLE_MOCAP].samples++;
+    line->counted++;
+    a->latest.has_mocap = true;
+    a->latest.mocap_ns = frame->t_ns;
+    a->latest.markers_seen = 0;
+    for (int i = 0; i < frame->n_markers; i++)
+        if (wb_acquisition_marker_measured(&frame->markers[i]))
+            a->latest.markers_seen++;
+    if (a->user.mocap)
+        a->user.mocap(a->user.context, frame);
+}
+
+static void on_stage(void *context, const struct wb_stage_report *report)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    if (wb_interlock_stage(&a->interlock, report))
+        hold_now(a);
+    wb_stop_report(&a->stop, report);
+    a->latest.stream[WB_ROLE_STAGE].samples++;
+    line->counted++;
+    a->latest.has_stage = true;
+    a->latest.stage = *report;
+    a->latest.stage_reports++;
+    if (a->user.stage)
+        a->user.stage(a->user.context, report);
+}
+
+static void on_probe(void *context, const struct wb_clock_probe *probe)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    const int64_t rtt_ns = probe->t_received_ns - probe->t_sent_ns;
+    if (a->writer)
+        (void)wb_writer_push_clock(a->writer, line->id, probe->t_sent_ns + rtt_ns / 2,
+                                   probe->t_device, rtt_ns);
+    if (a->user.probe)
+        a->user.probe(a->user.context, probe);
+}
+
+/* Counts remarks by the second; those above the allowance are only counted. */
+static bool remark_allowed(struct line *line, int64_t t_ns)
+{
+    struct wb_acquisition *const a = line->owner;
+    const int64_t second = t_ns / WB_NS_PER_S;
+    if (second != line->remark_second) {
+        if (line->remarks_held > 0) {
+            char text[96];
+            snprintf(text, sizeof text, "%u more remarks of the %s stream within a second",
+                     line->remarks_held, wb_role_name(line->role));
+            push_event(a, t_ns, "remarks", text);
+        }
+        line->remark_second = second;
+        line->remarks = line->remarks_held = 0;
+    }
+    if (line->remarks < REMARKS_A_SECOND) {
+        line->remarks++;
+        return true;
+    }
+    line->remarks_held++;
+    return false;
+}
+
+static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
+                      const char *text)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    if (line->role == WB_ROLE_STAGE && level <= WB_LOG_WARNING)
+        snprintf(a->latest.stage_error, sizeof a->latest.stage_error, "%s", text);
+    if (remark_allowed(line, t_ns)) {
+        push_event(a, t_ns, kind, text);
+        /* Chatter is for the recording; what hints at trouble is for the operator too. */
+        wb_log(level == WB_LOG_ERROR ? WB_LOG_WARNING : level, wb_role_name(line->role), "%s",
+               text);
+    }
+    if (a->user.remark)
+        a->user.remark(a->user.context, level, t_ns, kind, text);
+}
+
+static void read_line(struct line *line, int64_t woken_ns)
+{
+    struct wb_acquisition *const a = line->owner;
+    struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
+    const struct wb_sink sink = {line, on_load, on_mocap, on_stage, on_probe, on_remark};
+    int64_t t_ns = woken_ns;
+    for (int i = 0; i < READS_A_STEP && !state->gone; i++) {
+        size_t n = 0;
+        const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);
+        if (status != WB_OK) {
+            if (line->role != WB_ROLE_MOCAP)
+                lose_device(line);
+            return;
+        }
+        if (n == 0)
+            return;
+        state->chunks++;
+        state->bytes += n;
+        if (a->writer)
+            (void)wb_writer_push_chunk(a->writer, line->id, t_ns, a->buffer, n);
+        line->driver->receive(line->state, t_ns, a->buffer, n, &sink);
+        /* What comes after the first read may have arrived since the wake-up. */
+        t_ns = wb_acquisition_now_ns();
+    }
+}
+
+/* --- the loop --- */
+
+static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        if (a->latest.stream[line->role].gone || !line->driver->tick)
+            continue;
+        wb_outbox_clear(&a->outbox);
+        line->driver->tick(line->state, now_ns, &a->outbox);
+        (void)send_outbox(line, false);
+    }
+    /* A late tick is not made up for, or a stall would end in a burst. */
+    a->next_tick_ns += TICK_NS;
+    if (a->next_tick_ns <= now_ns)
+        a->next_tick_ns = now_ns + TICK_NS;
+}
+
+static void note_losses(struct wb_acquisition *a, int64_t now_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
+        const bool lost = a->interlock.lost[line->role] || state->gone;
+        if (lost != line->reported_lost) {
+            push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
+            if (lost)
+                wb_warn("stream lost: %s (%s)", wb_role_name(line->role),
+                        wb_stream_address(line->stream));
+            else
+                wb_info("stream found again: %s", wb_role_name(line->role));
+            line->reported_lost = lost;
+        }
+        state->lost = lost;
+        state->ready = !state->gone && line->driver->ready && line->driver->ready(line->state);
+        if (a->writer)
+            state->drops = wb_writer_drops(a->writer, line->id);
+    }
+}
+
+static void note_rates(struct wb_acquisition *a, int64_t now_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        const int64_t lasted_ns = now_ns - line->rate_ns;
+        if (lasted_ns < RATE_PERIOD_NS)
+            continue;
+        const double rate =
+            (double)(line->counted - line->rate_from) / wb_seconds_from_ns(lasted_ns);
+        double *const smooth = &a->latest.stream[line->role].rate;
+        *smooth = line->has_rate ? *smooth + 0.5 * (rate - *smooth) : rate;
+        line->has_rate = line->has_rate || rate > 0.0;
+        line->rate_from = line->counted;
+        line->rate_ns = now_ns;
+    }
+}
+
+/* What no sample shows: silence, devices that went away, a full disk, Ctrl-C. */
+static void check_rest(struct wb_acquisition *a, int64_t now_ns)
+{
+    if (!a->interlock.armed || a->interlock.reason != WB_INTERLOCK_NONE)
+        return;
+    if (wb_interrupted()) {
+        wb_acquisition_stop(a, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
+        return;
+    }
+    for (int i = 0; i < a->n_lines; i++) {
+        if (!a->latest.stream[a->lines[i].role].gone)
+            continue;
+        char text[WB_INTERLOCK_TEXT];
+        snprintf(text, sizeof text, "the %s's port %s went away",
+                 a->lines[i].role == WB_ROLE_LOAD ? "load cell" : "stage",
+                 wb_stream_address(a->lines[i].stream));
+        wb_acquisition_stop(a, WB_INTERLOCK_STREAM_LOST, text);
+        return;
+    }
+    if (wb_interlock_tick(&a->interlock, now_ns)) {
+        hold_now(a);
+        return;
+    }
+    if (a->writer && wb_writer_status(a->writer) != WB_OK)
+        wb_acquisition_stop(a, WB_INTERLOCK_DISK, "the recording cannot be written any more");
+}
+
+static int64_t earlier(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Polls all descriptors until `deadline_ns`; marks the lines that have something to read. */
+static enum wb_status wait_for_bytes(struct wb_acquisition *a, int64_t deadline_ns,
+                                     bool readable[WB_INTERLOCK_ROLES], int64_t *woken_ns)
+{
+    struct pollfd polled[2 * WB_INTERLOCK_ROLES];
+    int owner[2 * WB_INTERLOCK_ROLES];
+    nfds_t n_polled = 0;
+    for (int i = 0; i < a->n_lines; i++) {
+        int descriptors[2];
+        readable[i] = false;
+        if (a->latest.stream[a->lines[i].role].gone)
+            continue;
+        const int n = wb_stream_descriptors(a->lines[i].stream, descriptors);
+        readable[i] = n == 0; /* a memory stream is simply asked */
+        for (int k = 0; k < n; k++) {
+            polled[n_polled] = (struct pollfd){.fd = descriptors[k], .events = POLLIN};
+            owner[n_polled++] = i;
+        }
+    }
+    int64_t left_ns = deadline_ns - wb_acquisition_now_ns();
+    if (left_ns < 0)
+        left_ns = 0;
+    const struct timespec timeout = {.tv_sec = left_ns / WB_NS_PER_S,
+                                     .tv_nsec = left_ns % WB_NS_PER_S};
+    const int n_ready = ppoll(polled, n_polled, &timeout, NULL);
+    *woken_ns = wb_acquisition_now_ns();
+    if (n_ready < 0 && errno != EINTR)
+        return wb_fail(WB_ERR_IO, "cannot wait for the instruments: %s", strerror(errno));
+    for (nfds_t k = 0; n_ready > 0 && k < n_polled; k++)
+        if (polled[k].revents != 0)
+            readable[owner[k]] = true;
+    return WB_OK;
+}
+
+enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t timeout_ns)
+{
+    bool readable[WB_INTERLOCK_ROLES];
+    int64_t woken_ns;
+    int64_t deadline_ns = wb_acquisition_now_ns() + (timeout_ns > 0 ? timeout_ns : 0);
+    deadline_ns = earlier(deadline_ns, a->next_tick_ns);
+    deadline_ns = earlier(deadline_ns, wb_interlock_deadline(&a->interlock));
+    deadline_ns = earlier(deadline_ns, wb_stop_deadline(&a->stop));
+    if (wait_for_bytes(a, deadline_ns, readable, &woken_ns) != WB_OK)
+        return WB_ACQUISITION_FAILED;
+    for (int i = 0; i < a->n_lines; i++)
+        if (readable[i])
+            read_line(&a->lines[i], woken_ns);
+    const int64_t now_ns = wb_acquisition_now_ns();
+    check_rest(a, now_ns);
+    (void)wb_interlock_tick(&a->interlock, now_ns);
+    follow_stop(a, now_ns);
+    if (now_ns >= a->next_tick_ns)
+        tick_lines(a, now_ns);
+    note_losses(a, now_ns);
+    note_rates(a, now_ns);
+    for (int i = 0; i < a->n_lines; i++)
+        if (!a->latest.stream[a->lines[i].role].gone)
+            return WB_ACQUISITION_CONTINUE;
+    return WB_ACQUISITION_DONE;
+}
+
+/* --- opening and closing --- */
+
+static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, const char *address,
+                                const char *protocol)
+{
+    struct line *const line = &a->lines[a->n_lines];
+    line->owner = a;
+    line->role = role;
+    line->id = a->n_lines;
+    line->driver = wb_driver_find(role, protocol);
+    if (!line->driver)
+        return wb_fail(WB_ERR_UNSUPPORTED, "no %s protocol '%s'", wb_role_name(role), protocol);
+    line->state = calloc(1, line->driver->state_size);
+    if (!line->state)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the %s driver", protocol);
+    a->n_lines++; /* from here on closing frees it */
+    WB_TRY(line->driver->init(line->state, &a->rig));
+    WB_TRY(wb_stream_open(&line->stream, address));
+    a->by_role[role] = line;
+    a->latest.stream[role].open = true;
+    return WB_OK;
+}
+
+enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_rig *rig,
+                                   unsigned roles, const struct wb_sink *sink)
+{
+    struct wb_acquisition *const a = calloc(1, sizeof *a);
+    if (!a)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
+    a->rig = *rig;
+    if (sink)
+        a->user = *sink;
+    enum wb_status status = WB_OK;
+    if (roles & WB_ACQUISITION_LOAD)
+        status = open_line(a, WB_ROLE_LOAD, rig->load_cell.address, rig->load_cell.protocol);
+    if (status == WB_OK && (roles & WB_ACQUISITION_MOCAP))
+        status = open_line(a, WB_ROLE_MOCAP, rig->mocap.address, rig->mocap.protocol);
+    if (status == WB_OK && (roles & WB_ACQUISITION_STAGE))
+        status = open_line(a, WB_ROLE_STAGE, rig->stage.address, rig->stage.protocol);
+    if (status != WB_OK) {
+        wb_acquisition_close(a);
+        return status;
+    }
+    *out = a;
+    return WB_OK;
+}
+
+int wb_acquisition_stream(const struct wb_acquisition *a, enum wb_role role)
+{
+    return a->by_role[role] ? a->by_role[role]->id : -1;
+}
+
+void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
+{
+    struct wb_interlock_settings unwatched;
+    memset(&unwatched, 0, sizeof unwatched);
+    const int64_t now_ns = wb_acquisition_now_ns();
+    a->writer = writer;
+    a->started = true;
+    a->next_tick_ns = now_ns + TICK_NS;
+    wb_interlock_init(&a->interlock, &unwatched, now_ns);
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        line->rate_ns = now_ns;
+        if (!line->driver->start)
+            continue;
+        wb_outbox_clear(&a->outbox);
+        line->driver->start(line->state, now_ns, &a->outbox);
+        (void)send_outbox(line, false);
+    }
+}
+
+void wb_acquisition_close(struct wb_acquisition *a)
+{
+    if (!a)
+        return;
+    for (int i = 0; i < a->n_lines; i++) {
+        struct line *const line = &a->lines[i];
+        if (a->started && line->driver->stop && !a->latest.stream[line->role].gone) {
+            wb_outbox_clear(&a->outbox);
+            line->driver->stop(line->state, &a->outbox);
+            (void)send_outbox(line, false);
+        }
+        wb_stream_close(line->stream);
+        free(line->state);
+    }
+    free(a);
+}
+
+/* --- the caller's side of stage and interlock --- */
+
+void wb_acquisition_arm(struct wb_acquisition *a, const struct wb_interlock_settings *settings,
+                        double start_position)
+{
+    const enum wb_interlock_reason reason = a->interlock.reason;
+    if (reason != WB_INTERLOCK_NONE)
+        return;
+    wb_interlock_init(&a->interlock, settings, wb_acquisition_now_ns());
+    a->interlock.armed = true;
+    if (!isfinite(start_position) && a->latest.has_stage)
+        start_position = a->latest.stage.position;
+    a->interlock.start_position = start_position;
+    /* Streams that were not opened send nothing. */
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
+        if (!a->by_role[role])
+            a->interlock.settings.stream_lost_ns[role] = 0;
+}
+
+void wb_acquisition_disarm(struct wb_acquisition *a)
+{
+    a->interlock.armed = false;
+}
+
+void wb_acquisition_set_tare(struct wb_acquisition *a, double tare)
+{
+    a->interlock.tare = tare;
+}
+
+const struct wb_interlock *wb_acquisition_interlock(const struct wb_acquisition *a)
+{
+    return &a->interlock;
+}
+
+enum wb_status wb_acquisition_command(struct wb_acquisition *a, enum wb_stage_command command,
+                                      double distance, double speed)
+{
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    if (!stage)
+        return wb_fail(WB_ERR_UNSUPPORTED, "no stage is open");
+    if (a->stop.state != WB_STOP_NONE && command != WB_STAGE_COMMAND_STATUS)
+        return WB_ERR_ARGUMENT;
+    const bool moves = command == WB_STAGE_COMMAND_JOG || command == WB_STAGE_COMMAND_HOME;
+    const bool was_moving = a->moving;
+    if (command != WB_STAGE_COMMAND_STATUS)
+        a->latest.stage_error[0] = '\0';
+    /* Set first: a command that may have left in part counts as moving. */
+    a->moving = a->moving || moves;
+    const enum wb_status status = send_command(stage, command, distance, speed);
+    if (status == WB_ERR_BUSY)
+        a->moving = was_moving;
+    return status;
+}
+
+void wb_acquisition_motion_ended(struct wb_acquisition *a)
+{
+    a->moving = false;
+}
+
+bool wb_acquisition_moving(const struct wb_acquisition *a)
+{
+    return a->moving;
+}
+
+const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *a)
+{
+    return &a->stop;
+}
+
+const struct wb_acquisition_latest *wb_acquisition_latest(const struct wb_acquisition *a)
+{
+    return &a->latest;
+}

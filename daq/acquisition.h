@@ -1,0 +1,130 @@
+/* The acquisition loop: one poll() over the streams of a bench, stamps taken right after wake-up,
+ * raw bytes to the writer, then into the drivers, decoded samples to the interlock and the caller.
+ *
+ *     WB_TRY(wb_acquisition_open(&a, &rig, roles, &sink));   ports are open, nothing is sent yet
+ *     wb_acquisition_start(a, writer);                       drivers say hello
+ *     while (wb_acquisition_step(a, timeout) == WB_ACQUISITION_CONTINUE) ...
+ *     wb_acquisition_close(a);
+ *
+ * The stage is stopped from within: a sample that trips the armed interlock has the hold byte
+ * written before anything else happens to that sample (but storing its bytes), and the following
+ * steps ask for confirmation and send a soft reset when it does not come (daq/interlock.h). The
+ * interlock is armed by wb_acquisition_arm(). Everything is used by one thread.
+ */
+#ifndef WB_DAQ_ACQUISITION_H
+#define WB_DAQ_ACQUISITION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "daq/driver.h"
+#include "daq/interlock.h"
+#include "daq/rig.h"
+#include "daq/sample.h"
+#include "daq/writer.h"
+
+struct wb_acquisition; /* opaque */
+
+/* Which streams to open: bits `1 << role`. */
+#define WB_ACQUISITION_LOAD (1u << WB_ROLE_LOAD)
+#define WB_ACQUISITION_MOCAP (1u << WB_ROLE_MOCAP)
+#define WB_ACQUISITION_STAGE (1u << WB_ROLE_STAGE)
+#define WB_ACQUISITION_ALL (WB_ACQUISITION_LOAD | WB_ACQUISITION_MOCAP | WB_ACQUISITION_STAGE)
+
+enum wb_acquisition_end {
+    WB_ACQUISITION_CONTINUE,
+    WB_ACQUISITION_DONE,  /* every stream has gone: there is nothing left to wait for */
+    WB_ACQUISITION_FAILED /* the loop itself cannot go on; a message was logged */
+};
+
+/* Opens the streams of the wanted roles and prepares their drivers; the first that fails ends it,
+ * with its own message. `sink` (may be NULL) is copied; it sees every live sample after the
+ * interlock did. Nothing is sent to any instrument. */
+WB_MUST_CHECK enum wb_status wb_acquisition_open(struct wb_acquisition **out,
+                                                 const struct wb_rig *rig, unsigned roles,
+                                                 const struct wb_sink *sink);
+
+/* Index of a role's stream in the recording: the opened roles in the order load, mocap, stage. -1
+ * when it is not open. */
+int wb_acquisition_stream(const struct wb_acquisition *acquisition, enum wb_role role);
+
+/* Lets the drivers say hello; from here on bytes are stored. `writer` is borrowed and may be NULL
+ * (nothing is stored). Its recording has the streams declared in the order above. */
+void wb_acquisition_start(struct wb_acquisition *acquisition, struct wb_writer *writer);
+
+/* Waits for bytes at most `timeout_ns` (and never longer than 20 ms), and does all that is due. */
+enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *acquisition, int64_t timeout_ns);
+
+/* Says goodbye to the instruments and closes the streams; accepts NULL. It does not stop the stage:
+ * every caller has done that before. */
+void wb_acquisition_close(struct wb_acquisition *acquisition);
+
+/* --- the stage and its interlock --- */
+
+/* Sets limits and watches them from now on. Silence counts from now. `start_position` (m, machine)
+ * is where travel is counted from; NaN takes the last reported position. */
+void wb_acquisition_arm(struct wb_acquisition *acquisition,
+                        const struct wb_interlock_settings *settings, double start_position);
+/* Limits trip no longer; silences are still noted. */
+void wb_acquisition_disarm(struct wb_acquisition *acquisition);
+/* Force subtracted before it is compared with the force limit, N. */
+void wb_acquisition_set_tare(struct wb_acquisition *acquisition, double tare);
+const struct wb_interlock *wb_acquisition_interlock(const struct wb_acquisition *acquisition);
+
+/* Sends a command. WB_ERR_BUSY (without a message) while an earlier line is not answered yet; once
+ * the interlock has tripped all but STATUS is refused with WB_ERR_ARGUMENT. */
+WB_MUST_CHECK enum wb_status wb_acquisition_command(struct wb_acquisition *acquisition,
+                                                    enum wb_stage_command command, double distance,
+                                                    double speed);
+
+/* The caller saw the last motion end where it should: there is nothing to hold any more. */
+void wb_acquisition_motion_ended(struct wb_acquisition *acquisition);
+/* A motion command was sent and its end not seen. */
+bool wb_acquisition_moving(const struct wb_acquisition *acquisition);
+
+/* Stops the stage now, for a reason of the caller's: trips the interlock, writes the hold byte if a
+ * motion may be under way. The stop goes on in the following steps. */
+void wb_acquisition_stop(struct wb_acquisition *acquisition, enum wb_interlock_reason reason,
+                         const char *text);
+/* How far the stop has come. */
+const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *acquisition);
+/* After a stop that is over: clears it and the interlock, so that the stage can be told to move
+ * again (stage commands that free a specimen). The interlock is disarmed. */
+void wb_acquisition_clear_stop(struct wb_acquisition *acquisition);
+
+/* --- the latest, for live lines and sequences --- */
+
+struct wb_acquisition_stream_state {
+    bool open, gone;  /* gone: the device went away and does not come back by itself */
+    bool ready, lost; /* lost: silent for longer than the interlock allows */
+    double rate;      /* valid samples/s, smoothed over about a second */
+    uint64_t samples; /* decoded, valid or not */
+    uint64_t chunks, bytes, drops;
+};
+
+struct wb_acquisition_latest {
+    struct wb_acquisition_stream_state stream[WB_INTERLOCK_ROLES]; /* by role */
+    bool has_load, has_mocap, has_stage;
+    struct wb_load_sample load; /* the last valid one */
+    int markers_seen;           /* measured ones in the last frame */
+    int64_t mocap_ns;           /* arrival of the last frame */
+    struct wb_stage_report stage;
+    uint64_t stage_reports;
+    char stage_error[160]; /* last complaint of the stage since the last command; "" */
+};
+
+/* Current values; owned by the acquisition, refreshed by each step. */
+const struct wb_acquisition_latest *wb_acquisition_latest(const struct wb_acquisition *acquisition);
+
+/* True for a marker that the cameras measured in this frame (not occluded, not filled in). */
+bool wb_acquisition_marker_measured(const struct wb_marker *marker);
+
+/* Writes an event into the recording (none: does nothing), stamped now. */
+void wb_acquisition_event(struct wb_acquisition *acquisition, const char *kind, const char *format,
+                          ...) __attribute__((format(printf, 3, 4)));
+
+/* The monotonic clock all stamps come from, ns. */
+int64_t wb_acquisition_now_ns(void);
+
+#endif

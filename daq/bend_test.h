@@ -1,0 +1,99 @@
+/* The paper's test as a sequence: connect, start check, tare, N times down and back, end; recorded
+ * from the first byte to the last.
+ *
+ *     WB_TRY(wb_bend_test_open(&test, &request));
+ *     while (wb_bend_test_step(test, timeout_ns) == WB_BEND_TEST_RUNNING) ...show, keys...
+ *     status = wb_bend_test_close(test, &result);
+ *
+ * Every way out stops the stage first, then closes the recording: a limit, Ctrl-C, a full disk, an
+ * instrument that fell silent. A limit is a result, not an error. Used by one thread.
+ */
+#ifndef WB_DAQ_BEND_TEST_H
+#define WB_DAQ_BEND_TEST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "daq/acquisition.h"
+#include "daq/rig.h"
+#include "daq/specimen.h"
+
+struct wb_bend_test; /* opaque */
+
+struct wb_bend_test_request {
+    const char *rig_path, *specimen_path; /* YAML files */
+    const char *output_path;              /* the recording; must not exist */
+    const char *operator_name, *notes;    /* may be NULL */
+    int cycles;                           /* at least 1 */
+    double travel;                        /* m down from the start position */
+    struct wb_sink sink;                  /* sees every live sample; members may be NULL */
+    double connect_timeout;               /* s of host time for all instruments to answer */
+    double check_time;                    /* s of rig time the start check looks */
+    double tare_time;                     /* s of rig time the tare averages */
+    double rest_time;                     /* s of rig time at the end of each cycle: zero load */
+};
+
+/* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s; paths NULL. */
+void wb_bend_test_default_request(struct wb_bend_test_request *request);
+
+/* Reads the files, refuses what the rig cannot do, opens the ports, creates the recording with its
+ * meta values and starts the instruments. On failure nothing is left behind. */
+WB_MUST_CHECK enum wb_status wb_bend_test_open(struct wb_bend_test **out,
+                                               const struct wb_bend_test_request *request);
+
+enum wb_bend_test_end {
+    WB_BEND_TEST_RUNNING,
+    WB_BEND_TEST_DONE,        /* all cycles */
+    WB_BEND_TEST_LIMIT,       /* a limit of the interlock stopped it */
+    WB_BEND_TEST_INTERRUPTED, /* Ctrl-C or the stop key */
+    WB_BEND_TEST_FAILED       /* an instrument did not answer, the start check refused, ... */
+};
+
+/* Waits at most timeout_ns (and 20 ms) for the instruments and does what is due. After it returned
+ * anything but RUNNING it does nothing any more. */
+enum wb_bend_test_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeout_ns);
+
+/* The operator's mark, and the stop key. */
+void wb_bend_test_mark(struct wb_bend_test *test, const char *text);
+void wb_bend_test_stop(struct wb_bend_test *test);
+
+struct wb_bend_test_status {
+    const char *phase; /* "connecting", "check", "tare", "down", "up", "rest", "stopping", "end" */
+    int cycle, cycles; /* cycle from 1; 0 before the first */
+    bool has_tension, has_travel;
+    double tension; /* N, reading less tare (0 before the tare is known) */
+    double travel;  /* m, as commanded, down positive */
+    double elapsed; /* s of host time since the start */
+    double gravity; /* m/s2, of the rig */
+    int markers_expected;
+    bool is_virtual;
+    const struct wb_acquisition_latest *latest; /* owned by the test */
+};
+void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_status *status);
+
+struct wb_bend_test_result {
+    enum wb_bend_test_end end;
+    char text[WB_INTERLOCK_TEXT]; /* why it ended, for people */
+    bool is_virtual;
+    bool recorded;  /* the recording was kept: all instruments had answered */
+    bool started;   /* the first cycle had begun */
+    bool standing;  /* false: the stop was not confirmed, the stage may be moving */
+    bool displaced; /* the stage is not back at the start: the specimen may be loaded */
+    int cycles_done;
+    double tare;         /* N */
+    double peak_tension; /* N, largest reading less tare of the cycles */
+    double travel;       /* m, where the stage stands */
+    double duration;     /* s of host time */
+    uint64_t samples[WB_INTERLOCK_ROLES], bytes, drops;
+    bool soft_reset;
+    double hold_latency, confirm_latency; /* s; NaN when no hold was sent */
+};
+
+/* Closes ports and recording and frees; `result` may be NULL. Stops the stage first if it is still
+ * moving. A recording in which no instrument but the failing one could have said anything is
+ * removed again (result.recorded is false). Returns the recording's first error, already logged.
+ * Accepts NULL. */
+enum wb_status wb_bend_test_close(struct wb_bend_test *test, struct wb_bend_test_result *result);
+
+#endif
