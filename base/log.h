@@ -30,6 +30,10 @@ void wb_log(enum wb_log_level level, const char *domain, const char *format, ...
 /* Replaces the sink; NULL restores stderr. `context` must outlive its use. */
 void wb_log_set_sink(wb_log_sink *sink, void *context);
 
+/* Lets `tap` see the errors and warnings of the calling thread as well, whatever the threshold, for
+ * those who report why something failed; NULL ends it. Called before the sink, without a lock. */
+void wb_log_set_tap(wb_log_sink *tap, void *context);
+
 /* Sets the highest level that is delivered; WB_LOG_INFO at start. */
 void wb_log_set_threshold(enum wb_log_level level);
 

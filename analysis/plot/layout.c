@@ -64,14 +64,17 @@ static void find_ranges(const struct wb_panel *panel, double x[2], double y[2])
     }
 }
 
-static void override_range(struct wb_scale *scale, const double range[2])
+static void set_scale(struct wb_scale *scale, const double data[2], const double given[2],
+                      bool logarithmic)
 {
-    if (isfinite(range[0]))
-        scale->low = range[0];
-    if (isfinite(range[1]))
-        scale->high = range[1];
-    if (!(scale->low < scale->high))
-        scale->high = scale->low + fmax(1e-9, fabs(scale->low));
+    const double low = isfinite(given[0]) ? given[0] : data[0];
+    const double high = isfinite(given[1]) ? given[1] : data[1];
+    wb_scale_fit(scale, low, high, logarithmic);
+    /* A bound that was asked for gets no room. */
+    if (isfinite(given[0]) && given[0] < scale->high)
+        scale->low = given[0];
+    if (isfinite(given[1]) && given[1] > scale->low)
+        scale->high = given[1];
 }
 
 static void fit_scales(struct wb_layout_panel *layout)
@@ -79,10 +82,8 @@ static void fit_scales(struct wb_layout_panel *layout)
     const struct wb_panel *const panel = layout->panel;
     double x[2], y[2];
     find_ranges(panel, x, y);
-    wb_scale_fit(&layout->x, x[0], x[1], false);
-    wb_scale_fit(&layout->y, y[0], y[1], panel->logarithmic_y);
-    override_range(&layout->x, panel->x_range);
-    override_range(&layout->y, panel->y_range);
+    set_scale(&layout->x, x, panel->x_range, false);
+    set_scale(&layout->y, y, panel->y_range, panel->logarithmic_y);
 }
 
 static double widest_label(cairo_t *cairo, const struct wb_layout_panel *layout,

@@ -46,7 +46,9 @@ void wb_scale_fit(struct wb_scale *scale, double low, double high, bool logarith
         high += half;
     }
     const double room = 0.04 * (high - low);
-    scale->low = low == 0.0 ? 0.0 : low - room;
+    /* Noise around zero should not push zero far from the corner. */
+    const bool is_noise = low < 0.0 && -low < 0.5 * room;
+    scale->low = low == 0.0 ? 0.0 : is_noise ? -0.6 * room : low - room;
     scale->high = high == 0.0 ? 0.0 : high + room;
 }
 
@@ -67,21 +69,38 @@ static double nice_step(double least, int *decimals)
     return factors[i] * power;
 }
 
+static void add_power(struct wb_scale *scale, int factor, int exponent)
+{
+    const double value = factor * pow(10.0, exponent);
+    if (scale->n_ticks == WB_SCALE_TICKS || value < scale->low * (1.0 - 1e-9) ||
+        value > scale->high * (1.0 + 1e-9))
+        return;
+    scale->ticks[scale->n_ticks] = value;
+    char *const label = scale->labels[scale->n_ticks++];
+    if (exponent >= -3 && exponent <= 3)
+        snprintf(label, WB_SCALE_TEXT, "%.*f", exponent < 0 ? -exponent : 0, value);
+    else
+        snprintf(label, WB_SCALE_TEXT,
+                 "%d\xc2\xb7"
+                 "10<sup>%s%d</sup>",
+                 factor, exponent < 0 ? "\xe2\x88\x92" : "", exponent < 0 ? -exponent : exponent);
+}
+
+/* Powers of ten, thinned to `most`; with fewer than three of them also twice and five times. */
 static void place_powers(struct wb_scale *scale, int most)
 {
-    const int first = (int)ceil(log10(scale->low) - 1e-9);
+    const int first = (int)floor(log10(scale->low) + 1e-9);
     const int last = (int)floor(log10(scale->high) + 1e-9);
     int stride = 1;
     while ((last - first) / stride + 1 > most)
         stride++;
-    for (int i = first; i <= last && scale->n_ticks < WB_SCALE_TICKS; i += stride) {
-        scale->ticks[scale->n_ticks] = pow(10.0, i);
-        char *const label = scale->labels[scale->n_ticks++];
-        if (i >= -2 && i <= 3)
-            snprintf(label, WB_SCALE_TEXT, "%.*f", i < 0 ? -i : 0, pow(10.0, i));
-        else
-            snprintf(label, WB_SCALE_TEXT, "10<sup>%s%d</sup>", i < 0 ? "\xe2\x88\x92" : "",
-                     i < 0 ? -i : i);
+    const bool finer = last - first < 3 && 3 * (last - first + 1) <= most + 3;
+    for (int i = first; i <= last; i += stride) {
+        add_power(scale, 1, i);
+        if (finer) {
+            add_power(scale, 2, i);
+            add_power(scale, 5, i);
+        }
     }
 }
 

@@ -22,7 +22,8 @@ static PangoLayout *layout_of(cairo_t *cairo, const char *markup,
     PangoFontDescription *const font = pango_font_description_new();
     pango_font_description_set_family_static(font,
                                              style->monospace ? "DejaVu Sans Mono" : "DejaVu Sans");
-    pango_font_description_set_absolute_size(font, style->size * PANGO_SCALE);
+    /* At 72 dots an inch a point is a unit. (An absolute size would not reach subscripts.) */
+    pango_font_description_set_size(font, (int)(style->size * PANGO_SCALE + 0.5));
     if (style->bold)
         pango_font_description_set_weight(font, PANGO_WEIGHT_BOLD);
     pango_layout_set_font_description(layout, font);
