@@ -41,9 +41,7 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
     const struct argp_child children[] = {{.argp = argp}, {0}};
     const struct argp with_help = {
         .options = help_options,
-        .parser = parse_help,
-        .args_doc = argp->args_doc,
-        .doc = argp->doc,
+        .parser = parse_help, /* arguments and text are the child's */
         .children = children,
     };
     if (argp_parse(&with_help, argc, argv, ARGP_NO_HELP, NULL, input) != 0)

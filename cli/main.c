@@ -16,6 +16,7 @@ struct command {
 
 static const struct command commands[] = {
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},
+    {"solve", wb_cmd_solve, "compute a bending test with a finite element model"},
     {0},
 };
 

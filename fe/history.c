@@ -8,7 +8,8 @@
 enum {
     MOST_STEPS = 1000000,
     MOST_CYCLES = 100000,
-    MOST_ROWS = 10000000
+    MOST_ROWS = 10000000,
+    MOST_SHAPE = 1000
 };
 
 const char *wb_history_phase_text(enum wb_history_phase phase)
@@ -40,6 +41,9 @@ static enum wb_status check_plan(const struct wb_history_plan *plan)
         2.0 * plan->steps * plan->cycles > MOST_ROWS)
         return wb_fail(WB_ERR_ARGUMENT, "%d cycles of %d steps: expected at most %d rows in all",
                        plan->cycles, plan->steps, MOST_ROWS);
+    if (plan->n_shape < 0 || plan->n_shape > MOST_SHAPE)
+        return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected 0 to %d", plan->n_shape,
+                       MOST_SHAPE);
     return WB_OK;
 }
 
@@ -53,6 +57,17 @@ enum wb_status wb_history_init(struct wb_history *history, const struct wb_histo
     if (!history->rows)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d rows", rows);
     history->capacity = rows;
+    history->n_shape = plan->n_shape;
+    if (plan->n_shape == 0)
+        return WB_OK;
+
+    const size_t positions = (size_t)rows * (size_t)plan->n_shape;
+    history->shape_x = calloc(positions, sizeof *history->shape_x);
+    history->shape_y = calloc(positions, sizeof *history->shape_y);
+    if (!history->shape_x || !history->shape_y) {
+        wb_history_release(history);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d shapes", rows);
+    }
     return WB_OK;
 }
 
@@ -61,34 +76,46 @@ void wb_history_release(struct wb_history *history)
     if (!history)
         return;
     free(history->rows);
+    free(history->shape_x);
+    free(history->shape_y);
     *history = (struct wb_history){0};
 }
 
-/* Adds the row at step `index` of the way up; false when the test ends there. */
-static enum wb_status add_row(struct wb_history *history, const struct wb_history_plan *plan,
-                              struct wb_cantilever *cantilever, int cycle, int index)
+/* True while the test is to go on. */
+static bool goes_on(struct wb_history *history, const struct wb_history_plan *plan)
 {
-    struct wb_history_row *row = &history->rows[history->n_rows];
+    if (history->converged && !history->stopped && plan->stop)
+        history->stopped = plan->stop(plan->stop_context);
+    return history->converged && !history->stopped;
+}
+
+/* Moves to step `index` of the way up and adds the row, if it gets there. */
+static enum wb_status add_row(struct wb_history *history, const struct wb_history_plan *plan,
+                              struct wb_cantilever *cantilever, int cycle, int index,
+                              enum wb_history_phase phase)
+{
     const double target =
         index == plan->steps ? plan->maximum : plan->maximum * index / plan->steps;
+    struct wb_history_row *row = &history->rows[history->n_rows];
 
-    WB_TRY(wb_cantilever_move(cantilever, plan->control, target, &row->point));
+    WB_TRY(wb_cantilever_move(cantilever, plan->control, target, &history->end));
+    if (history->end.end != WB_CANTILEVER_CONVERGED) {
+        history->converged = false;
+        return WB_OK;
+    }
+    row->point = history->end;
     if (history->n_rows == 0)
         history->zero_force = row->point.vertical_force;
     row->cycle = cycle;
+    row->phase = row->point.slack ? WB_HISTORY_SLACK : phase;
     row->force = row->point.vertical_force - history->zero_force;
+    if (history->n_shape > 0) {
+        const size_t at = (size_t)history->n_rows * (size_t)history->n_shape;
+        wb_cantilever_shape(cantilever, history->n_shape, plan->shape_s, history->shape_x + at,
+                            history->shape_y + at, NULL);
+    }
     history->n_rows++;
     return WB_OK;
-}
-
-static bool goes_on(struct wb_history *history, const struct wb_history_plan *plan)
-{
-    if (history->n_rows > 0 &&
-        history->rows[history->n_rows - 1].point.end != WB_CANTILEVER_CONVERGED)
-        history->converged = false;
-    else if (plan->stop && plan->stop(plan->stop_context))
-        history->stopped = true;
-    return history->converged && !history->stopped;
 }
 
 /* `steps` rows from one end to the other. */
@@ -98,9 +125,7 @@ static enum wb_status run_branch(struct wb_history *history, const struct wb_his
 {
     for (int i = 1; i <= plan->steps && goes_on(history, plan); i++) {
         const int index = phase == WB_HISTORY_LOAD ? i : plan->steps - i;
-        struct wb_history_row *row = &history->rows[history->n_rows];
-        WB_TRY(add_row(history, plan, cantilever, cycle, index));
-        row->phase = row->point.slack ? WB_HISTORY_SLACK : phase;
+        WB_TRY(add_row(history, plan, cantilever, cycle, index, phase));
     }
     return WB_OK;
 }
@@ -109,16 +134,15 @@ enum wb_status wb_history_run(struct wb_history *history, const struct wb_histor
                               struct wb_cantilever *cantilever)
 {
     WB_TRY(check_plan(plan));
-    if (history->capacity < wb_history_planned_rows(plan))
-        return wb_fail(WB_ERR_ARGUMENT, "the history has room for %d rows, the plan needs %d",
-                       history->capacity, wb_history_planned_rows(plan));
+    if (history->capacity < wb_history_planned_rows(plan) || history->n_shape != plan->n_shape)
+        return wb_fail(WB_ERR_ARGUMENT, "the history was made for another plan");
 
     history->n_rows = 0;
     history->zero_force = 0.0;
     history->converged = true;
     history->stopped = false;
-    WB_TRY(add_row(history, plan, cantilever, 1, 0));
-    history->rows[0].phase = history->rows[0].point.slack ? WB_HISTORY_SLACK : WB_HISTORY_LOAD;
+    if (goes_on(history, plan))
+        WB_TRY(add_row(history, plan, cantilever, 1, 0, WB_HISTORY_LOAD));
 
     const int cycles = plan->cycles == 0 ? 1 : plan->cycles;
     for (int cycle = 1; cycle <= cycles; cycle++) {
@@ -126,6 +150,5 @@ enum wb_status wb_history_run(struct wb_history *history, const struct wb_histor
         if (plan->cycles > 0)
             WB_TRY(run_branch(history, plan, cantilever, cycle, WB_HISTORY_UNLOAD));
     }
-    (void)goes_on(history, plan);
     return WB_OK;
 }

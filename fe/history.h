@@ -26,6 +26,8 @@ struct wb_history_plan {
     double maximum;                     /* in the control's unit; may be negative */
     int steps;                          /* equal steps from zero to the maximum, at least 1 */
     int cycles;                         /* 0: one loading, without unloading */
+    int n_shape;                        /* positions recorded with every row; 0: none */
+    const double *shape_s;              /* (n_shape) their reference arc lengths, m; borrowed */
     bool (*stop)(void *context);        /* asked before every row; NULL: never. True ends it */
     void *stop_context;
 };
@@ -39,10 +41,13 @@ struct wb_history_row {
 
 struct wb_history {
     int n_rows, capacity;
-    struct wb_history_row *rows; /* (n_rows), owned */
-    double zero_force;           /* N: what was subtracted, vertical */
-    bool converged;              /* false: the last row is where it stopped short of its target */
-    bool stopped;                /* by plan->stop */
+    struct wb_history_row *rows; /* (n_rows), owned; only those that were reached */
+    int n_shape;
+    double *shape_x, *shape_y;      /* (n_rows x n_shape), m, owned; NULL without shape */
+    double zero_force;              /* N: what was subtracted, vertical */
+    bool converged;                 /* false: the test ends early, at `end` */
+    struct wb_cantilever_point end; /* of the last move: where it stopped short of its target */
+    bool stopped;                   /* by plan->stop */
 };
 
 /* "load", "unload" or "slack". */

@@ -1,0 +1,102 @@
+#include "analysis/simulated.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/units.h"
+#include "base/version.h"
+
+/* m/s, of the paper's stage */
+static const double stage_speed = 1e-3;
+
+static enum wb_phase phase_of(enum wb_history_phase phase)
+{
+    switch (phase) {
+    case WB_HISTORY_LOAD:
+        return WB_PHASE_LOAD;
+    case WB_HISTORY_UNLOAD:
+        return WB_PHASE_UNLOAD;
+    case WB_HISTORY_SLACK:
+        return WB_PHASE_SLACK;
+    }
+    return WB_PHASE_LOAD;
+}
+
+static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_history *history,
+                               const double *shape_s)
+{
+    double travelled = 0.0;
+
+    for (int i = 0; i < history->n_rows; i++) {
+        const struct wb_history_row *row = &history->rows[i];
+        if (i > 0)
+            travelled += fabs(row->point.control - history->rows[i - 1].point.control);
+        const struct wb_row out = {
+            .t = travelled / stage_speed,
+            .cycle = row->cycle,
+            .phase = phase_of(row->phase),
+            .deflection = row->point.deflection,
+            .tension = row->point.tension,
+            .force = row->force,
+            .stage = (double)NAN,
+            .tip_x = row->point.tip_x,
+            .tip_angle = row->point.tip_angle,
+        };
+        WB_TRY(wb_dataset_add_row(dataset, &out));
+
+        for (int k = 0; k < history->n_shape; k++) {
+            const size_t at = (size_t)i * (size_t)history->n_shape + (size_t)k;
+            const struct wb_shape_row shape = {
+                .t = out.t,
+                .deflection = out.deflection,
+                .marker = k,
+                .s = shape_s[k],
+                .x = history->shape_x[at],
+                .y = history->shape_y[at],
+            };
+            WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
+        }
+    }
+    return WB_OK;
+}
+
+static void describe(struct wb_json *document, const struct wb_test_info *info,
+                     const struct wb_history *history, const struct wb_simulated_origin *origin)
+{
+    char name[128];
+    snprintf(name, sizeof name, "%s, simulated %s", info->wire, origin->model);
+    wb_json_set_text(document, "name", name);
+
+    struct wb_json *simulation = wb_json_set_object(document, "simulation");
+    wb_json_set_text(simulation, "model", origin->model);
+    wb_json_set_text(simulation, "law", origin->law);
+    wb_json_set_text(simulation, "properties_source", origin->source);
+    wb_json_set_number(simulation, "youngs_modulus_MPa", origin->material->youngs_modulus / WB_MPA);
+    wb_json_set_number(simulation, "poissons_ratio", origin->material->poissons_ratio);
+    if (origin->material->hardening != WB_HARDENING_NONE_ELASTIC) {
+        wb_json_set_number(simulation, "yield_stress_MPa", origin->material->yield_stress / WB_MPA);
+        wb_json_set_number(simulation, "strength_coefficient_MPa",
+                           origin->material->strength_coefficient / WB_MPA);
+        wb_json_set_number(simulation, "hardening_exponent", origin->material->hardening_exponent);
+    }
+    wb_json_set_boolean(simulation, "converged", history->converged);
+    wb_json_set_number(simulation, "zero_force_N", history->zero_force);
+    wb_json_set_number(simulation, "wall_s", origin->wall);
+    wb_json_set_number(simulation, "cpu_s", origin->cpu);
+
+    struct wb_json *tool = wb_json_set_object(document, "tool");
+    wb_json_set_text(tool, "name", "wirebench");
+    wb_json_set_text(tool, "version", wb_version());
+    wb_json_set_text(tool, "revision", wb_version_revision());
+}
+
+enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,
+                                 const struct wb_history *history, const double *shape_s,
+                                 const struct wb_simulated_origin *origin)
+{
+    dataset->info = *info;
+    dataset->info.is_simulation = true;
+    WB_TRY(add_rows(dataset, history, shape_s));
+    describe(dataset->document, info, history, origin);
+    return WB_OK;
+}
