@@ -19,6 +19,8 @@
 struct wb_calibrate_settings {
     double elastic_zone;    /* deflection over length for eq. 10; default 0.05 */
     double yield_point;     /* the same for eq. 11; 0 (default): as elastic_zone */
+    double youngs_modulus;  /* Pa; given instead of eq. 10; 0 (default): eq. 10 */
+    double yield_stress;    /* Pa; given instead of eq. 11; 0 (default): eq. 11 */
     double size_tolerance;  /* stop when the simplex' size is below, in units of (K0, n0); 1e-4 */
     double error_tolerance; /* stop when E_L2 is below, relative to its scale F_max
                                sqrt(delta_max); default 1e-4 */
@@ -54,6 +56,8 @@ struct wb_calibrate_result {
     struct wb_material material;                                 /* the calibrated law */
     struct wb_test_info info;                                    /* the test it was calibrated on */
     double first_strength_coefficient, first_hardening_exponent; /* K0, n0 */
+    int n_samples;                                               /* datasets averaged */
+    double max_force, max_deflection;                            /* N, m, of the averaged curve */
     /* Standard uncertainties of E, sigma_Y, K, n from the scatter between samples (jackknife over
      * the samples, each recalibrated from the optimum); NaN with one sample. */
     double deviation[4];
@@ -63,10 +67,11 @@ struct wb_calibrate_result {
     int evaluations, failed_evaluations; /* beam runs; of them not converged (penalised) */
     int n_path;
     struct wb_calibrate_step *path; /* (n_path), owned */
-    double rms;         /* eq. 19 of the final model on the same curve, over its F_max */
-    double max_error;   /* largest of eq. 18 */
-    double scatter_rms; /* RMS over deflection of the samples' standard deviation over F_max: what
-                           the scatter between samples explains */
+    int start_of_restart; /* index in path where the restart begins; n_path when there was none */
+    double rms;           /* eq. 19 of the final model on the same curve, over its F_max */
+    double max_error;     /* largest of eq. 18 */
+    double scatter_rms;   /* RMS over deflection of the samples' standard deviation over F_max: what
+                             the scatter between samples explains */
     double cpu_s;
 };
 

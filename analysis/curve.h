@@ -2,6 +2,7 @@
 #ifndef WB_ANALYSIS_CURVE_H
 #define WB_ANALYSIS_CURVE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "analysis/dataset.h"
@@ -31,6 +32,17 @@ void wb_curve_release(struct wb_curve *curve);
 
 /* Linear interpolation of the mean force at a deflection within 0..max_deflection; NaN outside. */
 double wb_curve_force(const struct wb_curve *curve, double deflection);
+
+/* What the scatter between samples is worth: root mean square over deflection of the standard
+ * deviation, over max_force; 0 for one sample. */
+double wb_curve_scatter(const struct wb_curve *curve);
+
+/* Same wire and same length: tests that may be averaged. */
+bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info *b);
+
+/* Numbers datasets by kind in the order of their first appearance: group[i] from 0. Returns the
+ * number of groups. */
+int wb_curve_group(const struct wb_dataset *const *datasets, int n, int *group);
 
 /* Mean of the samples' natural shapes, and everything else of `info` from the first. */
 void wb_curve_mean_info(const struct wb_dataset *const *datasets, int n, struct wb_test_info *info);

@@ -22,11 +22,18 @@ struct wb_prediction {
 struct wb_validate_result {
     struct wb_curve curve; /* measured average; owned */
     struct wb_prediction elastoplastic, elastic;
-    double shape_rms; /* m: RMS distance of measured markers from the computed axis at the same
-                         deflection, first loading; NaN without shapes */
+    double shape_rms; /* m: RMS distance of measured markers from the points of the computed axis
+                         at the same arc length and deflection, first loading; the clamp's marker,
+                         which is the origin, is left out; NaN without shapes */
     double shape_max; /* m */
     int n_shape_points;
     double scatter_rms; /* as in calibrate */
+    /* RMS error that the scatter between samples alone lets expect: standard errors of this
+     * average and of the one calibrated on (as far as known), added in squares. */
+    double expected_rms;
+    /* expected_rms squared over the elastoplastic RMS squared, at most 1: the share of the mean
+     * square error that scatter explains; NaN with one sample. */
+    double scatter_share;
     struct wb_test_info info;
     double cpu_s;
 };
@@ -41,6 +48,12 @@ WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
                                              const struct wb_properties *properties,
                                              const struct wb_dataset *const *datasets, int n,
                                              const struct wb_validate_settings *settings);
+/* Measured and computed forces and errors on the grid, as CSV:
+ * deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,elastoplastic_error,elastic_N,
+ * elastic_error. Written atomically over an existing file. */
+WB_MUST_CHECK enum wb_status wb_validate_write_csv(const struct wb_validate_result *result,
+                                                   const char *path);
+
 void wb_validate_result_release(struct wb_validate_result *result);
 
 /* Computed shape of the model at a deflection, for drawing: n points at equal arc length into x

@@ -1,0 +1,384 @@
+#include "analysis/calibrate.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_multimin.h>
+
+#include "analysis/computed.h"
+#include "analysis/errors.h"
+#include "analysis/first_guess.h"
+#include "analysis/jackknife.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+/* Edges of the paper's simplex: 5 % of K0 and of n0. */
+#define SIMPLEX_STEP 0.05
+/* Where a material may lie; outside the error is a penalty. */
+#define SMALLEST_EXPONENT 0.01
+#define LARGEST_EXPONENT 1.5
+#define SMALLEST_STRENGTH_RATIO 1e-6 /* K over K0 */
+#define LARGEST_STRENGTH_RATIO 1e6
+/* Error of a point outside, or that a beam could not compute: far above any error of a curve. */
+#define PENALTY 10.0
+/* A test whose largest force is above this part of the linear elastic prediction has not yielded.
+ */
+#define ELASTIC_SHARE 0.95
+
+/* What one evaluation of the error needs. */
+struct objective {
+    struct wb_computed *computed;
+    const struct wb_curve *curve;
+    struct wb_material material; /* with K and n of the last evaluation */
+    double first_strength, first_exponent;
+    double *force;         /* (curve->n) */
+    enum wb_status status; /* of the last evaluation that failed other than by convergence */
+    int evaluations, failed;
+};
+
+void wb_calibrate_default_settings(struct wb_calibrate_settings *settings)
+{
+    *settings = (struct wb_calibrate_settings){
+        .elastic_zone = 0.05,
+        .size_tolerance = 1e-4,
+        .error_tolerance = 1e-4,
+        .max_iterations = 200,
+        .restart = true,
+        .step = 0.5 * WB_MM,
+    };
+}
+
+const char *wb_calibrate_end_text(enum wb_calibrate_end end)
+{
+    switch (end) {
+    case WB_CALIBRATE_SIZE:
+        return "the simplex became small";
+    case WB_CALIBRATE_ERROR:
+        return "the error became small";
+    case WB_CALIBRATE_ITERATIONS:
+        return "the iterations ran out";
+    case WB_CALIBRATE_STOPPED:
+        return "stopped by the caller";
+    }
+    return "unknown";
+}
+
+static void silence_gsl(void)
+{
+    gsl_set_error_handler_off();
+}
+
+static double yield_point(const struct wb_calibrate_settings *settings)
+{
+    return settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
+}
+
+static enum wb_status check_settings(const struct wb_calibrate_settings *settings)
+{
+    const double zone = settings->elastic_zone, point = yield_point(settings);
+    if (!(zone > 0.0 && zone <= 0.3) || !(point > 0.0 && point <= 0.3))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "elastic zone and yield point must be above 0 and at most 0.3 of the "
+                       "length, not %g and %g",
+                       zone, point);
+    if (!(settings->step > 0.0) || !(settings->size_tolerance > 0.0) ||
+        !(settings->error_tolerance >= 0.0) || settings->max_iterations < 1)
+        return wb_fail(WB_ERR_ARGUMENT, "step, tolerances and iterations must be positive");
+    return WB_OK;
+}
+
+/* How far outside the domain a point lies, 0 inside. */
+static double violation(double strength_ratio, double exponent)
+{
+    double outside = 0.0;
+    outside += fmax(0.0, SMALLEST_STRENGTH_RATIO - strength_ratio);
+    outside += fmax(0.0, strength_ratio / LARGEST_STRENGTH_RATIO - 1.0);
+    outside += fmax(0.0, SMALLEST_EXPONENT - exponent);
+    outside += fmax(0.0, exponent - LARGEST_EXPONENT);
+    return outside;
+}
+
+/* E_L2 over F_max sqrt(delta_max) at (K/K0, n/n0). Always finite: a penalty grows with the distance
+ * to the domain, and with the part of the curve that a beam did not reach, so that the simplex
+ * finds its way back. */
+static double evaluate(const gsl_vector *at, void *parameters)
+{
+    struct objective *const objective = parameters;
+    const struct wb_curve *const curve = objective->curve;
+    const double ratio = gsl_vector_get(at, 0);
+    const double exponent = gsl_vector_get(at, 1) * objective->first_exponent;
+    const double outside = violation(ratio, exponent);
+    if (outside > 0.0 || !isfinite(outside))
+        return PENALTY * (2.0 + fmin(outside, 1e6));
+    objective->material.strength_coefficient = ratio * objective->first_strength;
+    objective->material.hardening_exponent = exponent;
+    int reached = 0;
+    const enum wb_status status =
+        wb_computed_curve(objective->computed, &objective->material, curve->n, curve->step,
+                          objective->force, &reached);
+    objective->evaluations++;
+    if (status != WB_OK)
+        objective->status = status;
+    if (status != WB_OK || reached < curve->n) {
+        objective->failed++;
+        return PENALTY * (2.0 - (double)reached / curve->n);
+    }
+    return wb_errors_relative_l2(curve->n, curve->step, curve->force, objective->force,
+                                 curve->max_force);
+}
+
+static enum wb_status add_step(struct wb_calibrate_result *result,
+                               const struct objective *objective, const gsl_vector *best,
+                               double error, double size)
+{
+    const size_t n = (size_t)result->n_path;
+    struct wb_calibrate_step *const path = realloc(result->path, (n + 1) * sizeof *path);
+    if (!path)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the optimiser's path");
+    path[n] = (struct wb_calibrate_step){
+        .strength_coefficient = gsl_vector_get(best, 0) * objective->first_strength,
+        .hardening_exponent = gsl_vector_get(best, 1) * objective->first_exponent,
+        .error = error,
+        .size = size,
+    };
+    result->path = path;
+    result->n_path++;
+    return WB_OK;
+}
+
+/* Iterates one simplex until it is small, the error is, or the iterations or the caller's patience
+ * run out. */
+static enum wb_status iterate(struct wb_calibrate_result *result, struct objective *objective,
+                              gsl_multimin_fminimizer *minimizer, double first_error,
+                              const struct wb_calibrate_settings *settings)
+{
+    const gsl_vector *const best = gsl_multimin_fminimizer_x(minimizer);
+    for (int i = 0;; i++) {
+        const double size = gsl_multimin_fminimizer_size(minimizer);
+        /* GSL knows no minimum before the first iteration. */
+        const double error = i == 0 ? first_error : gsl_multimin_fminimizer_minimum(minimizer);
+        if (objective->status != WB_OK)
+            return objective->status;
+        WB_TRY(add_step(result, objective, best, error, size));
+        if (settings->progress &&
+            !settings->progress(settings->progress_context, objective->evaluations, error, size)) {
+            result->end = WB_CALIBRATE_STOPPED;
+            return WB_OK;
+        }
+        if (error < settings->error_tolerance) {
+            result->end = WB_CALIBRATE_ERROR;
+            return WB_OK;
+        }
+        if (size < settings->size_tolerance) {
+            result->end = WB_CALIBRATE_SIZE;
+            return WB_OK;
+        }
+        if (i >= settings->max_iterations) {
+            result->end = WB_CALIBRATE_ITERATIONS;
+            return WB_OK;
+        }
+        /* The only failure is a contraction that hits a non-finite value, which evaluate() never
+         * returns. */
+        if (gsl_multimin_fminimizer_iterate(minimizer) != GSL_SUCCESS)
+            return wb_fail(WB_ERR_CONVERGENCE, "the simplex could not go on");
+    }
+}
+
+/* One simplex from (K/K0, n/n0) = `at`, with edges of 5 % of each; the optimum goes back into
+ * `at`. */
+static enum wb_status minimise(struct wb_calibrate_result *result, struct objective *objective,
+                               double at[2], const struct wb_calibrate_settings *settings)
+{
+    gsl_multimin_fminimizer *const minimizer =
+        gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, 2);
+    gsl_vector *const start = gsl_vector_alloc(2);
+    gsl_vector *const edges = gsl_vector_alloc(2);
+    gsl_multimin_function function = {evaluate, 2, objective};
+    enum wb_status status = WB_OK;
+    double first_error = 0.0;
+    if (!minimizer || !start || !edges) {
+        status = wb_fail(WB_ERR_MEMORY, "no memory for the simplex");
+    } else {
+        for (size_t i = 0; i < 2; i++) {
+            gsl_vector_set(start, i, at[i]);
+            gsl_vector_set(edges, i, SIMPLEX_STEP * at[i]);
+        }
+        first_error = evaluate(start, objective);
+        if (gsl_multimin_fminimizer_set(minimizer, &function, start, edges) != GSL_SUCCESS)
+            status = wb_fail(WB_ERR_CONVERGENCE, "the first simplex could not be made");
+    }
+    if (status == WB_OK)
+        status = iterate(result, objective, minimizer, first_error, settings);
+    if (status == WB_OK) {
+        const gsl_vector *const best = gsl_multimin_fminimizer_x(minimizer);
+        at[0] = gsl_vector_get(best, 0);
+        at[1] = gsl_vector_get(best, 1);
+        if (result->path[result->n_path - 1].error >= PENALTY &&
+            result->end != WB_CALIBRATE_STOPPED)
+            status = wb_fail(WB_ERR_CONVERGENCE,
+                             "wire '%s': the beam converges nowhere around the first guess "
+                             "(K0 = %.4g MPa, n0 = %.4g)",
+                             result->info.wire, objective->first_strength / WB_MPA,
+                             objective->first_exponent);
+    }
+    if (minimizer)
+        gsl_multimin_fminimizer_free(minimizer);
+    if (start)
+        gsl_vector_free(start);
+    if (edges)
+        gsl_vector_free(edges);
+    return status;
+}
+
+/* Refuses a test that follows the linear elastic prediction to its end. */
+static enum wb_status check_yielded(struct objective *objective, const struct wb_test_info *info)
+{
+    struct wb_material elastic = objective->material;
+    const struct wb_curve *const curve = objective->curve;
+    int reached = 0;
+    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+    WB_TRY(wb_computed_curve(objective->computed, &elastic, curve->n, curve->step, objective->force,
+                             &reached));
+    objective->evaluations++;
+    if (reached < curve->n)
+        return WB_OK;
+    const double predicted = objective->force[curve->n - 1];
+    const double share = curve->force[curve->n - 1] / predicted;
+    if (predicted > 0.0 && share > ELASTIC_SHARE)
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': yield is not reached: at %.2f mm the force is still %.0f %% of "
+                       "the linear elastic prediction's",
+                       info->wire, curve->max_deflection / WB_MM, 100.0 * share);
+    return WB_OK;
+}
+
+/* Nelder-Mead, then once more from the optimum. */
+static enum wb_status optimise(struct wb_calibrate_result *result, struct objective *objective,
+                               const struct wb_calibrate_settings *settings)
+{
+    double at[2] = {1.0, 1.0};
+    WB_TRY(minimise(result, objective, at, settings));
+    result->start_of_restart = result->n_path;
+    if (settings->restart && result->end != WB_CALIBRATE_STOPPED &&
+        result->end != WB_CALIBRATE_ERROR) {
+        const double before[2] = {at[0], at[1]};
+        WB_TRY(minimise(result, objective, at, settings));
+        result->restarted = true;
+        result->restart_moved = fmax(fabs(at[0] / before[0] - 1.0), fabs(at[1] / before[1] - 1.0));
+    }
+    result->material = objective->material;
+    result->material.strength_coefficient = at[0] * objective->first_strength;
+    result->material.hardening_exponent = at[1] * objective->first_exponent;
+    result->evaluations = objective->evaluations;
+    result->failed_evaluations = objective->failed;
+    return WB_OK;
+}
+
+/* The final law on every point of the grid: eqs. 18 and 19. */
+static enum wb_status judge(struct wb_calibrate_result *result, struct objective *objective)
+{
+    const struct wb_curve *const curve = objective->curve;
+    int reached = 0;
+    WB_TRY(wb_computed_curve(objective->computed, &result->material, curve->n, curve->step,
+                             objective->force, &reached));
+    result->evaluations++;
+    wb_errors_curve(curve->n, curve->force, objective->force, curve->max_force, objective->force);
+    result->rms = wb_errors_rms(curve->n, objective->force);
+    result->max_error = wb_errors_largest(curve->n, objective->force);
+    result->scatter_rms = wb_curve_scatter(curve);
+    result->n_samples = curve->n_samples;
+    result->max_force = curve->max_force;
+    result->max_deflection = curve->max_deflection;
+    return WB_OK;
+}
+
+static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
+                                      const struct wb_curve *curve,
+                                      const struct wb_dataset *const *datasets, int n,
+                                      const struct wb_calibrate_settings *settings)
+{
+    struct wb_first_guess guess;
+    wb_curve_mean_info(datasets, n, &result->info);
+    WB_TRY(wb_first_guess_run(&guess, curve, &result->info, settings->elastic_zone,
+                              yield_point(settings)));
+    result->first_strength_coefficient = guess.strength_coefficient;
+    result->first_hardening_exponent = guess.hardening_exponent;
+    struct objective objective = {
+        .curve = curve,
+        .material = {.hardening = WB_HARDENING_ISOTROPIC_POWER,
+                     .youngs_modulus = guess.youngs_modulus,
+                     .poissons_ratio = result->info.poissons_ratio,
+                     .yield_stress = guess.yield_stress,
+                     .strength_coefficient = guess.strength_coefficient,
+                     .hardening_exponent = guess.hardening_exponent},
+        .first_strength = guess.strength_coefficient,
+        .first_exponent = guess.hardening_exponent,
+    };
+    if (settings->youngs_modulus > 0.0)
+        objective.material.youngs_modulus = settings->youngs_modulus;
+    if (settings->yield_stress > 0.0)
+        objective.material.yield_stress = settings->yield_stress;
+    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
+                                             settings->n_fibres};
+    objective.force = malloc((size_t)curve->n * sizeof *objective.force);
+    if (!objective.force)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d points", curve->n);
+    enum wb_status status =
+        wb_computed_create(&objective.computed, &result->info, &objective.material, &how);
+    if (status == WB_OK)
+        status = check_yielded(&objective, &result->info);
+    if (status == WB_OK)
+        status = optimise(result, &objective, settings);
+    if (status == WB_OK)
+        status = judge(result, &objective);
+    wb_computed_destroy(objective.computed);
+    free(objective.force);
+    if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
+        status = wb_jackknife_run(result->deviation, datasets, n, settings, curve,
+                                  &result->material, &result->evaluations);
+    return status;
+}
+
+static double cpu_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
+                                const struct wb_dataset *const *datasets, int n,
+                                const struct wb_calibrate_settings *settings)
+{
+    /* GSL's default handler aborts the program. */
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, silence_gsl);
+    const double started = cpu_seconds();
+    WB_TRY(check_settings(settings));
+    struct wb_calibrate_result made = {0};
+    struct wb_curve curve;
+    for (int k = 0; k < 4; k++)
+        made.deviation[k] = (double)NAN;
+    WB_TRY(wb_curve_average(&curve, datasets, n, settings->step));
+    const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings);
+    wb_curve_release(&curve);
+    if (status != WB_OK) {
+        wb_calibrate_result_release(&made);
+        return status;
+    }
+    made.cpu_s = cpu_seconds() - started;
+    *result = made;
+    return WB_OK;
+}
+
+void wb_calibrate_result_release(struct wb_calibrate_result *result)
+{
+    free(result->path);
+    result->path = NULL;
+    result->n_path = 0;
+}

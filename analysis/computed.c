@@ -1,0 +1,108 @@
+#include "analysis/computed.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "fe/cantilever.h"
+#include "fe/section.h"
+
+#define WB_LOG_DOMAIN "computed"
+
+struct wb_computed {
+    struct wb_test_info info; /* the natural curvature's context: outlives the cantilever */
+    struct wb_section section;
+    struct wb_cantilever *cantilever;
+    double zero; /* N, vertical force at zero deflection */
+};
+
+enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test_info *info,
+                                  const struct wb_material *material,
+                                  const struct wb_computed_settings *settings)
+{
+    *out = NULL;
+    struct wb_computed *const computed = calloc(1, sizeof *computed);
+    if (!computed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a computed test");
+    computed->info = *info;
+    enum wb_status status = wb_section_init_circle(&computed->section, info->outer_diameter,
+                                                   material, settings->n_fibres);
+    if (status == WB_OK) {
+        struct wb_cantilever_model model;
+        wb_cantilever_default_model(&model);
+        model.section = &computed->section;
+        model.length = info->length;
+        model.n_elements = settings->n_elements;
+        if (!settings->straight && info->n_natural_shape > 0) {
+            model.natural_curvature = wb_dataset_natural_curvature;
+            model.curvature_context = &computed->info;
+        }
+        model.strand_length = info->strand_length;
+        model.counterweight = info->counterweight;
+        model.mass_per_length = info->mass_per_length;
+        model.gravity_x = 0.0;
+        model.gravity_y = -info->gravity;
+        status = wb_cantilever_create(&computed->cantilever, &model, NULL);
+    }
+    if (status != WB_OK) {
+        wb_computed_destroy(computed);
+        return status;
+    }
+    *out = computed;
+    return WB_OK;
+}
+
+void wb_computed_destroy(struct wb_computed *computed)
+{
+    if (!computed)
+        return;
+    wb_cantilever_destroy(computed->cantilever);
+    wb_section_release(&computed->section);
+    free(computed);
+}
+
+enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_material *material,
+                                 bool *reached)
+{
+    struct wb_cantilever_point point;
+    wb_cantilever_reset(computed->cantilever);
+    wb_cantilever_set_materials(computed->cantilever, material);
+    WB_TRY(wb_cantilever_move(computed->cantilever, WB_CONTROL_DEFLECTION, 0.0, &point));
+    *reached = point.end == WB_CANTILEVER_CONVERGED && isfinite(point.vertical_force);
+    computed->zero = *reached ? point.vertical_force : 0.0;
+    return WB_OK;
+}
+
+enum wb_status wb_computed_move(struct wb_computed *computed, double deflection, double *force,
+                                bool *reached)
+{
+    struct wb_cantilever_point point;
+    WB_TRY(wb_cantilever_move(computed->cantilever, WB_CONTROL_DEFLECTION, deflection, &point));
+    *reached = point.end == WB_CANTILEVER_CONVERGED && isfinite(point.vertical_force);
+    if (*reached)
+        *force = point.vertical_force - computed->zero;
+    return WB_OK;
+}
+
+void wb_computed_shape(const struct wb_computed *computed, int n, const double *s, double *x,
+                       double *y)
+{
+    wb_cantilever_shape(computed->cantilever, n, s, x, y, NULL);
+}
+
+enum wb_status wb_computed_curve(struct wb_computed *computed, const struct wb_material *material,
+                                 int n, double step, double *force, int *n_reached)
+{
+    bool reached;
+    int done = 0;
+    WB_TRY(wb_computed_start(computed, material, &reached));
+    if (reached)
+        force[done++] = 0.0;
+    while (reached && done < n) {
+        WB_TRY(wb_computed_move(computed, done * step, &force[done], &reached));
+        done += reached;
+    }
+    *n_reached = done;
+    for (int i = done; i < n; i++)
+        force[i] = (double)NAN;
+    return WB_OK;
+}

@@ -1,0 +1,167 @@
+#include "analysis/first_guess.h"
+
+#include <math.h>
+
+#include <gsl/gsl_fit.h>
+
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "first guess"
+
+/* Deflection over length in which the slope past yield is taken: the paper's 'small range'. Shorter
+ * and the cell's noise rules, longer and the curve bends. */
+#define SLOPE_RANGE 0.03
+#define FEWEST_SLOPE_POINTS 3
+/* Limits within which n0 is kept. */
+#define SMALLEST_EXPONENT 0.05
+#define LARGEST_EXPONENT 1.2
+
+double wb_first_guess_modulus(double force, double deflection, double length, double diameter)
+{
+    const double second_moment = M_PI * pow(diameter, 4) / 64.0;
+    return force * pow(length, 3) / (3.0 * deflection * second_moment);
+}
+
+double wb_first_guess_stress(double force, double length, double diameter)
+{
+    return 32.0 * force * length / (M_PI * pow(diameter, 3));
+}
+
+double wb_first_guess_strain(double deflection, double length, double diameter)
+{
+    return 3.0 * diameter * deflection / (2.0 * length * length);
+}
+
+double wb_first_guess_hollomon(double modulus, double yield_stress, double exponent, double strain)
+{
+    return yield_stress * pow(modulus * strain / yield_stress, exponent);
+}
+
+double wb_first_guess_tangent(double modulus, double yield_stress, double exponent, double stress)
+{
+    return exponent * modulus * pow(stress / yield_stress, 1.0 - 1.0 / exponent);
+}
+
+double wb_first_guess_strength(double modulus, double yield_stress, double exponent)
+{
+    /* E^n / sigma_Y^(n-1) without leaving the range of doubles. */
+    return yield_stress * pow(modulus / yield_stress, exponent);
+}
+
+/* Line through grid points first..last; its value at `deflection` and its slope. */
+static void fit_line(const struct wb_curve *curve, int first, int last, double deflection,
+                     double *value, double *slope)
+{
+    double x[64], c0, c1, cov00, cov01, cov11, squares;
+    int n = last - first + 1;
+    if (n > 64)
+        n = 64;
+    for (int i = 0; i < n; i++)
+        x[i] = (first + i) * curve->step - deflection;
+    gsl_fit_linear(x, 1, curve->force + first, 1, (size_t)n, &c0, &c1, &cov00, &cov01, &cov11,
+                   &squares);
+    *value = c0;
+    *slope = c1;
+}
+
+/* Force at a deflection from the five grid points around it (fewer at the ends). */
+static double force_at(const struct wb_curve *curve, double deflection)
+{
+    const int middle = (int)lround(deflection / curve->step);
+    const int first = middle - 2 < 0 ? 0 : middle - 2;
+    const int last = middle + 2 > curve->n - 1 ? curve->n - 1 : middle + 2;
+    double value, slope;
+    fit_line(curve, first, last, deflection, &value, &slope);
+    return value;
+}
+
+static enum wb_status check_reach(const struct wb_curve *curve, const struct wb_test_info *info,
+                                  double elastic_zone, double yield_point)
+{
+    const double needed = fmax(elastic_zone, yield_point + SLOPE_RANGE) * info->length;
+    if (curve->max_deflection < needed)
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': yield is not reached: the first loading ends at %.2f mm, at "
+                       "least %.2f mm is needed (the yield point at %g of the length and %g more "
+                       "to see the slope past it)",
+                       info->wire, curve->max_deflection / WB_MM, needed / WB_MM, yield_point,
+                       SLOPE_RANGE);
+    if (fmin(elastic_zone, yield_point) * info->length < 2.0 * curve->step)
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': too few points below the yield point: %.2f mm with steps of "
+                       "%g mm; take a smaller step",
+                       info->wire, fmin(elastic_zone, yield_point) * info->length / WB_MM,
+                       curve->step / WB_MM);
+    return WB_OK;
+}
+
+/* The curve as a whole must rise. */
+static enum wb_status check_shape(const struct wb_curve *curve, const struct wb_test_info *info)
+{
+    double variation = 0.0, low = curve->force[0], high = curve->force[0];
+    for (int i = 0; i < curve->n; i++) {
+        if (!isfinite(curve->force[i]))
+            return wb_fail(WB_ERR_DATA, "wire '%s': the force at %.2f mm is not a number",
+                           info->wire, i * curve->step / WB_MM);
+        low = fmin(low, curve->force[i]);
+        high = fmax(high, curve->force[i]);
+        if (i > 0)
+            variation += fabs(curve->force[i] - curve->force[i - 1]);
+    }
+    const double start = curve->force[0];
+    if (start - low > 0.5 * (high - low))
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': the force falls as the deflection grows (from %.4g to %.4g "
+                       "N); is its sign reversed?",
+                       info->wire, start, low);
+    if (!(high > start) || variation > 3.0 * (high - low))
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': the force does not rise steadily with the deflection (it goes "
+                       "up and down by %.4g N in all, between %.4g and %.4g N)",
+                       info->wire, variation, low, high);
+    return WB_OK;
+}
+
+enum wb_status wb_first_guess_run(struct wb_first_guess *guess, const struct wb_curve *curve,
+                                  const struct wb_test_info *info, double elastic_zone,
+                                  double yield_point)
+{
+    const double length = info->length, diameter = info->outer_diameter;
+    WB_TRY(check_reach(curve, info, elastic_zone, yield_point));
+    WB_TRY(check_shape(curve, info));
+    struct wb_first_guess result;
+    const double elastic_deflection = elastic_zone * length;
+    const double elastic_force = force_at(curve, elastic_deflection);
+    const double yield_force = force_at(curve, yield_point * length);
+    if (!(elastic_force > 0.0) || !(yield_force > 0.0))
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': the force in the elastic zone is not positive (%.4g N at %.2f "
+                       "mm)",
+                       info->wire, elastic_force, elastic_deflection / WB_MM);
+    result.youngs_modulus =
+        wb_first_guess_modulus(elastic_force, elastic_deflection, length, diameter);
+    result.yield_stress = wb_first_guess_stress(yield_force, length, diameter);
+
+    const int first = (int)ceil(yield_point * length / curve->step - 1e-9);
+    int last = (int)floor((yield_point + SLOPE_RANGE) * length / curve->step + 1e-9);
+    if (last < first + FEWEST_SLOPE_POINTS - 1)
+        last = first + FEWEST_SLOPE_POINTS - 1;
+    if (last > curve->n - 1)
+        return wb_fail(WB_ERR_DATA, "wire '%s': too few points past the yield point", info->wire);
+    double value, slope;
+    fit_line(curve, first, last, first * curve->step, &value, &slope);
+    /* d sigma / d eps = (dF / d delta) (32 L / (pi d^3)) / (3 d / (2 L^2)). */
+    result.tangent_modulus = wb_first_guess_stress(slope, length, diameter) /
+                             wb_first_guess_strain(1.0, length, diameter);
+    if (!(result.tangent_modulus > 0.0))
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': the force falls just past the yield point (slope %.4g N/m); "
+                       "no hardening law can follow",
+                       info->wire, slope);
+    result.hardening_exponent = fmin(
+        fmax(result.tangent_modulus / result.youngs_modulus, SMALLEST_EXPONENT), LARGEST_EXPONENT);
+    result.strength_coefficient = wb_first_guess_strength(
+        result.youngs_modulus, result.yield_stress, result.hardening_exponent);
+    *guess = result;
+    return WB_OK;
+}

@@ -1,0 +1,51 @@
+/* Closed forms of section 4.1: E and sigma_Y from the elastic zone, and the first guess of K and n
+ * from which the optimiser starts (eqs. 10 to 16 of the paper).
+ *
+ * Eqs. 10 and 11 hold for a straight, weightless cantilever under a vertical tip force and small
+ * deflection; they are used as written, on the zeroed force. Eqs. 12 to 16 are Hollomon's form
+ * (sigma = K eps^n in the total strain) and serve for the first guess only: the law that is
+ * calibrated is Ludwik's (plastic strain only).
+ */
+#ifndef WB_ANALYSIS_FIRST_GUESS_H
+#define WB_ANALYSIS_FIRST_GUESS_H
+
+#include "analysis/curve.h"
+#include "base/status.h"
+
+/* Eq. 10: E = F L^3 / (3 delta I), Pa. */
+double wb_first_guess_modulus(double force, double deflection, double length, double diameter);
+
+/* Eq. 11: sigma = 32 F L / (pi d^3), the outer fibre's elastic stress at the clamp, Pa. */
+double wb_first_guess_stress(double force, double length, double diameter);
+
+/* Outer fibre's elastic strain at the clamp, eps = 3 d delta / (2 L^2). */
+double wb_first_guess_strain(double deflection, double length, double diameter);
+
+/* Eq. 13: Hollomon's stress at a strain beyond yield, Pa. */
+double wb_first_guess_hollomon(double modulus, double yield_stress, double exponent, double strain);
+
+/* Eq. 14: its tangent modulus at a stress beyond yield, Pa. */
+double wb_first_guess_tangent(double modulus, double yield_stress, double exponent, double stress);
+
+/* Eq. 16: K = E^n / sigma_Y^(n-1), Pa. */
+double wb_first_guess_strength(double modulus, double yield_stress, double exponent);
+
+struct wb_first_guess {
+    double youngs_modulus;       /* eq. 10 at elastic_zone * L, Pa */
+    double yield_stress;         /* eq. 11 at yield_point * L, Pa */
+    double tangent_modulus;      /* slope of the sigma-eps curve just past yield, Pa */
+    double strength_coefficient; /* K0, Pa */
+    double hardening_exponent;   /* n0; kept within 0.05..1.2, where eq. 16 makes sense */
+};
+
+/* All of it from an averaged curve of a wire with `info`'s length and diameter. The force at a
+ * deflection is that of a straight line fitted to the five grid points around it; the slope past
+ * yield is fitted over the 3 % of L behind the yield point. A curve that cannot serve is
+ * WB_ERR_DATA with the reason: too short to yield, reversed sign, not rising, falling behind the
+ * yield point. */
+WB_MUST_CHECK enum wb_status wb_first_guess_run(struct wb_first_guess *guess,
+                                                const struct wb_curve *curve,
+                                                const struct wb_test_info *info,
+                                                double elastic_zone, double yield_point);
+
+#endif
