@@ -114,7 +114,7 @@ struct wb_clock_row {
  * writing). A visitor returns a status;
  * anything but WB_OK ends the walk and is returned. Events and clock rows are visited in order of
  * time as well. WB_ERR_DATA (logged) when the database breaks
- * off; everything before has been visited. */
+ * off or rows cannot be read; everything else has been visited. */
 WB_MUST_CHECK enum wb_status
 wb_recording_each_chunk(struct wb_recording *recording,
                         enum wb_status (*visit)(void *context, const struct wb_chunk *chunk),

@@ -425,7 +425,8 @@ static enum wb_status append_key(struct keys *keys, const struct key *key)
 }
 
 /* Reads rowid, time, stream and seq of all rows as far as they go. *end is WB_OK or why the table
- * broke off. */
+ * broke off. A page that is only partly there reads as rows of nothing: rows without a time, or
+ * out of the order that SQLite keeps, are the end. */
 static enum wb_status read_keys(struct wb_recording *recording, const char *table, const char *sql,
                                 struct keys *keys, enum wb_status *end)
 {
@@ -440,6 +441,11 @@ static enum wb_status read_keys(struct wb_recording *recording, const char *tabl
                           .t_ns = sqlite3_column_int64(statement, 1),
                           .stream = sqlite3_column_int(statement, 2),
                           .seq = sqlite3_column_int64(statement, 3)};
+        if (sqlite3_column_type(statement, 1) != SQLITE_INTEGER ||
+            (keys->n > 0 && key.rowid <= keys->items[keys->n - 1].rowid)) {
+            code = SQLITE_CORRUPT;
+            break;
+        }
         status = append_key(keys, &key);
     }
     if (status == WB_OK)
@@ -458,8 +464,9 @@ struct walk {
     void *context;
 };
 
+/* Visits the rows. Those that cannot be read are counted in *n_lost and passed over. */
 static enum wb_status visit_rows(struct wb_recording *recording, struct walk *walk,
-                                 const struct keys *keys)
+                                 const struct keys *keys, size_t *n_lost)
 {
     sqlite3_stmt *statement = NULL;
     WB_TRY(prepare(recording, walk->row_sql, &statement));
@@ -469,11 +476,10 @@ static enum wb_status visit_rows(struct wb_recording *recording, struct walk *wa
         int code = sqlite3_step(statement);
         if (code == SQLITE_ROW)
             status = walk->row(walk, &keys->items[i], statement);
+        else if ((code & 0xff) == SQLITE_NOMEM)
+            status = wb_recording_fail(recording, code, "read");
         else
-            status = wb_fail(WB_ERR_DATA, "'%s': row %lld of table %s cannot be read: %s",
-                             recording->path, (long long)keys->items[i].rowid, walk->table,
-                             code == SQLITE_DONE ? "it is not where its key says"
-                                                 : sqlite3_errstr(code));
+            ++*n_lost;
         sqlite3_reset(statement);
     }
     sqlite3_finalize(statement);
@@ -491,7 +497,11 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
             sorted = compare_keys(&keys.items[i - 1], &keys.items[i]) <= 0;
         if (!sorted)
             qsort(keys.items, keys.n, sizeof keys.items[0], compare_keys);
-        status = visit_rows(recording, walk, &keys);
+        size_t n_lost = 0;
+        status = visit_rows(recording, walk, &keys, &n_lost);
+        if (status == WB_OK && end == WB_OK && n_lost > 0)
+            end = wb_fail(WB_ERR_DATA, "'%s': %zu rows of table %s cannot be read", recording->path,
+                          n_lost, walk->table);
     }
     free(keys.items);
     return status != WB_OK ? status : end;

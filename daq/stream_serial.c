@@ -85,10 +85,13 @@ static enum wb_status apply_line(struct sp_port *port, const struct wb_stream_li
     return set_modem_lines(port, line);
 }
 
-/* What libserialport does not offer, where the driver takes it: arrival without the 16 ms timer of
- * FTDI chips, and with dtr=off no pulse on DTR at closing, which would reset an Arduino. */
+/* What libserialport does not offer, where the driver takes it: no second opener, arrival without
+ * the 16 ms timer of FTDI chips, and with dtr=off no pulse on DTR at closing, which would reset an
+ * Arduino. */
 static void tune(int descriptor, const struct wb_stream_line *line)
 {
+    if (ioctl(descriptor, TIOCEXCL) != 0)
+        wb_debug("'%s' cannot be kept from other programs: %s", line->path, strerror(errno));
     struct serial_struct serial;
     if (ioctl(descriptor, TIOCGSERIAL, &serial) == 0) {
         serial.flags |= ASYNC_LOW_LATENCY;
@@ -147,7 +150,7 @@ static enum wb_status serial_open(void *state, const char *rest)
     enum wb_status status = WB_OK;
     if (sp_get_port_handle(serial->port, &serial->descriptor) != SP_OK)
         status = wb_fail(WB_ERR_IO, "port '%s' has no descriptor", line.path);
-    /* TIOCEXCL, which libserialport sets, does not keep root out; the lock does. */
+    /* The lock keeps other wirebenches out, TIOCEXCL all other programs but root's. */
     if (status == WB_OK)
         status = wb_stream_lock(serial->descriptor, line.path);
     if (status == WB_OK)
@@ -165,6 +168,7 @@ static enum wb_status serial_open(void *state, const char *rest)
 static void serial_close(void *state)
 {
     struct serial_state *serial = state;
+    ioctl(serial->descriptor, TIOCNXCL);
     sp_close(serial->port);
     sp_free_port(serial->port);
 }
@@ -209,7 +213,8 @@ static enum wb_status serial_write(void *state, const void *bytes, size_t n)
         }
         if (put < 0 && errno == EINTR)
             continue;
-        if (put < 0)
+        /* libserialport takes a full buffer for a failure. */
+        if (put < 0 && errno != EAGAIN)
             return fail_serial((enum sp_return)put, serial->path, "writing");
         if (!wb_stream_wait_writable(serial->descriptor, deadline_ns))
             return wb_fail(WB_ERR_TIMEOUT, "port '%s' took only %zu of %zu bytes within 50 ms",

@@ -1,0 +1,513 @@
+/* Streams over pseudo-terminals, UDP on the loopback and memory; addresses that make no sense. */
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "daq/stream.h"
+#include "tests/check.h"
+
+static char message[1024]; /* the last one logged */
+
+static void keep_message(void *context, enum wb_log_level level, const char *domain,
+                         const char *text)
+{
+    (void)context;
+    (void)level;
+    (void)domain;
+    snprintf(message, sizeof message, "%s", text);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    message[0] = '\0';
+    wb_log_set_sink(keep_message, NULL);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    wb_log_set_sink(NULL, NULL);
+    return 0;
+}
+
+static void wait_readable(struct wb_stream *stream)
+{
+    int descriptors[2];
+    int n = wb_stream_descriptors(stream, descriptors);
+    struct pollfd wait[2] = {{.fd = descriptors[0], .events = POLLIN},
+                             {.fd = n > 1 ? descriptors[1] : -1, .events = POLLIN}};
+    assert_true(poll(wait, (nfds_t)n, 2000) > 0);
+}
+
+/* --- addresses --- */
+
+static void wrong_addresses_are_refused_with_what_is_expected(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *address, *word;
+    } wrong[] = {
+        {"", "serial:PORT"},
+        {"/dev/ttyUSB0", "serial:PORT"},
+        {"tcp:1.2.3.4:5", "serial:PORT"},
+        {"serial:", "names no device"},
+        {"serial:/dev/ttyS0,9600,8x1", "8x1"},
+        {"serial:/dev/ttyS0,9600,9n1", "9n1"},
+        {"serial:/dev/ttyS0,12", "12"},
+        {"serial:/dev/ttyS0,dtr=maybe", "dtr=maybe"},
+        {"serial:/dev/ttyS0,", "line setting ''"},
+        {"pty:/dev/ptmx,flow=all", "flow=all"},
+        {"udp:", "udp:HOST:PORT"},
+        {"udp:localhost", "udp:HOST:PORT"},
+        {"udp:localhost:0", "udp:HOST:PORT"},
+        {"udp:localhost:65536", "udp:HOST:PORT"},
+        {"udp:localhost:15x", "udp:HOST:PORT"},
+        {"udp:127.0.0.1:1510,group=239.255.42.99", "group=ADDRESS:PORT"},
+        {"udp:127.0.0.1:1510,group=127.0.0.1:1511", "group=ADDRESS:PORT"},
+        {"udp:127.0.0.1:1510,grouo=239.255.42.99:1511", "is not known"},
+        {"udp:127.0.0.1:1510,group=239.255.42.99:1511,interface=nix0", "nix0"},
+        {"memory:x", "nothing is expected"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        struct wb_stream *stream = (struct wb_stream *)&stream;
+        message[0] = '\0';
+        assert_int_not_equal(wb_stream_open(&stream, wrong[i].address), WB_OK);
+        assert_null(stream);
+        if (!strstr(message, wrong[i].word))
+            fail_msg("address '%s': message '%s' lacks '%s'", wrong[i].address, message,
+                     wrong[i].word);
+    }
+}
+
+static void unknown_host_is_named(void **state)
+{
+    (void)state;
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, "udp:no-such-host.invalid:1510"), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(message, "no-such-host.invalid"));
+}
+
+/* --- pseudo-terminals --- */
+
+static int open_master(char *slave, size_t size)
+{
+    int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+    assert_true(master >= 0);
+    assert_int_equal(grantpt(master), 0);
+    assert_int_equal(unlockpt(master), 0);
+    assert_int_equal(ptsname_r(master, slave, size), 0);
+    return master;
+}
+
+static void pseudo_terminal_passes_bytes_unchanged(void **state)
+{
+    (void)state;
+    char slave[64], address[128];
+    int master = open_master(slave, sizeof slave);
+    snprintf(address, sizeof address, "pty:%s,115200,8n1", slave);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    uint8_t sent[256], got[512];
+    for (int i = 0; i < 256; i++)
+        sent[i] = (uint8_t)i;
+    size_t n = 1;
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 0);
+    assert_int_equal(write(master, sent, sizeof sent), sizeof sent);
+    size_t total = 0;
+    while (total < sizeof sent) {
+        wait_readable(stream);
+        assert_int_equal(wb_stream_read(stream, got + total, sizeof got - total, &n), WB_OK);
+        total += n;
+    }
+    assert_int_equal(total, sizeof sent);
+    assert_memory_equal(got, sent, sizeof sent);
+    assert_int_equal(wb_stream_write(stream, sent, sizeof sent), WB_OK);
+    total = 0;
+    while (total < sizeof sent) {
+        struct pollfd wait = {.fd = master, .events = POLLIN};
+        assert_int_equal(poll(&wait, 1, 2000), 1);
+        ssize_t part = read(master, got + total, sizeof got - total);
+        assert_true(part > 0);
+        total += (size_t)part;
+    }
+    assert_memory_equal(got, sent, sizeof sent);
+    wb_stream_close(stream);
+    close(master);
+}
+
+static void second_opener_of_a_pseudo_terminal_is_told_it_is_busy(void **state)
+{
+    (void)state;
+    char slave[64], address[128];
+    int master = open_master(slave, sizeof slave);
+    snprintf(address, sizeof address, "pty:%s", slave);
+    struct wb_stream *first = NULL, *second = NULL;
+    assert_int_equal(wb_stream_open(&first, address), WB_OK);
+    assert_int_equal(wb_stream_open(&second, address), WB_ERR_BUSY);
+    assert_non_null(strstr(message, slave));
+    wb_stream_close(first);
+    assert_int_equal(wb_stream_open(&second, address), WB_OK);
+    wb_stream_close(second);
+    close(master);
+}
+
+static void closed_master_is_a_lost_stream(void **state)
+{
+    (void)state;
+    char slave[64], address[128], got[8];
+    int master = open_master(slave, sizeof slave);
+    snprintf(address, sizeof address, "pty:%s", slave);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    close(master);
+    size_t n = 0;
+    wait_readable(stream);
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_ERR_IO);
+    assert_non_null(strstr(message, "went away"));
+    wb_stream_close(stream);
+}
+
+static void full_pseudo_terminal_times_out(void **state)
+{
+    (void)state;
+    char slave[64], address[128];
+    int master = open_master(slave, sizeof slave);
+    snprintf(address, sizeof address, "pty:%s", slave);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    static const uint8_t many[1 << 20];
+    assert_int_equal(wb_stream_write(stream, many, sizeof many), WB_ERR_TIMEOUT);
+    wb_stream_close(stream);
+    close(master);
+}
+
+static void missing_pseudo_terminal_and_plain_file_are_told_apart(void **state)
+{
+    (void)state;
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, "pty:/dev/pts/no-such"), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(message, "does not exist"));
+    char path[] = "/tmp/wb-stream-XXXXXX", address[64];
+    int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    snprintf(address, sizeof address, "pty:%s", path);
+    assert_int_equal(wb_stream_open(&stream, address), WB_ERR_IO);
+    assert_non_null(strstr(message, "not a terminal"));
+    close(descriptor);
+    unlink(path);
+}
+
+/* --- UDP --- */
+
+/* A socket on the loopback; *port receives its port. */
+static int open_server(int *port)
+{
+    int server = socket(AF_INET, SOCK_DGRAM, 0);
+    struct sockaddr_in bound = {.sin_family = AF_INET};
+    bound.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof bound;
+    assert_int_equal(bind(server, (struct sockaddr *)&bound, sizeof bound), 0);
+    assert_int_equal(getsockname(server, (struct sockaddr *)&bound, &size), 0);
+    *port = ntohs(bound.sin_port);
+    return server;
+}
+
+static void datagrams_pass_one_a_read(void **state)
+{
+    (void)state;
+    int port;
+    int server = open_server(&port);
+    char address[64], got[64];
+    snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
+    struct sockaddr_in client;
+    socklen_t size = sizeof client;
+    assert_int_equal(recvfrom(server, got, sizeof got, 0, (struct sockaddr *)&client, &size), 4);
+
+    /* The answers come from another port of the same host, as a NatNet server's frames may. */
+    int data_port;
+    int data = open_server(&data_port);
+    assert_int_equal(sendto(data, "one", 3, 0, (struct sockaddr *)&client, size), 3);
+    assert_int_equal(sendto(data, "", 0, 0, (struct sockaddr *)&client, size), 0);
+    assert_int_equal(sendto(data, "three", 5, 0, (struct sockaddr *)&client, size), 5);
+    size_t n = 0;
+    wait_readable(stream);
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 3);
+    assert_memory_equal(got, "one", 3);
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 5);
+    assert_memory_equal(got, "three", 5);
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 0);
+    wb_stream_close(stream);
+    close(data);
+    close(server);
+}
+
+static void largest_datagram_passes_whole(void **state)
+{
+    (void)state;
+    int port;
+    int server = open_server(&port);
+    char address[64];
+    snprintf(address, sizeof address, "udp:localhost:%d", port);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    uint8_t *big = malloc(WB_STREAM_READ_MAX), *got = malloc(WB_STREAM_READ_MAX);
+    assert_non_null(big);
+    assert_non_null(got);
+    for (size_t i = 0; i < 65507; i++)
+        big[i] = (uint8_t)(i * 7);
+    assert_int_equal(wb_stream_write(stream, big, 65507), WB_OK);
+    struct sockaddr_in client;
+    socklen_t size = sizeof client;
+    assert_int_equal(
+        recvfrom(server, got, WB_STREAM_READ_MAX, 0, (struct sockaddr *)&client, &size), 65507);
+    assert_int_equal(sendto(server, big, 65507, 0, (struct sockaddr *)&client, size), 65507);
+    size_t n = 0;
+    memset(got, 0, WB_STREAM_READ_MAX);
+    wait_readable(stream);
+    assert_int_equal(wb_stream_read(stream, got, WB_STREAM_READ_MAX, &n), WB_OK);
+    assert_int_equal(n, 65507);
+    assert_memory_equal(got, big, 65507);
+    assert_int_not_equal(wb_stream_write(stream, big, WB_STREAM_READ_MAX), WB_OK);
+    free(big);
+    free(got);
+    wb_stream_close(stream);
+    close(server);
+}
+
+static void server_that_is_not_there_is_no_error_of_the_stream(void **state)
+{
+    (void)state;
+    int port;
+    close(open_server(&port)); /* a port that nobody listens on */
+    char address[64], got[8];
+    snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    size_t n = 1;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
+        assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+        assert_int_equal(n, 0);
+    }
+    wb_stream_close(stream);
+}
+
+static void datagrams_of_strangers_are_ignored(void **state)
+{
+    (void)state;
+    int port;
+    int server = open_server(&port);
+    char address[64], got[64];
+    snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
+    struct sockaddr_in client;
+    socklen_t size = sizeof client;
+    assert_int_equal(recvfrom(server, got, sizeof got, 0, (struct sockaddr *)&client, &size), 4);
+    /* All of 127.0.0.0/8 is this host. */
+    int stranger = socket(AF_INET, SOCK_DGRAM, 0);
+    struct sockaddr_in bound = {.sin_family = AF_INET};
+    bound.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1);
+    assert_int_equal(bind(stranger, (struct sockaddr *)&bound, sizeof bound), 0);
+    assert_int_equal(sendto(stranger, "evil", 4, 0, (struct sockaddr *)&client, size), 4);
+    assert_int_equal(sendto(server, "good", 4, 0, (struct sockaddr *)&client, size), 4);
+    size_t n = 0;
+    wait_readable(stream);
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 4);
+    assert_memory_equal(got, "good", 4);
+    assert_non_null(strstr(message, "127.0.0.2 ignored"));
+    wb_stream_close(stream);
+    close(stranger);
+    close(server);
+}
+
+static void overrun_socket_counts_what_the_kernel_dropped(void **state)
+{
+    (void)state;
+    int port;
+    int server = open_server(&port);
+    char address[64];
+    snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
+    static uint8_t bytes[60000];
+    struct sockaddr_in client;
+    socklen_t size = sizeof client;
+    assert_int_equal(recvfrom(server, bytes, sizeof bytes, 0, (struct sockaddr *)&client, &size),
+                     4);
+    /* A small buffer, so that few datagrams fill it. */
+    int descriptors[2], small = 1;
+    assert_int_equal(wb_stream_descriptors(stream, descriptors), 1);
+    assert_int_equal(setsockopt(descriptors[0], SOL_SOCKET, SO_RCVBUF, &small, sizeof small), 0);
+    uint64_t sent = 20, got = 0;
+    for (uint64_t i = 0; i < sent; i++)
+        assert_int_equal(sendto(server, bytes, 1000, 0, (struct sockaddr *)&client, size), 1000);
+    size_t n = 0;
+    do {
+        assert_int_equal(wb_stream_read(stream, bytes, sizeof bytes, &n), WB_OK);
+        got += n > 0;
+    } while (n > 0);
+    assert_true(got < sent);
+    /* The count comes with the next datagram. */
+    assert_int_equal(sendto(server, bytes, 10, 0, (struct sockaddr *)&client, size), 10);
+    wait_readable(stream);
+    assert_int_equal(wb_stream_read(stream, bytes, sizeof bytes, &n), WB_OK);
+    assert_int_equal(n, 10);
+    assert_int_equal(wb_stream_kernel_drops(stream), sent - got);
+    wb_stream_close(stream);
+    close(server);
+}
+
+static void multicast_data_and_unicast_answers_come_through_one_stream(void **state)
+{
+    (void)state;
+    int port, group_port;
+    int server = open_server(&port);
+    int free_port = open_server(&group_port);
+    close(free_port);
+    char address[160], got[64];
+    snprintf(address, sizeof address, "udp:127.0.0.1:%d,group=239.255.77.99:%d,interface=127.0.0.1",
+             port, group_port);
+    struct wb_stream *stream = NULL, *other = NULL;
+    if (wb_stream_open(&stream, address) != WB_OK) {
+        print_message("no multicast on the loopback here: %s\n", message);
+        skip();
+    }
+    struct in_addr loopback = {.s_addr = htonl(INADDR_LOOPBACK)};
+    assert_int_equal(setsockopt(server, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback),
+                     0);
+    /* A second client on the same machine hears the group as well. */
+    assert_int_equal(wb_stream_open(&other, address), WB_OK);
+    int descriptors[2];
+    assert_int_equal(wb_stream_descriptors(stream, descriptors), 2);
+    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
+    struct sockaddr_in client;
+    socklen_t size = sizeof client;
+    assert_int_equal(recvfrom(server, got, sizeof got, 0, (struct sockaddr *)&client, &size), 4);
+    assert_int_equal(sendto(server, "info", 4, 0, (struct sockaddr *)&client, size), 4);
+    size_t n = 0;
+    wait_readable(stream);
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 4);
+    assert_memory_equal(got, "info", 4);
+
+    struct sockaddr_in group = {.sin_family = AF_INET, .sin_port = htons((uint16_t)group_port)};
+    inet_pton(AF_INET, "239.255.77.99", &group.sin_addr);
+    if (sendto(server, "frame", 5, 0, (struct sockaddr *)&group, sizeof group) != 5) {
+        print_message("multicast cannot be sent on the loopback here: %s\n", strerror(errno));
+        wb_stream_close(stream);
+        wb_stream_close(other);
+        skip();
+    }
+    struct wb_stream *both[] = {stream, other};
+    for (int i = 0; i < 2; i++) {
+        wait_readable(both[i]);
+        assert_int_equal(wb_stream_read(both[i], got, sizeof got, &n), WB_OK);
+        assert_int_equal(n, 5);
+        assert_memory_equal(got, "frame", 5);
+    }
+    wb_stream_close(stream);
+    wb_stream_close(other);
+    close(server);
+}
+
+/* --- memory --- */
+
+static void memory_gives_one_pushed_run_a_read(void **state)
+{
+    (void)state;
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, "memory:"), WB_OK);
+    int descriptors[2];
+    assert_int_equal(wb_stream_descriptors(stream, descriptors), 0);
+    assert_int_equal(wb_stream_memory_push(stream, "abc", 3), WB_OK);
+    assert_int_equal(wb_stream_memory_push(stream, "", 0), WB_OK);
+    assert_int_equal(wb_stream_memory_push(stream, "defgh", 5), WB_OK);
+    char got[8];
+    size_t n = 0;
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 3);
+    assert_memory_equal(got, "abc", 3);
+    /* A buffer too small for the run leaves the rest for the next read. */
+    assert_int_equal(wb_stream_read(stream, got, 4, &n), WB_OK);
+    assert_int_equal(n, 4);
+    assert_memory_equal(got, "defg", 4);
+    assert_int_equal(wb_stream_read(stream, got, 4, &n), WB_OK);
+    assert_int_equal(n, 1);
+    assert_int_equal(got[0], 'h');
+    assert_int_equal(wb_stream_read(stream, got, 4, &n), WB_OK);
+    assert_int_equal(n, 0);
+    assert_int_equal(wb_stream_memory_push(stream, "left over", 9), WB_OK);
+    wb_stream_close(stream);
+}
+
+static void memory_keeps_what_was_written(void **state)
+{
+    (void)state;
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, "memory:"), WB_OK);
+    char got[8];
+    assert_int_equal(wb_stream_memory_take_written(stream, got, sizeof got), 0);
+    assert_int_equal(wb_stream_write(stream, "?", 1), WB_OK);
+    assert_int_equal(wb_stream_write(stream, "!G0", 3), WB_OK);
+    assert_int_equal(wb_stream_memory_take_written(stream, got, 2), 2);
+    assert_memory_equal(got, "?!", 2);
+    assert_int_equal(wb_stream_memory_take_written(stream, got, sizeof got), 2);
+    assert_memory_equal(got, "G0", 2);
+    assert_int_equal(wb_stream_memory_take_written(stream, got, sizeof got), 0);
+    wb_stream_close(stream);
+}
+
+static void other_streams_take_no_pushed_bytes(void **state)
+{
+    (void)state;
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, "udp:127.0.0.1:9"), WB_OK);
+    assert_int_equal(wb_stream_memory_push(stream, "x", 1), WB_ERR_ARGUMENT);
+    char got[4];
+    assert_int_equal(wb_stream_memory_take_written(stream, got, sizeof got), 0);
+    wb_stream_close(stream);
+    wb_stream_close(NULL);
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+#define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+        FACT(wrong_addresses_are_refused_with_what_is_expected),
+        FACT(unknown_host_is_named),
+        FACT(pseudo_terminal_passes_bytes_unchanged),
+        FACT(second_opener_of_a_pseudo_terminal_is_told_it_is_busy),
+        FACT(closed_master_is_a_lost_stream),
+        FACT(full_pseudo_terminal_times_out),
+        FACT(missing_pseudo_terminal_and_plain_file_are_told_apart),
+        FACT(datagrams_pass_one_a_read),
+        FACT(largest_datagram_passes_whole),
+        FACT(server_that_is_not_there_is_no_error_of_the_stream),
+        FACT(datagrams_of_strangers_are_ignored),
+        FACT(overrun_socket_counts_what_the_kernel_dropped),
+        FACT(multicast_data_and_unicast_answers_come_through_one_stream),
+        FACT(memory_gives_one_pushed_run_a_read),
+        FACT(memory_keeps_what_was_written),
+        FACT(other_streams_take_no_pushed_bytes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

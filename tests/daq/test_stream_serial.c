@@ -1,0 +1,270 @@
+/* The serial stream through the real libserialport, on a pseudo-terminal that serial_shim.c lends
+ * the looks of a serial port. meson preloads the shim. */
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/serial.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "daq/stream.h"
+#include "tests/check.h"
+
+#define PORT "/dev/ttyWB0"
+
+struct bench {
+    int master;
+    char slave[64];
+    char folder[64];
+    char message[1024]; /* the last one logged */
+};
+
+static int ask_shim(const char *name)
+{
+    void *found = dlsym(RTLD_DEFAULT, name);
+    if (!found)
+        fail_msg("serial_shim is not preloaded: run this test through meson");
+    int (*function)(void);
+    memcpy(&function, &found, sizeof function);
+    return function();
+}
+
+static void keep_message(void *context, enum wb_log_level level, const char *domain,
+                         const char *message)
+{
+    struct bench *bench = context;
+    (void)level;
+    (void)domain;
+    snprintf(bench->message, sizeof bench->message, "%s", message);
+}
+
+static void lend_device(struct bench *bench)
+{
+    bench->master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+    assert_true(bench->master >= 0);
+    assert_int_equal(grantpt(bench->master), 0);
+    assert_int_equal(unlockpt(bench->master), 0);
+    assert_int_equal(ptsname_r(bench->master, bench->slave, sizeof bench->slave), 0);
+    setenv("WB_SHIM_DEVICE", bench->slave, 1);
+}
+
+static int set_up(void **state)
+{
+    struct bench *bench = calloc(1, sizeof *bench);
+    ask_shim("wb_shim_modem_lines");
+    snprintf(bench->folder, sizeof bench->folder, "/tmp/wb-serial-XXXXXX");
+    assert_non_null(mkdtemp(bench->folder));
+    char link[128];
+    snprintf(link, sizeof link, "%s/ttyWB0", bench->folder);
+    assert_int_equal(symlink("../../devices/platform/wb/tty/ttyWB0", link), 0);
+    setenv("WB_SHIM_SYSFS", bench->folder, 1);
+    setenv("WB_SHIM_PORT", PORT, 1);
+    unsetenv("WB_SHIM_ERRNO");
+    lend_device(bench);
+    wb_log_set_sink(keep_message, bench);
+    *state = bench;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct bench *bench = *state;
+    wb_log_set_sink(NULL, NULL);
+    if (bench->master >= 0)
+        close(bench->master);
+    char link[128];
+    snprintf(link, sizeof link, "%s/ttyWB0", bench->folder);
+    unlink(link);
+    rmdir(bench->folder);
+    free(bench);
+    return 0;
+}
+
+static struct wb_stream *open_stream(const char *address)
+{
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    return stream;
+}
+
+static void wait_readable(struct wb_stream *stream)
+{
+    int descriptors[2];
+    assert_int_equal(wb_stream_descriptors(stream, descriptors), 1);
+    struct pollfd wait = {.fd = descriptors[0], .events = POLLIN};
+    assert_int_equal(poll(&wait, 1, 2000), 1);
+}
+
+static void line_settings_reach_the_terminal(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *stream = open_stream("serial:" PORT ",19200,7e2");
+    struct termios set;
+    assert_int_equal(tcgetattr(bench->master, &set), 0);
+    assert_int_equal(cfgetispeed(&set), B19200);
+    assert_int_equal(cfgetospeed(&set), B19200);
+    assert_int_equal(ask_shim("wb_shim_frame"), CS7 | PARENB);
+    assert_true(set.c_cflag & CSTOPB);
+    assert_false(set.c_lflag & (ICANON | ECHO | ISIG));
+    assert_string_equal(wb_stream_address(stream), "serial:" PORT ",19200,7e2");
+    assert_int_equal(ask_shim("wb_shim_exclusive"), 1);
+    assert_true(ask_shim("wb_shim_serial_flags") & ASYNC_LOW_LATENCY);
+    wb_stream_close(stream);
+    assert_int_equal(ask_shim("wb_shim_exclusive"), 0);
+}
+
+static void dtr_and_rts_lines_are_set(void **state)
+{
+    (void)state;
+    struct wb_stream *stream = open_stream("serial:" PORT ",115200,8n1,dtr=on,rts=off");
+    assert_true(ask_shim("wb_shim_modem_lines") & TIOCM_DTR);
+    assert_false(ask_shim("wb_shim_modem_lines") & TIOCM_RTS);
+    wb_stream_close(stream);
+    stream = open_stream("serial:" PORT ",115200,8n1,dtr=off,rts=on");
+    assert_false(ask_shim("wb_shim_modem_lines") & TIOCM_DTR);
+    assert_true(ask_shim("wb_shim_modem_lines") & TIOCM_RTS);
+    wb_stream_close(stream);
+}
+
+static void bytes_pass_unchanged_both_ways(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *stream = open_stream("serial:" PORT ",9600");
+    uint8_t sent[256], got[512];
+    for (int i = 0; i < 256; i++)
+        sent[i] = (uint8_t)i;
+    size_t n = 99;
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, 0);
+
+    assert_int_equal(write(bench->master, sent, sizeof sent), sizeof sent);
+    size_t total = 0;
+    while (total < sizeof sent) {
+        wait_readable(stream);
+        assert_int_equal(wb_stream_read(stream, got + total, sizeof got - total, &n), WB_OK);
+        total += n;
+    }
+    assert_int_equal(total, sizeof sent);
+    assert_memory_equal(got, sent, sizeof sent);
+
+    assert_int_equal(wb_stream_write(stream, sent, sizeof sent), WB_OK);
+    total = 0;
+    while (total < sizeof sent) {
+        struct pollfd wait = {.fd = bench->master, .events = POLLIN};
+        assert_int_equal(poll(&wait, 1, 2000), 1);
+        ssize_t part = read(bench->master, got + total, sizeof got - total);
+        assert_true(part > 0);
+        total += (size_t)part;
+    }
+    assert_memory_equal(got, sent, sizeof sent);
+    wb_stream_close(stream);
+}
+
+static void write_that_nobody_takes_times_out(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *stream = open_stream("serial:" PORT);
+    static const uint8_t many[1 << 20];
+    assert_int_equal(wb_stream_write(stream, many, sizeof many), WB_ERR_TIMEOUT);
+    assert_non_null(strstr(bench->message, "within 50 ms"));
+    wb_stream_close(stream);
+}
+
+static void unplugged_port_is_told(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *stream = open_stream("serial:" PORT);
+    assert_int_equal(write(bench->master, "12.5\n", 5), 5);
+    close(bench->master);
+    bench->master = -1;
+    uint8_t got[64];
+    size_t n = 0;
+    /* What waited may still come, or be lost with the port; then the port is gone. */
+    enum wb_status status = wb_stream_read(stream, got, sizeof got, &n);
+    if (status == WB_OK)
+        status = wb_stream_read(stream, got, sizeof got, &n);
+    assert_int_equal(status, WB_ERR_IO);
+    assert_non_null(strstr(bench->message, PORT));
+    assert_non_null(strstr(bench->message, "went away"));
+    wb_stream_close(stream);
+
+    /* Plugged in again, it opens again. */
+    lend_device(bench);
+    stream = open_stream("serial:" PORT);
+    wb_stream_close(stream);
+}
+
+static void busy_port_says_so(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *first = open_stream("serial:" PORT), *second = NULL;
+    /* The lock of the first keeps even root out. */
+    assert_int_equal(wb_stream_open(&second, "serial:" PORT), WB_ERR_BUSY);
+    assert_null(second);
+    assert_non_null(strstr(bench->message, "in use by another program"));
+    wb_stream_close(first);
+    /* What the kernel says to others than root while TIOCEXCL is set. */
+    setenv("WB_SHIM_ERRNO", "16", 1);
+    assert_int_equal(wb_stream_open(&second, "serial:" PORT), WB_ERR_BUSY);
+    assert_non_null(strstr(bench->message, "in use by another program"));
+    unsetenv("WB_SHIM_ERRNO");
+    first = open_stream("serial:" PORT);
+    wb_stream_close(first);
+}
+
+static void forbidden_port_names_the_group_to_join(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *stream = NULL;
+    setenv("WB_SHIM_ERRNO", "13", 1);
+    assert_int_equal(wb_stream_open(&stream, "serial:" PORT), WB_ERR_PERMISSION);
+    assert_non_null(strstr(bench->message, "usermod -aG dialout $USER"));
+    assert_non_null(strstr(bench->message, "log in again"));
+}
+
+static void missing_port_lists_those_that_exist(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *stream = NULL;
+    assert_int_equal(wb_stream_open(&stream, "serial:/dev/ttyWB7,9600"), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(bench->message, "'/dev/ttyWB7' does not exist"));
+    assert_non_null(strstr(bench->message, PORT));
+
+    char link[128];
+    snprintf(link, sizeof link, "%s/ttyWB0", bench->folder);
+    assert_int_equal(unlink(link), 0);
+    assert_int_equal(wb_stream_open(&stream, "serial:/dev/ttyWB7,9600"), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(bench->message, "no serial port is there at all"));
+}
+
+static void pseudo_terminal_is_sent_to_its_own_scheme(void **state)
+{
+    struct bench *bench = *state;
+    struct wb_stream *stream = NULL;
+    char address[128];
+    snprintf(address, sizeof address, "serial:%s", bench->slave);
+    assert_int_equal(wb_stream_open(&stream, address), WB_ERR_UNSUPPORTED);
+    assert_non_null(strstr(bench->message, "pty:"));
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+#define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+        FACT(line_settings_reach_the_terminal),
+        FACT(dtr_and_rts_lines_are_set),
+        FACT(bytes_pass_unchanged_both_ways),
+        FACT(write_that_nobody_takes_times_out),
+        FACT(unplugged_port_is_told),
+        FACT(busy_port_says_so),
+        FACT(forbidden_port_names_the_group_to_join),
+        FACT(missing_port_lists_those_that_exist),
+        FACT(pseudo_terminal_is_sent_to_its_own_scheme),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
