@@ -288,7 +288,7 @@ size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, do
     for (size_t i = 0; i < n && n_segments < most; i++) {
         const double device_step = i == 0 ? 0.0 : nominal_slope * (device[i] - device[i - 1]);
         const double host_step = i == 0 ? 0.0 : wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]);
-        if (i == 0 || device_step < 0.0 || !(fabs(host_step - device_step) <= jump))
+        if (i == 0 || !(fabs(host_step - device_step) <= jump))
             starts[n_segments++] = i;
     }
     return n_segments;

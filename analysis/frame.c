@@ -1,0 +1,296 @@
+#include "analysis/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_linalg.h>
+
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "frame"
+
+/* A clamp that moved less than this tells no direction. */
+#define LEAST_MOTION (5.0 * WB_MM)
+/* Markers that leave the vertical by less than this tell no plane of their own. */
+#define LEAST_SPREAD (5.0 * WB_MM)
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double normalise(double *a)
+{
+    const double length = sqrt(dot(a, a));
+    for (int k = 0; k < 3 && length > 0.0; k++)
+        a[k] /= length;
+    return length;
+}
+
+static void cross(const double *a, const double *b, double *c)
+{
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* --- scatter of points --- */
+
+struct scatter {
+    size_t n;
+    double sum[3], products[3][3];
+};
+
+static void add_point(struct scatter *scatter, const double *p)
+{
+    scatter->n++;
+    for (int i = 0; i < 3; i++) {
+        scatter->sum[i] += p[i];
+        for (int k = 0; k < 3; k++)
+            scatter->products[i][k] += p[i] * p[k];
+    }
+}
+
+/* Principal directions of the points about their mean, largest spread first, as columns of
+ * `directions`; `spread` receives the standard deviation along each. The singular values of the
+ * covariance matrix are the squares of those of the centred points. */
+static void principal(const struct scatter *scatter, double directions[3][3], double spread[3])
+{
+    double covariance[9], v[9], s[3], work[3];
+    const double n = (double)scatter->n;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++)
+            covariance[3 * i + k] =
+                scatter->products[i][k] / n - scatter->sum[i] / n * (scatter->sum[k] / n);
+    }
+    gsl_matrix_view matrix = gsl_matrix_view_array(covariance, 3, 3);
+    gsl_matrix_view right = gsl_matrix_view_array(v, 3, 3);
+    gsl_vector_view values = gsl_vector_view_array(s, 3);
+    gsl_vector_view scratch = gsl_vector_view_array(work, 3);
+    gsl_linalg_SV_decomp(&matrix.matrix, &right.matrix, &values.vector, &scratch.vector);
+    for (int i = 0; i < 3; i++) {
+        spread[i] = sqrt(fmax(s[i], 0.0));
+        for (int k = 0; k < 3; k++)
+            directions[i][k] = v[3 * k + i];
+    }
+}
+
+/* --- the clamp's motion --- */
+
+/* Range of a marker along a direction. */
+static double range_along(const struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
+                          int marker, const double *direction)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (size_t frame = 0; frame < tracks->n_frames; frame++) {
+        const double *const p = wb_markers_position(tracks, cloud, frame, marker);
+        if (!p)
+            continue;
+        low = fmin(low, dot(p, direction));
+        high = fmax(high, dot(p, direction));
+    }
+    return high >= low ? high - low : 0.0;
+}
+
+bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
+                          const double server_up[3])
+{
+    const double first = range_along(tracks, cloud, 0, server_up);
+    const double last = range_along(tracks, cloud, tracks->n_markers - 1, server_up);
+    return last > LEAST_MOTION && last > first;
+}
+
+/* The vertical from the clamp's path. Positions are taken relative to the first seen one, for the
+ * sums of squares to keep their digits. */
+static enum wb_status fit_motion(struct wb_bench_frame *frame,
+                                 const struct wb_marker_tracks *tracks,
+                                 const struct wb_point_cloud *cloud, const double *server_up)
+{
+    struct scatter scatter = {0};
+    const double *first = NULL;
+    for (size_t i = 0; i < tracks->n_frames; i++) {
+        const double *const p = wb_markers_position(tracks, cloud, i, 0);
+        if (!p)
+            continue;
+        first = first ? first : p;
+        const double relative[3] = {p[0] - first[0], p[1] - first[1], p[2] - first[2]};
+        add_point(&scatter, relative);
+    }
+    if (!first)
+        return wb_fail(WB_ERR_DATA, "the clamp's marker is not seen in any frame");
+    double directions[3][3], spread[3];
+    principal(&scatter, directions, spread);
+    memcpy(frame->up, server_up, sizeof frame->up);
+    frame->motion = range_along(tracks, cloud, 0, directions[0]);
+    frame->up_from_motion = frame->motion >= LEAST_MOTION;
+    frame->straightness = frame->up_from_motion ? hypot(spread[1], spread[2]) : 0.0;
+    if (frame->up_from_motion) {
+        const double sign = dot(directions[0], server_up) < 0.0 ? -1.0 : 1.0;
+        for (int k = 0; k < 3; k++)
+            frame->up[k] = sign * directions[0][k];
+    }
+    frame->tilt = acos(fmin(1.0, fabs(dot(frame->up, server_up))));
+    return WB_OK;
+}
+
+/* --- smoothing the clamp's path --- */
+
+/* Straight-line fit of the clamp marker's coordinates over frames first..last-1, at time t. */
+static bool local_line(const struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
+                       const double *times, size_t first, size_t last, double t, double *position)
+{
+    double n = 0.0, sum_t = 0.0, sum_tt = 0.0, sum_p[3] = {0.0}, sum_tp[3] = {0.0};
+    for (size_t i = first; i < last; i++) {
+        const double *const p = wb_markers_position(tracks, cloud, i, 0);
+        if (!p)
+            continue;
+        const double dt = times[i] - t;
+        n += 1.0;
+        sum_t += dt;
+        sum_tt += dt * dt;
+        for (int k = 0; k < 3; k++) {
+            sum_p[k] += p[k];
+            sum_tp[k] += dt * p[k];
+        }
+    }
+    if (n < 1.0)
+        return false;
+    const double determinant = n * sum_tt - sum_t * sum_t;
+    for (int k = 0; k < 3; k++)
+        position[k] = n > 2.0 && determinant > 1e-12 * n * sum_tt
+                          ? (sum_tt * sum_p[k] - sum_t * sum_tp[k]) / determinant
+                          : sum_p[k] / n;
+    return true;
+}
+
+static void smooth_clamp(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
+                         const struct wb_point_cloud *cloud, const double *times, double window)
+{
+    size_t first = 0, last = 0;
+    for (size_t i = 0; i < tracks->n_frames; i++) {
+        while (first < i && times[i] - times[first] > window)
+            first++;
+        if (last <= i)
+            last = i + 1;
+        while (last < tracks->n_frames && times[last] - times[i] <= window)
+            last++;
+        if (!local_line(tracks, cloud, times, first, last, times[i], frame->clamp[i]))
+            frame->clamp[i][0] = frame->clamp[i][1] = frame->clamp[i][2] = (double)NAN;
+    }
+}
+
+/* --- the bending plane --- */
+
+static void relative_to_clamp(const struct wb_bench_frame *frame, size_t index, const double *p,
+                              double *relative)
+{
+    for (int k = 0; k < 3; k++)
+        relative[k] = p[k] - frame->clamp[index][k];
+}
+
+/* Horizontal direction of the largest spread of the markers' horizontal parts, pointing from the
+ * clamp to the tip. */
+static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
+                                const struct wb_point_cloud *cloud)
+{
+    struct scatter flat = {0}, full = {0};
+    for (size_t i = 0; i < tracks->n_frames; i++) {
+        for (int marker = 1; marker < tracks->n_markers; marker++) {
+            const double *const p = wb_markers_position(tracks, cloud, i, marker);
+            double r[3];
+            if (!p || !isfinite(frame->clamp[i][0]))
+                continue;
+            relative_to_clamp(frame, i, p, r);
+            add_point(&full, r);
+            const double height = dot(r, frame->up);
+            for (int k = 0; k < 3; k++)
+                r[k] -= height * frame->up[k];
+            add_point(&flat, r);
+        }
+    }
+    if (flat.n < 3)
+        return wb_fail(WB_ERR_DATA, "too few markers are seen together with the clamp's");
+    double directions[3][3], spread[3];
+    /* With one marker beside the clamp's there is no spread: its mean tells the direction. */
+    if (tracks->n_markers > 2)
+        principal(&flat, directions, spread);
+    else
+        memcpy(directions[0], flat.sum, sizeof directions[0]);
+    const double sign = dot(directions[0], flat.sum) < 0.0 ? -1.0 : 1.0;
+    const double vertical = dot(directions[0], frame->up);
+    for (int k = 0; k < 3; k++)
+        frame->along[k] = sign * (directions[0][k] - vertical * frame->up[k]);
+    if (!(normalise(frame->along) > 1e-6))
+        return wb_fail(WB_ERR_DATA, "the markers lie one above the other along the clamp's motion: "
+                                    "no bending plane (is the rig's mocap.up right?)");
+    cross(frame->along, frame->up, frame->normal);
+    principal(&full, directions, spread);
+    frame->plane_tilt = 0.0;
+    if (tracks->n_markers > 2 && spread[1] > LEAST_SPREAD)
+        frame->plane_tilt = asin(fmin(1.0, fabs(dot(directions[2], frame->up))));
+    return WB_OK;
+}
+
+static void measure_planarity(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
+                              const struct wb_point_cloud *cloud)
+{
+    double n = 0.0, sum = 0.0, squares = 0.0;
+    for (size_t i = 0; i < tracks->n_frames; i++) {
+        for (int marker = 1; marker < tracks->n_markers; marker++) {
+            const double *const p = wb_markers_position(tracks, cloud, i, marker);
+            double r[3];
+            if (!p || !isfinite(frame->clamp[i][0]))
+                continue;
+            relative_to_clamp(frame, i, p, r);
+            const double z = dot(r, frame->normal);
+            n += 1.0;
+            sum += z;
+            squares += z * z;
+        }
+    }
+    frame->planarity = sqrt(fmax(0.0, squares / n - sum / n * (sum / n)));
+}
+
+enum wb_status wb_frame_fit(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
+                            const struct wb_point_cloud *cloud, const double *times, double window,
+                            const double server_up[3])
+{
+    memset(frame, 0, sizeof *frame);
+    struct wb_bench_frame fitted = {.n_frames = tracks->n_frames};
+    WB_TRY(fit_motion(&fitted, tracks, cloud, server_up));
+    fitted.clamp = malloc((tracks->n_frames + 1) * sizeof *fitted.clamp);
+    if (!fitted.clamp)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu frames", tracks->n_frames);
+    smooth_clamp(&fitted, tracks, cloud, times, window);
+    const enum wb_status status = fit_along(&fitted, tracks, cloud);
+    if (status != WB_OK) {
+        free(fitted.clamp);
+        return status;
+    }
+    measure_planarity(&fitted, tracks, cloud);
+    *frame = fitted;
+    return WB_OK;
+}
+
+void wb_frame_release(struct wb_bench_frame *frame)
+{
+    free(frame->clamp);
+    memset(frame, 0, sizeof *frame);
+}
+
+void wb_frame_coordinates(const struct wb_bench_frame *frame, size_t index, const double point[3],
+                          double *x, double *y, double *z)
+{
+    double r[3];
+    relative_to_clamp(frame, index, point, r);
+    *x = dot(r, frame->along);
+    *y = dot(r, frame->up);
+    if (z)
+        *z = dot(r, frame->normal);
+}
+
+double wb_frame_clamp_height(const struct wb_bench_frame *frame, size_t index)
+{
+    return dot(frame->clamp[index], frame->up);
+}

@@ -1,0 +1,84 @@
+/* Which point is which marker: identification by geometry, frame after frame.
+ *
+ * Ids are not used: they change whenever a bare marker is found again. What is used is the order
+ * along the wire, the known arc lengths, and prediction from the frames before. The start is the
+ * best chain of points whose distances fit the arc lengths; from there the markers are followed
+ * through the recording, forwards and backwards. Occluded and model-filled points are no
+ * measurements and must not be given. A marker that is not seen is missing: gaps stay gaps.
+ */
+#ifndef WB_ANALYSIS_MARKERS_H
+#define WB_ANALYSIS_MARKERS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "daq/sample.h"
+#include "daq/specimen.h"
+
+/* One frame of candidate points: `n` of them from `first` in the cloud's points. */
+struct wb_point_frame {
+    int64_t t_ns;    /* host arrival */
+    double t_device; /* s, server's capture stamp; NaN unknown */
+    double t_clock;  /* s, on the clock of the probes; NaN unknown */
+    size_t first;
+    int n;
+};
+
+/* All points of a recording that are measurements. */
+struct wb_point_cloud {
+    size_t n_frames, n_points;
+    struct wb_point_frame *frames; /* owned */
+    double (*points)[3];           /* m, in the server's frame; owned */
+    size_t frames_capacity, points_capacity;
+    uint64_t n_occluded, n_filled; /* left out: occluded, model-filled */
+};
+
+/* Adds a frame, without its occluded and model-filled markers. */
+WB_MUST_CHECK enum wb_status wb_point_cloud_add(struct wb_point_cloud *cloud,
+                                                const struct wb_mocap_frame *frame);
+void wb_point_cloud_release(struct wb_point_cloud *cloud);
+
+struct wb_marker_settings {
+    double noise; /* m, expected standard deviation of a coordinate; 0 takes 0.1 mm */
+    double gate;  /* m a marker may be from its prediction; 0 takes 2 mm or 8 times the noise */
+    double speed; /* m/s (of `frame_period`'s time) by which the gate grows in a gap; 0: 5 mm/s */
+    double frame_period; /* s between frames as the bench's clock counts; 0 takes 1/120 s */
+};
+
+/* The identified markers. */
+struct wb_marker_tracks {
+    int n_markers;
+    size_t n_frames;
+    /* (n_frames x n_markers) index into the cloud's points; -1: not seen in this frame */
+    int32_t *index;     /* owned */
+    size_t n_strays;    /* points that are no marker of ours, over all frames */
+    size_t n_missing;   /* markers not seen, over all frames */
+    size_t n_searches;  /* how often the chain was sought anew */
+    size_t start_frame; /* where the first chain was found */
+    bool symmetric;     /* the arc lengths read the same from both ends: the order along the wire is
+                           not known from distances and may have to be turned round */
+};
+
+/* Identifies the specimen's markers in every frame. WB_ERR_DATA with a message when no frame shows
+ * a chain of at least all but two of them, the first and the last among these. */
+WB_MUST_CHECK enum wb_status wb_markers_track(struct wb_marker_tracks *tracks,
+                                              const struct wb_point_cloud *cloud,
+                                              const struct wb_specimen *specimen,
+                                              const struct wb_marker_settings *settings);
+void wb_marker_tracks_release(struct wb_marker_tracks *tracks);
+
+/* Turns the order round: the last marker becomes the first. */
+void wb_markers_reverse(struct wb_marker_tracks *tracks);
+
+/* Position of a marker in a frame, or NULL when it is not seen. */
+const double *wb_markers_position(const struct wb_marker_tracks *tracks,
+                                  const struct wb_point_cloud *cloud, size_t frame, int marker);
+
+/* The best chain through one frame's points: `chosen` (n_markers) receives indices into `points`
+ * or -1. Returns the number of markers in it, 0 when there is no chain of at least `least`. */
+int wb_markers_chain(const double (*points)[3], int n, const struct wb_specimen *specimen,
+                     double noise, int least, int *chosen);
+
+#endif

@@ -1,0 +1,36 @@
+/* A wire's axis from its markers.
+ *
+ * A marker sits `offset` from the axis along the local normal (-sin theta, cos theta). The axis is
+ * inextensible and leaves the clamp along x: its angle is theta(s) = sum_i a_i (s/L)^i, i = 1..m,
+ *     x(s) = int cos theta,  y(s) = int sin theta,
+ * fitted to all markers by least squares (Gauss-Newton). The fit serves for the slope only: a
+ * marker's point on the axis is its measured place less offset times the fitted normal.
+ */
+#ifndef WB_ANALYSIS_SHAPE_H
+#define WB_ANALYSIS_SHAPE_H
+
+#include "base/status.h"
+
+#define WB_SHAPE_TERMS 4
+
+struct wb_shape_fit {
+    double length;
+    int n_terms;
+    double terms[WB_SHAPE_TERMS]; /* a_1.., rad */
+    double residual;              /* m, RMS of the markers' coordinates about the fit */
+};
+
+/* Markers at arc lengths s (m, ascending, within 0..length, not 0 itself), at x and y (m, in the
+ * clamp's frame, offset not removed). WB_ERR_DATA, silent, when there is none or the fit does not
+ * settle. */
+WB_MUST_CHECK enum wb_status wb_shape_fit(struct wb_shape_fit *fit, double length, double offset,
+                                          int n, const double *s, const double *x, const double *y);
+
+/* Angle of the fitted axis, rad. */
+double wb_shape_angle(const struct wb_shape_fit *fit, double s);
+
+/* Moves a marker's place at arc length s onto the axis. */
+void wb_shape_to_axis(const struct wb_shape_fit *fit, double offset, double s, double *x,
+                      double *y);
+
+#endif
