@@ -8,7 +8,7 @@
  *     p = r c / E,  sigma = sigma_Y + (1 - r) c,  E_t = E n (1 - r) / (r + n (1 - r)).
  *
  * The table holds r over c / sigma_Y in piecewise polynomials, several pieces an octave, exact to
- * about 1e-12; outside its range the equation is solved.
+ * round-off; outside its range the equation is solved.
  */
 #ifndef WB_FE_HARDENING_H
 #define WB_FE_HARDENING_H
