@@ -15,8 +15,10 @@ struct command {
 };
 
 static const struct command commands[] = {
+    {"calibrate", wb_cmd_calibrate, "datasets to properties: E, sigma_Y, K, n"},
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},
     {"solve", wb_cmd_solve, "compute a bending test with a finite element model"},
+    {"validate", wb_cmd_validate, "error curves of properties on other datasets"},
     {0},
 };
 

@@ -1,0 +1,292 @@
+/* wirebench calibrate: datasets to properties. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/calibrate.h"
+#include "analysis/properties.h"
+#include "base/file.h"
+#include "base/interrupt.h"
+#include "base/progress.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/datasets.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+struct options {
+    struct wb_datasets datasets;
+    struct wb_calibrate_settings settings;
+    const char *output;
+    bool json, force;
+};
+
+enum {
+    KEY_ZONE = 1000,
+    KEY_YIELD,
+    KEY_STRAIGHT,
+    KEY_NO_RESTART,
+    KEY_MODULUS,
+    KEY_STRESS,
+    KEY_STEP,
+    KEY_ELEMENTS,
+    KEY_FIBRES,
+    KEY_SIZE,
+    KEY_ERROR,
+    KEY_ITERATIONS,
+    KEY_FORCE,
+    KEY_JSON
+};
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "PROPERTIES.yaml", 0, "Write the properties here", 0},
+    {"elastic-zone", KEY_ZONE, "R", 0, "Deflection over length for E, eq. 10 (0.05)", 0},
+    {"yield-point", KEY_YIELD, "R", 0,
+     "Deflection over length for the yield stress, eq. 11 (as the elastic zone; the paper's tables "
+     "show 0.04)",
+     0},
+    {"straight", KEY_STRAIGHT, NULL, 0, "Ignore the natural shape (bow) of the samples", 0},
+    {"youngs-modulus-mpa", KEY_MODULUS, "E", 0, "Given instead of eq. 10", 0},
+    {"yield-stress-mpa", KEY_STRESS, "S", 0, "Given instead of eq. 11", 0},
+    {"no-restart", KEY_NO_RESTART, NULL, 0, "Do not start once more from the optimum", 0},
+    {"step-mm", KEY_STEP, "H", 0, "Deflection step of the comparison (0.5)", 0},
+    {"elements", KEY_ELEMENTS, "N", 0, "Beam elements (50)", 0},
+    {"fibres", KEY_FIBRES, "N", 0, "Fibres over the diameter (20)", 0},
+    {"size-tolerance", KEY_SIZE, "X", 0, "Stop when the simplex is smaller (1e-4 of K0, n0)", 0},
+    {"error-tolerance", KEY_ERROR, "X", 0, "Stop when the error is smaller (1e-4 of F_max)", 0},
+    {"max-iterations", KEY_ITERATIONS, "N", 0, "Stop after N iterations of a simplex (200)", 0},
+    {"force", KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    struct wb_calibrate_settings *const s = &o->settings;
+
+    switch (key) {
+    case 'o':
+        o->output = argument;
+        return 0;
+    case KEY_ZONE:
+        s->elastic_zone = wb_command_number(state, "--elastic-zone", argument, 1e-3, 0.3);
+        return 0;
+    case KEY_YIELD:
+        s->yield_point = wb_command_number(state, "--yield-point", argument, 1e-3, 0.3);
+        return 0;
+    case KEY_STRAIGHT:
+        s->straight = true;
+        return 0;
+    case KEY_MODULUS:
+        s->youngs_modulus =
+            WB_MPA * wb_command_number(state, "--youngs-modulus-mpa", argument, 1e-3, 1e7);
+        return 0;
+    case KEY_STRESS:
+        s->yield_stress =
+            WB_MPA * wb_command_number(state, "--yield-stress-mpa", argument, 1e-6, 1e7);
+        return 0;
+    case KEY_NO_RESTART:
+        s->restart = false;
+        return 0;
+    case KEY_STEP:
+        s->step = WB_MM * wb_command_number(state, "--step-mm", argument, 1e-2, 100.0);
+        return 0;
+    case KEY_ELEMENTS:
+        s->n_elements = wb_command_integer(state, "--elements", argument, 2, 2000);
+        return 0;
+    case KEY_FIBRES:
+        s->n_fibres = wb_command_integer(state, "--fibres", argument, 4, 1000);
+        return 0;
+    case KEY_SIZE:
+        s->size_tolerance = wb_command_number(state, "--size-tolerance", argument, 1e-12, 0.05);
+        return 0;
+    case KEY_ERROR:
+        s->error_tolerance = wb_command_number(state, "--error-tolerance", argument, 0.0, 1.0);
+        return 0;
+    case KEY_ITERATIONS:
+        s->max_iterations = wb_command_integer(state, "--max-iterations", argument, 1, 100000);
+        return 0;
+    case KEY_FORCE:
+        o->force = true;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (wb_datasets_add(&o->datasets, argument) != WB_OK)
+            exit(WB_EXIT_FAILED);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->datasets.n == 0)
+            argp_error(state, "name at least one dataset");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "DATASET...",
+    .doc = "Calibrates the 1D elastoplastic beam on the averaged first loading of datasets of one "
+           "wire and length: E by eq. 10, the yield stress by eq. 11, K and n by Nelder-Mead with "
+           "the beam under the test's own loading.\v"
+           "Errors are over F_max, the largest force of the measured average. Exit code 3: the "
+           "iterations ran out or it was stopped; the best so far is written.",
+};
+
+static bool report_progress(void *context, int evaluation, double error, double size)
+{
+    char note[64];
+    snprintf(note, sizeof note, "error %.2e, simplex %.1e", error, size);
+    wb_progress_update(context, evaluation, note);
+    return !wb_interrupted();
+}
+
+static void set_material(struct wb_json *object, double modulus, double yield, double strength,
+                         double exponent)
+{
+    wb_json_set_number(object, "youngs_modulus_MPa", modulus / WB_MPA);
+    wb_json_set_number(object, "yield_stress_MPa", yield / WB_MPA);
+    wb_json_set_number(object, "strength_coefficient_MPa", strength / WB_MPA);
+    wb_json_set_number(object, "hardening_exponent", exponent);
+}
+
+static void set_path(struct wb_json *root, const struct wb_calibrate_result *result)
+{
+    struct wb_json *const path = wb_json_set_array(root, "path");
+    for (int i = 0; i < result->n_path; i++) {
+        const struct wb_calibrate_step *const step = &result->path[i];
+        struct wb_json *const item = wb_json_append_object(path);
+        wb_json_set_number(item, "strength_coefficient_MPa", step->strength_coefficient / WB_MPA);
+        wb_json_set_number(item, "hardening_exponent", step->hardening_exponent);
+        wb_json_set_number(item, "error", step->error);
+        wb_json_set_number(item, "size", step->size);
+    }
+}
+
+static int print_json(const struct options *o, const struct wb_calibrate_result *r)
+{
+    const struct wb_calibrate_settings *const s = &o->settings;
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "wire", r->info.wire);
+    wb_json_set_number(root, "length_mm", r->info.length / WB_MM);
+    wb_json_set_integer(root, "samples", r->n_samples);
+    wb_json_set_boolean(root, "virtual_rig", r->info.is_virtual);
+    wb_json_set_boolean(root, "simulation", r->info.is_simulation);
+    wb_json_set_number(root, "elastic_zone", s->elastic_zone);
+    wb_json_set_number(root, "yield_point",
+                       s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
+    wb_json_set_boolean(root, "straight", s->straight);
+    wb_json_set_number(root, "bow_mm", wb_dataset_bow(&r->info) / WB_MM);
+    set_material(root, r->material.youngs_modulus, r->material.yield_stress,
+                 r->material.strength_coefficient, r->material.hardening_exponent);
+    wb_json_set_number(root, "poissons_ratio", r->material.poissons_ratio);
+    set_material(wb_json_set_object(root, "deviations"), r->deviation[0], r->deviation[1],
+                 r->deviation[2], r->deviation[3]);
+    wb_json_set_number(root, "first_strength_coefficient_MPa",
+                       r->first_strength_coefficient / WB_MPA);
+    wb_json_set_number(root, "first_hardening_exponent", r->first_hardening_exponent);
+    wb_json_set_text(root, "stopped", wb_calibrate_end_text(r->end));
+    wb_json_set_boolean(root, "restarted", r->restarted);
+    wb_json_set_number(root, "restart_moved", r->restart_moved);
+    wb_json_set_integer(root, "evaluations", r->evaluations);
+    wb_json_set_integer(root, "evaluations_not_converged", r->failed_evaluations);
+    wb_json_set_number(root, "max_force_N", r->max_force);
+    wb_json_set_number(root, "max_deflection_mm", r->max_deflection / WB_MM);
+    wb_json_set_number(root, "rms", r->rms);
+    wb_json_set_number(root, "max_error", r->max_error);
+    wb_json_set_number(root, "scatter_rms", r->scatter_rms);
+    wb_json_set_number(root, "cpu_s", r->cpu_s);
+    set_path(root, r);
+    return wb_command_print_json(root);
+}
+
+static void print_value(const char *name, double value, double deviation, const char *unit)
+{
+    printf("%-8s %10.5g", name, value);
+    if (isfinite(deviation))
+        printf(" +- %-8.2g", deviation);
+    printf(" %s\n", unit);
+}
+
+static void print_text(const struct options *o, const struct wb_calibrate_result *r)
+{
+    const struct wb_calibrate_settings *const s = &o->settings;
+    printf("wire %s, L = %g mm, %d sample%s%s\n", r->info.wire, r->info.length / WB_MM,
+           r->n_samples, r->n_samples == 1 ? "" : "s",
+           r->info.is_virtual      ? ", virtual rig"
+           : r->info.is_simulation ? ", simulation"
+                                   : "");
+    printf("elastic zone %g L, yield point %g L, ", s->elastic_zone,
+           s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
+    if (s->straight)
+        printf("natural shape ignored\n");
+    else
+        printf("mean bow %.2f mm\n", wb_dataset_bow(&r->info) / WB_MM);
+    print_value("E", r->material.youngs_modulus / WB_MPA, r->deviation[0] / WB_MPA, "MPa");
+    print_value("sigma_Y", r->material.yield_stress / WB_MPA, r->deviation[1] / WB_MPA, "MPa");
+    print_value("K", r->material.strength_coefficient / WB_MPA, r->deviation[2] / WB_MPA, "MPa");
+    print_value("n", r->material.hardening_exponent, r->deviation[3], "");
+    printf("first guess K0 = %.5g MPa, n0 = %.4g; %d beam runs, %d not converged; ended: %s\n",
+           r->first_strength_coefficient / WB_MPA, r->first_hardening_exponent, r->evaluations,
+           r->failed_evaluations, wb_calibrate_end_text(r->end));
+    if (r->restarted)
+        printf("the restart from the optimum moved it by %.2g\n", r->restart_moved);
+    printf("RMS %.3g, largest error %.3g, scatter between samples %.3g "
+           "(all over F_max = %.4g N of the measured average)\n",
+           r->rms, r->max_error, r->scatter_rms, r->max_force);
+}
+
+static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *result)
+{
+    struct wb_progress progress;
+    if (o->output && !o->force && wb_file_exists(o->output))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->output);
+    WB_TRY(wb_datasets_read(&o->datasets));
+    o->settings.progress = report_progress;
+    o->settings.progress_context = &progress;
+    wb_progress_start(&progress, "calibrate", "beam runs", 0.0);
+    const enum wb_status status =
+        wb_calibrate_run(result, o->datasets.pointers, o->datasets.n, &o->settings);
+    wb_progress_finish(&progress);
+    return status;
+}
+
+static int deliver(const struct options *o, const struct wb_calibrate_result *result)
+{
+    if (o->output) {
+        const enum wb_status status = wb_properties_write(
+            o->output, result, &o->settings, o->datasets.names, o->datasets.n, o->force);
+        if (status != WB_OK)
+            return wb_command_exit(status);
+    }
+    if (o->json) {
+        const int code = print_json(o, result);
+        if (code != WB_EXIT_OK)
+            return code;
+    } else {
+        print_text(o, result);
+    }
+    const bool complete = result->end == WB_CALIBRATE_SIZE || result->end == WB_CALIBRATE_ERROR;
+    if (!complete)
+        wb_warn("%s: these are the best properties so far", wb_calibrate_end_text(result->end));
+    return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+}
+
+int wb_cmd_calibrate(int argc, char **argv)
+{
+    struct options options = {0};
+    struct wb_calibrate_result result = {0};
+    wb_calibrate_default_settings(&options.settings);
+    wb_command_parse(&argp, argc, argv, &options);
+    wb_interrupt_install();
+
+    const enum wb_status status = calibrate(&options, &result);
+    const int code = status == WB_OK ? deliver(&options, &result) : wb_command_exit(status);
+    wb_calibrate_result_release(&result);
+    wb_datasets_release(&options.datasets);
+    return code;
+}

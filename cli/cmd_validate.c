@@ -1,0 +1,257 @@
+/* wirebench validate: properties against datasets they were not calibrated on. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/properties.h"
+#include "analysis/validate.h"
+#include "base/file.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/datasets.h"
+
+#define WB_LOG_DOMAIN "validate"
+
+struct options {
+    const char *properties;
+    struct wb_datasets datasets;
+    struct wb_validate_settings settings;
+    const char *output;
+    bool json, force;
+};
+
+enum {
+    KEY_STRAIGHT = 1000,
+    KEY_STEP,
+    KEY_ELEMENTS,
+    KEY_FIBRES,
+    KEY_FORCE,
+    KEY_JSON
+};
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "DIR", 0, "Write forces and errors of each group there as CSV", 0},
+    {"straight", KEY_STRAIGHT, NULL, 0, "Ignore the natural shape (bow) of the samples", 0},
+    {"step-mm", KEY_STEP, "H", 0, "Deflection step of the comparison (0.5)", 0},
+    {"elements", KEY_ELEMENTS, "N", 0, "Beam elements (50)", 0},
+    {"fibres", KEY_FIBRES, "N", 0, "Fibres over the diameter (20)", 0},
+    {"force", KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+
+    switch (key) {
+    case 'o':
+        o->output = argument;
+        return 0;
+    case KEY_STRAIGHT:
+        o->settings.straight = true;
+        return 0;
+    case KEY_STEP:
+        o->settings.step = WB_MM * wb_command_number(state, "--step-mm", argument, 1e-2, 100.0);
+        return 0;
+    case KEY_ELEMENTS:
+        o->settings.n_elements = wb_command_integer(state, "--elements", argument, 2, 2000);
+        return 0;
+    case KEY_FIBRES:
+        o->settings.n_fibres = wb_command_integer(state, "--fibres", argument, 4, 1000);
+        return 0;
+    case KEY_FORCE:
+        o->force = true;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (state->arg_num == 0)
+            o->properties = argument;
+        else if (wb_datasets_add(&o->datasets, argument) != WB_OK)
+            exit(WB_EXIT_FAILED);
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->properties || o->datasets.n == 0)
+            argp_error(state, "name the properties and at least one dataset");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "PROPERTIES.yaml DATASET...",
+    .doc = "Predicts the first loading of tests with calibrated properties and prints the errors "
+           "of eqs. 18 and 19, beside those of a linear elastic prediction, and the distance of "
+           "shapes. Datasets are grouped by wire and length, and each group is averaged.\v"
+           "Errors are over F_max, the largest force of the measured average. Exit code 3: a "
+           "prediction was cut short because the beam did not converge.",
+};
+
+/* All groups of one call. */
+struct groups {
+    int n;
+    int *of;                            /* (datasets) group of each */
+    struct wb_validate_result *results; /* (n) */
+};
+
+static enum wb_status run_group(const struct options *o, const struct wb_properties *properties,
+                                struct groups *groups, int group)
+{
+    const struct wb_datasets *const datasets = &o->datasets;
+    const struct wb_dataset **const members =
+        malloc((size_t)datasets->n * sizeof(struct wb_dataset *));
+    int n = 0;
+    if (!members)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", datasets->n);
+    for (int i = 0; i < datasets->n; i++) {
+        if (groups->of[i] == group)
+            members[n++] = datasets->pointers[i];
+    }
+    const enum wb_status status =
+        wb_validate_run(&groups->results[group], properties, members, n, &o->settings);
+    free(members);
+    return status;
+}
+
+static enum wb_status run_groups(struct options *o, const struct wb_properties *properties,
+                                 struct groups *groups)
+{
+    WB_TRY(wb_datasets_read(&o->datasets));
+    const size_t n = (size_t)o->datasets.n;
+    groups->of = calloc(n, sizeof *groups->of);
+    groups->results = calloc(n, sizeof *groups->results);
+    if (!groups->of || !groups->results)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", o->datasets.n);
+    groups->n = wb_curve_group(o->datasets.pointers, o->datasets.n, groups->of);
+    for (int i = 0; i < groups->n; i++)
+        WB_TRY(run_group(o, properties, groups, i));
+    return WB_OK;
+}
+
+/* Name of a group's CSV file: the wire's name with anything unusual in a path replaced. */
+static void csv_name(char *name, size_t size, const struct wb_test_info *info)
+{
+    snprintf(name, size, "%s-L%g.csv", info->wire, info->length / WB_MM);
+    for (char *c = name; *c; c++) {
+        if (*c == '/' || *c == ' ' || (unsigned char)*c < 0x20)
+            *c = '_';
+    }
+}
+
+static enum wb_status write_tables(const struct options *o, const struct groups *groups)
+{
+    WB_TRY(wb_file_prepare_output(o->output, o->force));
+    for (int i = 0; i < groups->n; i++) {
+        char name[128], path[WB_PATH];
+        csv_name(name, sizeof name, &groups->results[i].info);
+        WB_TRY(wb_file_join(path, o->output, name));
+        WB_TRY(wb_validate_write_csv(&groups->results[i], path));
+    }
+    return WB_OK;
+}
+
+static void set_prediction(struct wb_json *object, const struct wb_prediction *prediction)
+{
+    wb_json_set_number(object, "rms", prediction->rms);
+    wb_json_set_number(object, "max_error", prediction->max_error);
+    wb_json_set_number(object, "rms_from_5mm", prediction->rms_from_5mm);
+    wb_json_set_boolean(object, "converged", prediction->n_reached == prediction->n);
+}
+
+static int print_json(const struct options *o, const struct wb_properties *properties,
+                      const struct groups *groups)
+{
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "properties", o->properties);
+    wb_json_set_text(root, "wire", properties->wire);
+    struct wb_json *const array = wb_json_set_array(root, "groups");
+    for (int i = 0; i < groups->n; i++) {
+        const struct wb_validate_result *const r = &groups->results[i];
+        struct wb_json *const item = wb_json_append_object(array);
+        wb_json_set_text(item, "wire", r->info.wire);
+        wb_json_set_number(item, "length_mm", r->info.length / WB_MM);
+        wb_json_set_integer(item, "samples", r->curve.n_samples);
+        wb_json_set_boolean(item, "virtual_rig", r->info.is_virtual);
+        wb_json_set_boolean(item, "simulation", r->info.is_simulation);
+        wb_json_set_number(item, "max_force_N", r->curve.max_force);
+        wb_json_set_number(item, "max_deflection_mm", r->curve.max_deflection / WB_MM);
+        set_prediction(wb_json_set_object(item, "elastoplastic"), &r->elastoplastic);
+        set_prediction(wb_json_set_object(item, "elastic"), &r->elastic);
+        wb_json_set_number(item, "shape_rms_mm", r->shape_rms / WB_MM);
+        wb_json_set_number(item, "shape_max_mm", r->shape_max / WB_MM);
+        wb_json_set_integer(item, "shape_points", r->n_shape_points);
+        wb_json_set_number(item, "scatter_rms", r->scatter_rms);
+        wb_json_set_number(item, "expected_rms", r->expected_rms);
+        wb_json_set_number(item, "scatter_share", r->scatter_share);
+        wb_json_set_number(item, "cpu_s", r->cpu_s);
+    }
+    return wb_command_print_json(root);
+}
+
+static void print_group(const struct wb_validate_result *r)
+{
+    printf("wire %s, L = %g mm, %d sample%s%s\n", r->info.wire, r->info.length / WB_MM,
+           r->curve.n_samples, r->curve.n_samples == 1 ? "" : "s",
+           r->info.is_virtual      ? ", virtual rig"
+           : r->info.is_simulation ? ", simulation"
+                                   : "");
+    printf("  elastoplastic  RMS %.3g, largest error %.3g (over F_max = %.4g N of the measured "
+           "average)\n",
+           r->elastoplastic.rms, r->elastoplastic.max_error, r->curve.max_force);
+    printf("  elastic        RMS %.3g, largest error %.3g\n", r->elastic.rms, r->elastic.max_error);
+    if (r->n_shape_points > 0)
+        printf("  shapes         RMS %.2f mm, largest %.2f mm, %d markers\n", r->shape_rms / WB_MM,
+               r->shape_max / WB_MM, r->n_shape_points);
+    if (isfinite(r->expected_rms))
+        printf("  scatter        between samples %.3g; alone it lets expect an RMS of %.2g, "
+               "%.0f %% of the mean square error\n",
+               r->scatter_rms, r->expected_rms, 100.0 * r->scatter_share);
+}
+
+static int deliver(const struct options *o, const struct wb_properties *properties,
+                   const struct groups *groups)
+{
+    bool complete = true;
+    if (o->output) {
+        const enum wb_status status = write_tables(o, groups);
+        if (status != WB_OK)
+            return wb_command_exit(status);
+    }
+    if (o->json) {
+        const int code = print_json(o, properties, groups);
+        if (code != WB_EXIT_OK)
+            return code;
+    }
+    for (int i = 0; i < groups->n; i++) {
+        const struct wb_prediction *const prediction = &groups->results[i].elastoplastic;
+        if (!o->json)
+            print_group(&groups->results[i]);
+        complete = complete && prediction->n_reached == prediction->n;
+    }
+    return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+}
+
+int wb_cmd_validate(int argc, char **argv)
+{
+    struct options options = {0};
+    struct wb_properties properties;
+    struct groups groups = {0};
+    wb_command_parse(&argp, argc, argv, &options);
+
+    enum wb_status status = wb_properties_read(options.properties, &properties);
+    if (status == WB_OK)
+        status = run_groups(&options, &properties, &groups);
+    const int code =
+        status == WB_OK ? deliver(&options, &properties, &groups) : wb_command_exit(status);
+    for (int i = 0; i < groups.n; i++)
+        wb_validate_result_release(&groups.results[i]);
+    free(groups.results);
+    free(groups.of);
+    wb_datasets_release(&options.datasets);
+    return code;
+}
