@@ -1,5 +1,6 @@
 /* wirebench: one tool, one table of commands. */
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,9 +17,13 @@ struct command {
 
 static const struct command commands[] = {
     {"calibrate", wb_cmd_calibrate, "datasets to properties: E, sigma_Y, K, n"},
+    {"export", wb_cmd_export, "a recording's samples as CSV"},
+    {"info", wb_cmd_info, "what a recording holds"},
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},
+    {"replay", wb_cmd_replay, "the bench from a recording"},
     {"solve", wb_cmd_solve, "compute a bending test with a finite element model"},
     {"validate", wb_cmd_validate, "error curves of properties on other datasets"},
+    {"verify", wb_cmd_verify, "check recordings for damage, gaps and drops"},
     {0},
 };
 
@@ -46,6 +51,8 @@ static int run(const struct command *command, int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    /* A file that may grow no further is an error code of write(), not the end of the process. */
+    signal(SIGXFSZ, SIG_IGN);
     const char *const name = argc > 1 ? argv[1] : "";
     if (strcmp(name, "-h") == 0 || strcmp(name, "--help") == 0 || strcmp(name, "help") == 0) {
         print_usage(stdout);

@@ -210,3 +210,16 @@ enum wb_status wb_replay_run(struct wb_recording *recording, const struct wb_rig
     *counts = counted;
     return status;
 }
+
+enum wb_status wb_replay_rig(struct wb_recording *recording, struct wb_rig *rig)
+{
+    char *text = NULL;
+    enum wb_status status = wb_recording_meta(recording, "rig", &text);
+    if (status == WB_ERR_NOT_FOUND)
+        return wb_fail(WB_ERR_DATA, "the recording does not say which rig made it: without the "
+                                    "rig its bytes cannot be decoded");
+    WB_TRY(status);
+    status = wb_rig_parse(text, "the recording's rig", rig);
+    free(text);
+    return status;
+}

@@ -23,4 +23,7 @@ WB_MUST_CHECK enum wb_status wb_replay_run(struct wb_recording *recording, const
                                            const struct wb_sink *sink, double rate,
                                            struct wb_replay_counts *counts);
 
+/* The rig a recording was made with, from its meta; WB_ERR_DATA when it has none. */
+WB_MUST_CHECK enum wb_status wb_replay_rig(struct wb_recording *recording, struct wb_rig *rig);
+
 #endif

@@ -1,0 +1,250 @@
+/* wirebench info: what a recording is. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "cli/command.h"
+#include "daq/replay.h"
+#include "daq/specimen.h"
+#include "daq/survey.h"
+
+#define WB_LOG_DOMAIN "info"
+
+struct options {
+    const char *path;
+    bool json;
+};
+
+enum {
+    KEY_JSON = 256
+};
+
+static const struct argp_option option_table[] = {
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    switch (key) {
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->path)
+            argp_error(state, "one recording at a time, not '%s' too", argument);
+        o->path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->path)
+            argp_error(state, "name the recording");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "REC.wbr",
+    .doc = "Tells what a recording (.wbr or .wbr.zst) holds: specimen, rig, operator, streams with "
+           "their rates, events.\v"
+           "Exit code 3: something is missing or damaged; 'wirebench verify' says what.",
+};
+
+/* What is shown, taken from the recording once. */
+struct facts {
+    struct wb_recording *recording;
+    struct wb_survey survey;
+    char sha256[65];
+    bool has_rig, has_specimen;
+    struct wb_rig rig;
+    struct wb_specimen specimen;
+    struct wb_json *events; /* array being filled */
+};
+
+/* A meta value, "" when it is not there; the caller frees. */
+static char *meta(struct facts *facts, const char *key)
+{
+    char *value = NULL;
+    if (wb_recording_meta(facts->recording, key, &value) != WB_OK)
+        return strdup("");
+    return value;
+}
+
+static enum wb_status gather(struct facts *facts, const char *path)
+{
+    WB_TRY(wb_recording_open(&facts->recording, path));
+    WB_TRY(wb_survey_run(facts->recording, true, &facts->survey));
+    if (wb_recording_sha256(path, facts->sha256) != WB_OK)
+        strcpy(facts->sha256, "");
+    if (facts->survey.has_rig)
+        facts->has_rig = wb_replay_rig(facts->recording, &facts->rig) == WB_OK;
+    if (facts->survey.has_specimen) {
+        char *text = meta(facts, "specimen");
+        facts->has_specimen =
+            text && wb_specimen_parse(text, "the recording's specimen", &facts->specimen) == WB_OK;
+        free(text);
+    }
+    return WB_OK;
+}
+
+/* --- as text --- */
+
+static void print_meta(struct facts *facts, const char *label, const char *key)
+{
+    char *value = meta(facts, key);
+    if (value && value[0])
+        printf("  %-10s %s\n", label, value);
+    free(value);
+}
+
+static enum wb_status print_event(void *context, const struct wb_event *event)
+{
+    const struct facts *facts = context;
+    printf("    %9.3f s  %-12s %s\n",
+           wb_seconds_from_ns(event->t_ns) - wb_seconds_from_ns(facts->survey.first_ns),
+           event->kind, event->text);
+    return WB_OK;
+}
+
+static void print_streams(const struct facts *facts)
+{
+    static const char *const samples[] = {"readings", "frames", "reports"};
+    printf("  streams\n");
+    for (int i = 0; i < facts->survey.n_streams; i++) {
+        const struct wb_survey_stream *s = &facts->survey.streams[i];
+        const struct wb_recording_stream *declared = wb_recording_stream_at(facts->recording, i);
+        printf("    %-6s %-8s %" PRIu64 " chunks, %.1f kB", wb_role_name(s->role),
+               declared->protocol, s->chunks, (double)s->bytes * 1e-3);
+        if (facts->survey.decoded)
+            printf(", %" PRIu64 " %s (%.1f/s)", s->samples, samples[s->role], s->rate);
+        printf(", longest silence %.3f s, %s\n", wb_seconds_from_ns(s->longest_silence_ns),
+               declared->address);
+    }
+}
+
+static enum wb_status print_text(struct facts *facts, const char *path)
+{
+    const struct wb_survey *survey = &facts->survey;
+    printf("%s: recording%s\n", path, survey->is_virtual ? " from a virtual rig" : "");
+    print_meta(facts, "started", "start_utc");
+    print_meta(facts, "ended", "ended");
+    print_meta(facts, "host", "host");
+    print_meta(facts, "operator", "operator");
+    print_meta(facts, "notes", "notes");
+    if (facts->has_specimen)
+        printf("  %-10s wire %s, %g mm, sample %d, %d markers\n", "specimen", facts->specimen.wire,
+               facts->specimen.length / WB_MM, facts->specimen.sample, facts->specimen.n_markers);
+    if (facts->has_rig)
+        printf("  %-10s %s%s\n", "rig", facts->rig.name,
+               survey->is_virtual ? " (virtual rig)" : "");
+    print_meta(facts, "cycles", "cycles");
+    print_meta(facts, "tool", "tool_version");
+    print_meta(facts, "revision", "tool_revision");
+    printf("  %-10s %.3f s\n", "duration", wb_survey_duration(survey));
+    printf("  %-10s %s\n", "sha256", facts->sha256);
+    print_streams(facts);
+    printf("  clock      %" PRIu64 " probes\n  events\n", survey->clock_rows);
+    enum wb_status status = wb_recording_each_event(facts->recording, print_event, facts);
+    char problem[256];
+    for (int at = 0; wb_survey_problem(survey, &at, problem, sizeof problem);)
+        printf("  problem    %s\n", problem);
+    return status == WB_ERR_DATA ? WB_OK : status;
+}
+
+/* --- as JSON --- */
+
+static enum wb_status add_event(void *context, const struct wb_event *event)
+{
+    struct facts *facts = context;
+    struct wb_json *item = wb_json_append_object(facts->events);
+    wb_json_set_number(
+        item, "t_s", wb_seconds_from_ns(event->t_ns) - wb_seconds_from_ns(facts->survey.first_ns));
+    wb_json_set_integer(item, "t_ns", event->t_ns);
+    wb_json_set_text(item, "kind", event->kind);
+    wb_json_set_text(item, "text", event->text);
+    return WB_OK;
+}
+
+static void add_meta(struct facts *facts, struct wb_json *root, const char *key)
+{
+    char *value = meta(facts, key);
+    wb_json_set_text(root, key, value && value[0] ? value : NULL);
+    free(value);
+}
+
+static void add_streams(const struct facts *facts, struct wb_json *root)
+{
+    struct wb_json *streams = wb_json_set_array(root, "streams");
+    for (int i = 0; i < facts->survey.n_streams; i++) {
+        const struct wb_survey_stream *s = &facts->survey.streams[i];
+        const struct wb_recording_stream *declared = wb_recording_stream_at(facts->recording, i);
+        struct wb_json *item = wb_json_append_object(streams);
+        wb_json_set_integer(item, "id", s->id);
+        wb_json_set_text(item, "role", wb_role_name(s->role));
+        wb_json_set_text(item, "protocol", declared->protocol);
+        wb_json_set_text(item, "address", declared->address);
+        wb_json_set_integer(item, "chunks", (int64_t)s->chunks);
+        wb_json_set_integer(item, "bytes", (int64_t)s->bytes);
+        if (facts->survey.decoded) {
+            wb_json_set_integer(item, "samples", (int64_t)s->samples);
+            wb_json_set_number(item, "rate_Hz", s->rate);
+        }
+        wb_json_set_number(item, "longest_silence_s", wb_seconds_from_ns(s->longest_silence_ns));
+    }
+}
+
+static int print_json(struct facts *facts, const char *path)
+{
+    static const char *const keys[] = {"start_utc",    "ended",         "host",
+                                       "operator",     "notes",         "cycles",
+                                       "tool_version", "tool_revision", "closed"};
+    const struct wb_survey *survey = &facts->survey;
+    struct wb_json *root = wb_json_create();
+    wb_json_set_text(root, "recording", path);
+    wb_json_set_boolean(root, "virtual_rig", survey->is_virtual);
+    wb_json_set_text(root, "sha256", facts->sha256);
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        add_meta(facts, root, keys[i]);
+    wb_json_set_text(root, "rig", facts->has_rig ? facts->rig.name : NULL);
+    if (facts->has_specimen) {
+        struct wb_json *specimen = wb_json_set_object(root, "specimen");
+        wb_json_set_text(specimen, "wire", facts->specimen.wire);
+        wb_json_set_number(specimen, "length_mm", facts->specimen.length / WB_MM);
+        wb_json_set_integer(specimen, "sample", facts->specimen.sample);
+        wb_json_set_integer(specimen, "markers", facts->specimen.n_markers);
+    }
+    wb_json_set_number(root, "duration_s", wb_survey_duration(survey));
+    add_streams(facts, root);
+    wb_json_set_integer(root, "clock_probes", (int64_t)survey->clock_rows);
+    facts->events = wb_json_set_array(root, "events");
+    if (wb_recording_each_event(facts->recording, add_event, facts) == WB_ERR_MEMORY) {
+        wb_json_destroy(root);
+        return WB_EXIT_FAILED;
+    }
+    wb_json_set_boolean(root, "whole", wb_survey_is_whole(survey));
+    return wb_command_print_json(root);
+}
+
+int wb_cmd_info(int argc, char **argv)
+{
+    struct options options = {.json = false};
+    wb_command_parse(&argp, argc, argv, &options);
+    struct facts facts = {.recording = NULL};
+    enum wb_status status = gather(&facts, options.path);
+    int code = wb_command_exit(status);
+    if (status == WB_OK && options.json)
+        code = print_json(&facts, options.path);
+    else if (status == WB_OK)
+        code = wb_command_exit(print_text(&facts, options.path));
+    bool whole = wb_survey_is_whole(&facts.survey);
+    status = wb_recording_close(facts.recording);
+    if (code == WB_EXIT_OK && status != WB_OK)
+        code = WB_EXIT_FAILED;
+    return code == WB_EXIT_OK && !whole ? WB_EXIT_INCOMPLETE : code;
+}

@@ -1,0 +1,245 @@
+#include "daq/survey.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "daq/replay.h"
+
+#define WB_LOG_DOMAIN "survey"
+
+struct looking {
+    struct wb_survey *survey;
+    int64_t next_seq[WB_SURVEY_STREAMS];
+};
+
+static int find_stream(const struct wb_survey *survey, int id)
+{
+    for (int i = 0; i < survey->n_streams; i++) {
+        if (survey->streams[i].id == id)
+            return i;
+    }
+    return -1;
+}
+
+/* Sequence numbers count from 0; a number above the expected one is a gap. */
+static void check_order(struct wb_survey_stream *stream, int64_t *next, int64_t seq)
+{
+    if (seq < *next) {
+        stream->repeated++;
+        return;
+    }
+    if (seq > *next) {
+        stream->missing += (uint64_t)seq - (uint64_t)*next;
+        stream->gaps++;
+    }
+    *next = seq == INT64_MAX ? seq : seq + 1;
+}
+
+static void check_time(struct wb_survey *survey, struct wb_survey_stream *stream, int64_t t_ns)
+{
+    if (survey->chunks == 0)
+        survey->first_ns = t_ns;
+    survey->last_ns = t_ns;
+    if (stream->chunks == 0)
+        stream->first_ns = t_ns;
+    else if (t_ns - stream->last_ns > stream->longest_silence_ns)
+        stream->longest_silence_ns = t_ns - stream->last_ns;
+    stream->last_ns = t_ns;
+}
+
+static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
+{
+    struct looking *looking = context;
+    struct wb_survey *survey = looking->survey;
+    int i = find_stream(survey, chunk->stream);
+    if (i < 0) {
+        survey->undeclared++;
+        return WB_OK;
+    }
+    struct wb_survey_stream *stream = &survey->streams[i];
+    check_order(stream, &looking->next_seq[i], chunk->seq);
+    check_time(survey, stream, chunk->t_ns);
+    stream->chunks++;
+    stream->bytes += chunk->n;
+    stream->damaged += !chunk->intact;
+    survey->chunks++;
+    survey->bytes += chunk->n;
+    survey->damaged += !chunk->intact;
+    return WB_OK;
+}
+
+static enum wb_status look_at_event(void *context, const struct wb_event *event)
+{
+    struct wb_survey *survey = context;
+    survey->events++;
+    survey->drop_events += strcmp(event->kind, "drop") == 0;
+    survey->lost_events += strcmp(event->kind, "stream_lost") == 0;
+    return WB_OK;
+}
+
+static enum wb_status look_at_clock(void *context, const struct wb_clock_row *row)
+{
+    (void)row;
+    ((struct wb_survey *)context)->clock_rows++;
+    return WB_OK;
+}
+
+static enum wb_status look_at_meta(void *context, const char *key, const char *value)
+{
+    struct wb_survey *survey = context;
+    if (strcmp(key, "rig") == 0)
+        survey->has_rig = true;
+    else if (strcmp(key, "specimen") == 0)
+        survey->has_specimen = true;
+    else if (strcmp(key, "virtual") == 0)
+        survey->is_virtual = strcmp(value, "true") == 0;
+    else if (strcmp(key, "dropped_chunks") == 0)
+        survey->dropped_chunks = strtoll(value, NULL, 10);
+    return WB_OK;
+}
+
+/* A walk that breaks off is a finding; running out of memory is a failure. */
+static enum wb_status note_walk(struct wb_survey *survey, enum wb_status status)
+{
+    if (status != WB_ERR_DATA)
+        return status;
+    survey->broken = true;
+    return WB_OK;
+}
+
+/* --- samples --- */
+
+static enum wb_status decode_all(struct wb_recording *recording, struct wb_survey *survey)
+{
+    /* A recording without its rig holds bytes all the same; that is told elsewhere. */
+    struct wb_rig rig;
+    if (!survey->has_rig || wb_replay_rig(recording, &rig) != WB_OK)
+        return WB_OK;
+    struct wb_sink sink = {0};
+    struct wb_replay_counts counts;
+    WB_TRY(note_walk(survey, wb_replay_run(recording, &rig, &sink, 0.0, &counts)));
+    survey->decoded = true;
+    const uint64_t samples[] = {[WB_ROLE_LOAD] = counts.load_samples,
+                                [WB_ROLE_MOCAP] = counts.mocap_frames,
+                                [WB_ROLE_STAGE] = counts.stage_reports};
+    for (int i = 0; i < survey->n_streams; i++) {
+        struct wb_survey_stream *stream = &survey->streams[i];
+        stream->samples = samples[stream->role];
+        double seconds = wb_seconds_from_ns(stream->last_ns) - wb_seconds_from_ns(stream->first_ns);
+        stream->rate = seconds > 0.0 ? (double)stream->samples / seconds : 0.0;
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct wb_survey *survey)
+{
+    memset(survey, 0, sizeof *survey);
+    survey->dropped_chunks = -1;
+    survey->closed = wb_recording_is_complete(recording);
+    int n = wb_recording_n_streams(recording);
+    for (int i = 0; i < n && i < WB_SURVEY_STREAMS; i++) {
+        const struct wb_recording_stream *stream = wb_recording_stream_at(recording, i);
+        survey->streams[i] = (struct wb_survey_stream){.id = stream->id, .role = stream->role};
+        survey->n_streams++;
+    }
+    struct looking looking = {.survey = survey};
+    WB_TRY(note_walk(survey, wb_recording_each_meta(recording, look_at_meta, survey)));
+    WB_TRY(note_walk(survey, wb_recording_each_chunk(recording, look_at_chunk, &looking)));
+    WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, survey)));
+    WB_TRY(note_walk(survey, wb_recording_each_clock(recording, look_at_clock, survey)));
+    return decode ? decode_all(recording, survey) : WB_OK;
+}
+
+double wb_survey_duration(const struct wb_survey *survey)
+{
+    return wb_seconds_from_ns(survey->last_ns) - wb_seconds_from_ns(survey->first_ns);
+}
+
+/* --- what is wrong --- */
+
+static bool stream_problem(const struct wb_survey_stream *stream, int which, char *text,
+                           size_t size)
+{
+    const char *role = wb_role_name(stream->role);
+    switch (which) {
+    case 0:
+        snprintf(text, size, "%s stream %d: nothing was received", role, stream->id);
+        return stream->chunks == 0;
+    case 1:
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunks damaged (CRC-32)", role, stream->id,
+                 stream->damaged);
+        return stream->damaged > 0;
+    case 2:
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunks missing in %" PRIu64 " places", role,
+                 stream->id, stream->missing, stream->gaps);
+        return stream->missing > 0;
+    default:
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunks repeated or out of order", role,
+                 stream->id, stream->repeated);
+        return stream->repeated > 0;
+    }
+}
+
+static bool file_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+{
+    switch (which) {
+    case 0:
+        snprintf(text, size,
+                 "it was not closed properly: a crash, a power cut, a full disk, or "
+                 "the file is cut short, or it is still being recorded");
+        return !survey->closed;
+    case 1:
+        snprintf(text, size, "the database is damaged: not all rows can be read");
+        return survey->broken;
+    case 2:
+        snprintf(text, size, "no stream is declared");
+        return survey->n_streams == 0;
+    case 3:
+        snprintf(text, size, "%" PRIu64 " chunks belong to no declared stream", survey->undeclared);
+        return survey->undeclared > 0;
+    case 4:
+        snprintf(text, size, "%" PRIu64 " drops were noted while recording (%" PRId64 " chunks)",
+                 survey->drop_events, survey->dropped_chunks < 0 ? 0 : survey->dropped_chunks);
+        return survey->drop_events > 0 || survey->dropped_chunks > 0;
+    case 5:
+        snprintf(text, size, "%" PRIu64 " times a stream fell silent while recording",
+                 survey->lost_events);
+        return survey->lost_events > 0;
+    case 6:
+        snprintf(text, size, "the rig's description is missing: nothing can be decoded");
+        return !survey->has_rig;
+    default:
+        snprintf(text, size, "the specimen's description is missing: it cannot be aligned");
+        return !survey->has_specimen;
+    }
+}
+
+#define FILE_PROBLEMS 8
+#define STREAM_PROBLEMS 4
+
+bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size)
+{
+    while (*at < FILE_PROBLEMS + survey->n_streams * STREAM_PROBLEMS) {
+        int which = (*at)++;
+        if (which < FILE_PROBLEMS) {
+            if (file_problem(survey, which, text, size))
+                return true;
+            continue;
+        }
+        which -= FILE_PROBLEMS;
+        if (stream_problem(&survey->streams[which / STREAM_PROBLEMS], which % STREAM_PROBLEMS, text,
+                           size))
+            return true;
+    }
+    return false;
+}
+
+bool wb_survey_is_whole(const struct wb_survey *survey)
+{
+    char text[256];
+    int at = 0;
+    return !wb_survey_problem(survey, &at, text, sizeof text);
+}

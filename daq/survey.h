@@ -1,0 +1,59 @@
+/* A look at a whole recording: what it holds, and what is missing or damaged. */
+#ifndef WB_DAQ_SURVEY_H
+#define WB_DAQ_SURVEY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/status.h"
+#include "daq/recording.h"
+
+#define WB_SURVEY_STREAMS 16
+
+struct wb_survey_stream {
+    int id;
+    enum wb_role role;
+    uint64_t chunks, bytes;
+    uint64_t damaged;  /* chunks whose CRC does not fit */
+    uint64_t missing;  /* sequence numbers that are not there */
+    uint64_t gaps;     /* places where they are missing */
+    uint64_t repeated; /* sequence numbers that come twice or backwards */
+    int64_t first_ns, last_ns;
+    int64_t longest_silence_ns; /* between two chunks */
+    uint64_t samples;           /* decoded; 0 unless decoding was asked for and worked */
+    double rate;                /* samples/s between first and last chunk; 0 unknown */
+};
+
+struct wb_survey {
+    int n_streams; /* at most WB_SURVEY_STREAMS; further ones are not looked at */
+    struct wb_survey_stream streams[WB_SURVEY_STREAMS];
+    uint64_t chunks, bytes, damaged, missing;
+    uint64_t undeclared; /* chunks of streams that were never declared */
+    uint64_t events, drop_events, clock_rows;
+    uint64_t lost_events;       /* times a stream fell silent for too long */
+    int64_t dropped_chunks;     /* what the writer counted; -1 when it was not written down */
+    int64_t first_ns, last_ns;  /* of all chunks; 0 without any */
+    bool closed;                /* closed properly and not cut short */
+    bool broken;                /* a table breaks off or cannot be read */
+    bool decoded;               /* samples were counted */
+    bool has_rig, has_specimen; /* meta values that replay and alignment need */
+    bool is_virtual;            /* recorded from a virtual rig */
+};
+
+/* Walks everything; with `decode` the bytes go through the drivers too, and samples are counted.
+ * What is wrong with the recording is no failure: it is in *survey (tables that break off are
+ * logged besides). */
+WB_MUST_CHECK enum wb_status wb_survey_run(struct wb_recording *recording, bool decode,
+                                           struct wb_survey *survey);
+
+/* True when nothing is missing, damaged, dropped or cut short. */
+bool wb_survey_is_whole(const struct wb_survey *survey);
+
+/* Seconds from the first chunk to the last. */
+double wb_survey_duration(const struct wb_survey *survey);
+
+/* Describes the next thing that is wrong, one line, beginning with *at = 0; false when there is
+ * none any more. `text` receives for example "mocap stream 1: 12 chunks missing in 2 places". */
+bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size);
+
+#endif
