@@ -1,0 +1,419 @@
+#include "base/units.h"
+#include "daq/driver.h"
+#include "daq/natnet_encode.h"
+#include "tests/check.h"
+#include "tests/daq/collect.h"
+#include "tests/daq/natnet_example.h"
+
+#define MS WB_NS_PER_MS
+#define S WB_NS_PER_S
+
+static uint8_t buffer[65536];
+static struct wb_natnet_frame frame;
+static struct collect collect;
+
+static struct wb_rig rig_of(const char *address)
+{
+    struct wb_rig rig = {.gravity = 9.81, .time_scale = 1.0};
+    strcpy(rig.mocap.address, address);
+    return rig;
+}
+
+static void receive(void *driver, int64_t t_ns, size_t n)
+{
+    const struct wb_sink sink = collect_sink(&collect);
+    assert_true(n > 0);
+    wb_driver_natnet.receive(driver, t_ns, buffer, n, &sink);
+}
+
+static size_t server_info(int major, int minor, bool multicast)
+{
+    struct wb_natnet_server server = {.name = "Motive", .app_version = {2, 1, 0, 0}};
+    const uint8_t group[4] = {239, 255, 42, 99};
+    server.natnet_version[0] = (uint8_t)major;
+    server.natnet_version[1] = (uint8_t)minor;
+    server.has_connection = major >= 3;
+    server.clock_frequency = 10000000;
+    server.data_port = 1511;
+    server.multicast = multicast;
+    memcpy(server.group, group, 4);
+    return wb_natnet_encode_server(buffer, sizeof buffer, &server);
+}
+
+static size_t frame_of(int major, int minor)
+{
+    const struct wb_natnet_version version = {(uint8_t)major, (uint8_t)minor};
+    return wb_natnet_encode_frame(buffer, sizeof buffer, version, &frame);
+}
+
+static int message_of(const struct wb_outbox *outbox, size_t i)
+{
+    size_t n;
+    return collect_entry(outbox, i, &n)[0];
+}
+
+static void connects_until_the_server_answers(void **state)
+{
+    (void)state;
+    struct wb_outbox outbox = {0};
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    wb_driver_natnet.start(driver, 0, &outbox);
+    for (int64_t t = 0; t < 2000; t += 20)
+        wb_driver_natnet.tick(driver, t * MS, &outbox);
+    assert_int_equal(outbox.n_entries, 4); /* every 500 ms */
+    size_t sizes[2];
+    for (size_t i = 0; i < 4; i++) {
+        assert_int_equal(message_of(&outbox, i), WB_NATNET_CONNECT);
+        collect_entry(&outbox, i, &sizes[i % 2]);
+    }
+    assert_int_equal(sizes[0], 275);
+    assert_int_equal(sizes[1], 268);
+    receive(driver, 2000 * MS, server_info(3, 0, false));
+    wb_outbox_clear(&outbox);
+    wb_driver_natnet.tick(driver, 2500 * MS, &outbox);
+    for (size_t i = 0; i < outbox.n_entries; i++)
+        assert_int_not_equal(message_of(&outbox, i), WB_NATNET_CONNECT);
+    assert_non_null(strstr(collect_text(&collect, "connected"), "'Motive' 2.1.0.0, NatNet 3.0"));
+    free(driver);
+}
+
+static void frames_become_samples_with_their_stamps(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 7);
+    frame.mocap.markers[3].params |= WB_MARKER_OCCLUDED;
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 1, frame_of(3, 0)); /* before the version is known */
+    assert_int_equal(collect.n_mocap, 0);
+    assert_int_equal(collect_count(&collect, "early"), 1);
+    receive(driver, 2, server_info(3, 0, false));
+    assert_false(wb_driver_natnet.ready(driver));
+    receive(driver, 5 * S, frame_of(3, 0));
+    assert_true(wb_driver_natnet.ready(driver));
+    assert_int_equal(collect.n_mocap, 1);
+    assert_int_equal(collect.mocap.t_ns, 5 * S);
+    assert_int_equal(collect.mocap.n_markers, 7);
+    assert_memory_equal(collect.mocap.markers[6].position, frame.mocap.markers[6].position, 12);
+    assert_int_equal(collect.mocap.markers[3].params & WB_MARKER_OCCLUDED, 1);
+    assert_close(collect.mocap.t_device, 1356.125, 0.0);
+    /* 1417339207940 ticks of 10 MHz */
+    assert_close(collect.mocap.t_clock, 141733.9207940, 1e-9);
+    free(driver);
+}
+
+static void every_version_from_2_5_to_4_1_is_decoded_by_its_announcement(void **state)
+{
+    (void)state;
+    static const int versions[][2] = {{2, 5},  {2, 6}, {2, 7}, {2, 9}, {2, 10},
+                                      {2, 11}, {3, 0}, {3, 1}, {4, 0}, {4, 1}};
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    natnet_example(&frame, 7);
+    for (size_t i = 0; i < sizeof versions / sizeof versions[0]; i++) {
+        const int major = versions[i][0], minor = versions[i][1];
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_driver_natnet, &rig);
+        receive(driver, 0, server_info(major, minor, false));
+        receive(driver, 1, frame_of(major, minor));
+        assert_int_equal(collect.n_mocap, 1);
+        assert_int_equal(collect.mocap.n_markers, 7);
+        assert_int_equal(collect_count(&collect, "version"), 0);
+        /* Before 2.6 there is no stamp but the f32 called latency. */
+        const double expected = minor == 5 ? (double)775.3009F : 1356.125;
+        assert_close(collect.mocap.t_device, expected, 0.0);
+        assert_int_equal(isnan(collect.mocap.t_clock) != 0, major < 3);
+        free(driver);
+    }
+}
+
+static void newer_and_older_versions_come_with_a_warning(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    natnet_example(&frame, 7);
+    memset(&collect, 0, sizeof collect);
+    void *driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(4, 3, false));
+    receive(driver, 1, frame_of(4, 1));
+    receive(driver, 2, frame_of(4, 1));
+    assert_int_equal(collect.n_mocap, 2);
+    assert_int_equal(collect.mocap.n_markers, 7);
+    assert_int_equal(collect_count(&collect, "version"), 2); /* the warning, and what is skipped */
+    assert_int_equal(collect.remarks[1].level, WB_LOG_WARNING);
+    free(driver);
+    memset(&collect, 0, sizeof collect);
+    driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(2, 2, false));
+    assert_int_equal(collect_count(&collect, "version"), 1);
+    free(driver);
+}
+
+static void group_of_the_server_is_compared_with_the_rig(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *address, *expected; /* "" for no remark */
+        bool multicast;
+    } cases[] = {
+        {"udp:10.0.0.2:1510", "add ',group=239.255.42.99:1511'", true},
+        {"udp:10.0.0.2:1510", "", false},
+        {"udp:10.0.0.2:1510,group=239.255.42.99:1511", "", true},
+        {"udp:10.0.0.2:1510,group=239.255.42.99:1511,interface=10.0.0.1", "", true},
+        {"udp:10.0.0.2:1510,group=239.255.42.99:15110", "not the one", true},
+        {"udp:10.0.0.2:1510,group=224.0.0.1:1001", "not the one", true},
+        {"udp:10.0.0.2:1510,group=239.255.42.99:1511", "unicast", false},
+        {"memory:", "", true},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct wb_rig rig = rig_of(cases[i].address);
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_driver_natnet, &rig);
+        receive(driver, 0, server_info(3, 0, cases[i].multicast));
+        const char *const text = collect_text(&collect, "group");
+        if (cases[i].expected[0])
+            assert_non_null(strstr(text, cases[i].expected));
+        else
+            assert_string_equal(text, "");
+        free(driver);
+    }
+}
+
+static void clock_is_probed_in_a_burst_and_then_every_second(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    int n_echoes = 0, n_keepalives = 0;
+    int64_t times[64];
+    for (int64_t t = 0; t < 5500; t++) {
+        struct wb_outbox outbox = {0};
+        wb_driver_natnet.tick(driver, t * MS, &outbox);
+        for (size_t i = 0; i < outbox.n_entries; i++) {
+            n_keepalives += message_of(&outbox, i) == WB_NATNET_KEEPALIVE;
+            if (message_of(&outbox, i) == WB_NATNET_ECHOREQUEST)
+                times[n_echoes++] = t;
+        }
+    }
+    assert_int_equal(n_echoes, 8 + 5);
+    for (int i = 1; i < 8; i++)
+        assert_int_equal(times[i] - times[i - 1], 64);
+    for (int i = 8; i < n_echoes; i++)
+        assert_int_equal(times[i] - times[i - 1], 1000);
+    assert_int_equal(n_keepalives, 6);
+    free(driver);
+}
+
+static void servers_without_echo_are_not_probed(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(2, 7, false));
+    for (int64_t t = 0; t < 3000; t += 20) {
+        struct wb_outbox outbox = {0};
+        wb_driver_natnet.tick(driver, t * MS, &outbox);
+        for (size_t i = 0; i < outbox.n_entries; i++)
+            assert_int_not_equal(message_of(&outbox, i), WB_NATNET_ECHOREQUEST);
+    }
+    free(driver);
+}
+
+static void echo_answers_become_probes_by_their_own_stamp(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    /* 10 days of uptime and one tick */
+    const uint64_t ticks = UINT64_C(10) * 86400 * 10000000 + 1;
+    receive(driver, 7 * S + MS,
+            wb_natnet_encode_echo_response(buffer, sizeof buffer, (uint64_t)(7 * S), ticks));
+    assert_int_equal(collect.n_probes, 1);
+    assert_int_equal(collect.probes[0].t_sent_ns, 7 * S);
+    assert_int_equal(collect.probes[0].t_received_ns, 7 * S + MS);
+    assert_close(collect.probes[0].t_device, 864000.0000001, 1e-9);
+    /* Answers from the future, too late, or to somebody else's question are none. */
+    static const uint64_t foreign[] = {8000000000, 1, UINT64_MAX};
+    for (int i = 0; i < 3; i++)
+        receive(driver, 7 * S + MS,
+                wb_natnet_encode_echo_response(buffer, sizeof buffer, foreign[i], ticks));
+    assert_int_equal(collect.n_probes, 1);
+    free(driver);
+}
+
+static void queries_are_asked_one_after_the_other(void **state)
+{
+    (void)state;
+    struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    rig.mocap.frame_rate = 100.0;
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 7);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    static const char *const expected[] = {"UnitsToMillimeters", "UnitsToMillimeters", "FrameRate"};
+    for (int i = 0; i < 3; i++) {
+        struct wb_outbox outbox = {0};
+        bool found = false;
+        wb_driver_natnet.tick(driver, (10 + i * 1500) * MS, &outbox);
+        for (size_t k = 0; k < outbox.n_entries; k++) {
+            size_t n;
+            const uint8_t *const entry = collect_entry(&outbox, k, &n);
+            if (entry[0] != WB_NATNET_REQUEST)
+                continue;
+            assert_string_equal((const char *)entry + 4, expected[i]);
+            found = true;
+        }
+        assert_true(found);
+        /* The first question was lost and is repeated; the second is answered. */
+        if (i == 1)
+            receive(driver, 1600 * MS,
+                    wb_natnet_encode_response_real(buffer, sizeof buffer, 1000.0F));
+    }
+    receive(driver, 4 * S, wb_natnet_encode_response_real(buffer, sizeof buffer, 120.0F));
+    assert_int_equal(collect_count(&collect, "rate"), 2); /* what it is, and that it differs */
+    assert_int_equal(collect_count(&collect, "units"), 0);
+    free(driver);
+}
+
+static void other_units_than_metres_are_converted(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 7);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    receive(driver, 1, wb_natnet_encode_response_real(buffer, sizeof buffer, 1.0F)); /* mm */
+    assert_int_equal(collect_count(&collect, "units"), 1);
+    receive(driver, 2, frame_of(3, 0));
+    assert_close((double)collect.mocap.markers[2].position[0],
+                 1e-3 * (double)frame.mocap.markers[2].position[0], 1e-9);
+    free(driver);
+}
+
+static void a_server_that_knows_no_queries_is_fine(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 7);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(2, 7, false));
+    receive(driver, 1, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
+    receive(driver, 2, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
+    receive(driver, 3, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
+    receive(driver, 4, frame_of(2, 7));
+    assert_int_equal(collect.n_mocap, 1);
+    assert_memory_equal(collect.mocap.markers[6].position, frame.mocap.markers[6].position, 12);
+    assert_int_equal(collect_count(&collect, "query"), 2);
+    free(driver);
+}
+
+static void damaged_datagrams_are_remarks(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 7);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    for (int i = 0; i < 200; i++)
+        receive(driver, 1, frame_of(3, 0) - 1);
+    receive(driver, 1, 1);
+    assert_int_equal(collect.n_mocap, 0);
+    assert_int_equal(collect_count(&collect, "refused"), 8); /* 1 2 3 10 20 30 100 200 */
+    receive(driver, 2, frame_of(3, 0));
+    assert_int_equal(collect.n_mocap, 1);
+    free(driver);
+}
+
+static void markers_without_position_count_as_occluded(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 7);
+    frame.mocap.markers[2].position[1] = NAN;
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    receive(driver, 1, frame_of(3, 0));
+    for (int i = 0; i < 7; i++)
+        assert_int_equal(collect.mocap.markers[i].params & WB_MARKER_OCCLUDED, i == 2);
+    free(driver);
+}
+
+static void missing_labelled_markers_are_told_once(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 0);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    receive(driver, 1, frame_of(3, 0));
+    receive(driver, 2, frame_of(3, 0));
+    assert_int_equal(collect.n_mocap, 2);
+    assert_int_equal(collect.mocap.n_markers, 0); /* the legacy list is no substitute */
+    assert_int_equal(collect_count(&collect, "markers"), 1);
+    free(driver);
+}
+
+static void a_silent_server_is_connected_to_anew(void **state)
+{
+    (void)state;
+    struct wb_outbox outbox = {0};
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    memset(&collect, 0, sizeof collect);
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    wb_driver_natnet.start(driver, 0, &outbox);
+    receive(driver, 10 * MS, server_info(3, 0, false));
+    int n_connects = 0;
+    for (int64_t t = 20; t < 4500; t += 20) {
+        wb_outbox_clear(&outbox);
+        wb_driver_natnet.tick(driver, t * MS, &outbox);
+        for (size_t i = 0; i < outbox.n_entries; i++)
+            n_connects += message_of(&outbox, i) == WB_NATNET_CONNECT;
+    }
+    assert_true(n_connects >= 2);
+    /* The same server again changes nothing; another version does. */
+    receive(driver, 4500 * MS, server_info(3, 0, false));
+    assert_int_equal(collect_count(&collect, "server"), 0);
+    receive(driver, 4501 * MS, server_info(4, 1, false));
+    assert_int_equal(collect_count(&collect, "server"), 1);
+    natnet_example(&frame, 7);
+    receive(driver, 4502 * MS, frame_of(4, 1));
+    assert_int_equal(collect.n_mocap, 1);
+    wb_outbox_clear(&outbox);
+    wb_driver_natnet.stop(driver, &outbox);
+    assert_int_equal(message_of(&outbox, 0), WB_NATNET_DISCONNECT);
+    free(driver);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(connects_until_the_server_answers),
+        cmocka_unit_test(frames_become_samples_with_their_stamps),
+        cmocka_unit_test(every_version_from_2_5_to_4_1_is_decoded_by_its_announcement),
+        cmocka_unit_test(newer_and_older_versions_come_with_a_warning),
+        cmocka_unit_test(group_of_the_server_is_compared_with_the_rig),
+        cmocka_unit_test(clock_is_probed_in_a_burst_and_then_every_second),
+        cmocka_unit_test(servers_without_echo_are_not_probed),
+        cmocka_unit_test(echo_answers_become_probes_by_their_own_stamp),
+        cmocka_unit_test(queries_are_asked_one_after_the_other),
+        cmocka_unit_test(other_units_than_metres_are_converted),
+        cmocka_unit_test(a_server_that_knows_no_queries_is_fine),
+        cmocka_unit_test(damaged_datagrams_are_remarks),
+        cmocka_unit_test(markers_without_position_count_as_occluded),
+        cmocka_unit_test(missing_labelled_markers_are_told_once),
+        cmocka_unit_test(a_silent_server_is_connected_to_anew),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

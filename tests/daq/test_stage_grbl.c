@@ -1,0 +1,275 @@
+#include "base/units.h"
+#include "daq/driver.h"
+#include "tests/check.h"
+#include "tests/daq/collect.h"
+
+#define MS WB_NS_PER_MS
+
+static struct collect collect;
+static struct wb_outbox outbox;
+
+static void *open_stage(char axis, int down)
+{
+    struct wb_rig rig = {.time_scale = 1.0};
+    rig.stage.axis = axis;
+    rig.stage.down = down;
+    memset(&collect, 0, sizeof collect);
+    wb_outbox_clear(&outbox);
+    return collect_open(&wb_driver_grbl, &rig);
+}
+
+static void feed(void *driver, int64_t t_ns, const char *text)
+{
+    const struct wb_sink sink = collect_sink(&collect);
+    wb_driver_grbl.receive(driver, t_ns, (const uint8_t *)text, strlen(text), &sink);
+}
+
+static enum wb_status command(void *driver, enum wb_stage_command what)
+{
+    return wb_driver_grbl.command(driver, what, 0.002, 0.001, &outbox);
+}
+
+static void assert_sent(const char *expected)
+{
+    assert_int_equal(outbox.n_bytes, strlen(expected));
+    assert_memory_equal(outbox.bytes, expected, outbox.n_bytes);
+    wb_outbox_clear(&outbox);
+}
+
+static void ignore_messages(void *context, enum wb_log_level level, const char *domain,
+                            const char *message)
+{
+    (void)level;
+    (void)domain;
+    (void)message;
+    ++*(int *)context;
+}
+
+static void reports_become_samples_of_the_tests_axis(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('Y', -1);
+    assert_false(wb_driver_grbl.ready(driver));
+    feed(driver, 5 * MS, "<Jog|MPos:1.000,-25.");
+    assert_int_equal(collect.n_stage, 0);
+    feed(driver, 6 * MS, "500,3.000|FS:60,0>\r\n");
+    assert_int_equal(collect.n_stage, 1);
+    assert_int_equal(collect.stage[0].t_ns, 6 * MS);
+    assert_int_equal(collect.stage[0].state, WB_STAGE_JOG);
+    assert_close(collect.stage[0].position, -0.0255, 1e-15); /* machine position, sign as sent */
+    assert_int_equal(collect.stage[0].alarm, 0);
+    assert_true(wb_driver_grbl.ready(driver));
+    free(driver);
+}
+
+static void downward_jogs_follow_the_rigs_axis_and_sign(void **state)
+{
+    (void)state;
+    void *driver = open_stage('X', 1);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    assert_sent("$J=G91 G21 X2.000 F60.000\n");
+    free(driver);
+    driver = open_stage('Z', -1);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    assert_sent("$J=G91 G21 Z-2.000 F60.000\n");
+    free(driver);
+}
+
+static void one_line_waits_for_its_reply(void **state)
+{
+    (void)state;
+    int n_messages = 0;
+    wb_log_set_sink(ignore_messages, &n_messages);
+    void *const driver = open_stage('X', 1);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_HOME), WB_ERR_BUSY);
+    assert_int_equal(n_messages, 2);
+    /* Reports and messages are no replies. */
+    feed(driver, 0, "<Jog|MPos:0.000,0.000,0.000|FS:60,0>\r\n[MSG:hello]\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    feed(driver, 0, "ok\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    feed(driver, 0, "error:15\r\n");
+    assert_int_equal(collect_count(&collect, "error"), 1);
+    assert_non_null(strstr(collect_text(&collect, "error"), "$J=G91"));
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_UNLOCK), WB_OK);
+    wb_log_set_sink(NULL, NULL);
+    free(driver);
+}
+
+static void real_time_bytes_are_never_refused(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    wb_outbox_clear(&outbox);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_HOLD), WB_OK);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG_CANCEL), WB_OK);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_STATUS), WB_OK);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_RESUME), WB_OK);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_SOFT_RESET), WB_OK);
+    assert_int_equal(outbox.n_entries, 5);
+    assert_sent("!\x85?~\x18");
+    /* The reset made the firmware forget the jog: it will not be answered. */
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_UNLOCK), WB_OK);
+    assert_sent("$X\n");
+    free(driver);
+}
+
+static void status_is_polled_at_5_hz_and_at_10_hz_after_a_hold(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    wb_driver_grbl.start(driver, 0, &outbox);
+    assert_sent("?");
+    int n = 0;
+    for (int64_t t = 0; t <= 1000; t += 20) {
+        wb_driver_grbl.tick(driver, t * MS, &outbox);
+        n += (int)outbox.n_entries;
+        wb_outbox_clear(&outbox);
+    }
+    assert_int_equal(n, 5);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_HOLD), WB_OK);
+    wb_outbox_clear(&outbox);
+    n = 0;
+    for (int64_t t = 1000; t < 2000; t += 20) {
+        wb_driver_grbl.tick(driver, t * MS, &outbox);
+        n += (int)outbox.n_entries;
+        wb_outbox_clear(&outbox);
+    }
+    assert_int_equal(n, 10);
+    free(driver);
+}
+
+static void alarms_are_samples_at_once(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    feed(driver, 1, "ok\r\n<Jog|MPos:1.000,0.000,0.000|FS:60,0>\r\nALARM:1\r\n");
+    assert_int_equal(collect.n_stage, 2);
+    assert_int_equal(collect.stage[1].state, WB_STAGE_ALARM);
+    assert_int_equal(collect.stage[1].alarm, 1);
+    assert_true(isnan(collect.stage[1].position));
+    assert_non_null(strstr(collect_text(&collect, "alarm"), "position is lost"));
+    /* The number stays as long as the state does, and goes with it. */
+    feed(driver, 2, "<Alarm|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(collect.stage[2].alarm, 1);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_HOME), WB_OK);
+    feed(driver, 3, "ok\r\n<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(collect.stage[3].alarm, 0);
+    assert_int_equal(collect_count(&collect, "homed"), 1);
+    free(driver);
+}
+
+static void reset_in_motion_is_understood(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    feed(driver, 1, "<Jog|MPos:1.000,0.000,0.000|FS:60,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_SOFT_RESET), WB_OK);
+    feed(driver, 2,
+         "ALARM:3\r\n\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n"
+         "<Alarm|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(collect.stage[1].alarm, 3);
+    assert_int_equal(collect.stage[2].state, WB_STAGE_ALARM);
+    assert_int_equal(collect_count(&collect, "alarm"), 1);
+    assert_int_equal(collect_count(&collect, "message"), 1);
+    assert_int_equal(collect_count(&collect, "refused"), 0);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_UNLOCK), WB_OK);
+    free(driver);
+}
+
+static void a_banner_out_of_the_blue_is_a_reset(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    feed(driver, 1, "\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_int_equal(collect_count(&collect, "firmware"), 1);
+    feed(driver, 2, "<Idle|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    feed(driver, 3, "\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_int_equal(collect_count(&collect, "reset"), 1);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    free(driver);
+}
+
+static void a_lost_reply_does_not_lock_the_stage_out(void **state)
+{
+    (void)state;
+    int n_messages = 0;
+    wb_log_set_sink(ignore_messages, &n_messages);
+    void *const driver = open_stage('X', 1);
+    wb_driver_grbl.start(driver, 0, &outbox);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    wb_driver_grbl.tick(driver, 1900 * MS, &outbox);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    wb_driver_grbl.tick(driver, 2100 * MS, &outbox);
+    assert_int_equal(n_messages, 2);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_HOME), WB_OK);
+    wb_driver_grbl.tick(driver, 60000 * MS, &outbox); /* homing takes its time */
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    wb_log_set_sink(NULL, NULL);
+    free(driver);
+}
+
+static void impossible_jogs_are_refused(void **state)
+{
+    (void)state;
+    int n_messages = 0;
+    wb_log_set_sink(ignore_messages, &n_messages);
+    void *const driver = open_stage('X', 1);
+    assert_int_equal(wb_driver_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-7, 1e-3, &outbox),
+                     WB_ERR_ARGUMENT);
+    assert_int_equal(wb_driver_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-3, 0.0, &outbox),
+                     WB_ERR_ARGUMENT);
+    assert_int_equal(n_messages, 2);
+    assert_int_equal(outbox.n_entries, 0);
+    wb_log_set_sink(NULL, NULL);
+    free(driver);
+}
+
+static void noise_on_the_line_is_remarked_and_survived(void **state)
+{
+    (void)state;
+    char noise[1000];
+    memset(noise, 'x', sizeof noise - 1);
+    noise[sizeof noise - 1] = '\0';
+    void *const driver = open_stage('X', 1);
+    feed(driver, 0, noise);
+    feed(driver, 0, "\nhuh?\n<Idle|MPos:\xff>\n<Idle|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(collect_count(&collect, "refused"), 3);
+    assert_int_equal(collect.n_stage, 1);
+    free(driver);
+}
+
+static void pressed_switch_is_told_once(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    feed(driver, 0,
+         "<Idle|MPos:0.000,0.000,0.000|Pn:Y>\n<Idle|MPos:0.000,0.000,0.000|Pn:X>\n"
+         "<Idle|MPos:0.000,0.000,0.000|Pn:XY>\n");
+    assert_int_equal(collect_count(&collect, "switch"), 1);
+    free(driver);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reports_become_samples_of_the_tests_axis),
+        cmocka_unit_test(downward_jogs_follow_the_rigs_axis_and_sign),
+        cmocka_unit_test(one_line_waits_for_its_reply),
+        cmocka_unit_test(real_time_bytes_are_never_refused),
+        cmocka_unit_test(status_is_polled_at_5_hz_and_at_10_hz_after_a_hold),
+        cmocka_unit_test(alarms_are_samples_at_once),
+        cmocka_unit_test(reset_in_motion_is_understood),
+        cmocka_unit_test(a_banner_out_of_the_blue_is_a_reset),
+        cmocka_unit_test(a_lost_reply_does_not_lock_the_stage_out),
+        cmocka_unit_test(impossible_jogs_are_refused),
+        cmocka_unit_test(noise_on_the_line_is_remarked_and_survived),
+        cmocka_unit_test(pressed_switch_is_told_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
