@@ -21,6 +21,7 @@ static const struct command commands[] = {
     {"info", wb_cmd_info, "what a recording holds"},
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},
     {"replay", wb_cmd_replay, "the bench from a recording"},
+    {"rig", wb_cmd_rig, "the virtual rig: a bench on pseudo-terminals and loopback"},
     {"solve", wb_cmd_solve, "compute a bending test with a finite element model"},
     {"validate", wb_cmd_validate, "error curves of properties on other datasets"},
     {"verify", wb_cmd_verify, "check recordings for damage, gaps and drops"},
