@@ -10,8 +10,8 @@ static struct wb_material power_law(double K, double n)
     return m;
 }
 
-static const double exponents[] = {0.05, 0.1,  0.2, 0.249, 0.26, 0.39,
-                                   0.41, 0.7,  0.99, 1.0, 1.2,   1.5,  2.0};
+static const double exponents[] = {0.05, 0.1,  0.2, 0.249, 0.26, 0.39, 0.41,
+                                   0.7,  0.99, 1.0, 1.2,   1.5,  2.0};
 static const double coefficients[] = {1e6, 1e7, 1e8, 1e9, 1e10, 1e11};
 enum {
     N_EXPONENTS = sizeof exponents / sizeof exponents[0],
