@@ -1,0 +1,117 @@
+/* What the fuzz targets share. With clang -fsanitize=fuzzer and -DWB_LIBFUZZER a target is
+ * libFuzzer's; otherwise it drives itself as a test: each seed as it is, then a fixed number of
+ * mutations of the seeds from a fixed random sequence. `fuzz_x N [SEED]` runs N mutations. */
+#ifndef WB_TESTS_DAQ_FUZZ_H
+#define WB_TESTS_DAQ_FUZZ_H
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n);
+
+/* A property that every input must keep. Not assert(), which release builds leave out. */
+#define FUZZ_REQUIRE(condition)                                                                    \
+    do {                                                                                           \
+        if (!(condition)) {                                                                        \
+            fprintf(stderr, "%s:%d: broken: %s\n", __FILE__, __LINE__, #condition);                \
+            abort();                                                                               \
+        }                                                                                          \
+    } while (0)
+
+#define FUZZ_MAX 70000
+
+#ifndef WB_LIBFUZZER
+
+static uint64_t fuzz_state;
+
+static inline uint64_t fuzz_random(void)
+{
+    fuzz_state ^= fuzz_state << 13;
+    fuzz_state ^= fuzz_state >> 7;
+    fuzz_state ^= fuzz_state << 17;
+    return fuzz_state;
+}
+
+static inline size_t fuzz_below(size_t n)
+{
+    return n ? (size_t)(fuzz_random() % n) : 0;
+}
+
+/* One random change: a bit, a byte, an extreme number, a cut, a repeat, a splice of another
+ * seed. */
+static inline size_t fuzz_mutate(uint8_t *bytes, size_t n, const uint8_t *other, size_t n_other)
+{
+    static const uint32_t extremes[] = {0,          1,          0xff,       0x7f,   0x7fffffff,
+                                        0x80000000, 0xffffffff, 0x7f800000, 0xffff, 0x10000};
+    const size_t at = fuzz_below(n);
+    switch (fuzz_below(7)) {
+    case 0:
+        if (n)
+            bytes[at] ^= (uint8_t)(1U << fuzz_below(8));
+        return n;
+    case 1:
+        if (n)
+            bytes[at] = (uint8_t)fuzz_random();
+        return n;
+    case 2: {
+        const uint32_t extreme = extremes[fuzz_below(sizeof extremes / sizeof extremes[0])];
+        if (n >= at + 4)
+            memcpy(bytes + at, &extreme, 4);
+        return n;
+    }
+    case 3:
+        return at;
+    case 4: {
+        const size_t length = fuzz_below(n - at < 64 ? n - at + 1 : 64);
+        if (n + length > FUZZ_MAX)
+            return n;
+        memmove(bytes + at + length, bytes + at, n - at);
+        return n + length;
+    }
+    case 5: {
+        const size_t length = fuzz_below(n - at < 64 ? n - at + 1 : 64);
+        memmove(bytes + at, bytes + at + length, n - at - length);
+        return n - length;
+    }
+    default: {
+        const size_t from = fuzz_below(n_other), length = fuzz_below(n_other - from + 1);
+        if (at + length > FUZZ_MAX)
+            return n;
+        memcpy(bytes + at, other + from, length);
+        return at + length > n ? at + length : n;
+    }
+    }
+}
+
+/* Runs the seeds and `n_runs` mutations of them (or as many as the arguments say). */
+static inline int fuzz_main(int argc, char **argv, const uint8_t *const *seeds, const size_t *sizes,
+                            size_t n_seeds, unsigned long n_runs)
+{
+    static uint8_t bytes[FUZZ_MAX];
+    if (argc > 1)
+        n_runs = strtoul(argv[1], NULL, 10);
+    fuzz_state = argc > 2 ? strtoull(argv[2], NULL, 10) | 1 : UINT64_C(0x9e3779b97f4a7c15);
+    for (size_t i = 0; i < n_seeds; i++)
+        LLVMFuzzerTestOneInput(seeds[i], sizes[i]);
+    for (unsigned long run = 0; run < n_runs; run++) {
+        const size_t seed = fuzz_below(n_seeds), other = fuzz_below(n_seeds);
+        size_t n = sizes[seed];
+        memcpy(bytes, seeds[seed], n);
+        for (size_t k = 1 + fuzz_below(4); k > 0; k--)
+            n = fuzz_mutate(bytes, n, seeds[other], sizes[other]);
+        /* A copy of exactly this size, so that a sanitizer sees one byte too many. */
+        uint8_t *const copy = malloc(n ? n : 1);
+        FUZZ_REQUIRE(copy != NULL);
+        memcpy(copy, bytes, n);
+        LLVMFuzzerTestOneInput(copy, n);
+        free(copy);
+    }
+    printf("%zu seeds, %lu mutations\n", n_seeds, n_runs);
+    return 0;
+}
+
+#endif
+
+#endif

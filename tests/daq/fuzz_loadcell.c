@@ -1,0 +1,126 @@
+/* Any bytes from a load cell are readings or refused, and how they are cut into reads does not
+ * matter. Input: a byte of settings, then the bytes of the line. */
+#include "tests/daq/fuzz.h"
+
+#include <math.h>
+
+#include "daq/driver.h"
+#include "daq/loadcell_line.h"
+
+struct total {
+    uint64_t n, hash;
+    bool printable;
+};
+
+/* A hash of everything but the time, which the cuts do change. */
+static void take_load(void *context, const struct wb_load_sample *sample)
+{
+    struct total *const total = context;
+    uint64_t bits;
+    FUZZ_REQUIRE(sample->index == total->n);
+    FUZZ_REQUIRE(sample->valid == (bool)isfinite(sample->force));
+    FUZZ_REQUIRE(!(sample->overload && sample->valid));
+    memcpy(&bits, &sample->force, sizeof bits);
+    const unsigned flags =
+        (unsigned)sample->valid | (unsigned)sample->unstable << 1 | (unsigned)sample->overload << 2;
+    total->hash = (total->hash ^ bits ^ flags) * UINT64_C(1099511628211) + 1;
+    total->n++;
+}
+
+static void take_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
+                        const char *text)
+{
+    (void)context;
+    (void)level;
+    (void)t_ns;
+    FUZZ_REQUIRE(kind[0] && text[0]);
+    for (const char *c = text; *c; c++)
+        FUZZ_REQUIRE(*c >= 0x20 && *c < 0x7f);
+}
+
+static struct wb_rig rig_of(uint8_t settings)
+{
+    static const char *const terminators[] = {"any", "cr", "lf", "crlf"};
+    struct wb_rig rig = {.gravity = 9.80665, .time_scale = 1.0};
+    rig.load_cell.scale = 1.0;
+    rig.load_cell.sign = 1;
+    rig.load_cell.overload = 1.0;
+    rig.load_cell.decimal_comma = settings & 1;
+    if (settings & 2) {
+        rig.load_cell.delimiter = ';';
+        rig.load_cell.column = 2;
+    }
+    if (settings & 4)
+        strcpy(rig.load_cell.unit, "g");
+    strcpy(rig.load_cell.terminator, terminators[settings >> 3 & 3]);
+    if (settings & 32) {
+        strcpy(rig.load_cell.overload_tokens[0], "HIGH");
+        strcpy(rig.load_cell.overload_tokens[1], "32767");
+        strcpy(rig.load_cell.unstable_tokens[0], "moving");
+    }
+    return rig;
+}
+
+/* Feeds a fresh driver in reads of at most `step` bytes. */
+static struct total run(const struct wb_driver *driver, const struct wb_rig *rig,
+                        const uint8_t *bytes, size_t n, size_t step)
+{
+    struct total total = {0};
+    const struct wb_sink sink = {.context = &total, .load = take_load, .remark = take_remark};
+    void *const state = calloc(1, driver->state_size);
+    FUZZ_REQUIRE(state && driver->init(state, rig) == WB_OK);
+    for (size_t at = 0; at < n; at += step)
+        driver->receive(state, 7, bytes + at, n - at < step ? n - at : step, &sink);
+    free(state);
+    return total;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
+{
+    if (n < 1)
+        return 0;
+    const struct wb_rig rig = rig_of(bytes[0]);
+    struct wb_line_reading reading;
+    double force;
+    wb_line_decode((const char *)bytes + 1, n - 1, &rig.load_cell, &reading);
+    FUZZ_REQUIRE(memchr(reading.unit, 0, sizeof reading.unit) != NULL);
+    FUZZ_REQUIRE((reading.kind == WB_LINE_REFUSED) == (reading.reason != NULL));
+    if (reading.kind == WB_LINE_VALUE)
+        FUZZ_REQUIRE(isfinite(reading.value));
+    if (wb_line_force(&reading, &rig.load_cell, rig.gravity, &force))
+        FUZZ_REQUIRE(reading.kind != WB_LINE_VALUE || !isnan(force));
+    static const struct wb_driver *const drivers[] = {&wb_driver_generic, &wb_driver_mtsics};
+    for (int i = 0; i < 2; i++) {
+        const struct total whole = run(drivers[i], &rig, bytes + 1, n - 1, n);
+        const struct total cut = run(drivers[i], &rig, bytes + 1, n - 1, 3);
+        FUZZ_REQUIRE(whole.n == cut.n && whole.hash == cut.hash);
+    }
+    return 0;
+}
+
+#ifndef WB_LIBFUZZER
+
+int main(int argc, char **argv)
+{
+    static const char *const seeds[] = {
+        "\x18S S     100.00 g\r\nS D      -0.52 g\r\nS +\r\nES\r\nI4 A \"B1\"\r\n",
+        "\x14\n0.1234\n-0.5\n8388607\n",
+        "\x10xx\nReading: 0.123 kg\nReading: 0.124 kg\n",
+        "\x10\nST,GS,+  4.876kg\nUS,NT,-  4.876kg\nOL,+9999999E+19\n",
+        "\x18\r\n-18.78 lbF\r\n4.285 N\r\n*10\r\n",
+        "\x09\r1,234 g\r+  12,34 G S\r",
+        "\x16\n12;0.5 g;3\n13;-0.25 g;4\n",
+        "\x30HIGH\nmoving: 3 g\n32767\n3 g ?\n",
+        "\x10S ? -  12.3 g\nS ^ 1 g\n+  12.34 GLE\n12.5E-3 kN\n3 \xC2\xB5N\n",
+    };
+    const uint8_t *pointers[sizeof seeds / sizeof seeds[0]];
+    size_t sizes[sizeof seeds / sizeof seeds[0]];
+    const size_t n = sizeof seeds / sizeof seeds[0];
+    for (size_t i = 0; i < n; i++) {
+        pointers[i] = (const uint8_t *)seeds[i];
+        sizes[i] = strlen(seeds[i]);
+    }
+    return fuzz_main(argc, argv, pointers, sizes, n, 100000);
+}
+
+#endif
