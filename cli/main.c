@@ -20,6 +20,7 @@ static const struct command commands[] = {
     {"export", wb_cmd_export, "a recording's samples as CSV"},
     {"info", wb_cmd_info, "what a recording holds"},
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},
+    {"stage", wb_cmd_stage, "home, jog, unlock, free a specimen, check the load cell"},
     {"replay", wb_cmd_replay, "the bench from a recording"},
     {"rig", wb_cmd_rig, "the virtual rig: a bench on pseudo-terminals and loopback"},
     {"solve", wb_cmd_solve, "compute a bending test with a finite element model"},

@@ -103,12 +103,13 @@ bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_samp
         renew(interlock, WB_ROLE_LOAD, sample->t_ns);
     if (!interlock->armed)
         return false;
-    if (sample->overload && !limit->overload_allowed)
-        return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
-                    "the load cell reports overload");
+    /* Before the overload, which a wrong unit may only pretend. */
     if (sample->unit_changed)
         return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
                     "the load cell changed its unit in mid-stream");
+    if (sample->overload && !limit->overload_allowed)
+        return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
+                    "the load cell reports overload");
     if (!sample->valid)
         return false;
     if (limit->overload > 0.0 && !(fabs(sample->force) <= limit->overload))
@@ -133,6 +134,8 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
     const struct wb_interlock_settings *const limit = &interlock->settings;
     renew(interlock, WB_ROLE_STAGE, report->t_ns);
     if (!interlock->armed)
+        return false;
+    if (report->state == WB_STAGE_ALARM && limit->alarm_allowed)
         return false;
     if (report->state == WB_STAGE_ALARM && report->alarm != 0)
         return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage raised ALARM:%d",

@@ -51,6 +51,7 @@ struct wb_interlock_settings {
     double overload; /* N: largest |reading|, tare included; 0: only the instrument's own word */
     bool overload_allowed; /* the instrument's own word is not a limit either: it is loaded beyond
                               its range and about to be freed */
+    bool alarm_allowed;    /* the stage is locked and about to be homed */
     double travel;         /* m down from the start position; 0: not watched */
     double rise;           /* m up from the start position; 0: not watched */
     int down;              /* sign of the stage's axis when the clamp goes down */

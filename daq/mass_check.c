@@ -1,0 +1,182 @@
+#include "daq/mass_check.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/interrupt.h"
+#include "base/units.h"
+#include "daq/acquisition.h"
+
+#define WB_LOG_DOMAIN "check"
+
+#define CONNECT_NS (6 * WB_NS_PER_S)
+/* Time for a hung mass to come to rest and for the cell's filter to follow. */
+#define SETTLE_NS (2 * WB_NS_PER_S)
+#define LEAST_READINGS 10
+
+struct average {
+    int64_t n;
+    double mean, squares;
+};
+
+struct wb_mass_check {
+    struct wb_rig rig;
+    struct wb_acquisition *acquisition;
+    enum wb_mass_check_phase phase;
+    int64_t phase_ns, duration_ns;
+    struct average zero, loaded;
+    double reading;
+    bool overload;
+};
+
+static void average_add(struct average *average, double value)
+{
+    average->n++;
+    const double off = value - average->mean;
+    average->mean += off / (double)average->n;
+    average->squares += off * (value - average->mean);
+}
+
+static double deviation(const struct average *average)
+{
+    return average->n > 1 ? sqrt(average->squares / (double)(average->n - 1)) : 0.0;
+}
+
+static void on_load(void *context, const struct wb_load_sample *sample)
+{
+    struct wb_mass_check *const check = context;
+    if (sample->overload && check->phase == WB_MASS_CHECK_LOADED)
+        check->overload = true;
+    if (!sample->valid)
+        return;
+    check->reading = sample->force;
+    if (check->phase == WB_MASS_CHECK_ZERO)
+        average_add(&check->zero, sample->force);
+    else if (check->phase == WB_MASS_CHECK_LOADED)
+        average_add(&check->loaded, sample->force);
+}
+
+enum wb_status wb_mass_check_open(struct wb_mass_check **out, const struct wb_rig *rig,
+                                  double seconds)
+{
+    struct wb_mass_check *const check = calloc(1, sizeof *check);
+    if (!check)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the check");
+    check->rig = *rig;
+    check->duration_ns = wb_ns_from_seconds(seconds);
+    check->reading = NAN;
+    const struct wb_sink sink = {.context = check, .load = on_load};
+    const enum wb_status status =
+        wb_acquisition_open(&check->acquisition, rig, WB_ACQUISITION_LOAD, &sink);
+    if (status != WB_OK) {
+        free(check);
+        return status;
+    }
+    wb_acquisition_start(check->acquisition, NULL);
+    check->phase_ns = wb_acquisition_now_ns();
+    *out = check;
+    return WB_OK;
+}
+
+static void enter(struct wb_mass_check *check, enum wb_mass_check_phase phase)
+{
+    check->phase = phase;
+    check->phase_ns = wb_acquisition_now_ns();
+}
+
+static void fail(struct wb_mass_check *check)
+{
+    enter(check, WB_MASS_CHECK_FAILED);
+}
+
+static void watch(struct wb_mass_check *check, int64_t now_ns)
+{
+    const struct wb_acquisition_stream_state *const load =
+        &wb_acquisition_latest(check->acquisition)->stream[WB_ROLE_LOAD];
+    const int64_t waited_ns = now_ns - check->phase_ns;
+    const char *const address = check->rig.load_cell.address;
+    if (wb_interrupted()) {
+        wb_error("stopped by the operator");
+        fail(check);
+    } else if (load->gone) {
+        wb_error("the load cell's port %s went away", address);
+        fail(check);
+    } else if (check->overload) {
+        wb_error("the load cell reports overload: the mass is beyond its range");
+        fail(check);
+    } else if (check->phase == WB_MASS_CHECK_CONNECTING && !isfinite(check->reading) &&
+               waited_ns > CONNECT_NS + check->rig.load_cell.settle_ns) {
+        wb_error("the load cell at %s sent no reading within %d s (%" PRIu64 " bytes came): check "
+                 "power, cable and load_cell.protocol",
+                 address, (int)(CONNECT_NS / WB_NS_PER_S), load->bytes);
+        fail(check);
+    } else if ((check->phase == WB_MASS_CHECK_ZERO || check->phase == WB_MASS_CHECK_LOADED) &&
+               waited_ns > check->duration_ns + CONNECT_NS) {
+        wb_error("the load cell at %s sends too few readings", address);
+        fail(check);
+    }
+}
+
+enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t timeout_ns)
+{
+    if (check->phase >= WB_MASS_CHECK_DONE)
+        return check->phase;
+    const bool failed =
+        wb_acquisition_step(check->acquisition, timeout_ns) == WB_ACQUISITION_FAILED;
+    const int64_t now_ns = wb_acquisition_now_ns();
+    const bool long_enough = now_ns - check->phase_ns >= check->duration_ns;
+    if (failed) {
+        fail(check);
+        return check->phase;
+    }
+    watch(check, now_ns);
+    if (check->phase == WB_MASS_CHECK_CONNECTING && isfinite(check->reading))
+        enter(check, WB_MASS_CHECK_ZERO);
+    else if (check->phase == WB_MASS_CHECK_ZERO && long_enough && check->zero.n >= LEAST_READINGS)
+        enter(check, WB_MASS_CHECK_WAITING);
+    else if (check->phase == WB_MASS_CHECK_SETTLING && now_ns - check->phase_ns >= SETTLE_NS)
+        enter(check, WB_MASS_CHECK_LOADED);
+    else if (check->phase == WB_MASS_CHECK_LOADED && long_enough &&
+             check->loaded.n >= LEAST_READINGS)
+        enter(check, WB_MASS_CHECK_DONE);
+    return check->phase;
+}
+
+void wb_mass_check_hung(struct wb_mass_check *check)
+{
+    if (check->phase == WB_MASS_CHECK_WAITING)
+        enter(check, WB_MASS_CHECK_SETTLING);
+}
+
+double wb_mass_check_reading(const struct wb_mass_check *check)
+{
+    return check->reading;
+}
+
+void wb_mass_check_result(const struct wb_mass_check *check, double known, double tolerance,
+                          struct wb_mass_check_result *result)
+{
+    const double g = check->rig.gravity;
+    result->zero = check->zero.mean;
+    result->loaded = check->loaded.mean;
+    result->zero_sd = deviation(&check->zero);
+    result->loaded_sd = deviation(&check->loaded);
+    result->n_zero = check->zero.n;
+    result->n_loaded = check->loaded.n;
+    result->mass = (result->loaded - result->zero) / g;
+    result->deviation = result->mass - known;
+    result->relative = result->deviation / known;
+    result->uncertainty = sqrt(result->zero_sd * result->zero_sd / (double)result->n_zero +
+                               result->loaded_sd * result->loaded_sd / (double)result->n_loaded) /
+                          g;
+    result->passed = fabs(result->relative) <= tolerance;
+}
+
+void wb_mass_check_close(struct wb_mass_check *check)
+{
+    if (!check)
+        return;
+    wb_acquisition_close(check->acquisition);
+    free(check);
+}

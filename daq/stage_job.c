@@ -1,0 +1,527 @@
+#include "daq/stage_job.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/interrupt.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "stage"
+
+#define POSITION_TOLERANCE (0.05 * WB_MM)
+/* A report that comes sooner after a command may be the answer to an earlier question. */
+#define STALE_NS (300 * WB_NS_PER_MS)
+#define RESET_NS (4 * WB_NS_PER_S)
+#define HOMING_NS (180 * WB_NS_PER_S)
+
+/* Release: the reading is averaged over pieces of the way; the strand is slack when pieces this far
+ * apart agree. */
+#define PIECE (0.5 * WB_MM)
+#define PIECES_APART 3
+#define LEVEL_SHARE 1e-3  /* of the capacity: the pieces agree */
+#define SLACK_SHARE 0.25  /* of the capacity: what may hang on the cell when the strand is slack */
+#define GROWTH_SHARE 0.05 /* of the capacity: it goes the wrong way */
+
+enum phase {
+    PHASE_CONNECT,
+    PHASE_RESET,
+    PHASE_UNLOCK,
+    PHASE_HOME,
+    PHASE_MOVE,
+    PHASE_CANCEL, /* release: slack was seen, the jog is being ended */
+    PHASE_STOP,
+    PHASE_END
+};
+
+static const char *const phase_names[] = {"connecting", "resetting", "unlocking", "homing",
+                                          "moving",     "moving",    "stopping",  "end"};
+
+struct piece {
+    int number; /* of PIECE from the start */
+    int n;
+    double sum; /* N */
+};
+
+struct wb_stage_job {
+    struct wb_rig rig;
+    struct wb_stage_job_request request;
+    struct wb_acquisition *acquisition;
+    enum phase phase;
+    int64_t phase_ns, deadline_ns;
+    double start_position, target; /* m, machine; m travel from the start, down positive */
+    double first_force;            /* N; NaN before the first reading */
+    uint64_t reports_seen;
+    int idle_reports;
+    struct piece pieces[PIECES_APART + 1]; /* the newest first */
+    bool slack;
+    bool standing;
+    enum wb_stage_job_end end;
+    char text[WB_INTERLOCK_TEXT];
+};
+
+static double travel_of(const struct wb_stage_job *job, double position)
+{
+    return job->rig.stage.down * (position - job->start_position);
+}
+
+static void enter(struct wb_stage_job *job, enum phase phase)
+{
+    job->phase = phase;
+    job->phase_ns = wb_acquisition_now_ns();
+    job->reports_seen = wb_acquisition_latest(job->acquisition)->stage_reports;
+    job->idle_reports = 0;
+}
+
+static void set_end(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void set_end(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format, ...)
+{
+    if (job->end != WB_STAGE_JOB_RUNNING)
+        return;
+    job->end = end;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(job->text, sizeof job->text, format, arguments);
+    va_end(arguments);
+}
+
+static void finish(struct wb_stage_job *job)
+{
+    job->standing = true;
+    wb_acquisition_disarm(job->acquisition);
+    enter(job, PHASE_END);
+}
+
+static void give_up(struct wb_stage_job *job, enum wb_interlock_reason reason, const char *format,
+                    ...) __attribute__((format(printf, 3, 4)));
+
+static void give_up(struct wb_stage_job *job, enum wb_interlock_reason reason, const char *format,
+                    ...)
+{
+    char text[WB_INTERLOCK_TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (wb_acquisition_moving(job->acquisition))
+        wb_acquisition_stop(job->acquisition, reason, text);
+    set_end(job, reason == WB_INTERLOCK_INTERRUPT ? WB_STAGE_JOB_INTERRUPTED : WB_STAGE_JOB_FAILED,
+            "%s", text);
+    enter(job, PHASE_STOP);
+}
+
+/* --- release: seeing the strand go slack --- */
+
+static void note_force(struct wb_stage_job *job, double force)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    if (!isfinite(job->first_force))
+        job->first_force = force;
+    if (job->phase != PHASE_MOVE || !latest->has_stage || !isfinite(latest->stage.position))
+        return;
+    const int number = (int)floor(fabs(travel_of(job, latest->stage.position)) / PIECE);
+    if (number != job->pieces[0].number) {
+        memmove(&job->pieces[1], &job->pieces[0], PIECES_APART * sizeof job->pieces[0]);
+        job->pieces[0] = (struct piece){.number = number};
+    }
+    job->pieces[0].n++;
+    job->pieces[0].sum += force;
+}
+
+/* True when the last complete pieces say that the reading no longer changes on the way up. */
+static bool strand_is_slack(const struct wb_stage_job *job)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 1; i <= PIECES_APART; i++) {
+        const struct piece *const piece = &job->pieces[i];
+        if (piece->n == 0 || piece->number != job->pieces[0].number - i)
+            return false;
+        const double mean = piece->sum / piece->n;
+        /* The piece's own noise, as far as it is known. */
+        const double blur = 4.0 * job->rig.load_cell.noise / sqrt(piece->n);
+        low = fmin(low, mean - blur);
+        high = fmax(high, mean + blur);
+        if (!(fabs(mean) <= SLACK_SHARE * job->rig.load_cell.capacity))
+            return false;
+    }
+    const double blurs = 8.0 * job->rig.load_cell.noise / sqrt(job->pieces[1].n);
+    return high - low <= blurs + LEVEL_SHARE * job->rig.load_cell.capacity;
+}
+
+static void on_load(void *context, const struct wb_load_sample *sample)
+{
+    if (sample->valid)
+        note_force(context, sample->force);
+}
+
+/* --- opening --- */
+
+static unsigned roles_of(const struct wb_stage_job_request *request)
+{
+    if (request->kind == WB_STAGE_JOB_UNLOCK || request->without_load_cell)
+        return WB_ACQUISITION_STAGE;
+    return WB_ACQUISITION_STAGE | WB_ACQUISITION_LOAD;
+}
+
+enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig *rig,
+                                 const struct wb_stage_job_request *request)
+{
+    const double reach = fabs(request->distance);
+    if (request->kind == WB_STAGE_JOB_JOG && !(reach >= 1e-6 && reach <= rig->stage.travel))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "a jog of %g mm is not possible: at least 0.001 mm and at most the stage's "
+                       "travel of %g mm at a time",
+                       request->distance / WB_MM, rig->stage.travel / WB_MM);
+    if (request->kind == WB_STAGE_JOB_RELEASE && request->without_load_cell)
+        return wb_fail(WB_ERR_ARGUMENT, "a release watches the load: it needs the load cell; "
+                                        "without it, unlock and jog");
+    struct wb_stage_job *const job = calloc(1, sizeof *job);
+    if (!job)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the stage's job");
+    job->rig = *rig;
+    job->request = *request;
+    job->first_force = NAN;
+    job->start_position = NAN;
+    if (!(job->request.connect_timeout > 0.0))
+        job->request.connect_timeout = 6.0;
+    if (!(job->request.speed > 0.0))
+        job->request.speed =
+            request->kind == WB_STAGE_JOB_RELEASE ? 0.5 * rig->stage.speed : rig->stage.speed;
+    const struct wb_sink sink = {.context = job, .load = on_load};
+    const enum wb_status status =
+        wb_acquisition_open(&job->acquisition, rig, roles_of(request), &sink);
+    if (status != WB_OK) {
+        free(job);
+        return status;
+    }
+    wb_acquisition_start(job->acquisition, NULL);
+    job->phase_ns = wb_acquisition_now_ns();
+    *out = job;
+    return WB_OK;
+}
+
+/* --- sequence --- */
+
+static void send(struct wb_stage_job *job, enum wb_stage_command command, double distance,
+                 enum phase next)
+{
+    const double speed = job->request.speed * job->rig.time_scale;
+    const enum wb_status status =
+        wb_acquisition_command(job->acquisition, command, distance, speed);
+    if (status != WB_OK) {
+        give_up(job, WB_INTERLOCK_STAGE, "the stage does not take the command");
+        return;
+    }
+    enter(job, next);
+}
+
+static void arm(struct wb_stage_job *job)
+{
+    struct wb_interlock_settings settings;
+    wb_interlock_default_settings(&settings, &job->rig);
+    settings.rise = settings.travel = job->rig.stage.travel + 1.0 * WB_MM;
+    if (job->request.kind == WB_STAGE_JOB_HOME) {
+        /* A homing controller is busy and says nothing; its position jumps in the end. */
+        settings.stream_lost_ns[WB_ROLE_STAGE] = 0;
+        settings.rise = settings.travel = 0.0;
+        settings.alarm_allowed = true;
+    }
+    if (job->request.kind == WB_STAGE_JOB_RELEASE) {
+        /* It may be beyond its limits now: that is what is being mended. It must not grow. */
+        const double force = isfinite(job->first_force) ? job->first_force : 0.0;
+        const double growth = GROWTH_SHARE * job->rig.load_cell.capacity;
+        settings.force = fmax(settings.force, fabs(force) + growth);
+        if (!isfinite(job->first_force) || fabs(force) + growth > settings.overload) {
+            settings.overload = 0.0;
+            settings.overload_allowed = true;
+        }
+    }
+    wb_acquisition_arm(job->acquisition, &settings, job->start_position);
+}
+
+static void begin_motion(struct wb_stage_job *job)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    double distance = job->request.distance;
+    if (job->request.kind == WB_STAGE_JOB_UNLOCK) {
+        set_end(job, WB_STAGE_JOB_DONE, "the stage is unlocked");
+        finish(job);
+        return;
+    }
+    job->start_position = latest->stage.position;
+    arm(job);
+    if (job->request.kind == WB_STAGE_JOB_HOME) {
+        send(job, WB_STAGE_COMMAND_HOME, 0.0, PHASE_HOME);
+        return;
+    }
+    if (!isfinite(job->start_position)) {
+        give_up(job, WB_INTERLOCK_STAGE, "the stage does not tell its position");
+        return;
+    }
+    if (job->request.kind == WB_STAGE_JOB_RELEASE)
+        distance = -(fabs(distance) > 0.0 ? fmin(fabs(distance), job->rig.stage.travel)
+                                          : job->rig.stage.travel);
+    job->target = distance;
+    send(job, WB_STAGE_COMMAND_JOG, distance, PHASE_MOVE);
+    job->deadline_ns =
+        job->phase_ns + 5 * WB_NS_PER_S +
+        wb_ns_from_seconds(1.5 * fabs(distance) / (job->request.speed * job->rig.time_scale));
+}
+
+static void step_connect(struct wb_stage_job *job, int64_t now_ns)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
+    const bool load_speaks = !load->open || load->samples > 0;
+    if (latest->has_stage && load_speaks && now_ns - job->phase_ns > STALE_NS) {
+        const enum wb_stage_state state = latest->stage.state;
+        const bool frees =
+            job->request.kind == WB_STAGE_JOB_UNLOCK || job->request.kind == WB_STAGE_JOB_RELEASE;
+        if (frees && (state == WB_STAGE_HOLD || state == WB_STAGE_ALARM))
+            send(job, WB_STAGE_COMMAND_SOFT_RESET, 0.0, PHASE_RESET);
+        else if (state == WB_STAGE_IDLE ||
+                 (job->request.kind == WB_STAGE_JOB_HOME && state == WB_STAGE_ALARM))
+            begin_motion(job);
+        else if (state == WB_STAGE_ALARM)
+            give_up(job, WB_INTERLOCK_ALARM,
+                    "the stage is in alarm (%d): mend the cause, then run 'unlock' or 'home'",
+                    latest->stage.alarm);
+        else if (state == WB_STAGE_HOLD)
+            give_up(job, WB_INTERLOCK_STAGE,
+                    "the stage is on hold: run 'release' to free the specimen, or 'unlock'");
+        else
+            give_up(job, WB_INTERLOCK_STAGE, "the stage is not idle: somebody else moves it");
+        return;
+    }
+    const int64_t allowed_ns =
+        wb_ns_from_seconds(job->request.connect_timeout) + job->rig.load_cell.settle_ns;
+    if (latest->stream[WB_ROLE_STAGE].gone)
+        give_up(job, WB_INTERLOCK_STREAM_LOST, "the stage's port %s went away",
+                job->rig.stage.address);
+    else if (load->gone)
+        give_up(job, WB_INTERLOCK_STREAM_LOST, "the load cell's port %s went away",
+                job->rig.load_cell.address);
+    else if (now_ns - job->phase_ns > allowed_ns && !latest->has_stage)
+        give_up(job, WB_INTERLOCK_STREAM_LOST,
+                "the stage at %s gave no status within %g s: check power, cable and stage.protocol",
+                job->rig.stage.address, job->request.connect_timeout);
+    else if (now_ns - job->phase_ns > allowed_ns)
+        give_up(job, WB_INTERLOCK_STREAM_LOST,
+                "the load cell at %s sent no reading within %g s: check it, or move blindly with "
+                "--without-load-cell",
+                job->rig.load_cell.address, job->request.connect_timeout);
+}
+
+/* True when a report came that cannot be older than the command of this phase. */
+static bool fresh_report(struct wb_stage_job *job, int64_t stale_ns)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    if (latest->stage_reports == job->reports_seen)
+        return false;
+    job->reports_seen = latest->stage_reports;
+    return latest->stage.t_ns > job->phase_ns + stale_ns;
+}
+
+static void step_reset(struct wb_stage_job *job, int64_t now_ns)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    if (fresh_report(job, STALE_NS)) {
+        if (latest->stage.state == WB_STAGE_ALARM) {
+            send(job, WB_STAGE_COMMAND_UNLOCK, 0.0, PHASE_UNLOCK);
+            return;
+        }
+        if (latest->stage.state == WB_STAGE_IDLE) {
+            begin_motion(job);
+            return;
+        }
+    }
+    if (now_ns - job->phase_ns > RESET_NS)
+        give_up(job, WB_INTERLOCK_STAGE, "the stage does not come back from its reset");
+}
+
+static void step_unlock(struct wb_stage_job *job, int64_t now_ns)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    if (fresh_report(job, STALE_NS) && latest->stage.state == WB_STAGE_IDLE)
+        begin_motion(job);
+    else if (now_ns - job->phase_ns > RESET_NS)
+        give_up(job, WB_INTERLOCK_STAGE, "the stage does not unlock%s%s",
+                latest->stage_error[0] ? ": " : "", latest->stage_error);
+}
+
+static void step_home(struct wb_stage_job *job, int64_t now_ns)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    if (latest->stage_error[0] && latest->stage.state != WB_STAGE_HOME) {
+        give_up(job, WB_INTERLOCK_STAGE, "homing failed: %s", latest->stage_error);
+        return;
+    }
+    if (fresh_report(job, STALE_NS)) {
+        if (latest->stage.state == WB_STAGE_IDLE)
+            job->idle_reports++;
+        else
+            job->idle_reports = 0;
+        if (job->idle_reports >= 2) {
+            wb_acquisition_motion_ended(job->acquisition);
+            set_end(job, WB_STAGE_JOB_DONE, "the stage is homed");
+            finish(job);
+            return;
+        }
+    }
+    if (now_ns - job->phase_ns > HOMING_NS)
+        give_up(job, WB_INTERLOCK_STAGE, "homing did not end within %d s",
+                (int)(HOMING_NS / WB_NS_PER_S));
+}
+
+static void step_move(struct wb_stage_job *job, int64_t now_ns)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    if (job->request.kind == WB_STAGE_JOB_RELEASE && strand_is_slack(job)) {
+        job->slack = true;
+        send(job, WB_STAGE_COMMAND_JOG_CANCEL, 0.0, PHASE_CANCEL);
+        return;
+    }
+    if (now_ns > job->deadline_ns)
+        give_up(job, WB_INTERLOCK_STAGE, "the stage did not arrive in time");
+    if (!fresh_report(job, 0) || latest->stage.state != WB_STAGE_IDLE)
+        return;
+    const double travel = travel_of(job, latest->stage.position);
+    if (fabs(travel - job->target) <= POSITION_TOLERANCE) {
+        wb_acquisition_motion_ended(job->acquisition);
+        if (job->request.kind == WB_STAGE_JOB_RELEASE)
+            set_end(job, WB_STAGE_JOB_STILL_LOADED,
+                    "went up by %.2f mm, but the reading did not level off: look at the strand, "
+                    "then release again or jog",
+                    -travel / WB_MM);
+        else
+            set_end(job, WB_STAGE_JOB_DONE, "moved by %.3f mm", travel / WB_MM);
+        finish(job);
+        return;
+    }
+    job->idle_reports++;
+    if (job->idle_reports >= 2 && latest->stage_error[0])
+        give_up(job, WB_INTERLOCK_STAGE, "the stage stopped after %.2f mm: %s", travel / WB_MM,
+                latest->stage_error);
+    else if (job->idle_reports >= 5 && now_ns - job->phase_ns > WB_NS_PER_S)
+        give_up(job, WB_INTERLOCK_STAGE, "the stage stands after %.2f mm of %.2f mm",
+                travel / WB_MM, job->target / WB_MM);
+}
+
+static void step_cancel(struct wb_stage_job *job, int64_t now_ns)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    if (fresh_report(job, 0)) {
+        job->idle_reports = latest->stage.state == WB_STAGE_IDLE ? job->idle_reports + 1 : 0;
+        if (job->idle_reports >= 2) {
+            wb_acquisition_motion_ended(job->acquisition);
+            set_end(job, WB_STAGE_JOB_DONE, "the strand is slack: the specimen is free");
+            finish(job);
+            return;
+        }
+    }
+    if (now_ns - job->phase_ns > 2 * WB_NS_PER_S)
+        give_up(job, WB_INTERLOCK_STAGE, "the stage does not end its jog");
+}
+
+static void note_trip(struct wb_stage_job *job)
+{
+    const struct wb_interlock *const interlock = wb_acquisition_interlock(job->acquisition);
+    if (interlock->reason == WB_INTERLOCK_NONE || job->phase >= PHASE_STOP)
+        return;
+    set_end(job,
+            interlock->reason == WB_INTERLOCK_INTERRUPT ? WB_STAGE_JOB_INTERRUPTED
+                                                        : WB_STAGE_JOB_LIMIT,
+            "%s", interlock->text);
+    enter(job, PHASE_STOP);
+}
+
+static void step_stop(struct wb_stage_job *job)
+{
+    const struct wb_stop *const stop = wb_acquisition_stop_state(job->acquisition);
+    if (stop->state != WB_STOP_NONE && !wb_stop_over(stop))
+        return;
+    finish(job);
+    job->standing = stop->state != WB_STOP_FAILED;
+}
+
+enum wb_stage_job_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeout_ns)
+{
+    if (job->phase == PHASE_END)
+        return job->end;
+    if (wb_acquisition_step(job->acquisition, timeout_ns) == WB_ACQUISITION_FAILED &&
+        job->phase < PHASE_STOP)
+        give_up(job, WB_INTERLOCK_STREAM_LOST, "the instruments cannot be waited for");
+    note_trip(job);
+    /* Before the interlock is armed nothing moves. */
+    if (wb_interrupted() && job->phase < PHASE_STOP)
+        give_up(job, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
+    const int64_t now_ns = wb_acquisition_now_ns();
+    switch (job->phase) {
+    case PHASE_CONNECT:
+        step_connect(job, now_ns);
+        break;
+    case PHASE_RESET:
+        step_reset(job, now_ns);
+        break;
+    case PHASE_UNLOCK:
+        step_unlock(job, now_ns);
+        break;
+    case PHASE_HOME:
+        step_home(job, now_ns);
+        break;
+    case PHASE_MOVE:
+        step_move(job, now_ns);
+        break;
+    case PHASE_CANCEL:
+        step_cancel(job, now_ns);
+        break;
+    case PHASE_STOP:
+        step_stop(job);
+        break;
+    case PHASE_END:
+        break;
+    }
+    return job->phase == PHASE_END ? job->end : WB_STAGE_JOB_RUNNING;
+}
+
+void wb_stage_job_status(const struct wb_stage_job *job, struct wb_stage_job_status *status)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    memset(status, 0, sizeof *status);
+    status->phase = phase_names[job->phase];
+    status->has_force = latest->has_load;
+    status->force = latest->load.force;
+    status->has_position = latest->has_stage && isfinite(latest->stage.position);
+    status->position = latest->stage.position;
+    status->moved = isfinite(job->start_position) ? travel_of(job, latest->stage.position) : 0.0;
+    status->gravity = job->rig.gravity;
+    status->is_virtual = job->rig.is_virtual;
+}
+
+void wb_stage_job_close(struct wb_stage_job *job, struct wb_stage_job_result *result)
+{
+    if (!job)
+        return;
+    if (job->phase < PHASE_STOP)
+        give_up(job, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
+    while (wb_stage_job_step(job, 10 * WB_NS_PER_MS) == WB_STAGE_JOB_RUNNING) {
+    }
+    if (result) {
+        const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+        memset(result, 0, sizeof *result);
+        result->end = job->end;
+        memcpy(result->text, job->text, sizeof result->text);
+        result->standing = job->standing;
+        result->position = latest->has_stage ? latest->stage.position : (double)NAN;
+        result->moved = travel_of(job, result->position);
+        result->force = latest->has_load ? latest->load.force : (double)NAN;
+        result->change = result->force - job->first_force;
+    }
+    wb_acquisition_close(job->acquisition);
+    free(job);
+}

@@ -1,0 +1,435 @@
+/* A small bench in a thread of its own, for the tests of acquisition: a load cell and a GRBL stage
+ * on pseudo-terminals and a NatNet 3.0 server on loopback UDP, with faults that can be switched on.
+ * It is crude on purpose (a spring instead of a wire) and keeps the times of what it saw. */
+#ifndef WB_TESTS_DAQ_FAKE_BENCH_H
+#define WB_TESTS_DAQ_FAKE_BENCH_H
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "base/units.h"
+#include "daq/acquisition.h"
+#include "daq/grbl.h"
+#include "daq/natnet.h"
+#include "daq/natnet_encode.h"
+#include "tests/check.h"
+
+#define FAKE_LOAD_PERIOD_NS (5 * WB_NS_PER_MS)
+#define FAKE_FRAME_PERIOD_NS (8 * WB_NS_PER_MS)
+#define FAKE_MARKERS 7
+
+struct fake_bench {
+    pthread_t thread;
+    int load, stage, udp;      /* our ends */
+    int load_keep, stage_keep; /* the other ends, kept open so that nobody opening is no hang-up */
+    char load_path[64], stage_path[64];
+    int port;
+
+    /* Faults and forces, set by the test. */
+    atomic_bool quit, load_silent, mocap_silent, stage_silent;
+    atomic_bool mocap_dead;       /* answers nothing at all */
+    atomic_bool stage_deaf;       /* ignores the hold byte */
+    atomic_bool stage_wild;       /* ignores the soft reset too, and answers nothing then */
+    atomic_bool stage_refuses;    /* answers jogs with error:15 */
+    atomic_bool stage_overshoots; /* goes on beyond the target */
+    atomic_bool overload, other_unit, garbage;
+    atomic_bool raise_alarm;
+    atomic_int markers;      /* how many are there */
+    atomic_int force_mg;     /* added to the reading */
+    atomic_int spring_mg_mm; /* per mm of travel beyond slack_mm */
+    atomic_int slack_mm;
+    atomic_int force_limit_mg; /* the first reading beyond it is timed */
+
+    /* What it saw, ns of the monotonic clock; 0 not yet. */
+    atomic_llong limit_sent_ns, hold_ns, reset_ns, load_last_ns, frame_last_ns, report_last_ns;
+    atomic_int holds;
+
+    /* The thread's own. */
+    double position_mm, target_mm, feed_mm_s;
+    const char *state; /* of the stage */
+    int64_t moved_ns, next_load_ns, next_frame_ns;
+    uint32_t noise;
+    int32_t frame;
+    char line[256];
+    size_t n_line;
+    struct sockaddr_in client;
+    bool has_client;
+    struct wb_natnet_frame data;
+};
+
+static inline void fake_write(int descriptor, const void *bytes, size_t n)
+{
+    ssize_t written = write(descriptor, bytes, n);
+    (void)written; /* nobody reads: the bytes are lost, as on a wire */
+}
+
+static inline void fake_say(struct fake_bench *bench, const char *text)
+{
+    if (!bench->stage_silent)
+        fake_write(bench->stage, text, strlen(text));
+}
+
+static inline double fake_noise(struct fake_bench *bench)
+{
+    bench->noise = bench->noise * 1664525u + 1013904223u;
+    return (double)(bench->noise >> 8) / (1 << 24) - 0.5;
+}
+
+/* --- stage --- */
+
+static inline bool fake_moves(const struct fake_bench *bench)
+{
+    return strcmp(bench->state, "Jog") == 0;
+}
+
+static inline void fake_move(struct fake_bench *bench, int64_t now_ns)
+{
+    const double step = bench->feed_mm_s * wb_seconds_from_ns(now_ns - bench->moved_ns);
+    bench->moved_ns = now_ns;
+    if (!fake_moves(bench))
+        return;
+    const double left = bench->target_mm - bench->position_mm;
+    if (fabs(left) > step || (bench->stage_overshoots && left >= 0.0)) {
+        bench->position_mm += left >= 0.0 ? step : -step;
+        if (bench->stage_overshoots)
+            bench->target_mm = bench->position_mm + 1.0;
+        return;
+    }
+    bench->position_mm = bench->target_mm;
+    bench->state = "Idle";
+}
+
+static inline void fake_report(struct fake_bench *bench)
+{
+    char text[128];
+    struct wb_grbl_report report = {.has_machine = true, .machine_mm = {bench->position_mm}};
+    snprintf(report.name, sizeof report.name, "%s", bench->state);
+    const size_t n = wb_grbl_format_report(text, sizeof text, &report);
+    if (bench->stage_silent || (bench->stage_wild && bench->reset_ns != 0))
+        return;
+    fake_write(bench->stage, text, n);
+    bench->report_last_ns = wb_acquisition_now_ns();
+}
+
+static inline void fake_obey_line(struct fake_bench *bench, const char *line)
+{
+    struct wb_grbl_jog jog;
+    if (wb_grbl_parse_jog(line, &jog)) {
+        if (bench->stage_refuses) {
+            fake_say(bench, "error:15\r\n");
+        } else if (strcmp(bench->state, "Idle") != 0) {
+            fake_say(bench, "error:9\r\n");
+        } else {
+            bench->target_mm = jog.relative ? bench->position_mm + jog.target_mm : jog.target_mm;
+            bench->feed_mm_s = jog.feed_mm_min / 60.0;
+            bench->state = "Jog";
+            fake_say(bench, "ok\r\n");
+        }
+    } else if (strcmp(line, "$X") == 0 || strcmp(line, "$H") == 0) {
+        bench->state = "Idle";
+        if (line[1] == 'H')
+            bench->position_mm = 0.0;
+        fake_say(bench, "ok\r\n");
+    } else {
+        fake_say(bench, "error:1\r\n");
+    }
+}
+
+static inline void fake_hold(struct fake_bench *bench)
+{
+    if (bench->holds++ == 0)
+        bench->hold_ns = wb_acquisition_now_ns();
+    if (bench->stage_deaf)
+        return;
+    if (fake_moves(bench) || strcmp(bench->state, "Idle") == 0)
+        bench->state = "Hold:0";
+}
+
+static inline void fake_reset(struct fake_bench *bench)
+{
+    bench->reset_ns = wb_acquisition_now_ns();
+    if (bench->stage_wild)
+        return;
+    const bool moved = fake_moves(bench);
+    if (moved)
+        fake_say(bench, "ALARM:3\r\n");
+    fake_say(bench, "\r\nGrbl 1.1h ['$' for help]\r\n");
+    if (strcmp(bench->state, "Alarm") != 0)
+        bench->state = moved ? "Alarm" : "Idle";
+    bench->n_line = 0;
+}
+
+static inline void fake_stage_bytes(struct fake_bench *bench, const char *bytes, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const unsigned char byte = (unsigned char)bytes[i];
+        if (byte == '?') {
+            fake_report(bench);
+        } else if (byte == '!') {
+            fake_hold(bench);
+        } else if (byte == 0x18) {
+            fake_reset(bench);
+        } else if (byte == 0x85) {
+            if (fake_moves(bench))
+                bench->state = "Idle";
+        } else if (byte == '\n') {
+            bench->line[bench->n_line] = '\0';
+            fake_obey_line(bench, bench->line);
+            bench->n_line = 0;
+        } else if (bench->n_line + 1 < sizeof bench->line) {
+            bench->line[bench->n_line++] = (char)byte;
+        }
+    }
+}
+
+/* --- load cell and cameras --- */
+
+static inline void fake_reading(struct fake_bench *bench)
+{
+    char text[64];
+    const double stretch = fmax(bench->position_mm - bench->slack_mm, 0.0);
+    const double mg = bench->force_mg + bench->spring_mg_mm * stretch + 20.0 * fake_noise(bench);
+    if (bench->garbage)
+        snprintf(text, sizeof text, "####\r\n");
+    else if (bench->overload)
+        snprintf(text, sizeof text, "OL\r\n");
+    else
+        snprintf(text, sizeof text, "%.3f %s\r\n", mg / 1e3, bench->other_unit ? "kg" : "g");
+    if (bench->limit_sent_ns == 0 &&
+        ((bench->force_limit_mg > 0 && fabs(mg) > bench->force_limit_mg) || bench->overload ||
+         bench->other_unit))
+        bench->limit_sent_ns = wb_acquisition_now_ns();
+    fake_write(bench->load, text, strlen(text));
+    bench->load_last_ns = wb_acquisition_now_ns();
+}
+
+static inline void fake_send(struct fake_bench *bench, const uint8_t *bytes, size_t n)
+{
+    if (bench->has_client && n > 0)
+        (void)!sendto(bench->udp, bytes, n, 0, (struct sockaddr *)&bench->client,
+                      sizeof bench->client);
+}
+
+static inline uint64_t fake_ticks(void)
+{
+    return (uint64_t)(wb_acquisition_now_ns() / 100 + 36000000000LL);
+}
+
+static inline void fake_frame(struct fake_bench *bench)
+{
+    static uint8_t buffer[4096];
+    struct wb_mocap_frame *const mocap = &bench->data.mocap;
+    bench->frame++;
+    mocap->frame_number = bench->frame;
+    bench->data.timestamp = bench->frame / 125.0;
+    mocap->camera_data_received = fake_ticks();
+    mocap->transmit = mocap->camera_data_received + 5000;
+    mocap->n_markers = bench->markers;
+    bench->data.n_labelled = mocap->n_markers;
+    for (int m = 0; m < mocap->n_markers; m++) {
+        struct wb_marker *const marker = &mocap->markers[m];
+        marker->id = 50000 + m;
+        /* The eighth and later ones are strays. */
+        marker->position[0] = (float)(m < FAKE_MARKERS ? 0.3 + 0.015 * m : 0.9 + 0.1 * m);
+        marker->position[1] = (float)(1.2 - 1e-3 * bench->position_mm + 1e-4 * fake_noise(bench));
+        marker->position[2] = 0.05F;
+        marker->size = 0.003F;
+        marker->params = WB_MARKER_POINT_CLOUD_SOLVED | WB_MARKER_UNLABELED;
+    }
+    fake_send(bench, buffer,
+              wb_natnet_encode_frame(buffer, sizeof buffer, (struct wb_natnet_version){3, 0},
+                                     &bench->data));
+    bench->frame_last_ns = wb_acquisition_now_ns();
+}
+
+static inline void fake_datagram(struct fake_bench *bench)
+{
+    uint8_t bytes[2048], answer[2048];
+    socklen_t size = sizeof bench->client;
+    const ssize_t n =
+        recvfrom(bench->udp, bytes, sizeof bytes, 0, (struct sockaddr *)&bench->client, &size);
+    struct wb_natnet_packet packet;
+    struct wb_natnet_fault fault;
+    if (n <= 0 || bench->mocap_dead ||
+        wb_natnet_decode_packet(bytes, (size_t)n, &packet, &fault) != WB_OK)
+        return;
+    if (packet.message == WB_NATNET_CONNECT) {
+        const struct wb_natnet_server server = {.name = "fake",
+                                                .app_version = {2, 0, 0, 0},
+                                                .natnet_version = {3, 0, 0, 0},
+                                                .has_connection = true,
+                                                .clock_frequency = 10000000,
+                                                .data_port = (uint16_t)bench->port};
+        bench->has_client = true;
+        fake_send(bench, answer, wb_natnet_encode_server(answer, sizeof answer, &server));
+    } else if (packet.message == WB_NATNET_REQUEST) {
+        char text[64];
+        if (wb_natnet_decode_text(&packet, text, sizeof text, &fault) != WB_OK)
+            return;
+        const float value = strcmp(text, "FrameRate") == 0 ? 125.0F : 1000.0F;
+        fake_send(bench, answer, wb_natnet_encode_response_real(answer, sizeof answer, value));
+    } else if (packet.message == WB_NATNET_ECHOREQUEST) {
+        uint64_t stamp, ticks;
+        if (wb_natnet_decode_echo(&packet, &stamp, &ticks, &fault) == WB_OK)
+            fake_send(bench, answer,
+                      wb_natnet_encode_echo_response(answer, sizeof answer, stamp, fake_ticks()));
+    }
+}
+
+/* --- the thread --- */
+
+static inline void *fake_run(void *context)
+{
+    struct fake_bench *const bench = context;
+    while (!bench->quit) {
+        struct pollfd polled[2] = {{.fd = bench->stage, .events = POLLIN},
+                                   {.fd = bench->udp, .events = POLLIN}};
+        poll(polled, 2, 1);
+        const int64_t now_ns = wb_acquisition_now_ns();
+        fake_move(bench, now_ns);
+        char bytes[512];
+        ssize_t n;
+        while ((n = read(bench->stage, bytes, sizeof bytes)) > 0)
+            fake_stage_bytes(bench, bytes, (size_t)n);
+        /* Polls of a load cell are read and forgotten. */
+        while (read(bench->load, bytes, sizeof bytes) > 0) {
+        }
+        if (polled[1].revents & POLLIN)
+            fake_datagram(bench);
+        if (bench->raise_alarm && strcmp(bench->state, "Alarm") != 0) {
+            bench->state = "Alarm";
+            fake_say(bench, "ALARM:1\r\n");
+            bench->limit_sent_ns = wb_acquisition_now_ns();
+        }
+        if (now_ns >= bench->next_load_ns) {
+            bench->next_load_ns += FAKE_LOAD_PERIOD_NS;
+            if (!bench->load_silent)
+                fake_reading(bench);
+        }
+        if (now_ns >= bench->next_frame_ns) {
+            bench->next_frame_ns += FAKE_FRAME_PERIOD_NS;
+            if (!bench->mocap_silent && !bench->mocap_dead)
+                fake_frame(bench);
+        }
+    }
+    return NULL;
+}
+
+static inline void fake_open_terminal(int *ours, int *theirs, char path[64])
+{
+    *ours = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    assert_true(*ours >= 0);
+    assert_int_equal(grantpt(*ours), 0);
+    assert_int_equal(unlockpt(*ours), 0);
+    assert_int_equal(ptsname_r(*ours, path, 64), 0);
+    *theirs = open(path, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    assert_true(*theirs >= 0);
+    struct termios raw;
+    tcgetattr(*theirs, &raw);
+    cfmakeraw(&raw);
+    tcsetattr(*theirs, TCSANOW, &raw);
+}
+
+static inline struct fake_bench *fake_start(void)
+{
+    struct fake_bench *const bench = calloc(1, sizeof *bench);
+    assert_non_null(bench);
+    fake_open_terminal(&bench->load, &bench->load_keep, bench->load_path);
+    fake_open_terminal(&bench->stage, &bench->stage_keep, bench->stage_path);
+    bench->udp = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr = {htonl(INADDR_LOOPBACK)}};
+    socklen_t size = sizeof address;
+    assert_int_equal(bind(bench->udp, (struct sockaddr *)&address, size), 0);
+    assert_int_equal(getsockname(bench->udp, (struct sockaddr *)&address, &size), 0);
+    bench->port = ntohs(address.sin_port);
+    bench->state = "Idle";
+    bench->markers = FAKE_MARKERS;
+    bench->force_mg = 150;
+    bench->spring_mg_mm = 500;
+    bench->noise = 12345;
+    const int64_t now_ns = wb_acquisition_now_ns();
+    bench->moved_ns = bench->next_load_ns = bench->next_frame_ns = now_ns;
+    assert_int_equal(pthread_create(&bench->thread, NULL, fake_run, bench), 0);
+    return bench;
+}
+
+/* Ends the thread and closes everything: what an unplugged cable looks like. */
+static inline void fake_unplug(struct fake_bench *bench)
+{
+    if (bench->quit)
+        return;
+    bench->quit = true;
+    pthread_join(bench->thread, NULL);
+    close(bench->load);
+    close(bench->stage);
+    close(bench->load_keep);
+    close(bench->stage_keep);
+    close(bench->udp);
+}
+
+static inline void fake_stop(struct fake_bench *bench)
+{
+    fake_unplug(bench);
+    free(bench);
+}
+
+/* Writes the rig file of this bench; `time_scale` above 1 makes it a virtual rig. */
+static inline void fake_write_rig(const struct fake_bench *bench, const char *path,
+                                  double time_scale, double stream_lost)
+{
+    FILE *const file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file,
+            "name: bench of a test\n"
+            "load_cell:\n"
+            "  address: pty:%s\n"
+            "  protocol: generic\n"
+            "  capacity_g: 20\n"
+            "  overload_percent: 150\n"
+            "  serial_number: T-1\n"
+            "  calibration_date: 2026-01-15\n"
+            "  overload_tokens: [OL]\n"
+            "  filter_delay_ms: 50\n"
+            "  filter_delay_uncertainty_ms: 5\n"
+            "  noise_mg: 10\n"
+            "  check_mass_g: 10\n"
+            "mocap:\n"
+            "  address: udp:127.0.0.1:%d\n"
+            "  protocol: natnet\n"
+            "  up: y\n"
+            "stage:\n"
+            "  address: pty:%s\n"
+            "  protocol: grbl\n"
+            "  axis: X\n"
+            "  down: +1\n"
+            "  travel_mm: 60\n"
+            "  speed_mm_s: 1\n"
+            "limits:\n"
+            "  force_mN: 100\n"
+            "  travel_mm: 58\n"
+            "  stream_lost_s: %g\n",
+            bench->load_path, bench->port, bench->stage_path, stream_lost);
+    if (time_scale != 1.0)
+        fprintf(file, "virtual: true\ntime_scale: %g\ntruth:\n  spring_mg_mm: 500\n", time_scale);
+    fclose(file);
+}
+
+static inline void fake_write_specimen(const char *path)
+{
+    FILE *const file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "wire: type1\nlength_mm: 90\nsample: 1\n"
+                  "markers_mm: [0, 15, 30, 45, 60, 75, 90]\nmarker_offset_mm: 1\n");
+    fclose(file);
+}
+
+#endif

@@ -1,0 +1,661 @@
+/* The bending test against a small bench in a thread: the whole sequence, every way it is stopped
+ * with the latencies measured, and everything that keeps it from starting. */
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "daq/bend_test.h"
+#include "daq/stream.h"
+#include "daq/test_recording.h"
+#include "tests/daq/fake_bench.h"
+#include "tests/daq/sample_log.h"
+
+#define MS WB_NS_PER_MS
+
+struct fixture {
+    struct fake_bench *bench;
+    char folder[64], rig[96], specimen[96], output[96];
+    struct wb_bend_test_request request;
+    struct sample_log log;
+    char errors[4096];  /* messages at error level, one a line */
+    char events[16384]; /* "kind: text" of the finished recording, one a line */
+};
+
+static void keep_errors(void *context, enum wb_log_level level, const char *domain,
+                        const char *message)
+{
+    struct fixture *const fixture = context;
+    const size_t used = strlen(fixture->errors);
+    (void)domain;
+    if (level == WB_LOG_ERROR)
+        snprintf(fixture->errors + used, sizeof fixture->errors - used, "%s\n", message);
+}
+
+static int set_up(void **state)
+{
+    struct fixture *const fixture = calloc(1, sizeof *fixture);
+    assert_non_null(fixture);
+    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/wb-bend-XXXXXX");
+    assert_non_null(mkdtemp(fixture->folder));
+    snprintf(fixture->rig, sizeof fixture->rig, "%s/rig.yaml", fixture->folder);
+    snprintf(fixture->specimen, sizeof fixture->specimen, "%s/specimen.yaml", fixture->folder);
+    snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
+    fixture->bench = fake_start();
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+    fake_write_specimen(fixture->specimen);
+    wb_bend_test_default_request(&fixture->request);
+    fixture->request.rig_path = fixture->rig;
+    fixture->request.specimen_path = fixture->specimen;
+    fixture->request.output_path = fixture->output;
+    fixture->request.operator_name = "tester";
+    fixture->request.travel = 50.0 * WB_MM;
+    fixture->request.connect_timeout = 0.4;
+    fixture->request.sink = sample_log_sink(&fixture->log);
+    wb_interrupt_set(false);
+    wb_log_set_sink(keep_errors, fixture);
+    *state = fixture;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *const fixture = *state;
+    char command[128];
+    wb_log_set_sink(NULL, NULL);
+    wb_interrupt_set(false);
+    fake_stop(fixture->bench);
+    sample_log_release(&fixture->log);
+    snprintf(command, sizeof command, "rm -rf %s", fixture->folder);
+    const int code = system(command);
+    free(fixture);
+    return code;
+}
+
+/* Runs until the test ends or `until` says so; false when it ended. */
+static bool run(struct wb_bend_test *test, bool (*until)(const struct wb_bend_test_status *status))
+{
+    const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
+    struct wb_bend_test_status status;
+    while (wb_bend_test_step(test, 20 * MS) == WB_BEND_TEST_RUNNING) {
+        wb_bend_test_status(test, &status);
+        if (until && until(&status))
+            return true;
+        assert_true(wb_acquisition_now_ns() < patience_ns);
+    }
+    return false;
+}
+
+static bool well_down(const struct wb_bend_test_status *status)
+{
+    return strcmp(status->phase, "down") == 0 && status->has_travel && status->travel > 5.0 * WB_MM;
+}
+
+static bool takes_tare(const struct wb_bend_test_status *status)
+{
+    return strcmp(status->phase, "tare") == 0;
+}
+
+static enum wb_status append_event(void *context, const struct wb_event *event)
+{
+    struct fixture *const fixture = context;
+    const size_t used = strlen(fixture->events);
+    snprintf(fixture->events + used, sizeof fixture->events - used, "%s: %s\n", event->kind,
+             event->text);
+    return WB_OK;
+}
+
+/* The finished recording opens; its events are read. */
+static void read_events(struct fixture *fixture)
+{
+    struct wb_recording *recording;
+    fixture->events[0] = '\0';
+    assert_int_equal(wb_recording_open(&recording, fixture->output), WB_OK);
+    assert_int_equal(wb_recording_each_event(recording, append_event, fixture), WB_OK);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+}
+
+/* The events named come in this order. */
+static void assert_events(struct fixture *fixture, const char *const *expected, size_t n)
+{
+    read_events(fixture);
+    const char *at = fixture->events;
+    for (size_t i = 0; i < n; i++) {
+        const char *const found = strstr(at, expected[i]);
+        if (!found)
+            fail_msg("no event '%s' in its place in:\n%s", expected[i], fixture->events);
+        at = found + 1;
+    }
+}
+
+/* The hold byte reached the stage in time after the moment that showed the limit. */
+static void assert_held_in_time(const struct fixture *fixture, int64_t shown_ns)
+{
+    const struct fake_bench *const bench = fixture->bench;
+    const double latency_ms = (double)(bench->hold_ns - shown_ns) / 1e6;
+    assert_true(bench->hold_ns != 0);
+    assert_true(shown_ns != 0);
+    print_message("           hold byte %.2f ms after the limit showed\n", latency_ms);
+    assert_in_range(bench->hold_ns - shown_ns, 0, WB_STOP_HOLD_NS);
+}
+
+static void open_and_get_down(struct fixture *fixture, struct wb_bend_test **test)
+{
+    assert_int_equal(wb_bend_test_open(test, &fixture->request), WB_OK);
+    assert_true(run(*test, well_down));
+}
+
+/* --- the whole test --- */
+
+static void complete_test_goes_down_and_back_and_records_it(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    fixture->request.cycles = 2;
+    fixture->request.travel = 8.0 * WB_MM;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_true(run(test, takes_tare));
+    wb_bend_test_mark(test, "look here");
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_DONE);
+    assert_int_equal(result.cycles_done, 2);
+    assert_true(result.standing && !result.displaced && result.recorded && result.is_virtual);
+    assert_int_equal(result.drops, 0);
+    assert_close(result.tare, 0.15e-3 * WB_STANDARD_GRAVITY, 0.01e-3 * WB_STANDARD_GRAVITY);
+    assert_close(result.peak_tension, 4e-3 * WB_STANDARD_GRAVITY, 0.05e-3 * WB_STANDARD_GRAVITY);
+    assert_close(fixture->bench->position_mm, 0.0, 1e-9);
+    assert_int_equal(fixture->bench->holds, 0);
+    static const char *const expected[] = {
+        "start:",         "check: passed", "mark: look here", "tare: {\"force_N\":",
+        "cycle_start: 1", "turn: 1",       "cycle_end: 1",    "cycle_start: 2",
+        "turn: 2",        "cycle_end: 2",  "stop: done",      "end:"};
+    assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
+    assert_null(strstr(fixture->events, "stream_lost"));
+    assert_string_equal(fixture->errors, "");
+    assert_true(fixture->log.n[WB_ROLE_LOAD] > 100);
+    assert_true(fixture->log.n[WB_ROLE_MOCAP] > 50);
+    assert_replay_identical(fixture->output, &fixture->log);
+}
+
+static void meta_tells_who_what_and_how(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    fixture->request.travel = 2.0 * WB_MM;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
+    struct wb_recording *recording;
+    assert_int_equal(wb_recording_open(&recording, fixture->output), WB_OK);
+    static const struct {
+        const char *key, *has;
+    } metas[] = {{"schema", "1"},
+                 {"tool_version", "."},
+                 {"tool_revision", ""},
+                 {"start_utc", "T"},
+                 {"host", ""},
+                 {"operator", "tester"},
+                 {"notes", ""},
+                 {"rig", "spring_mg_mm: 500"},
+                 {"specimen", "length_mm: 90"},
+                 {"wire", "diameter"},
+                 {"g", "9.80665"},
+                 {"cycles", "1"},
+                 {"travel_mm", "2"},
+                 {"monotonic_start_ns", ""},
+                 {"virtual", "true"},
+                 {"truth", "truth:\n  spring_mg_mm: 500\n"}};
+    for (size_t i = 0; i < sizeof metas / sizeof metas[0]; i++) {
+        char *value = NULL;
+        if (wb_recording_meta(recording, metas[i].key, &value) != WB_OK)
+            fail_msg("no meta value '%s'", metas[i].key);
+        if (!strstr(value, metas[i].has))
+            fail_msg("meta '%s' is '%s', without '%s'", metas[i].key, value, metas[i].has);
+        free(value);
+    }
+    assert_int_equal(wb_recording_n_streams(recording), 3);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+}
+
+static void a_part_of_a_yaml_text_ends_at_the_next_key(void **state)
+{
+    (void)state;
+    static const char yaml[] = "a: 1\ntruth:\n  b: 2\n\n  c: 3\n# note\nd: 4\n";
+    char *part = wb_test_recording_yaml_part(yaml, "truth");
+    assert_string_equal(part, "truth:\n  b: 2\n\n  c: 3\n# note\n");
+    free(part);
+    part = wb_test_recording_yaml_part(yaml, "d");
+    assert_string_equal(part, "d: 4\n");
+    free(part);
+    part = wb_test_recording_yaml_part(yaml, "b");
+    assert_string_equal(part, "");
+    free(part);
+}
+
+/* --- limits, with their latencies --- */
+
+static void force_limit_holds_within_20_ms_and_the_specimen_stays(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    /* 100 mN on top of the tare of 150 mg, which is known to some mg. */
+    fixture->bench->force_limit_mg = (int)(100e-3 / WB_STANDARD_GRAVITY * 1e6) + 145;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_true(result.standing && result.displaced && !result.soft_reset);
+    assert_non_null(strstr(result.text, "force limit of 100.0 mN"));
+    assert_in_range(result.confirm_latency * 1e6, 0, 500000);
+    assert_true(result.hold_latency >= 0.0 && result.hold_latency < 0.02);
+    assert_string_equal(fixture->bench->state, "Hold:0");
+    assert_close(fixture->bench->position_mm, 20.5, 1.5);
+    assert_close(result.travel / WB_MM, fixture->bench->position_mm, 0.01);
+    assert_held_in_time(fixture, fixture->bench->limit_sent_ns);
+    static const char *const expected[] = {"cycle_start: 1", "limit: the tension is",    "hold: {",
+                                           "stopped: {",     "stop: limit: the tension", "end:"};
+    assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
+    assert_replay_identical(fixture->output, &fixture->log);
+}
+
+static void overload_unit_change_and_alarm_hold_within_20_ms(void **state)
+{
+    struct fixture *const fixture = *state;
+    for (int i = 0; i < 3; i++) {
+        struct wb_bend_test *test;
+        struct wb_bend_test_result result;
+        struct fake_bench *const bench = fixture->bench;
+        unlink(fixture->output);
+        fixture->request.sink.context = NULL;
+        memset(&fixture->request.sink, 0, sizeof fixture->request.sink);
+        open_and_get_down(fixture, &test);
+        atomic_bool *const faults[] = {&bench->overload, &bench->other_unit, &bench->raise_alarm};
+        static const char *const words[] = {"overload", "unit", "ALARM:1"};
+        *faults[i] = true;
+        assert_false(run(test, NULL));
+        *faults[i] = false;
+        assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+        assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+        if (!strstr(result.text, words[i]))
+            fail_msg("'%s' does not say '%s'", result.text, words[i]);
+        assert_true(result.standing);
+        assert_held_in_time(fixture, bench->limit_sent_ns);
+        bench->limit_sent_ns = bench->hold_ns = 0;
+        bench->holds = 0;
+        fake_stop(bench);
+        fixture->bench = fake_start();
+        fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+    }
+}
+
+static void silent_streams_hold_within_20_ms_of_their_expiry(void **state)
+{
+    struct fixture *const fixture = *state;
+    for (int i = 0; i < 2; i++) {
+        struct wb_bend_test *test;
+        struct wb_bend_test_result result;
+        struct fake_bench *const bench = fixture->bench;
+        unlink(fixture->output);
+        memset(&fixture->request.sink, 0, sizeof fixture->request.sink);
+        open_and_get_down(fixture, &test);
+        *(i ? &bench->mocap_silent : &bench->load_silent) = true;
+        assert_false(run(test, NULL));
+        assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+        assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+        assert_non_null(strstr(result.text, i ? "motion capture" : "load cell"));
+        /* T is 4 s of the rig, 100 ms of the host. */
+        assert_held_in_time(fixture, (i ? bench->frame_last_ns : bench->load_last_ns) + 100 * MS);
+        read_events(fixture);
+        assert_non_null(strstr(fixture->events, i ? "stream_lost: mocap" : "stream_lost: load"));
+        fake_stop(bench);
+        fixture->bench = fake_start();
+        fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+    }
+}
+
+static void a_stage_running_on_is_held_at_the_travel_limit(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    fixture->bench->spring_mg_mm = 10;
+    fixture->bench->stage_overshoots = true;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_non_null(strstr(result.text, "travel limit of 58.00 mm"));
+    assert_true(result.standing);
+    assert_close(fixture->bench->position_mm, 58.0, 2.0);
+}
+
+static void a_stage_deaf_to_hold_is_reset_after_500_ms(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    open_and_get_down(fixture, &test);
+    bench->stage_deaf = true;
+    bench->overload = true;
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_true(result.soft_reset && result.standing);
+    assert_held_in_time(fixture, bench->limit_sent_ns);
+    assert_in_range(bench->reset_ns - bench->hold_ns, 499 * MS, 530 * MS);
+    assert_string_equal(bench->state, "Alarm");
+    static const char *const expected[] = {"limit:", "hold:", "reset:", "stopped:", "stop: limit"};
+    assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
+}
+
+static void a_stage_that_obeys_nothing_is_called_moving(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    open_and_get_down(fixture, &test);
+    fixture->bench->stage_deaf = fixture->bench->stage_wild = true;
+    fixture->bench->overload = true;
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_false(result.standing);
+    read_events(fixture);
+    assert_non_null(strstr(fixture->events, "not confirmed"));
+}
+
+static void ctrl_c_stops_the_stage_and_closes_the_recording(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    open_and_get_down(fixture, &test);
+    const int64_t pressed_ns = wb_acquisition_now_ns();
+    wb_interrupt_set(true);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    wb_interrupt_set(false); /* it would stop the replay below as well */
+    assert_int_equal(result.end, WB_BEND_TEST_INTERRUPTED);
+    assert_true(result.standing && result.displaced);
+    assert_held_in_time(fixture, pressed_ns);
+    static const char *const expected[] = {"cycle_start: 1", "hold: {\"reason\": \"interrupt\"",
+                                           "stopped:", "stop: interrupted", "end:"};
+    assert_events(fixture, expected, sizeof expected / sizeof expected[0]);
+    assert_null(strstr(fixture->events, "limit:"));
+    assert_replay_identical(fixture->output, &fixture->log);
+}
+
+static void closing_in_mid_test_stops_the_stage_first(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    open_and_get_down(fixture, &test);
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_INTERRUPTED);
+    assert_int_equal(fixture->bench->holds, 1);
+    assert_true(result.standing);
+}
+
+static void ctrl_c_before_any_motion_sends_no_hold(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_true(run(test, takes_tare));
+    wb_interrupt_set(true);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_INTERRUPTED);
+    assert_true(result.standing && !result.displaced && !result.started);
+    assert_int_equal(fixture->bench->holds, 0);
+    assert_string_equal(fixture->bench->state, "Idle");
+}
+
+static void an_unplugged_bench_ends_the_test_and_keeps_the_recording(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    open_and_get_down(fixture, &test);
+    fake_unplug(fixture->bench);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_non_null(strstr(result.text, "went away"));
+    assert_false(result.standing);
+    assert_replay_identical(fixture->output, &fixture->log);
+}
+
+static void a_full_disk_stops_the_stage_and_what_was_written_stays(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    struct rlimit saved, small;
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &saved);
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_true(run(test, well_down));
+    small = saved;
+    struct stat size;
+    assert_int_equal(stat(fixture->output, &size), 0);
+    small.rlim_cur = 64 * 1024;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    assert_false(run(test, NULL));
+    assert_int_not_equal(wb_bend_test_close(test, &result), WB_OK);
+    setrlimit(RLIMIT_FSIZE, &saved);
+    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
+    assert_true(result.started && result.standing);
+    assert_int_equal(fixture->bench->holds, 1);
+    assert_non_null(strstr(result.text, "cannot be written"));
+    read_events(fixture);
+    assert_non_null(strstr(fixture->events, "cycle_start: 1"));
+}
+
+static void a_stage_that_refuses_to_move_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    fixture->bench->stage_refuses = true;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
+    assert_non_null(strstr(result.text, "error:15"));
+}
+
+/* --- what keeps it from starting --- */
+
+static void assert_refused(struct fixture *fixture, const char *words, bool recorded)
+{
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
+    if (!strstr(result.text, words))
+        fail_msg("'%s' does not say '%s'", result.text, words);
+    assert_false(result.started);
+    assert_int_equal(result.recorded, recorded);
+    assert_int_equal(access(fixture->output, F_OK) == 0, recorded);
+    assert_int_equal(fixture->bench->holds, 0);
+}
+
+static void no_natnet_answer_is_told_and_leaves_nothing(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->mocap_dead = true;
+    assert_refused(fixture, "no NatNet answer from udp:127.0.0.1", false);
+}
+
+static void a_silent_load_cell_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->load_silent = true;
+    assert_refused(fixture, "sent nothing within", false);
+}
+
+static void a_load_cell_of_another_protocol_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->garbage = true;
+    assert_refused(fixture, "no reading that can be decoded", false);
+}
+
+static void a_silent_stage_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->stage_silent = true;
+    assert_refused(fixture, "the stage at pty:", false);
+}
+
+static void a_missing_marker_is_named(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->markers = 6;
+    assert_refused(fixture, "6 of 7 markers seen", true);
+    read_events(fixture);
+    assert_non_null(strstr(fixture->events, "check: refused: 6 of 7"));
+}
+
+static void a_stray_reflection_does_not_hurt(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    fixture->bench->markers = 9;
+    fixture->request.travel = 1.0 * WB_MM;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_step(test, 0), WB_BEND_TEST_DONE);
+    assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
+}
+
+static void a_loaded_zero_is_refused(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->force_mg = 2700;
+    assert_refused(fixture, "the unloaded load cell reads 26", true);
+}
+
+static void a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->state = "Alarm";
+    assert_refused(fixture, "'wirebench stage RIG unlock'", true);
+    unlink(fixture->output);
+    fixture->bench->state = "Hold:0";
+    assert_refused(fixture, "'wirebench stage RIG release'", true);
+}
+
+/* --- what cannot be opened --- */
+
+static void assert_not_opened(struct fixture *fixture, enum wb_status expected, const char *words)
+{
+    struct wb_bend_test *test = NULL;
+    fixture->errors[0] = '\0';
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), expected);
+    assert_null(test);
+    if (!strstr(fixture->errors, words))
+        fail_msg("'%s' does not say '%s'", fixture->errors, words);
+    /* One message, no more. */
+    assert_ptr_equal(strchr(fixture->errors, '\n'), fixture->errors + strlen(fixture->errors) - 1);
+}
+
+static void a_missing_port_is_one_message(void **state)
+{
+    struct fixture *const fixture = *state;
+    char gone[64];
+    snprintf(gone, sizeof gone, "%s", fixture->bench->load_path);
+    snprintf(fixture->bench->load_path, sizeof fixture->bench->load_path, "/dev/pts/no-such");
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+    assert_not_opened(fixture, WB_ERR_NOT_FOUND, "/dev/pts/no-such");
+    assert_int_not_equal(access(fixture->output, F_OK), 0);
+}
+
+static void a_busy_port_is_one_message(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_stream *other;
+    char address[80];
+    snprintf(address, sizeof address, "pty:%s", fixture->bench->stage_path);
+    assert_int_equal(wb_stream_open(&other, address), WB_OK);
+    assert_not_opened(fixture, WB_ERR_BUSY, fixture->bench->stage_path);
+    wb_stream_close(other);
+    assert_int_not_equal(access(fixture->output, F_OK), 0);
+}
+
+static void an_existing_recording_is_never_overwritten(void **state)
+{
+    struct fixture *const fixture = *state;
+    FILE *const file = fopen(fixture->output, "w");
+    assert_non_null(file);
+    fputs("precious", file);
+    fclose(file);
+    assert_not_opened(fixture, WB_ERR_EXISTS, "never overwritten");
+}
+
+static void too_much_travel_is_refused_before_anything_is_opened(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->request.travel = 59.0 * WB_MM;
+    assert_not_opened(fixture, WB_ERR_ARGUMENT, "59 mm is not free");
+    fixture->request.travel = NAN;
+    assert_not_opened(fixture, WB_ERR_ARGUMENT, "not free");
+}
+
+static void a_folder_that_cannot_be_written_is_one_message(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->request.output_path = "/no/such/folder/test.wbr";
+    struct wb_bend_test *test = NULL;
+    assert_int_not_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_non_null(strstr(fixture->errors, "/no/such/folder/test.wbr"));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(complete_test_goes_down_and_back_and_records_it),
+        TEST(meta_tells_who_what_and_how),
+        TEST(a_part_of_a_yaml_text_ends_at_the_next_key),
+        TEST(force_limit_holds_within_20_ms_and_the_specimen_stays),
+        TEST(overload_unit_change_and_alarm_hold_within_20_ms),
+        TEST(silent_streams_hold_within_20_ms_of_their_expiry),
+        TEST(a_stage_running_on_is_held_at_the_travel_limit),
+        TEST(a_stage_deaf_to_hold_is_reset_after_500_ms),
+        TEST(a_stage_that_obeys_nothing_is_called_moving),
+        TEST(ctrl_c_stops_the_stage_and_closes_the_recording),
+        TEST(closing_in_mid_test_stops_the_stage_first),
+        TEST(ctrl_c_before_any_motion_sends_no_hold),
+        TEST(an_unplugged_bench_ends_the_test_and_keeps_the_recording),
+        TEST(a_full_disk_stops_the_stage_and_what_was_written_stays),
+        TEST(a_stage_that_refuses_to_move_is_told),
+        TEST(no_natnet_answer_is_told_and_leaves_nothing),
+        TEST(a_silent_load_cell_is_told),
+        TEST(a_load_cell_of_another_protocol_is_told),
+        TEST(a_silent_stage_is_told),
+        TEST(a_missing_marker_is_named),
+        TEST(a_stray_reflection_does_not_hurt),
+        TEST(a_loaded_zero_is_refused),
+        TEST(a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out),
+        TEST(a_missing_port_is_one_message),
+        TEST(a_busy_port_is_one_message),
+        TEST(an_existing_recording_is_never_overwritten),
+        TEST(too_much_travel_is_refused_before_anything_is_opened),
+        TEST(a_folder_that_cannot_be_written_is_one_message),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

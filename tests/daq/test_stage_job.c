@@ -1,0 +1,271 @@
+/* Setting the bench by hand, against a small bench in a thread: jog, home, unlock, release, and the
+ * check of the load cell with a mass. */
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "daq/mass_check.h"
+#include "daq/stage_job.h"
+#include "tests/daq/fake_bench.h"
+
+#define MS WB_NS_PER_MS
+
+struct fixture {
+    struct fake_bench *bench;
+    char path[64];
+    struct wb_rig rig;
+};
+
+static void keep_quiet(void *context, enum wb_log_level level, const char *domain,
+                       const char *message)
+{
+    (void)context;
+    (void)level;
+    (void)domain;
+    (void)message;
+}
+
+static int set_up(void **state)
+{
+    struct fixture *const fixture = calloc(1, sizeof *fixture);
+    assert_non_null(fixture);
+    snprintf(fixture->path, sizeof fixture->path, "/tmp/wb-stage-XXXXXX");
+    const int file = mkstemp(fixture->path);
+    assert_true(file >= 0);
+    close(file);
+    fixture->bench = fake_start();
+    fake_write_rig(fixture->bench, fixture->path, 40.0, 4.0);
+    assert_int_equal(wb_rig_read(fixture->path, &fixture->rig), WB_OK);
+    wb_interrupt_set(false);
+    wb_log_set_sink(keep_quiet, NULL);
+    *state = fixture;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *const fixture = *state;
+    wb_log_set_sink(NULL, NULL);
+    wb_interrupt_set(false);
+    fake_stop(fixture->bench);
+    unlink(fixture->path);
+    free(fixture);
+    return 0;
+}
+
+static struct wb_stage_job_result run(struct fixture *fixture, enum wb_stage_job_kind kind,
+                                      double distance_mm)
+{
+    const struct wb_stage_job_request request = {
+        .kind = kind, .distance = distance_mm * WB_MM, .connect_timeout = 0.6};
+    struct wb_stage_job *job;
+    struct wb_stage_job_result result;
+    assert_int_equal(wb_stage_job_open(&job, &fixture->rig, &request), WB_OK);
+    const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
+    while (wb_stage_job_step(job, 10 * MS) == WB_STAGE_JOB_RUNNING)
+        assert_true(wb_acquisition_now_ns() < patience_ns);
+    wb_stage_job_close(job, &result);
+    return result;
+}
+
+static void jog_moves_by_the_distance_down_and_up(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 3.5);
+    assert_int_equal(result.end, WB_STAGE_JOB_DONE);
+    assert_close(fixture->bench->position_mm, 3.5, 1e-6);
+    assert_close(result.moved, 3.5e-3, 1e-6);
+    result = run(fixture, WB_STAGE_JOB_JOG, -1.25);
+    assert_int_equal(result.end, WB_STAGE_JOB_DONE);
+    assert_close(fixture->bench->position_mm, 2.25, 1e-6);
+    assert_int_equal(fixture->bench->holds, 0);
+}
+
+static void jog_stops_at_the_force_limit_within_20_ms(void **state)
+{
+    struct fixture *const fixture = *state;
+    /* 100 mN, not tared. */
+    fixture->bench->force_limit_mg = (int)(100e-3 / WB_STANDARD_GRAVITY * 1e6);
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 40.0);
+    assert_int_equal(result.end, WB_STAGE_JOB_LIMIT);
+    assert_true(result.standing);
+    assert_non_null(strstr(result.text, "force limit"));
+    assert_true(fixture->bench->limit_sent_ns != 0);
+    assert_in_range(fixture->bench->hold_ns - fixture->bench->limit_sent_ns, 0, WB_STOP_HOLD_NS);
+    assert_true(fixture->bench->position_mm < 22.0);
+}
+
+static void jog_beyond_the_travel_is_refused(void **state)
+{
+    struct fixture *const fixture = *state;
+    const struct wb_stage_job_request request = {.kind = WB_STAGE_JOB_JOG, .distance = 0.061};
+    struct wb_stage_job *job = NULL;
+    assert_int_equal(wb_stage_job_open(&job, &fixture->rig, &request), WB_ERR_ARGUMENT);
+    assert_null(job);
+}
+
+static void jog_of_a_locked_stage_says_how_to_unlock(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->state = "Alarm";
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
+    assert_int_equal(result.end, WB_STAGE_JOB_FAILED);
+    assert_non_null(strstr(result.text, "'unlock'"));
+}
+
+static void jog_without_a_reading_is_refused(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->load_silent = true;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
+    assert_int_equal(result.end, WB_STAGE_JOB_FAILED);
+    assert_non_null(strstr(result.text, "--without-load-cell"));
+    assert_close(fixture->bench->position_mm, 0.0, 0.0);
+}
+
+static void ctrl_c_stops_a_jog(void **state)
+{
+    struct fixture *const fixture = *state;
+    const struct wb_stage_job_request request = {.kind = WB_STAGE_JOB_JOG, .distance = 0.02};
+    struct wb_stage_job *job;
+    struct wb_stage_job_result result;
+    assert_int_equal(wb_stage_job_open(&job, &fixture->rig, &request), WB_OK);
+    while (wb_stage_job_step(job, 10 * MS) == WB_STAGE_JOB_RUNNING)
+        if (fixture->bench->position_mm > 2.0)
+            wb_interrupt_set(true);
+    wb_stage_job_close(job, &result);
+    assert_int_equal(result.end, WB_STAGE_JOB_INTERRUPTED);
+    assert_int_equal(fixture->bench->holds, 1);
+    assert_true(fixture->bench->position_mm < 8.0);
+}
+
+static void home_waits_for_the_end_of_homing(void **state)
+{
+    struct fixture *const fixture = *state;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_STAGE_JOB_DONE);
+    fixture->bench->state = "Alarm";
+    assert_int_equal(run(fixture, WB_STAGE_JOB_HOME, 0.0).end, WB_STAGE_JOB_DONE);
+    assert_close(fixture->bench->position_mm, 0.0, 0.0);
+}
+
+static void unlock_brings_the_stage_out_of_hold_and_alarm(void **state)
+{
+    struct fixture *const fixture = *state;
+    static const char *const states[] = {"Hold:0", "Alarm", "Idle"};
+    for (int i = 0; i < 3; i++) {
+        fixture->bench->state = states[i];
+        assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_STAGE_JOB_DONE);
+        assert_string_equal(fixture->bench->state, "Idle");
+    }
+    assert_close(fixture->bench->position_mm, 0.0, 0.0);
+}
+
+static void release_goes_up_until_the_strand_is_slack(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->slack_mm = 12;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    bench->state = "Hold:0";
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_STAGE_JOB_DONE);
+    /* The strand is slack from 12 mm up; it is seen over 1.5 mm, and the bench runs 20 mm/s. */
+    assert_true(bench->position_mm < 10.5);
+    assert_true(bench->position_mm > 5.0);
+    assert_close(result.force, 0.15e-3 * WB_STANDARD_GRAVITY, 0.02e-3 * WB_STANDARD_GRAVITY);
+    assert_true(result.change < -0.05);
+}
+
+static void release_may_begin_beyond_the_limits(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->spring_mg_mm = 100;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    bench->slack_mm = 10;
+    bench->spring_mg_mm = 1400; /* 28 g, 275 mN: beyond the limit of 100 mN, near the 30 g */
+    bench->state = "Alarm";
+    assert_int_equal(run(fixture, WB_STAGE_JOB_RELEASE, 0.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(bench->holds, 0);
+}
+
+static void release_stops_when_up_loads(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->spring_mg_mm = 50;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    bench->force_mg = 20000;
+    bench->spring_mg_mm = -600; /* 2 g now, and more when it goes up */
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_STAGE_JOB_LIMIT);
+    assert_true(bench->position_mm > 10.0);
+}
+
+static void release_says_when_it_saw_no_slack(void **state)
+{
+    struct fixture *const fixture = *state;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 15.0).end, WB_STAGE_JOB_DONE);
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 6.0);
+    assert_int_equal(result.end, WB_STAGE_JOB_STILL_LOADED);
+    assert_close(fixture->bench->position_mm, 9.0, 1e-3);
+}
+
+/* --- the load cell's check --- */
+
+static struct wb_mass_check_result check(struct fixture *fixture, int hung_mg)
+{
+    struct wb_mass_check *check;
+    struct wb_mass_check_result result;
+    enum wb_mass_check_phase phase;
+    assert_int_equal(wb_mass_check_open(&check, &fixture->rig, 0.3), WB_OK);
+    while ((phase = wb_mass_check_step(check, 10 * MS)) < WB_MASS_CHECK_DONE) {
+        if (phase != WB_MASS_CHECK_WAITING)
+            continue;
+        fixture->bench->force_mg += hung_mg;
+        wb_mass_check_hung(check);
+    }
+    assert_int_equal(phase, WB_MASS_CHECK_DONE);
+    wb_mass_check_result(check, 10.0 * WB_G, 0.01, &result);
+    wb_mass_check_close(check);
+    return result;
+}
+
+static void a_good_cell_passes_its_check(void **state)
+{
+    struct fixture *const fixture = *state;
+    const struct wb_mass_check_result result = check(fixture, 10000);
+    assert_close(result.mass, 10e-3, 6e-6);
+    assert_close(result.deviation, result.mass - 10e-3, 1e-15);
+    assert_true(result.uncertainty > 0.0 && result.uncertainty < 3e-6);
+    assert_true(result.passed);
+}
+
+static void a_cell_off_by_2_percent_does_not_pass(void **state)
+{
+    struct fixture *const fixture = *state;
+    const struct wb_mass_check_result result = check(fixture, 10200);
+    assert_close(result.relative, 0.02, 1e-3);
+    assert_false(result.passed);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(jog_moves_by_the_distance_down_and_up),
+        TEST(jog_stops_at_the_force_limit_within_20_ms),
+        TEST(jog_beyond_the_travel_is_refused),
+        TEST(jog_of_a_locked_stage_says_how_to_unlock),
+        TEST(jog_without_a_reading_is_refused),
+        TEST(ctrl_c_stops_a_jog),
+        TEST(home_waits_for_the_end_of_homing),
+        TEST(unlock_brings_the_stage_out_of_hold_and_alarm),
+        TEST(release_goes_up_until_the_strand_is_slack),
+        TEST(release_may_begin_beyond_the_limits),
+        TEST(release_stops_when_up_loads),
+        TEST(release_says_when_it_saw_no_slack),
+        TEST(a_good_cell_passes_its_check),
+        TEST(a_cell_off_by_2_percent_does_not_pass),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
