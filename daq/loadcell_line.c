@@ -97,6 +97,8 @@ static bool is_rail(const char *word)
 static bool is_token(const char *word, const char tokens[WB_RIG_TOKENS][16])
 {
     double value, token_value;
+    if (!tokens[0][0])
+        return false;
     const bool number = wb_number_parse(word, &value);
     for (int i = 0; i < WB_RIG_TOKENS && tokens[i][0]; i++) {
         if (strcasecmp(word, tokens[i]) == 0)

@@ -163,7 +163,7 @@ int main(int argc, char **argv)
     FUZZ_REQUIRE(n == N_SEEDS);
     for (size_t i = 0; i < n; i++)
         pointers[i] = seeds[i];
-    return fuzz_main(argc, argv, pointers, sizes, n, 60000);
+    return fuzz_main(argc, argv, pointers, sizes, n, 150000);
 }
 
 #endif
