@@ -106,8 +106,7 @@ static void print_meta(struct facts *facts, const char *label, const char *key)
 static enum wb_status print_event(void *context, const struct wb_event *event)
 {
     const struct facts *facts = context;
-    printf("    %9.3f s  %-12s %s\n",
-           wb_seconds_from_ns(event->t_ns) - wb_seconds_from_ns(facts->survey.first_ns),
+    printf("    %9.3f s  %-12s %s\n", wb_survey_seconds(facts->survey.first_ns, event->t_ns),
            event->kind, event->text);
     return WB_OK;
 }

@@ -10,6 +10,7 @@
 #include "cli/live_line.h"
 #include "daq/acquisition.h"
 #include "daq/replay.h"
+#include "daq/survey.h"
 
 #define WB_LOG_DOMAIN "replay"
 
@@ -94,7 +95,7 @@ static void show(struct player *player, int64_t t_ns)
     if (player->has_frame)
         snprintf(markers, sizeof markers, "markers %d", player->markers);
     wb_live_line_show("%sreplay %.1f s  %s  %s  %s", player->is_virtual ? "[virtual rig] " : "",
-                      wb_seconds_from_ns(t_ns - player->first_ns), force, travel, markers);
+                      wb_survey_seconds(player->first_ns, t_ns), force, travel, markers);
 }
 
 static void take_load(void *context, const struct wb_load_sample *sample)
@@ -134,13 +135,13 @@ static void take_remark(void *context, enum wb_log_level level, int64_t t_ns, co
 {
     const struct player *player = context;
     wb_log(level, WB_LOG_DOMAIN, "%.3f s: %s: %s",
-           player->started ? wb_seconds_from_ns(t_ns - player->first_ns) : 0.0, kind, text);
+           player->started ? wb_survey_seconds(player->first_ns, t_ns) : 0.0, kind, text);
 }
 
 static int print(const struct options *options, const struct player *player,
                  const struct wb_replay_counts *counts, double wall_s)
 {
-    double duration_s = wb_seconds_from_ns(player->last_ns - player->first_ns);
+    double duration_s = wb_survey_seconds(player->first_ns, player->last_ns);
     if (!options->json) {
         printf("%s: %s%.1f s, %" PRIu64 " chunks, %" PRIu64 " load readings, %" PRIu64
                " mocap frames, %" PRIu64 " stage reports, %" PRIu64 " damaged chunks\n",

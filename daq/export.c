@@ -106,10 +106,12 @@ static FILE *begin_row(struct export *export, int which, int64_t t_ns)
 {
     struct table *table = &export->tables[which];
     table->rows++;
-    int64_t since = t_ns - export->first_ns;
-    fprintf(table->file, "%s%" PRId64 ".%09" PRId64 ",%" PRId64, since < 0 ? "-" : "",
-            (since < 0 ? -since : since) / WB_NS_PER_S, (since < 0 ? -since : since) % WB_NS_PER_S,
-            t_ns);
+    bool before = t_ns < export->first_ns;
+    uint64_t since = before ? (uint64_t) export->first_ns - (uint64_t)t_ns
+                            : (uint64_t)t_ns - (uint64_t) export->first_ns;
+    const uint64_t second = (uint64_t)WB_NS_PER_S;
+    fprintf(table->file, "%s%" PRIu64 ".%09" PRIu64 ",%" PRId64, before ? "-" : "", since / second,
+            since % second, t_ns);
     return table->file;
 }
 

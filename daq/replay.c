@@ -143,7 +143,8 @@ static bool wait_until_due(struct replay *replay, int64_t t_ns)
         replay->first_ns = t_ns;
         replay->started_ns = wb_progress_now_ns();
     }
-    double wait_s = wb_seconds_from_ns(t_ns - replay->first_ns) / replay->rate;
+    /* Chunks come in order of time. */
+    double wait_s = (double)((uint64_t)t_ns - (uint64_t)replay->first_ns) * 1e-9 / replay->rate;
     int64_t due_ns = replay->started_ns + wb_ns_from_seconds(wait_s < 1e9 ? wait_s : 1e9);
     struct timespec due = {.tv_sec = (time_t)(due_ns / WB_NS_PER_S),
                            .tv_nsec = (long)(due_ns % WB_NS_PER_S)};

@@ -38,6 +38,16 @@ static void check_order(struct wb_survey_stream *stream, int64_t *next, int64_t 
     *next = seq == INT64_MAX ? seq : seq + 1;
 }
 
+/* Chunks come in order of time, so only damaged stamps are too far apart for an int64_t. */
+static void note_silence(struct wb_survey_stream *stream, int64_t t_ns)
+{
+    uint64_t silence_ns = (uint64_t)t_ns - (uint64_t)stream->last_ns;
+    if (silence_ns > INT64_MAX)
+        silence_ns = INT64_MAX;
+    if ((int64_t)silence_ns > stream->longest_silence_ns)
+        stream->longest_silence_ns = (int64_t)silence_ns;
+}
+
 static void check_time(struct wb_survey *survey, struct wb_survey_stream *stream, int64_t t_ns)
 {
     if (survey->chunks == 0)
@@ -45,8 +55,8 @@ static void check_time(struct wb_survey *survey, struct wb_survey_stream *stream
     survey->last_ns = t_ns;
     if (stream->chunks == 0)
         stream->first_ns = t_ns;
-    else if (t_ns - stream->last_ns > stream->longest_silence_ns)
-        stream->longest_silence_ns = t_ns - stream->last_ns;
+    else
+        note_silence(stream, t_ns);
     stream->last_ns = t_ns;
 }
 
@@ -128,7 +138,7 @@ static enum wb_status decode_all(struct wb_recording *recording, struct wb_surve
     for (int i = 0; i < survey->n_streams; i++) {
         struct wb_survey_stream *stream = &survey->streams[i];
         stream->samples = samples[stream->role];
-        double seconds = wb_seconds_from_ns(stream->last_ns) - wb_seconds_from_ns(stream->first_ns);
+        double seconds = wb_survey_seconds(stream->first_ns, stream->last_ns);
         stream->rate = seconds > 0.0 ? (double)stream->samples / seconds : 0.0;
     }
     return WB_OK;
@@ -155,7 +165,14 @@ enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct
 
 double wb_survey_duration(const struct wb_survey *survey)
 {
-    return wb_seconds_from_ns(survey->last_ns) - wb_seconds_from_ns(survey->first_ns);
+    return wb_survey_seconds(survey->first_ns, survey->last_ns);
+}
+
+double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
+{
+    if (to_ns < from_ns)
+        return -wb_survey_seconds(to_ns, from_ns);
+    return (double)((uint64_t)to_ns - (uint64_t)from_ns) * 1e-9;
 }
 
 /* --- what is wrong --- */

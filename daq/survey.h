@@ -52,6 +52,9 @@ bool wb_survey_is_whole(const struct wb_survey *survey);
 /* Seconds from the first chunk to the last. */
 double wb_survey_duration(const struct wb_survey *survey);
 
+/* Seconds from one stamp to a later one, of any values (a damaged file may hold any). */
+double wb_survey_seconds(int64_t from_ns, int64_t to_ns);
+
 /* Describes the next thing that is wrong, one line, beginning with *at = 0; false when there is
  * none any more. `text` receives for example "mocap stream 1: 12 chunks missing in 2 places". */
 bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size);

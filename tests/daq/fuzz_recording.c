@@ -1,4 +1,4 @@
-/* Opening and walking any file never crashes, hangs or leaks.
+/* Opening, walking, surveying and decoding any file never crashes, hangs or leaks.
  *
  * With clang -fsanitize=fuzzer and -DWB_LIBFUZZER this is a libFuzzer target. As a test it is
  * driven by itself: random damage to a small recording, plain and compressed, from a fixed seed;
@@ -12,6 +12,8 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "daq/recording.h"
+#include "daq/survey.h"
+#include "tests/daq/small_test.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n);
 
@@ -62,7 +64,10 @@ static uint64_t visit(const char *path)
     uint64_t chunks = 0;
     if (wb_recording_open(&recording, path) != WB_OK)
         return 0;
+    struct wb_survey survey;
+    char text[256];
     enum wb_status ends[] = {
+        wb_survey_run(recording, true, &survey), /* decodes too */
         wb_recording_each_chunk(recording, touch_chunk, &chunks),
         wb_recording_each_event(recording, touch_event, NULL),
         wb_recording_each_clock(recording, touch_clock, NULL),
@@ -71,6 +76,8 @@ static uint64_t visit(const char *path)
     };
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
         touched += (uint64_t)(ends[i] == WB_OK);
+    for (int at = 0; wb_survey_problem(&survey, &at, text, sizeof text);)
+        touched += strlen(text);
     return chunks;
 }
 
@@ -97,6 +104,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
 }
 
 #ifndef WB_LIBFUZZER
+
+#define SMALL_CHUNKS 126
 
 static uint64_t random_state;
 
@@ -145,30 +154,6 @@ static size_t damage(uint8_t *bytes, size_t n)
     return n;
 }
 
-static void make_seed_recording(const char *path)
-{
-    struct wb_recording *recording = NULL;
-    int id = 0;
-    uint8_t bytes[5000] = {1, 2, 3};
-    enum wb_status status = wb_recording_create(&recording, path);
-    if (status == WB_OK)
-        status = wb_recording_add_stream(recording, WB_ROLE_LOAD, "memory:", "generic", "x", &id);
-    for (int i = 0; i < 400 && status == WB_OK; i++)
-        status = wb_recording_append_chunk(recording, id, i, i * 1000, bytes,
-                                           i % 40 == 0 ? sizeof bytes : (size_t)(i % 90));
-    for (int i = 0; i < 20 && status == WB_OK; i++)
-        status = wb_recording_append_event(recording, i, "mark", "here");
-    for (int i = 0; i < 20 && status == WB_OK; i++)
-        status = wb_recording_append_clock(recording, id, i, i * 0.5, 1000);
-    for (int i = 0; i < 20 && status == WB_OK; i++) {
-        char key[16];
-        snprintf(key, sizeof key, "key %d", i);
-        status = wb_recording_set_meta(recording, key, "value");
-    }
-    if (status != WB_OK || wb_recording_close(recording) != WB_OK)
-        abort();
-}
-
 int main(int argc, char **argv)
 {
     long cases = argc > 1 ? atol(argv[1]) : 600;
@@ -179,14 +164,14 @@ int main(int argc, char **argv)
     snprintf(seed, sizeof seed, "%s/seed.wbr", folder);
     snprintf(packed, sizeof packed, "%s/seed.wbr.zst", folder);
     snprintf(path, sizeof path, "%s/case.wbr", folder);
-    make_seed_recording(seed);
+    small_make(seed, true);
     char *sources[2] = {NULL, NULL};
     size_t sizes[2] = {0, 0};
     if (wb_recording_compress(seed, packed) != WB_OK ||
         wb_file_read(seed, &sources[0], &sizes[0]) != WB_OK ||
         wb_file_read(packed, &sources[1], &sizes[1]) != WB_OK)
         return 1;
-    bool whole = visit(seed) == 400 && visit(packed) == 400;
+    bool whole = visit(seed) == SMALL_CHUNKS && visit(packed) == SMALL_CHUNKS;
     wb_log_set_sink(be_silent, NULL);
     long opened = 0;
     for (long i = 0; i < cases && whole; i++) {
