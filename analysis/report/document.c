@@ -1,0 +1,199 @@
+#include "analysis/report/document.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+
+static char *copy_text(struct wb_document *document, const char *text)
+{
+    char *const copy = strdup(text ? text : "");
+    document->failed |= !copy;
+    return copy;
+}
+
+void wb_document_init(struct wb_document *document, const char *title, const char *subtitle,
+                      const char *footer, const char *date_utc)
+{
+    memset(document, 0, sizeof *document);
+    document->title = copy_text(document, title);
+    document->subtitle = copy_text(document, subtitle);
+    document->footer = copy_text(document, footer);
+    document->date_utc = copy_text(document, date_utc);
+}
+
+static void destroy_table(struct wb_document_table *table)
+{
+    if (!table)
+        return;
+    for (int i = 0; i < table->n_columns; i++)
+        free((char *)(uintptr_t)table->columns[i].heading);
+    for (int i = 0; i < table->n_rows * table->n_columns; i++)
+        free(table->cells[i].text);
+    free(table->cells);
+    free(table->begins_group);
+    free(table->caption);
+    free(table);
+}
+
+void wb_document_release(struct wb_document *document)
+{
+    for (int i = 0; i < document->n; i++) {
+        struct wb_document_block *const block = &document->blocks[i];
+        free(block->text);
+        free(block->anchor);
+        free(block->captions[0]);
+        free(block->captions[1]);
+        destroy_table(block->table);
+    }
+    free(document->blocks);
+    free(document->title);
+    free(document->subtitle);
+    free(document->footer);
+    free(document->date_utc);
+    memset(document, 0, sizeof *document);
+}
+
+bool wb_document_failed(const struct wb_document *document)
+{
+    return document->failed;
+}
+
+static struct wb_document_block *add_block(struct wb_document *document, enum wb_document_kind kind,
+                                           const char *text)
+{
+    if (document->n == document->capacity) {
+        const int capacity = document->capacity ? 2 * document->capacity : 64;
+        struct wb_document_block *const larger =
+            realloc(document->blocks, (size_t)capacity * sizeof *larger);
+        if (!larger) {
+            document->failed = true;
+            return NULL;
+        }
+        document->blocks = larger;
+        document->capacity = capacity;
+    }
+    struct wb_document_block *const block = &document->blocks[document->n++];
+    *block = (struct wb_document_block){.kind = kind, .text = copy_text(document, text)};
+    return block;
+}
+
+void wb_document_heading(struct wb_document *document, int level, const char *anchor,
+                         const char *text)
+{
+    struct wb_document_block *const block = add_block(document, WB_BLOCK_HEADING, text);
+    if (!block)
+        return;
+    block->level = level;
+    block->anchor = copy_text(document, anchor);
+}
+
+void wb_document_paragraph(struct wb_document *document, const char *markup)
+{
+    add_block(document, WB_BLOCK_PARAGRAPH, markup);
+}
+
+void wb_document_notice(struct wb_document *document, enum wb_document_tone tone,
+                        const char *markup)
+{
+    struct wb_document_block *const block = add_block(document, WB_BLOCK_NOTICE, markup);
+    if (block)
+        block->tone = tone;
+}
+
+void wb_document_item(struct wb_document *document, enum wb_document_tone tone, const char *markup)
+{
+    struct wb_document_block *const block = add_block(document, WB_BLOCK_ITEM, markup);
+    if (block)
+        block->tone = tone;
+}
+
+void wb_document_code(struct wb_document *document, const char *text)
+{
+    add_block(document, WB_BLOCK_CODE, text);
+}
+
+void wb_document_new_page(struct wb_document *document)
+{
+    add_block(document, WB_BLOCK_NEW_PAGE, NULL);
+}
+
+static char *number_caption(struct wb_document *document, const char *caption)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "<b>Figure %d.</b> %s", ++document->n_figures, caption ? caption : "");
+    document->failed |= text.failed;
+    return text.bytes;
+}
+
+void wb_document_figures(struct wb_document *document, const struct wb_figure *first,
+                         const char *first_caption, const struct wb_figure *second,
+                         const char *second_caption)
+{
+    struct wb_document_block *const block = add_block(document, WB_BLOCK_FIGURES, NULL);
+    if (!block)
+        return;
+    block->figures[0] = first;
+    block->captions[0] = number_caption(document, first_caption);
+    block->figures[1] = second;
+    if (second)
+        block->captions[1] = number_caption(document, second_caption);
+}
+
+struct wb_document_table *wb_document_table(struct wb_document *document, const char *caption,
+                                            int n_columns, const struct wb_document_column *columns)
+{
+    struct wb_document_block *const block = add_block(document, WB_BLOCK_TABLE, NULL);
+    struct wb_document_table *const table = calloc(1, sizeof *table);
+    if (!block || !table || n_columns > WB_DOCUMENT_COLUMNS) {
+        document->failed = true;
+        free(table);
+        return NULL;
+    }
+    block->table = table;
+    table->n_columns = n_columns;
+    table->caption = caption ? copy_text(document, caption) : NULL;
+    for (int i = 0; i < n_columns; i++) {
+        table->columns[i] = columns[i];
+        table->columns[i].heading = copy_text(document, columns[i].heading);
+    }
+    return table;
+}
+
+static bool grow(struct wb_document_table *table)
+{
+    const int capacity = table->capacity ? 2 * table->capacity : 16;
+    struct wb_document_cell *const cells =
+        realloc(table->cells, (size_t)(capacity * table->n_columns) * sizeof *cells);
+    if (cells)
+        table->cells = cells;
+    bool *const begins = realloc(table->begins_group, (size_t)capacity * sizeof *begins);
+    if (begins)
+        table->begins_group = begins;
+    if (!cells || !begins)
+        return false;
+    table->capacity = capacity;
+    return true;
+}
+
+void wb_document_row(struct wb_document *document, struct wb_document_table *table,
+                     bool begins_group, const char *const *cells)
+{
+    if (!table)
+        return;
+    if (table->n_rows == table->capacity && !grow(table)) {
+        document->failed = true;
+        return;
+    }
+    for (int i = 0; i < table->n_columns; i++)
+        table->cells[table->n_rows * table->n_columns + i] =
+            (struct wb_document_cell){.text = copy_text(document, cells[i])};
+    table->begins_group[table->n_rows++] = begins_group;
+}
+
+void wb_document_tone_cell(struct wb_document_table *table, int column, enum wb_document_tone tone)
+{
+    if (table && table->n_rows > 0 && column < table->n_columns)
+        table->cells[(table->n_rows - 1) * table->n_columns + column].tone = tone;
+}

@@ -1,0 +1,68 @@
+/* What the files that draw the report's figures share. */
+#ifndef WB_ANALYSIS_REPORT_FIGURES_PRIVATE_H
+#define WB_ANALYSIS_REPORT_FIGURES_PRIVATE_H
+
+#include "analysis/report/figures.h"
+
+/* Copies in another unit; the deflections of a curve in mm. NULL when out of memory. */
+double *wb_figures_scaled(const double *values, int n, double unit);
+double *wb_figures_deflections(const struct wb_curve *curve);
+
+/* A line of `values` on the curve's deflections, and the range of its samples. */
+void wb_figures_add_curve(struct wb_panel *panel, const char *label, const struct wb_curve *curve,
+                          const double *values, double unit, const struct wb_figure_style *style);
+void wb_figures_add_range(struct wb_panel *panel, const char *label, const struct wb_curve *curve,
+                          struct wb_colour colour);
+
+/* Deflection in mm and force in mN; with a scale over F_max on the right when it is given. */
+void wb_figures_set_force_axes(struct wb_panel *panel, double max_force);
+
+/* A figure named WIRE-KIND ("all-KIND" for all wires) that says where its data come from. */
+WB_MUST_CHECK enum wb_status wb_figures_start(struct wb_figure **figure,
+                                              const struct wb_results *results,
+                                              const struct wb_results_wire *wire, const char *kind,
+                                              double width, double height);
+
+WB_MUST_CHECK enum wb_status wb_figures_draw_bench(struct wb_figure **figure,
+                                                   const struct wb_results *results);
+
+/* Measured: need usable recordings only. */
+WB_MUST_CHECK enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
+                                                    const struct wb_results *results,
+                                                    const struct wb_results_wire *wire);
+WB_MUST_CHECK enum wb_status wb_figures_draw_shapes(struct wb_figures_wire *figures,
+                                                    const struct wb_results *results,
+                                                    const struct wb_results_wire *wire,
+                                                    struct wb_colour colour);
+
+/* Compared: need a calibration, and the one of the validation that. */
+WB_MUST_CHECK enum wb_status wb_figures_draw_samples(struct wb_figure **figure,
+                                                     const struct wb_results *results,
+                                                     const struct wb_results_wire *wire,
+                                                     struct wb_colour colour);
+WB_MUST_CHECK enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
+                                                         const struct wb_results *results,
+                                                         const struct wb_results_wire *wire,
+                                                         struct wb_colour colour);
+WB_MUST_CHECK enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
+                                                        const struct wb_results *results,
+                                                        const struct wb_results_wire *wire,
+                                                        struct wb_colour colour);
+WB_MUST_CHECK enum wb_status wb_figures_draw_error(struct wb_figure **figure,
+                                                   const struct wb_results *results,
+                                                   const struct wb_results_wire *wire,
+                                                   struct wb_colour colour);
+WB_MUST_CHECK enum wb_status wb_figures_draw_optimiser(struct wb_figure **figure,
+                                                       const struct wb_results *results,
+                                                       const struct wb_results_wire *wire,
+                                                       struct wb_colour colour);
+
+/* Markers of the first loading's frame nearest to a deflection: up to `most` into x and y (mm);
+ * *at and *t receive the frame's deflection (m) and time (s). Returns how many, 0 for none. */
+int wb_figures_frame(const struct wb_dataset *dataset, double deflection, int most, double *x,
+                     double *y, double *at, double *t);
+
+/* Largest deflection of the first loading, m, and when it was reached, s. */
+double wb_figures_turn(const struct wb_dataset *dataset, double *t);
+
+#endif

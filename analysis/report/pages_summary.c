@@ -1,0 +1,298 @@
+/* The summary page: origin, limits, what is missing, properties, figures of merit, warnings. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/report/pages_private.h"
+#include "base/units.h"
+
+#define MOST_WARNINGS 6
+
+static void put_origin(struct wb_document *document, const struct wb_results *results)
+{
+    if (!results->any_virtual)
+        return;
+    wb_document_notice(
+        document, WB_TONE_ORIGIN,
+        results->all_virtual
+            ? "<b>Virtual rig.</b> All recordings of this report come from the virtual rig, a "
+              "simulated bench with a simulated wire. No physical wire was tested. The wire in it "
+              "only resembles the published one, whose values stand beside for orientation."
+            : "<b>Virtual rig.</b> Some recordings of this report come from the virtual rig, a "
+              "simulated bench with a simulated wire; the list of recordings says which.");
+}
+
+static void append_share(struct wb_text *text, double share, const char *of)
+{
+    if (isfinite(share))
+        wb_text_append(text,
+                       " The scatter between samples explains %.0f %% of its mean square "
+                       "error.",
+                       100.0 * share);
+    else
+        wb_text_append(text, " What the scatter between samples explains is not known: %s.", of);
+}
+
+static void put_miss(struct wb_document *document, const char *label, const char *step, double rms,
+                     double limit, double share)
+{
+    char escaped[300];
+    struct wb_text text = {0};
+    wb_text_append(&text,
+                   "<b>Limit exceeded.</b> %s, %s: RMS %.4f of <i>F</i><sub>max</sub>, "
+                   "limit %.4g.",
+                   wb_pages_escape(escaped, sizeof escaped, label), step, rms, limit);
+    append_share(&text, share, "there are fewer than two samples");
+    wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
+    document->failed |= text.failed;
+    wb_text_release(&text);
+}
+
+static void put_limits(struct wb_document *document, const struct wb_results *results)
+{
+    const struct wb_campaign *const campaign = results->campaign;
+    int judged = 0;
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_results_wire *const wire = &results->wires[i];
+        const char *const label = wire->wanted->label;
+        if (wire->calibration_state == WB_RESULTS_DONE && campaign->calibration_limit > 0.0) {
+            judged++;
+            if (!(wire->calibration.rms <= campaign->calibration_limit))
+                put_miss(document, label, "calibration", wire->calibration.rms,
+                         campaign->calibration_limit, wb_results_calibration_share(wire));
+        }
+        if (wire->validation_state == WB_RESULTS_DONE && campaign->validation_limit > 0.0) {
+            judged++;
+            if (!(wire->validation.elastoplastic.rms <= campaign->validation_limit))
+                put_miss(document, label, "validation", wire->validation.elastoplastic.rms,
+                         campaign->validation_limit, wb_results_validation_share(wire));
+        }
+    }
+    if (judged == 0 || results->exceeds_limit)
+        return;
+    struct wb_text text = {0};
+    wb_text_append(&text, results->is_complete
+                              ? "<b>All limits of the campaign are kept:</b>"
+                              : "<b>What could be computed keeps the campaign's limits:</b>");
+    if (campaign->calibration_limit > 0.0)
+        wb_text_append(&text, " RMS of each calibration at most %.4g", campaign->calibration_limit);
+    if (campaign->validation_limit > 0.0)
+        wb_text_append(&text, "%s of each validation at most %.4g",
+                       campaign->calibration_limit > 0.0 ? "," : " RMS",
+                       campaign->validation_limit);
+    wb_text_append(&text, " of <i>F</i><sub>max</sub>.");
+    wb_document_notice(document, WB_TONE_GOOD, wb_text_string(&text));
+    document->failed |= text.failed;
+    wb_text_release(&text);
+}
+
+static void put_step_problem(struct wb_document *document, const char *label, const char *step,
+                             enum wb_results_state state, const struct wb_text *problem)
+{
+    if (state != WB_RESULTS_MISSING && state != WB_RESULTS_FAILED)
+        return;
+    char name[300], reason[1200], item[1700];
+    snprintf(item, sizeof item, "<b>%s: no %s</b>: %s", wb_pages_escape(name, sizeof name, label),
+             step, wb_pages_escape(reason, sizeof reason, wb_text_string(problem)));
+    wb_document_item(document, WB_TONE_WARNING, item);
+}
+
+static void put_missing(struct wb_document *document, const struct wb_results *results)
+{
+    if (results->is_complete)
+        return;
+    char text[300];
+    const int n = results->n_tests - results->n_usable;
+    if (n > 0)
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> %d of %d recordings %s missing or could not be used. The "
+                 "report shows what the others give.",
+                 n, results->n_tests, wb_pages_plural(n, "is", "are"));
+    else
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> All recordings are there, but not every "
+                 "step could be done.");
+    wb_document_notice(document, WB_TONE_WARNING, text);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_results_wire *const wire = &results->wires[i];
+        wb_pages_missing(document, &wire->calibration_tests);
+        wb_pages_missing(document, &wire->validation_tests);
+        put_step_problem(document, wire->wanted->label, "calibration", wire->calibration_state,
+                         &wire->calibration_problem);
+        put_step_problem(document, wire->wanted->label, "validation", wire->validation_state,
+                         &wire->validation_problem);
+    }
+}
+
+static void put_property(struct wb_document *document, struct wb_document_table *table,
+                         const struct wb_results_wire *wire, int i)
+{
+    const struct wb_pages_property *const property = &wb_pages_properties[i];
+    const struct wb_campaign_wire *const wanted = wire->wanted;
+    const bool done = wire->calibration_state == WB_RESULTS_DONE;
+    const double value =
+        done ? wb_pages_value(&wire->calibration.material, i) / property->factor : (double)NAN;
+    const double deviation = done ? wire->calibration.deviation[i] / property->factor : (double)NAN;
+    const double reference =
+        wanted->has_reference ? wanted->reference[i] / property->factor : (double)NAN;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, i == 0 ? wanted->label : "");
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
+    wb_pages_cell_number(&row, value, property->decimals);
+    wb_pages_cell_number(&row, deviation, property->decimals);
+    wb_pages_cell_number(&row, reference, property->decimals);
+    wb_pages_cell_number(&row, value / reference, 2);
+    wb_pages_put_row(document, table, i == 0, &row);
+}
+
+static void put_properties(struct wb_document *document, const struct wb_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire"},
+        {"Property"},
+        {"Unit"},
+        {.heading = "Calibrated", .right = true},
+        {.heading = "\xc2\xb1 (samples)", .right = true},
+        {.heading = "Published", .right = true},
+        {.heading = "Ratio", .right = true},
+    };
+    char source[300] = "none", caption[900];
+    for (int i = 0; i < results->n_wires; i++) {
+        if (results->wires[i].wanted->has_reference) {
+            wb_pages_escape(source, sizeof source, results->wires[i].wanted->reference_source);
+            break;
+        }
+    }
+    wb_document_heading(document, 2, "properties", "Calibrated properties");
+    snprintf(caption, sizeof caption,
+             "\xc2\xb1: standard uncertainty from the scatter between samples (jackknife). "
+             "Published: %s. Ratio: calibrated over published.",
+             source);
+    struct wb_document_table *const table = wb_document_table(document, caption, 7, columns);
+    for (int i = 0; i < results->n_wires; i++) {
+        for (int k = 0; k < 4; k++)
+            put_property(document, table, &results->wires[i], k);
+    }
+}
+
+static void put_rms(struct wb_pages_row *row, bool done, double rms, double limit)
+{
+    if (!done)
+        wb_pages_cell(row, WB_TONE_WARNING, "missing");
+    else if (limit > 0.0)
+        wb_pages_cell(row, rms <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.4f", rms);
+    else
+        wb_pages_cell(row, WB_TONE_PLAIN, "%.4f", rms);
+}
+
+static void put_share(struct wb_pages_row *row, double share)
+{
+    if (isfinite(share))
+        wb_pages_cell(row, WB_TONE_PLAIN, "%.0f %%", 100.0 * share);
+    else
+        wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");
+}
+
+static void put_merits(struct wb_document *document, const struct wb_results *results)
+{
+    const struct wb_campaign *const campaign = results->campaign;
+    static const struct wb_document_column columns[] = {
+        {"Wire"},
+        {.heading = "Calibration RMS", .right = true, .wraps = true},
+        {.heading = "Validation RMS", .right = true, .wraps = true},
+        {.heading = "Validation, largest", .right = true, .wraps = true},
+        {.heading = "Linear elastic RMS", .right = true, .wraps = true},
+        {.heading = "Scatter explains", .right = true, .wraps = true},
+        {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
+        {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
+    };
+    char caption[900], source[300];
+    int length = snprintf(caption, sizeof caption,
+                          "Errors are parts of <i>F</i><sub>max</sub>, the largest force of the "
+                          "mean measured curve (eqs. 18 and 19); that of the validation is given. "
+                          "Scatter explains: share of the validation's mean square error.");
+    if (campaign->calibration_limit > 0.0)
+        length += snprintf(caption + length, sizeof caption - (size_t)length,
+                           " Limit of the calibration: %.4g.", campaign->calibration_limit);
+    if (campaign->validation_limit > 0.0)
+        length += snprintf(caption + length, sizeof caption - (size_t)length,
+                           " Limit of the validation: %.4g.", campaign->validation_limit);
+    if (campaign->reference_rms[1] > 0.0)
+        snprintf(caption + length, sizeof caption - (size_t)length,
+                 " Published RMS of validations: %.4g to %.4g (%s).", campaign->reference_rms[0],
+                 campaign->reference_rms[1],
+                 wb_pages_escape(source, sizeof source, campaign->reference_source));
+    wb_document_heading(document, 2, "merits", "How well the model fits");
+    struct wb_document_table *const table = wb_document_table(document, caption, 8, columns);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_results_wire *const wire = &results->wires[i];
+        const bool validated = wire->validation_state == WB_RESULTS_DONE;
+        const struct wb_validate_result *const v = &wire->validation;
+        struct wb_pages_row row = {.n = 0};
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, wire->wanted->label);
+        put_rms(&row, wire->calibration_state == WB_RESULTS_DONE, wire->calibration.rms,
+                campaign->calibration_limit);
+        if (wire->validation_state == WB_RESULTS_NOT_WANTED)
+            wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
+        else
+            put_rms(&row, validated, v->elastoplastic.rms, campaign->validation_limit);
+        wb_pages_cell_number(&row, validated ? v->elastoplastic.max_error : (double)NAN, 4);
+        wb_pages_cell_number(&row, validated ? v->elastic.rms : (double)NAN, 4);
+        put_share(&row, wb_results_validation_share(wire));
+        wb_pages_cell_number(&row, validated ? v->shape_rms / WB_MM : (double)NAN, 2);
+        wb_pages_cell_number(&row, validated ? v->curve.max_force / WB_MN : (double)NAN, 1);
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+/* Warnings of alignments, at most a few here; each wire's pages list its own. */
+static int put_alignment_warnings(struct wb_document *document,
+                                  const struct wb_results_tests *tests, int shown)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_results_test *const test = &tests->items[i];
+        const struct wb_json *const warnings =
+            test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
+        for (size_t k = 0; k < wb_json_length(warnings); k++, shown++) {
+            const char *warning;
+            if (shown >= MOST_WARNINGS || !wb_json_text(wb_json_item(warnings, k), &warning))
+                continue;
+            char name[400], text[1000], item[1500];
+            snprintf(item, sizeof item, "%s: %s",
+                     wb_pages_escape(name, sizeof name, test->wanted->name),
+                     wb_pages_escape(text, sizeof text, warning));
+            wb_document_item(document, WB_TONE_PLAIN, item);
+        }
+    }
+    return shown;
+}
+
+static void put_warnings(struct wb_document *document, const struct wb_results *results)
+{
+    wb_document_heading(document, 2, "warnings", "Warnings");
+    int shown = 0;
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_results_wire *const wire = &results->wires[i];
+        shown = put_alignment_warnings(document, &wire->calibration_tests, shown);
+        shown = put_alignment_warnings(document, &wire->validation_tests, shown);
+    }
+    if (shown == 0)
+        wb_document_item(document, WB_TONE_QUIET, "None from the alignment of the recordings.");
+    if (shown > MOST_WARNINGS) {
+        char text[120];
+        snprintf(text, sizeof text, "%d more on the pages of the wires.", shown - MOST_WARNINGS);
+        wb_document_item(document, WB_TONE_PLAIN, text);
+    }
+}
+
+void wb_pages_summary(struct wb_document *document, const struct wb_results *results)
+{
+    wb_document_heading(document, 1, "summary", "Summary");
+    put_origin(document, results);
+    put_limits(document, results);
+    put_missing(document, results);
+    put_properties(document, results);
+    put_merits(document, results);
+    put_warnings(document, results);
+}
