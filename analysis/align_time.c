@@ -1,0 +1,320 @@
+/* Everything on the bench's clock: seconds since the first cycle began, host time times the rig's
+ * time scale. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/align_private.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "align"
+
+/* A device clock that jumps by more than this, s of host time, was restarted. */
+#define JUMP 0.5
+/* Stamps over less than this, s of device time, do not tell a skew. */
+#define LEAST_SPAN 5.0
+
+static double bench_time(const struct wb_align *align, int64_t host_ns)
+{
+    return wb_seconds_from_ns(host_ns - align->zero_ns) * align->rig.time_scale;
+}
+
+/* --- the cameras --- */
+
+struct stamps {
+    double *device;
+    int64_t *host_ns;
+    size_t n;
+    bool on_probe_clock;
+};
+
+/* Which of a frame's stamps serves: that on the probes' clock if there are probes, else the
+ * capture stamp. */
+static double stamp_of(const struct wb_point_frame *frame, bool on_probe_clock)
+{
+    return on_probe_clock ? frame->t_clock : frame->t_device;
+}
+
+static bool choose_stamp(const struct wb_align *align, bool *on_probe_clock)
+{
+    size_t n_clock = 0, n_device = 0;
+    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+        n_clock += isfinite(align->cloud.frames[i].t_clock);
+        n_device += isfinite(align->cloud.frames[i].t_device);
+    }
+    *on_probe_clock = align->probes.n > 0 && 2 * n_clock > align->cloud.n_frames;
+    return *on_probe_clock || 2 * n_device > align->cloud.n_frames;
+}
+
+/* Keeps the frames that have a stamp and come after all before: repeated frames and datagrams that
+ * were overtaken go. A jump back by more than JUMP is a restart and stays. */
+static size_t drop_disordered(struct wb_align *align, bool on_probe_clock)
+{
+    struct wb_point_frame *const frames = align->cloud.frames;
+    const double back = JUMP * align->rig.time_scale;
+    double last = -HUGE_VAL;
+    size_t n = 0;
+    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+        const double stamp = stamp_of(&frames[i], on_probe_clock);
+        if (!isfinite(stamp) || (stamp <= last && stamp > last - back))
+            continue;
+        last = stamp;
+        frames[n++] = frames[i];
+    }
+    const size_t dropped = align->cloud.n_frames - n;
+    align->cloud.n_frames = n;
+    return dropped;
+}
+
+static void use_arrivals(struct wb_align *align)
+{
+    const struct wb_point_frame *const frames = align->cloud.frames;
+    for (size_t i = 0; i < align->cloud.n_frames; i++)
+        align->frame_t[i] = bench_time(align, frames[i].t_ns);
+    align->method = "arrival";
+    align->camera_uncertainty = (double)NAN;
+    wb_align_warn(align, "frames carry no stamp of the server: their arrival times are used, with "
+                         "the network's jitter");
+}
+
+/* Line for the frames first..last-1: through the probes of that time where there are some. */
+static enum wb_status fit_segment(struct wb_align *align, const struct stamps *stamps, size_t first,
+                                  size_t last, struct wb_clock_line *line)
+{
+    const double nominal = 1.0 / align->rig.time_scale;
+    enum wb_status status = WB_ERR_DATA;
+    if (stamps->on_probe_clock) {
+        /* Probes answered by the same run of the server: between these stamps, with a margin. */
+        const struct wb_clock_probe *const all = align->probes.items;
+        struct wb_clock_probe *const used = malloc((align->probes.n + 1) * sizeof *used);
+        size_t n = 0;
+        const double margin = 10.0 * align->rig.time_scale;
+        if (!used)
+            return wb_fail(WB_ERR_MEMORY, "out of memory for %zu probes", align->probes.n);
+        for (size_t i = 0; i < align->probes.n; i++) {
+            if (all[i].t_device >= stamps->device[first] - margin &&
+                all[i].t_device <= stamps->device[last - 1] + margin)
+                used[n++] = all[i];
+        }
+        status = wb_clock_fit_probes(line, used, n, nominal);
+        free(used);
+        if (status == WB_OK || status == WB_ERR_MEMORY)
+            return status;
+    }
+    return wb_clock_fit_envelope(line, stamps->device + first, stamps->host_ns + first,
+                                 last - first, nominal, LEAST_SPAN);
+}
+
+static void describe_segment(struct wb_align *align, struct wb_json *list, size_t n_frames,
+                             const struct wb_clock_line *line)
+{
+    const bool probed = isfinite(line->uncertainty);
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "method", probed ? "echo probes" : "lower envelope");
+    wb_json_set_integer(entry, "frames", (int64_t)n_frames);
+    wb_json_set_integer(entry, "points", (int64_t)line->n_points);
+    wb_json_set_integer(entry, "points_used", (int64_t)line->n_used);
+    wb_align_set(entry, "skew_ppm", (line->slope * align->rig.time_scale - 1.0) / WB_PPM);
+    wb_align_set(entry, "skew_uncertainty_ppm",
+                 line->slope_uncertainty * align->rig.time_scale / WB_PPM);
+    wb_align_set(entry, "scatter_ms", line->scatter * 1e3);
+    wb_align_set(entry, "uncertainty_ms", line->uncertainty * 1e3);
+    if (!probed)
+        wb_json_set_text(entry, "note",
+                         "the shortest latency of the network is an unknown constant in it");
+}
+
+static enum wb_status map_segments(struct wb_align *align, const struct stamps *stamps)
+{
+    size_t starts[WB_ALIGN_MAX_SEGMENTS];
+    const size_t n_segments =
+        wb_clock_split(stamps->device, stamps->host_ns, stamps->n, 1.0 / align->rig.time_scale,
+                       JUMP, starts, WB_ALIGN_MAX_SEGMENTS);
+    struct wb_json *const list = wb_json_set_array(align->checks, "camera_clock");
+    align->camera_uncertainty = 0.0;
+    align->method = stamps->on_probe_clock ? "echo probes" : "lower envelope";
+    for (size_t i = 0; i < n_segments; i++) {
+        const size_t first = starts[i], last = i + 1 < n_segments ? starts[i + 1] : stamps->n;
+        struct wb_clock_line line;
+        WB_TRY(fit_segment(align, stamps, first, last, &line));
+        for (size_t k = first; k < last; k++)
+            align->frame_t[k] = bench_time(align, wb_clock_line_host_ns(&line, stamps->device[k]));
+        describe_segment(align, list, last - first, &line);
+        const double uncertainty = line.uncertainty * align->rig.time_scale;
+        if (!(uncertainty <= align->camera_uncertainty))
+            align->camera_uncertainty = uncertainty;
+    }
+    if (n_segments > 1)
+        wb_align_warn(align,
+                      "the motion-capture server's clock broke %zu times (restarted, or a "
+                      "gap): each stretch was mapped by itself",
+                      n_segments - 1);
+    return WB_OK;
+}
+
+/* Times must ascend over all segments. */
+static void drop_backward(struct wb_align *align)
+{
+    struct wb_point_frame *const frames = align->cloud.frames;
+    size_t n = 0;
+    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+        if (n > 0 && !(align->frame_t[i] > align->frame_t[n - 1]))
+            continue;
+        align->frame_t[n] = align->frame_t[i];
+        frames[n++] = frames[i];
+    }
+    align->cloud.n_frames = n;
+}
+
+static enum wb_status map_cameras(struct wb_align *align)
+{
+    bool on_probe_clock;
+    const bool has_stamps = choose_stamp(align, &on_probe_clock);
+    size_t n_dropped = 0;
+    if (has_stamps)
+        n_dropped = drop_disordered(align, on_probe_clock);
+    const size_t n = align->cloud.n_frames;
+    struct stamps stamps = {
+        .device = malloc((n + 1) * sizeof *stamps.device),
+        .host_ns = malloc((n + 1) * sizeof *stamps.host_ns),
+        .n = n,
+        .on_probe_clock = on_probe_clock,
+    };
+    align->frame_t = malloc((n + 1) * sizeof *align->frame_t);
+    enum wb_status status = WB_OK;
+    if (!stamps.device || !stamps.host_ns || !align->frame_t) {
+        status = wb_fail(WB_ERR_MEMORY, "out of memory for %zu frames", n);
+    } else if (!has_stamps) {
+        use_arrivals(align);
+    } else {
+        for (size_t i = 0; i < n; i++) {
+            stamps.device[i] = stamp_of(&align->cloud.frames[i], on_probe_clock);
+            stamps.host_ns[i] = align->cloud.frames[i].t_ns;
+        }
+        status = map_segments(align, &stamps);
+    }
+    free(stamps.device);
+    free(stamps.host_ns);
+    if (status == WB_OK)
+        drop_backward(align);
+    wb_json_set_integer(align->checks, "disordered_frames",
+                        (int64_t)(n_dropped + n - align->cloud.n_frames));
+    return status;
+}
+
+/* --- the load cell --- */
+
+/* Readings that were asked for one by one keep their arrival; a stream's arrivals are put on a
+ * line over the readings' number, which takes out the host's jitter. */
+static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, double *number)
+{
+    struct wb_align_reading *const readings = wb_align_readings(align);
+    const size_t n = align->readings.n;
+    size_t starts[WB_ALIGN_MAX_SEGMENTS];
+    for (size_t i = 0; i < n; i++) {
+        host_ns[i] = readings[i].t_ns;
+        number[i] = (double)i;
+    }
+    const size_t n_segments = wb_clock_split_readings(host_ns, n, starts, WB_ALIGN_MAX_SEGMENTS);
+    double scatter = 0.0;
+    for (size_t i = 0; i < n_segments; i++) {
+        const size_t first = starts[i], last = i + 1 < n_segments ? starts[i + 1] : n;
+        const double mean_period =
+            wb_seconds_from_ns(host_ns[n - 1] - host_ns[0]) / (n > 1 ? (double)(n - 1) : 1.0);
+        struct wb_clock_line line;
+        WB_TRY(wb_clock_fit_envelope(&line, number + first, host_ns + first, last - first,
+                                     mean_period, 32.0));
+        for (size_t k = first; k < last; k++)
+            readings[k].t = bench_time(align, wb_clock_line_host_ns(&line, number[k]));
+        scatter = fmax(scatter, line.scatter);
+    }
+    align->load_scatter = scatter * align->rig.time_scale;
+    struct wb_json *const object = wb_json_set_object(align->checks, "load_cell_stream");
+    wb_json_set_integer(object, "readings", (int64_t)n);
+    wb_json_set_integer(object, "invalid_readings", (int64_t)align->n_invalid);
+    wb_json_set_integer(object, "segments", (int64_t)n_segments);
+    if (n > 1 && host_ns[n - 1] > host_ns[0])
+        wb_align_set(object, "rate_per_s",
+                     (double)(n - 1) /
+                         (wb_seconds_from_ns(host_ns[n - 1] - host_ns[0]) * align->rig.time_scale));
+    wb_align_set(object, "arrival_scatter_ms", align->load_scatter * 1e3);
+    return WB_OK;
+}
+
+static void drop_invalid_readings(struct wb_align *align)
+{
+    struct wb_align_reading *const readings = wb_align_readings(align);
+    size_t n = 0;
+    for (size_t i = 0; i < align->readings.n; i++) {
+        if (!isfinite(readings[i].force) || (n > 0 && readings[i].t < readings[n - 1].t))
+            continue;
+        readings[n++] = readings[i];
+    }
+    align->readings.n = n;
+}
+
+static enum wb_status map_load(struct wb_align *align)
+{
+    struct wb_align_reading *const readings = wb_align_readings(align);
+    const size_t n = align->readings.n;
+    if (align->rig.load_cell.poll_command[0]) {
+        for (size_t i = 0; i < n; i++)
+            readings[i].t = bench_time(align, readings[i].t_ns);
+    } else {
+        int64_t *const host_ns = malloc((n + 1) * sizeof *host_ns);
+        double *const number = malloc((n + 1) * sizeof *number);
+        enum wb_status status = WB_ERR_MEMORY;
+        if (host_ns && number)
+            status = map_stream(align, host_ns, number);
+        free(host_ns);
+        free(number);
+        if (status != WB_OK)
+            return wb_fail(status, "%s: the load cell's readings cannot be put on a clock",
+                           align->name);
+    }
+    align->filter_delay = align->rig.load_cell.filter_delay;
+    align->filter_delay_uncertainty = align->rig.load_cell.filter_delay_uncertainty;
+    for (size_t i = 0; i < n; i++)
+        readings[i].t -= align->filter_delay;
+    drop_invalid_readings(align);
+    if (align->readings.n == 0)
+        return wb_fail(WB_ERR_DATA, "%s: no valid reading of the load cell in it", align->name);
+    return WB_OK;
+}
+
+/* --- all --- */
+
+static void map_stage(struct wb_align *align)
+{
+    struct wb_align_report_point *const reports = wb_align_reports(align);
+    for (size_t i = 0; i < align->reports.n; i++)
+        reports[i].t = bench_time(align, reports[i].t_ns);
+}
+
+enum wb_status wb_align_times(struct wb_align *align)
+{
+    /* Without events the test starts where both streams are there. */
+    const int64_t load_ns = wb_align_readings(align)[0].t_ns;
+    const int64_t mocap_ns = align->cloud.frames[0].t_ns;
+    align->zero_ns = load_ns > mocap_ns ? load_ns : mocap_ns;
+    if (align->has_start)
+        align->zero_ns = align->start_ns;
+    else if (align->tare_ns > align->zero_ns)
+        align->zero_ns = align->tare_ns;
+    WB_TRY(map_cameras(align));
+    WB_TRY(map_load(align));
+    map_stage(align);
+    if (align->cloud.n_frames == 0)
+        return wb_fail(WB_ERR_DATA, "%s: no frame of motion capture with a time", align->name);
+    const struct wb_align_correction correction = {
+        .name = "filter delay",
+        .unit = "ms",
+        .factor = 1e-3,
+        .value = align->filter_delay,
+        .uncertainty = align->filter_delay_uncertainty,
+    };
+    wb_align_correct(align, &correction,
+                     "the load cell's stamps were moved back by its filter's delay, from the rig "
+                     "file; the time its line takes on the port is not known apart from it");
+    return WB_OK;
+}
