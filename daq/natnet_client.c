@@ -101,7 +101,8 @@ static void check_group(const struct natnet_state *state, int64_t t_ns, const st
     snprintf(group, sizeof group, "%u.%u.%u.%u:%u", server->group[0], server->group[1],
              server->group[2], server->group[3], server->data_port);
     if (!server->multicast) {
-        if (listed)
+        /* A group of 255.255.255.255 listens to broadcasts, of which server info says nothing. */
+        if (listed && strncmp(listed, ",group=255.", 11) != 0)
             remark(sink, WB_LOG_WARNING, t_ns, "group",
                    "the server streams unicast: the group in mocap.address will stay silent");
         return;

@@ -165,6 +165,7 @@ static void group_of_the_server_is_compared_with_the_rig(void **state)
         {"udp:10.0.0.2:1510,group=239.255.42.99:15110", "not the one", true},
         {"udp:10.0.0.2:1510,group=224.0.0.1:1001", "not the one", true},
         {"udp:10.0.0.2:1510,group=239.255.42.99:1511", "unicast", false},
+        {"udp:10.0.0.2:1510,group=255.255.255.255:1511", "", false},
         {"memory:", "", true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
