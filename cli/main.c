@@ -16,9 +16,11 @@ struct command {
 };
 
 static const struct command commands[] = {
+    {"align", wb_cmd_align, "recordings to datasets"},
     {"calibrate", wb_cmd_calibrate, "datasets to properties: E, sigma_Y, K, n"},
     {"export", wb_cmd_export, "a recording's samples as CSV"},
     {"info", wb_cmd_info, "what a recording holds"},
+    {"quicklook", wb_cmd_quicklook, "one recording's curve as figure and CSV"},
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},
     {"stage", wb_cmd_stage, "home, jog, unlock, free a specimen, check the load cell"},
     {"replay", wb_cmd_replay, "the bench from a recording"},

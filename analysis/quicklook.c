@@ -1,0 +1,311 @@
+#include "analysis/quicklook.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/plot/figure.h"
+#include "base/file.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "quicklook"
+
+#define WIDTH 460.0 /* points */
+#define HEIGHT 300.0
+#define PNG_SCALE 2.5
+/* So many shapes at the most are drawn, evenly over the first loading. */
+#define MOST_SHAPES 8
+
+/* --- summary --- */
+
+static const char *text_or(const struct wb_json *object, const char *key, const char *otherwise)
+{
+    const char *text;
+    return wb_json_get_text(object, key, &text) ? text : otherwise;
+}
+
+static const char *source_of(const struct wb_dataset *dataset)
+{
+    if (dataset->info.is_simulation)
+        return "simulated";
+    return dataset->info.is_virtual ? "measured on a virtual rig" : "measured";
+}
+
+static void append_range(const struct wb_dataset *dataset, struct wb_text *text)
+{
+    double largest = -HUGE_VAL, force = -HUGE_VAL, tension = -HUGE_VAL;
+    int cycles = 0;
+    size_t n_slack = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        largest = fmax(largest, row->deflection);
+        force = fmax(force, row->force);
+        tension = fmax(tension, row->tension);
+        cycles = row->cycle > cycles ? row->cycle : cycles;
+        n_slack += row->phase == WB_PHASE_SLACK;
+    }
+    if (dataset->n_rows == 0)
+        return;
+    wb_text_append(text, "cycles              %d\n", cycles);
+    wb_text_append(text, "rows                %zu over %.1f s, %zu of them slack\n",
+                   dataset->n_rows, dataset->rows[dataset->n_rows - 1].t, n_slack);
+    wb_text_append(text, "largest deflection  %.2f mm\n", largest / WB_MM);
+    wb_text_append(text, "largest force       %.2f mN (tension %.2f mN)\n", force / WB_MN,
+                   tension / WB_MN);
+}
+
+static void append_corrections(const struct wb_json *document, struct wb_text *text)
+{
+    static const char *const units[] = {"ms", "mN", "mm"};
+    const struct wb_json *const list = wb_json_get(document, "corrections");
+    if (wb_json_length(list) > 0)
+        wb_text_append(text, "\ncorrections\n");
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const struct wb_json *const entry = wb_json_item(list, i);
+        wb_text_append(text, "  %-26s", text_or(entry, "name", "?"));
+        for (size_t k = 0; k < sizeof units / sizeof units[0]; k++) {
+            char key[32];
+            double value, uncertainty;
+            snprintf(key, sizeof key, "value_%s", units[k]);
+            if (!wb_json_get_number(entry, key, &value))
+                continue;
+            wb_text_append(text, "%.4g", value);
+            snprintf(key, sizeof key, "uncertainty_%s", units[k]);
+            if (wb_json_get_number(entry, key, &uncertainty))
+                wb_text_append(text, " +- %.2g", uncertainty);
+            wb_text_append(text, " %s", units[k]);
+        }
+        wb_text_append(text, "\n");
+    }
+}
+
+static void append_warnings(const struct wb_json *document, struct wb_text *text)
+{
+    const struct wb_json *const list = wb_json_get(document, "warnings");
+    const char *warning;
+    wb_text_append(text, wb_json_length(list) > 0 ? "\nwarnings\n" : "\nno warnings\n");
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        if (wb_json_text(wb_json_item(list, i), &warning))
+            wb_text_append(text, "  - %s\n", warning);
+    }
+}
+
+enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_text *text)
+{
+    const struct wb_test_info *const info = &dataset->info;
+    const struct wb_json *const document = dataset->document;
+    wb_text_append(text, "%s (%s)\n\n", text_or(document, "name", "dataset"), source_of(dataset));
+    wb_text_append(text, "wire                %s, sample %d, %g mm free length\n", info->wire,
+                   info->sample, info->length / WB_MM);
+    append_range(dataset, text);
+    const struct wb_json *const natural =
+        wb_json_get(wb_json_get(document, "checks"), "natural_shape");
+    double bow, bow_uncertainty;
+    if (wb_json_get_number(natural, "bow_mm", &bow) &&
+        wb_json_get_number(natural, "bow_uncertainty_mm", &bow_uncertainty))
+        wb_text_append(text, "bow                 %.2f +- %.2f mm\n", bow, bow_uncertainty);
+    append_corrections(document, text);
+    append_warnings(document, text);
+    if (text->failed)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for a summary");
+    return WB_OK;
+}
+
+/* --- the curve --- */
+
+/* Columns of one line: a NaN breaks it where rows are slack or left out. */
+struct line {
+    size_t n;
+    double *x, *y; /* one allocation, owned by x */
+};
+
+static enum wb_status allocate_line(struct line *line, size_t most)
+{
+    line->n = 0;
+    line->x = malloc((2 * most + 2) * sizeof *line->x);
+    line->y = line->x ? line->x + most + 1 : NULL;
+    return line->x ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for a figure");
+}
+
+static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, int cycle,
+                      int n_cycles, enum wb_phase phase, struct line *line)
+{
+    const struct wb_figure_style style = {
+        .colour = wb_palette_sequence(cycle - 1, n_cycles),
+        .width = 1.2,
+        .dash = phase == WB_PHASE_LOAD ? WB_DASH_SOLID : WB_DASH_DASHED,
+    };
+    char label[64];
+    size_t n_shown = 0;
+    line->n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        const bool shown = row->cycle == cycle && row->phase == phase;
+        if (!shown && (line->n == 0 || isnan(line->x[line->n - 1])))
+            continue;
+        line->x[line->n] = shown ? row->deflection / WB_MM : (double)NAN;
+        line->y[line->n++] = shown ? row->force / WB_MN : (double)NAN;
+        n_shown += shown;
+    }
+    snprintf(label, sizeof label, "cycle %d, %sing", cycle, wb_phase_name(phase));
+    if (n_shown > 1)
+        wb_figure_add_line(panel, label, line->n, line->x, line->y, &style);
+}
+
+static void set_origin(struct wb_figure *figure, const struct wb_dataset *dataset)
+{
+    struct wb_text footer = {0};
+    wb_text_append_escaped(&footer, text_or(dataset->document, "name", ""));
+    wb_text_append(&footer, ", %s", source_of(dataset));
+    wb_figure_set_footer(figure, wb_text_string(&footer));
+    wb_text_release(&footer);
+}
+
+static void set_title(struct wb_panel *panel, const struct wb_dataset *dataset)
+{
+    struct wb_text title = {0};
+    wb_text_append_escaped(&title, dataset->info.wire);
+    wb_text_append(&title, ", <i>L</i> = %g mm, sample %d", dataset->info.length / WB_MM,
+                   dataset->info.sample);
+    wb_figure_set_title(panel, wb_text_string(&title));
+    wb_text_release(&title);
+}
+
+static enum wb_status draw_curve(struct wb_figure **out, const struct wb_dataset *dataset)
+{
+    struct line line;
+    int n_cycles = 1;
+    for (size_t i = 0; i < dataset->n_rows; i++)
+        n_cycles = dataset->rows[i].cycle > n_cycles ? dataset->rows[i].cycle : n_cycles;
+    WB_TRY(allocate_line(&line, dataset->n_rows));
+    const enum wb_status status = wb_figure_create(out, "force-deflection", WIDTH, HEIGHT);
+    if (status == WB_OK) {
+        struct wb_panel *const panel = wb_figure_add_panel(*out);
+        wb_figure_set_axes(panel, "Deflection (mm)", "Force (mN)");
+        set_title(panel, dataset);
+        for (int cycle = 1; cycle <= n_cycles; cycle++) {
+            add_curve(panel, dataset, cycle, n_cycles, WB_PHASE_LOAD, &line);
+            add_curve(panel, dataset, cycle, n_cycles, WB_PHASE_UNLOAD, &line);
+        }
+        set_origin(*out, dataset);
+    }
+    free(line.x);
+    return status;
+}
+
+/* --- the shapes --- */
+
+/* Largest deflection among the shapes of the way there: until it was first reached. */
+static double largest_shape(const struct wb_dataset *dataset, size_t *last)
+{
+    double largest = -HUGE_VAL;
+    *last = 0;
+    for (size_t i = 0; i < dataset->n_shape_rows; i++) {
+        if (dataset->shape_rows[i].deflection > largest) {
+            largest = dataset->shape_rows[i].deflection;
+            *last = i;
+        }
+    }
+    while (*last < dataset->n_shape_rows && dataset->shape_rows[*last].deflection == largest)
+        (*last)++;
+    return largest;
+}
+
+static enum wb_status draw_shapes(struct wb_figure **out, const struct wb_dataset *dataset)
+{
+    struct line line;
+    size_t last;
+    const double largest = largest_shape(dataset, &last);
+    WB_TRY(allocate_line(&line, dataset->n_shape_rows));
+    const enum wb_status status = wb_figure_create(out, "shapes", WIDTH, HEIGHT);
+    if (status == WB_OK) {
+        struct wb_panel *const panel = wb_figure_add_panel(*out);
+        wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
+        wb_figure_set_equal_aspect(panel);
+        set_title(panel, dataset);
+        int drawn = 0;
+        for (size_t i = 0; i < last && drawn < MOST_SHAPES;) {
+            const struct wb_shape_row *const first = &dataset->shape_rows[i];
+            for (line.n = 0; i < last && dataset->shape_rows[i].t == first->t; i++) {
+                line.x[line.n] = dataset->shape_rows[i].x / WB_MM;
+                line.y[line.n++] = dataset->shape_rows[i].y / WB_MM;
+            }
+            /* The first shape at or beyond each of equal steps of deflection. */
+            if (first->deflection < largest * drawn / (MOST_SHAPES - 1) - 0.25 * WB_MM)
+                continue;
+            const struct wb_figure_style style = {
+                .colour = wb_palette_sequence(drawn, MOST_SHAPES),
+                .width = 1.0,
+                .marker = WB_MARKER_CIRCLE,
+            };
+            char label[48];
+            snprintf(label, sizeof label, "%.1f mm", first->deflection / WB_MM);
+            wb_figure_add_line(panel, label, line.n, line.x, line.y, &style);
+            drawn++;
+        }
+        set_origin(*out, dataset);
+    }
+    free(line.x);
+    return status;
+}
+
+/* --- files --- */
+
+static enum wb_status write_figure(const struct wb_figure *figure, const char *folder,
+                                   const char *name, bool with_pdf)
+{
+    char file[64], path[WB_PATH];
+    snprintf(file, sizeof file, "%s.svg", name);
+    WB_TRY(wb_file_join(path, folder, file));
+    WB_TRY(wb_figure_write_svg(figure, path));
+    snprintf(file, sizeof file, "%s.png", name);
+    WB_TRY(wb_file_join(path, folder, file));
+    WB_TRY(wb_figure_write_png(figure, PNG_SCALE, path));
+    if (!with_pdf)
+        return WB_OK;
+    snprintf(file, sizeof file, "%s.pdf", name);
+    WB_TRY(wb_file_join(path, folder, file));
+    return wb_figure_write_pdf(figure, NULL, path);
+}
+
+static enum wb_status write_curve(const struct wb_dataset *dataset, const char *folder)
+{
+    struct wb_figure *figure = NULL;
+    enum wb_status status = draw_curve(&figure, dataset);
+    if (status == WB_OK)
+        status = write_figure(figure, folder, "force_deflection", true);
+    wb_figure_destroy(figure);
+    return status;
+}
+
+static enum wb_status write_shapes(const struct wb_dataset *dataset, const char *folder)
+{
+    struct wb_figure *figure = NULL;
+    enum wb_status status = draw_shapes(&figure, dataset);
+    if (status == WB_OK)
+        status = write_figure(figure, folder, "shapes", false);
+    wb_figure_destroy(figure);
+    return status;
+}
+
+static enum wb_status write_summary(const struct wb_dataset *dataset, const char *folder)
+{
+    struct wb_text text = {0};
+    char path[WB_PATH];
+    WB_TRY(wb_file_join(path, folder, "summary.txt"));
+    enum wb_status status = wb_quicklook_summary(dataset, &text);
+    if (status == WB_OK)
+        status = wb_file_write(path, wb_text_string(&text), text.length);
+    wb_text_release(&text);
+    return status;
+}
+
+enum wb_status wb_quicklook_write(const struct wb_dataset *dataset, const char *folder, bool force)
+{
+    WB_TRY(wb_dataset_write(dataset, folder, force));
+    WB_TRY(write_curve(dataset, folder));
+    if (dataset->n_shape_rows > 0)
+        WB_TRY(write_shapes(dataset, folder));
+    return write_summary(dataset, folder);
+}

@@ -1,0 +1,20 @@
+/* One dataset at a glance, without a campaign: a text summary and figures of the force-deflection
+ * curve and of the shapes. */
+#ifndef WB_ANALYSIS_QUICKLOOK_H
+#define WB_ANALYSIS_QUICKLOOK_H
+
+#include "analysis/dataset.h"
+#include "base/status.h"
+#include "base/text.h"
+
+/* Appends the summary: what was tested, how far, stiffness, corrections and warnings. */
+WB_MUST_CHECK enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset,
+                                                  struct wb_text *text);
+
+/* Writes the dataset's files and beside them force_deflection.svg, .png and .pdf, shapes.svg and
+ * .png (where there are shapes), and summary.txt. WB_ERR_EXISTS when the folder already holds
+ * anything, unless `force`. */
+WB_MUST_CHECK enum wb_status wb_quicklook_write(const struct wb_dataset *dataset,
+                                                const char *folder, bool force);
+
+#endif

@@ -1,0 +1,231 @@
+/* wirebench align: recordings to datasets. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/align.h"
+#include "analysis/quicklook.h"
+#include "base/file.h"
+#include "base/interrupt.h"
+#include "base/units.h"
+#include "cli/command.h"
+
+#define WB_LOG_DOMAIN "align"
+
+struct options {
+    const char **recordings; /* (n) borrowed texts, owned array */
+    size_t n;
+    const char *output;
+    struct wb_align_settings settings;
+    bool force, json;
+};
+
+enum {
+    KEY_FORCE = 1000,
+    KEY_JSON,
+    KEY_ROW_RATE,
+    KEY_LONGEST_GAP,
+    KEY_SHAPE_STEP,
+    KEY_LOST_STEPS
+};
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "DATASET", 0, "Folder to write; of several recordings, a folder in it for each",
+     0},
+    {"force", KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {"row-rate", KEY_ROW_RATE, "N", 0, "Rows per second of bench time (20)", 0},
+    {"longest-gap-s", KEY_LONGEST_GAP, "S", 0,
+     "Make no row where force or shape is missing for longer (0.1)", 0},
+    {"shape-step-mm", KEY_SHAPE_STEP, "H", 0, "Deflection between stored shapes (0.5)", 0},
+    {"lost-steps-mm", KEY_LOST_STEPS, "H", 0,
+     "Flag the stage when commanded and measured travel differ by more (0.3)", 0},
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static void add_recording(struct options *o, const char *path)
+{
+    const char **const recordings = realloc(o->recordings, (o->n + 1) * sizeof(char *));
+    if (!recordings) {
+        wb_error("out of memory");
+        exit(WB_EXIT_FAILED);
+    }
+    o->recordings = recordings;
+    o->recordings[o->n++] = path;
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+
+    switch (key) {
+    case 'o':
+        o->output = argument;
+        return 0;
+    case KEY_FORCE:
+        o->force = true;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
+        return 0;
+    case KEY_ROW_RATE:
+        o->settings.row_rate = wb_command_number(state, "--row-rate", argument, 0.1, 1e4);
+        return 0;
+    case KEY_LONGEST_GAP:
+        o->settings.longest_gap = wb_command_number(state, "--longest-gap-s", argument, 1e-3, 60.0);
+        return 0;
+    case KEY_SHAPE_STEP:
+        o->settings.shape_step =
+            WB_MM * wb_command_number(state, "--shape-step-mm", argument, 0.0, 1000.0);
+        return 0;
+    case KEY_LOST_STEPS:
+        o->settings.lost_steps =
+            WB_MM * wb_command_number(state, "--lost-steps-mm", argument, 0.01, 100.0);
+        return 0;
+    case ARGP_KEY_ARG:
+        add_recording(o, argument);
+        return 0;
+    case ARGP_KEY_END:
+        if (o->n == 0)
+            argp_error(state, "name at least one recording");
+        if (!o->output)
+            argp_error(state, "say where the dataset goes: -o DATASET");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "REC.wbr...",
+    .doc = "Turns recordings (.wbr or .wbr.zst) into datasets: clocks mapped, markers identified, "
+           "tare, drift, filter delay and marker offset corrected, the clamp at the origin, cycles "
+           "and phases cut, the natural shape fitted. Every correction and its size is in "
+           "dataset.json.\v"
+           "One recording becomes the dataset DATASET; of several, each becomes DATASET/NAME, NAME "
+           "being its file name without ending. Exit code 3: a dataset is usable but incomplete "
+           "(gaps, damaged or lost data, a test that was cut short).",
+};
+
+/* One recording's dataset and where it went. */
+struct result {
+    char folder[WB_PATH];
+    struct wb_dataset dataset;
+};
+
+/* File name without .wbr or .wbr.zst. */
+static void base_name(char name[WB_PATH], const char *path)
+{
+    snprintf(name, WB_PATH, "%s", wb_file_name(path));
+    static const char *const endings[] = {".zst", ".wbr"};
+    for (size_t i = 0; i < 2; i++) {
+        const size_t n = strlen(name), m = strlen(endings[i]);
+        if (n > m && strcmp(name + n - m, endings[i]) == 0)
+            name[n - m] = '\0';
+    }
+}
+
+static enum wb_status choose_folder(const struct options *o, struct result *results, size_t i)
+{
+    char name[WB_PATH];
+    if (o->n == 1) {
+        if (strlen(o->output) >= WB_PATH)
+            return wb_fail(WB_ERR_ARGUMENT, "the output path is too long");
+        strcpy(results[i].folder, o->output);
+        return WB_OK;
+    }
+    base_name(name, o->recordings[i]);
+    WB_TRY(wb_file_join(results[i].folder, o->output, name));
+    for (size_t k = 0; k < i; k++) {
+        if (strcmp(results[k].folder, results[i].folder) == 0)
+            return wb_fail(WB_ERR_ARGUMENT, "two recordings are named '%s': align them apart",
+                           name);
+    }
+    return WB_OK;
+}
+
+static enum wb_status run(const struct options *o, struct result *results, size_t *n_done)
+{
+    for (size_t i = 0; i < o->n; i++)
+        WB_TRY(choose_folder(o, results, i));
+    for (size_t i = 0; i < o->n && !wb_interrupted(); i++) {
+        struct result *const result = &results[i];
+        WB_TRY(wb_align_run(&result->dataset, o->recordings[i], &o->settings));
+        *n_done = i + 1;
+        WB_TRY(wb_dataset_write(&result->dataset, result->folder, o->force));
+    }
+    return WB_OK;
+}
+
+static bool is_complete(const struct wb_dataset *dataset)
+{
+    bool complete;
+    return wb_json_get_boolean(dataset->document, "complete", &complete) && complete;
+}
+
+static int print_json(const struct result *results, size_t n)
+{
+    static const char *const copied[] = {"recordings", "cycles",      "largest_deflection_mm",
+                                         "complete",   "corrections", "warnings"};
+    struct wb_json *const root = wb_json_create();
+    struct wb_json *const list = wb_json_set_array(root, "datasets");
+    for (size_t i = 0; i < n; i++) {
+        const struct wb_dataset *const dataset = &results[i].dataset;
+        struct wb_json *const entry = wb_json_append_object(list);
+        wb_json_set_text(entry, "folder", results[i].folder);
+        wb_json_set_text(entry, "wire", dataset->info.wire);
+        wb_json_set_integer(entry, "sample", dataset->info.sample);
+        wb_json_set_number(entry, "length_mm", dataset->info.length / WB_MM);
+        wb_json_set_boolean(entry, "virtual_rig", dataset->info.is_virtual);
+        wb_json_set_integer(entry, "rows", (int64_t)dataset->n_rows);
+        wb_json_set_number(entry, "bow_mm", wb_dataset_bow(&dataset->info) / WB_MM);
+        for (size_t k = 0; k < sizeof copied / sizeof copied[0]; k++)
+            wb_json_set_copy(entry, copied[k], wb_json_get(dataset->document, copied[k]));
+    }
+    return wb_command_print_json(root);
+}
+
+static int print_text(const struct result *results, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        struct wb_text text = {0};
+        const enum wb_status status = wb_quicklook_summary(&results[i].dataset, &text);
+        if (status == WB_OK)
+            printf("%s%s\nwritten to %s\n", i > 0 ? "\n" : "", wb_text_string(&text),
+                   results[i].folder);
+        wb_text_release(&text);
+        if (status != WB_OK)
+            return WB_EXIT_FAILED;
+    }
+    return WB_EXIT_OK;
+}
+
+int wb_cmd_align(int argc, char **argv)
+{
+    struct options options = {0};
+    wb_align_default_settings(&options.settings);
+    wb_command_parse(&argp, argc, argv, &options);
+    wb_interrupt_install();
+
+    size_t n_done = 0;
+    int code = WB_EXIT_FAILED;
+    struct result *const results = calloc(options.n, sizeof *results);
+    if (!results)
+        wb_error("out of memory");
+    else
+        code = wb_command_exit(run(&options, results, &n_done));
+    if (code == WB_EXIT_OK)
+        code = options.json ? print_json(results, n_done) : print_text(results, n_done);
+    for (size_t i = 0; i < n_done; i++) {
+        if (code == WB_EXIT_OK && !is_complete(&results[i].dataset))
+            code = WB_EXIT_INCOMPLETE;
+        wb_dataset_release(&results[i].dataset);
+    }
+    if (code == WB_EXIT_OK && n_done < options.n)
+        code = WB_EXIT_INCOMPLETE;
+    free(results);
+    free(options.recordings);
+    return code;
+}

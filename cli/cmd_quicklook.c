@@ -1,0 +1,92 @@
+/* wirebench quicklook: one recording's curve, without a campaign. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/align.h"
+#include "analysis/quicklook.h"
+#include "cli/command.h"
+
+#define WB_LOG_DOMAIN "quicklook"
+
+struct options {
+    const char *recording, *output;
+    bool force;
+};
+
+enum {
+    KEY_FORCE = 1000
+};
+
+static const struct argp_option option_table[] = {
+    {"output", 'o', "DIR", 0, "Folder to write", 0},
+    {"force", KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+
+    switch (key) {
+    case 'o':
+        o->output = argument;
+        return 0;
+    case KEY_FORCE:
+        o->force = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->recording)
+            argp_error(state, "one recording at a time, not also '%s'", argument);
+        o->recording = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->recording)
+            argp_error(state, "name a recording");
+        if (!o->output)
+            argp_error(state, "say where the figures go: -o DIR");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static const struct argp argp = {
+    .options = option_table,
+    .parser = parse,
+    .args_doc = "REC.wbr",
+    .doc = "Aligns one recording (.wbr or .wbr.zst) and writes its force-deflection curve and "
+           "shapes as figures (SVG, PNG, PDF) and CSV, with a summary that is also printed.\v"
+           "Exit code 3: usable but incomplete (gaps, damaged or lost data, a test that was cut "
+           "short).",
+};
+
+static int print_summary(const struct wb_dataset *dataset, const char *output)
+{
+    struct wb_text text = {0};
+    bool complete = false;
+    const enum wb_status status = wb_quicklook_summary(dataset, &text);
+    if (status == WB_OK)
+        printf("%s\nwritten to %s\n", wb_text_string(&text), output);
+    wb_text_release(&text);
+    if (status != WB_OK)
+        return WB_EXIT_FAILED;
+    return wb_json_get_boolean(dataset->document, "complete", &complete) && complete
+               ? WB_EXIT_OK
+               : WB_EXIT_INCOMPLETE;
+}
+
+int wb_cmd_quicklook(int argc, char **argv)
+{
+    struct options options = {0};
+    struct wb_align_settings settings;
+    struct wb_dataset dataset;
+    wb_command_parse(&argp, argc, argv, &options);
+
+    wb_align_default_settings(&settings);
+    if (wb_align_run(&dataset, options.recording, &settings) != WB_OK)
+        return WB_EXIT_FAILED;
+    const enum wb_status status = wb_quicklook_write(&dataset, options.output, options.force);
+    const int code = status == WB_OK ? print_summary(&dataset, options.output) : WB_EXIT_FAILED;
+    wb_dataset_release(&dataset);
+    return code;
+}
