@@ -1,0 +1,384 @@
+/* The simulated load cell, through the real drivers. */
+#include "fixtures/virtual/sim_cell.h"
+
+#include <stdlib.h>
+
+#include "daq/driver.h"
+#include "tests/virtual/setup.h"
+
+struct heard {
+    int n, overloads, unstable;
+    double last, sum, squares;
+    int remarks;
+};
+
+static void hear(void *context, const struct wb_load_sample *sample)
+{
+    struct heard *const heard = context;
+    heard->n++;
+    heard->overloads += sample->overload;
+    heard->unstable += sample->unstable;
+    if (sample->valid) {
+        heard->last = sample->force;
+        heard->sum += sample->force;
+        heard->squares += sample->force * sample->force;
+    }
+}
+
+static void hear_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
+                        const char *text)
+{
+    (void)t_ns;
+    (void)kind;
+    (void)text;
+    if (level < WB_LOG_INFO)
+        ((struct heard *)context)->remarks++;
+}
+
+/* A cell, the driver that listens to it, and a tension to weigh. */
+struct scene {
+    struct setup setup;
+    struct wb_sim_cell cell;
+    const struct wb_driver *driver;
+    void *state;
+    struct heard heard;
+    struct wb_sink sink;
+    uint64_t k;
+    int64_t now_ns;
+};
+
+static void pass_on(struct scene *scene)
+{
+    uint8_t bytes[WB_SIM_CELL_TX];
+    struct wb_outbox outbox;
+    wb_outbox_clear(&outbox);
+    scene->driver->tick(scene->state, scene->now_ns, &outbox);
+    wb_sim_cell_receive(&scene->cell, outbox.bytes, outbox.n_bytes);
+    const size_t n = wb_sim_cell_take(&scene->cell, bytes, sizeof bytes);
+    if (n > 0)
+        scene->driver->receive(scene->state, scene->now_ns, bytes, n, &scene->sink);
+}
+
+static void open_scene(struct scene *scene)
+{
+    struct wb_outbox outbox;
+    assert_int_equal(wb_sim_cell_init(&scene->cell, &scene->setup.truth, &scene->setup.rig), WB_OK);
+    scene->driver = wb_driver_find(WB_ROLE_LOAD, scene->setup.rig.load_cell.protocol);
+    assert_non_null(scene->driver);
+    scene->state = calloc(1, scene->driver->state_size);
+    assert_non_null(scene->state);
+    assert_int_equal(scene->driver->init(scene->state, &scene->setup.rig), WB_OK);
+    scene->sink = (struct wb_sink){.context = &scene->heard, .load = hear, .remark = hear_remark};
+    wb_outbox_clear(&outbox);
+    scene->driver->start(scene->state, 0, &outbox);
+    wb_sim_cell_receive(&scene->cell, outbox.bytes, outbox.n_bytes);
+}
+
+static void make_scene(struct scene *scene)
+{
+    memset(scene, 0, sizeof *scene);
+    setup_bench(&scene->setup, "type1-L85-1", 6);
+}
+
+static void close_scene(struct scene *scene)
+{
+    free(scene->state);
+}
+
+/* The next reading, of `tension`. */
+static void weigh(struct scene *scene, double tension)
+{
+    const double t = wb_sim_cell_time(&scene->cell, scene->k);
+    scene->now_ns = wb_ns_from_seconds(t);
+    wb_sim_cell_read(&scene->cell, scene->k++, t, tension);
+    pass_on(scene);
+}
+
+static void constant_load_reads_offset_noise_and_drift(void **state)
+{
+    (void)state;
+    struct scene scene;
+    make_scene(&scene);
+    scene.setup.truth.cell_drift = 0.0;
+    open_scene(&scene);
+    const int n = 8000;
+    weigh(&scene, 0.1);
+    memset(&scene.heard, 0, sizeof scene.heard);
+    for (int i = 0; i < n; i++)
+        weigh(&scene, 0.1);
+    const double mg = WB_MG * WB_STANDARD_GRAVITY;
+    assert_int_equal(scene.heard.n, n);
+    assert_int_equal(scene.heard.remarks, 0);
+    const double mean = scene.heard.sum / n;
+    const double variance = scene.heard.squares / n - mean * mean;
+    assert_close(mean, 0.1 + scene.setup.truth.cell_offset, 5.0 * 10.0 * mg / sqrt(n));
+    assert_close(sqrt(variance), 10.0 * mg, 10.0 * mg * 5.0 / sqrt(2.0 * n));
+    /* Whole milligrams. */
+    const double in_mg = scene.heard.last / mg;
+    assert_close(in_mg, round(in_mg), 1e-6);
+    close_scene(&scene);
+}
+
+static void zero_drifts_by_two_milligrams_a_minute(void **state)
+{
+    (void)state;
+    struct scene scene;
+    make_scene(&scene);
+    open_scene(&scene);
+    const double mg = WB_MG * WB_STANDARD_GRAVITY;
+    double means[2];
+    for (int minute = 0; minute < 2; minute++) {
+        const int n = 2000;
+        memset(&scene.heard, 0, sizeof scene.heard);
+        while (scene.k < (uint64_t)(minute * 60 * 60 * 80))
+            wb_sim_cell_read(&scene.cell, scene.k, wb_sim_cell_time(&scene.cell, scene.k), 0.0),
+                scene.k++;
+        char dropped[WB_SIM_CELL_TX];
+        wb_sim_cell_take(&scene.cell, dropped, sizeof dropped);
+        for (int i = 0; i < n; i++)
+            weigh(&scene, 0.0);
+        means[minute] = scene.heard.sum / scene.heard.n;
+    }
+    const double hour = 60.0 * 80.0 / scene.setup.truth.cell_rate;
+    assert_close(fabs(means[1] - means[0]), 2.0 * mg * hour, 1.5 * mg);
+    close_scene(&scene);
+}
+
+static void the_filter_lags_fifty_milliseconds_behind_a_ramp(void **state)
+{
+    (void)state;
+    struct scene scene;
+    make_scene(&scene);
+    scene.setup.truth.cell_noise = 1e-12;
+    scene.setup.truth.cell_drift = scene.setup.truth.cell_offset = 0.0;
+    scene.setup.truth.cell_resolution = 1e-9;
+    scene.setup.truth.cell_filter = 0.05;
+    open_scene(&scene);
+    const double slope = 4e-3; /* N/s */
+    for (int i = 0; i < 400; i++)
+        weigh(&scene, slope * wb_sim_cell_time(&scene.cell, scene.k));
+    const double t = wb_sim_cell_time(&scene.cell, scene.k - 1);
+    assert_close(scene.cell.filtered, slope * (t - 0.05), 1e-9);
+    close_scene(&scene);
+}
+
+static void the_filter_answers_a_step_exponentially(void **state)
+{
+    (void)state;
+    struct scene scene;
+    make_scene(&scene);
+    open_scene(&scene);
+    weigh(&scene, 0.0);
+    weigh(&scene, 0.0);
+    const double dt = 1.0 / scene.setup.truth.cell_rate, tau = 0.05;
+    /* A step is a steep ramp over one reading, then constant. */
+    weigh(&scene, 0.1);
+    const double after = scene.cell.filtered;
+    assert_close(after, 0.1 * (1.0 - tau / dt * (1.0 - exp(-dt / tau))), 1e-12);
+    for (int i = 1; i <= 10; i++) {
+        weigh(&scene, 0.1);
+        assert_close(scene.cell.filtered, 0.1 + (after - 0.1) * exp(-i * dt / tau), 1e-12);
+    }
+    close_scene(&scene);
+}
+
+static void noise_belongs_to_the_reading_not_to_the_time(void **state)
+{
+    (void)state;
+    struct scene one, two;
+    make_scene(&one);
+    make_scene(&two);
+    two.setup.truth.cell_rate = 10.0;
+    one.setup.truth.cell_drift = two.setup.truth.cell_drift = 0.0;
+    open_scene(&one);
+    open_scene(&two);
+    for (int i = 0; i < 100; i++) {
+        weigh(&one, 0.05);
+        weigh(&two, 0.05);
+        assert_close(one.cell.reading, two.cell.reading, 0.0);
+    }
+    close_scene(&one);
+    close_scene(&two);
+}
+
+static void beyond_its_overload_it_says_so(void **state)
+{
+    (void)state;
+    static const char *const protocols[] = {"generic", "mt-sics"};
+    for (int i = 0; i < 2; i++) {
+        struct scene scene;
+        make_scene(&scene);
+        strcpy(scene.setup.rig.load_cell.protocol, protocols[i]);
+        open_scene(&scene);
+        const double capacity = scene.setup.rig.load_cell.capacity;
+        for (int k = 0; k < 100; k++)
+            weigh(&scene, 1.45 * capacity);
+        assert_int_equal(scene.heard.overloads, 0);
+        for (int k = 0; k < 100; k++)
+            weigh(&scene, 1.6 * capacity);
+        assert_true(scene.heard.overloads > 90);
+        for (int k = 0; k < 100; k++)
+            weigh(&scene, 0.0);
+        const int so_far = scene.heard.overloads;
+        weigh(&scene, 0.0);
+        assert_int_equal(scene.heard.overloads, so_far);
+        close_scene(&scene);
+    }
+}
+
+static void taring_zeroes_the_reading(void **state)
+{
+    (void)state;
+    static const char *const commands[] = {"T\r\n", "T\r\n"};
+    static const char *const protocols[] = {"generic", "mt-sics"};
+    for (int i = 0; i < 2; i++) {
+        struct scene scene;
+        make_scene(&scene);
+        scene.setup.truth.cell_drift = 0.0;
+        strcpy(scene.setup.rig.load_cell.protocol, protocols[i]);
+        open_scene(&scene);
+        for (int k = 0; k < 50; k++)
+            weigh(&scene, 0.08);
+        wb_sim_cell_receive(&scene.cell, commands[i], strlen(commands[i]));
+        memset(&scene.heard, 0, sizeof scene.heard);
+        for (int k = 0; k < 400; k++)
+            weigh(&scene, 0.08);
+        /* The tare has one reading's noise. */
+        assert_close(scene.heard.sum / scene.heard.n, 0.0, 5.0 * scene.setup.truth.cell_noise);
+        close_scene(&scene);
+    }
+}
+
+/* Whatever the rig file says the line looks like, the driver reads the force back. */
+static void all_line_settings_read_back(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *unit, *terminator;
+        char delimiter;
+        int column, sign;
+        bool comma;
+        double scale, offset;
+        const char *start, *poll;
+    } cases[] = {
+        {"g", "crlf", 0, 0, 1, false, 1.0, 0.0, "", ""},
+        {"", "crlf", 0, 0, 1, false, 1.0, 0.0, "", ""},
+        {"mN", "cr", 0, 0, -1, false, 1.0, 0.0, "", ""},
+        {"N", "lf", 0, 0, 1, false, 1.0, 0.0, "", ""},
+        {"lb", "any", 0, 0, 1, false, 1e-3, 0.0, "O0W0\r", ""},
+        {"g", "crlf", ';', 3, 1, true, 1.0, 0.0, "", ""},
+        {"g", "lf", ',', 2, -1, false, 0.02, -7.0, "", ""},
+        {"kg", "crlf", 0, 0, 1, false, 1.0, 0.0, "", "W\r"},
+        {"g", "idle", 0, 0, 1, false, 1.0, 0.0, "", ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct scene scene;
+        make_scene(&scene);
+        struct wb_rig_load_cell *const cell = &scene.setup.rig.load_cell;
+        strcpy(cell->unit, cases[i].unit);
+        strcpy(cell->terminator, cases[i].terminator);
+        cell->delimiter = cases[i].delimiter;
+        cell->column = cases[i].column;
+        cell->sign = cases[i].sign;
+        cell->decimal_comma = cases[i].comma;
+        cell->scale = cases[i].scale;
+        cell->offset = cases[i].offset;
+        strcpy(cell->start_command, cases[i].start);
+        strcpy(cell->poll_command, cases[i].poll);
+        cell->poll_period_ns = cases[i].poll[0] ? 20 * WB_NS_PER_MS : 0;
+        cell->idle_gap_ns = 5 * WB_NS_PER_MS;
+        scene.setup.truth.cell_drift = 0.0;
+        open_scene(&scene);
+        for (int k = 0; k < 200; k++)
+            weigh(&scene, 0.06);
+        const double mean = scene.heard.n > 0 ? scene.heard.sum / scene.heard.n : 0.0;
+        if (scene.heard.n < 100 || scene.heard.remarks > 0)
+            fail_msg("case %zu: %d readings, %d remarks", i, scene.heard.n, scene.heard.remarks);
+        assert_close(mean, 0.06 + scene.setup.truth.cell_offset, scene.setup.truth.cell_noise);
+        close_scene(&scene);
+    }
+}
+
+static void mtsics_says_dynamic_while_the_load_changes(void **state)
+{
+    (void)state;
+    struct scene scene;
+    make_scene(&scene);
+    strcpy(scene.setup.rig.load_cell.protocol, "mt-sics");
+    open_scene(&scene);
+    for (int k = 0; k < 50; k++)
+        weigh(&scene, 0.02);
+    assert_true(scene.heard.unstable <= 2);
+    for (int k = 0; k < 50; k++)
+        weigh(&scene, 0.02 + 0.003 * k);
+    assert_true(scene.heard.unstable > 40);
+    close_scene(&scene);
+}
+
+static void mtsics_answers_questions(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *question, *answer;
+    } cases[] = {
+        {"I4\r\n", "I4 A \"LC20G-0001\"\r\n"},
+        {"I3\r\n", "I3 A \"virtual rig\"\r\n"},
+        {"XYZ\r\n", "ES\r\n"},
+        {"Z\r\n", "Z A\r\n"},
+        {"I2\r\n", "I2 A \"virtual rig load cell 20.0000 g\"\r\n"},
+    };
+    struct scene scene;
+    make_scene(&scene);
+    strcpy(scene.setup.rig.load_cell.protocol, "mt-sics");
+    assert_int_equal(wb_sim_cell_init(&scene.cell, &scene.setup.truth, &scene.setup.rig), WB_OK);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[256];
+        wb_sim_cell_receive(&scene.cell, cases[i].question, strlen(cases[i].question));
+        text[wb_sim_cell_take(&scene.cell, text, sizeof text - 1)] = '\0';
+        assert_string_equal(text, cases[i].answer);
+    }
+    /* Not asked for a stream, it sends nothing by itself; asked once, it sends one. */
+    char text[256];
+    wb_sim_cell_read(&scene.cell, 0, 0.1, 0.05);
+    assert_int_equal(wb_sim_cell_take(&scene.cell, text, sizeof text), 0);
+    wb_sim_cell_receive(&scene.cell, "SI\r\n", 4);
+    assert_true(wb_sim_cell_take(&scene.cell, text, sizeof text) > 0);
+    wb_sim_cell_read(&scene.cell, 1, 0.2, 0.05);
+    assert_int_equal(wb_sim_cell_take(&scene.cell, text, sizeof text), 0);
+}
+
+static void an_unread_port_costs_lines_not_memory(void **state)
+{
+    (void)state;
+    struct scene scene;
+    char text[WB_SIM_CELL_TX + 1];
+    make_scene(&scene);
+    assert_int_equal(wb_sim_cell_init(&scene.cell, &scene.setup.truth, &scene.setup.rig), WB_OK);
+    for (uint64_t k = 0; k < 5000; k++)
+        wb_sim_cell_read(&scene.cell, k, wb_sim_cell_time(&scene.cell, k), 0.0);
+    const size_t n = wb_sim_cell_take(&scene.cell, text, sizeof text);
+    assert_true(n > WB_SIM_CELL_TX - 64 && n <= WB_SIM_CELL_TX);
+    char flood[1000];
+    memset(flood, 'x', sizeof flood);
+    wb_sim_cell_receive(&scene.cell, flood, sizeof flood);
+    wb_sim_cell_receive(&scene.cell, "T\r\n", 3);
+    assert_close(scene.cell.reading, 0.0, 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(constant_load_reads_offset_noise_and_drift),
+        cmocka_unit_test(zero_drifts_by_two_milligrams_a_minute),
+        cmocka_unit_test(the_filter_lags_fifty_milliseconds_behind_a_ramp),
+        cmocka_unit_test(the_filter_answers_a_step_exponentially),
+        cmocka_unit_test(noise_belongs_to_the_reading_not_to_the_time),
+        cmocka_unit_test(beyond_its_overload_it_says_so),
+        cmocka_unit_test(taring_zeroes_the_reading),
+        cmocka_unit_test(all_line_settings_read_back),
+        cmocka_unit_test(mtsics_says_dynamic_while_the_load_changes),
+        cmocka_unit_test(mtsics_answers_questions),
+        cmocka_unit_test(an_unread_port_costs_lines_not_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
