@@ -20,6 +20,13 @@ struct middle {
     double w[3], W1[9], W3[9];
 };
 
+/* Strains of a Gauss point. They are unknowns of their own, beside the positions that follow from
+ * them: taken from differences of positions, they would carry round-off of epsilon L over an
+ * element's length, and the axial stiffness would turn that into forces. */
+struct strain {
+    double eps, gamma;
+};
+
 struct wb_beam {
     int n_elements, n_nodes;
     double length, element_length;
@@ -30,6 +37,9 @@ struct wb_beam {
 
     /* Positions, (n_nodes) each; `earlier` is committed before `committed`. */
     struct wb_beam_node *reference, *trial, *committed, *earlier, *saved, *saved_earlier;
+    /* Strains that belong to them, (n_elements x POINTS) each. */
+    struct strain *trial_strain, *committed_strain, *earlier_strain, *saved_strain,
+        *saved_earlier_strain;
     double *history, *trial_history, *saved_history;
 
     struct wb_beam_point *points; /* (n_elements x POINTS) */
@@ -112,6 +122,11 @@ static bool take_memory(struct wb_beam *beam)
     beam->earlier = calloc(nodes, sizeof *beam->earlier);
     beam->saved = calloc(nodes, sizeof *beam->saved);
     beam->saved_earlier = calloc(nodes, sizeof *beam->saved_earlier);
+    beam->trial_strain = calloc(elements * POINTS, sizeof *beam->trial_strain);
+    beam->committed_strain = calloc(elements * POINTS, sizeof *beam->committed_strain);
+    beam->earlier_strain = calloc(elements * POINTS, sizeof *beam->earlier_strain);
+    beam->saved_strain = calloc(elements * POINTS, sizeof *beam->saved_strain);
+    beam->saved_earlier_strain = calloc(elements * POINTS, sizeof *beam->saved_earlier_strain);
     beam->history = calloc(beam->history_size, sizeof *beam->history);
     beam->trial_history = calloc(beam->history_size, sizeof *beam->trial_history);
     beam->saved_history = calloc(beam->history_size, sizeof *beam->saved_history);
@@ -123,9 +138,11 @@ static bool take_memory(struct wb_beam *beam)
     beam->banded.upper = calloc(elements, sizeof *beam->banded.upper);
     beam->banded.right = calloc(elements, sizeof *beam->banded.right);
     return beam->reference && beam->trial && beam->committed && beam->earlier && beam->saved &&
-           beam->saved_earlier && beam->history && beam->trial_history && beam->saved_history &&
-           beam->points && beam->residual && beam->middles && beam->banded.diagonal &&
-           beam->banded.upper && beam->banded.right;
+           beam->saved_earlier && beam->trial_strain && beam->committed_strain &&
+           beam->earlier_strain && beam->saved_strain && beam->saved_earlier_strain &&
+           beam->history && beam->trial_history && beam->saved_history && beam->points &&
+           beam->residual && beam->middles && beam->banded.diagonal && beam->banded.upper &&
+           beam->banded.right;
 }
 
 enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *model)
@@ -179,6 +196,11 @@ void wb_beam_destroy(struct wb_beam *beam)
     free(beam->earlier);
     free(beam->saved);
     free(beam->saved_earlier);
+    free(beam->trial_strain);
+    free(beam->committed_strain);
+    free(beam->earlier_strain);
+    free(beam->saved_strain);
+    free(beam->saved_earlier_strain);
     free(beam->history);
     free(beam->trial_history);
     free(beam->saved_history);
@@ -197,8 +219,17 @@ static void copy_nodes(const struct wb_beam *beam, struct wb_beam_node *to,
     memcpy(to, from, (size_t)beam->n_nodes * sizeof *to);
 }
 
+static void copy_strains(const struct wb_beam *beam, struct strain *to, const struct strain *from)
+{
+    memcpy(to, from, (size_t)(beam->n_elements * POINTS) * sizeof *to);
+}
+
 void wb_beam_reset(struct wb_beam *beam)
 {
+    const size_t points = (size_t)(beam->n_elements * POINTS);
+    memset(beam->trial_strain, 0, points * sizeof *beam->trial_strain);
+    memset(beam->committed_strain, 0, points * sizeof *beam->committed_strain);
+    memset(beam->earlier_strain, 0, points * sizeof *beam->earlier_strain);
     copy_nodes(beam, beam->trial, beam->reference);
     copy_nodes(beam, beam->committed, beam->reference);
     copy_nodes(beam, beam->earlier, beam->reference);
@@ -254,13 +285,15 @@ void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_b
             struct wb_beam_point *p = &beam->points[at];
             struct wb_fibres_response r;
 
-            wb_beam_element_kinematics(&beam->shape, g, beam->trial + 2 * e, p);
-            wb_fibres_respond(beam->fibres, p->a - p->reference_a, p->k - p->reference_k,
+            wb_beam_element_rotation(&beam->shape, g, beam->trial + 2 * e, p);
+            p->a = p->reference_a + beam->trial_strain[at].eps;
+            p->b = p->reference_b + beam->trial_strain[at].gamma;
+            wb_fibres_respond(beam->fibres, beam->trial_strain[at].eps, p->k - p->reference_k,
                               beam->history + (size_t)at * row,
                               beam->trial_history + (size_t)at * row, &r);
             p->N = r.N;
             p->M = r.M;
-            p->Q = p->G * (p->b - p->reference_b);
+            p->Q = p->G * beam->trial_strain[at].gamma;
             p->D11 = r.D11;
             p->D12 = r.D12;
             p->D22 = r.D22;
@@ -350,20 +383,24 @@ static inline void add_product(double *restrict v, double sign, const double *A,
         v[r] += sign * (A[3 * r] * b[0] + A[3 * r + 1] * b[1] + A[3 * r + 2] * b[2]);
 }
 
-/* Positions of an element's middle and last node from its first node, its rotations, and a, b at
- * the Gauss points: (x', y') = R(t) (a, b), and x' is linear within the element. */
-static void place_nodes(const struct wb_beam *beam, struct wb_beam_node *node, const double *a,
-                        const double *b)
+/* Positions of an element's middle and last node from its first node, its rotations and its
+ * strains: (x', y') = R(t) (a, b), and x' is linear within the element. */
+static void place_nodes(struct wb_beam *beam, int e)
 {
     const double h = beam->element_length;
+    struct wb_beam_node *node = beam->trial + 2 * e;
     double x_[POINTS], y_[POINTS];
 
     for (int g = 0; g < POINTS; g++) {
         const double *N = beam->shape.N[g];
         const double t = N[0] * node[0].t + N[1] * node[1].t + N[2] * node[2].t;
         const double c = cos(t), s = sin(t);
-        x_[g] = a[g] * c - b[g] * s;
-        y_[g] = a[g] * s + b[g] * c;
+        const double a =
+            beam->points[e * POINTS + g].reference_a + beam->trial_strain[e * POINTS + g].eps;
+        const double b =
+            beam->points[e * POINTS + g].reference_b + beam->trial_strain[e * POINTS + g].gamma;
+        x_[g] = a * c - b * s;
+        y_[g] = a * s + b * c;
     }
     const double mean_x = 0.5 * (x_[0] + x_[1]), mean_y = 0.5 * (y_[0] + y_[1]);
     const double slope_x = 0.5 * sqrt(3.0) * (x_[1] - x_[0]);
@@ -398,20 +435,20 @@ double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rota
         add_product(middle, -1.0, m->W1, first);
         add_product(middle, -1.0, m->W3, last);
 
-        double a[POINTS], b[POINTS];
         for (int g = 0; g < POINTS; g++) {
             const struct wb_beam_point *p = &beam->points[e * POINTS + g];
+            struct strain *strain = &beam->trial_strain[e * POINTS + g];
             const double *N = beam->shape.N[g], *dN = beam->shape.dN[g];
-            const double x_ = dN[0] * first[0] + dN[1] * middle[0] + dN[2] * last[0];
-            const double y_ = dN[0] * first[1] + dN[1] * middle[1] + dN[2] * last[1];
+            const double x_ = dN[0] * (first[0] - middle[0]) + dN[2] * (last[0] - middle[0]);
+            const double y_ = dN[0] * (first[1] - middle[1]) + dN[2] * (last[1] - middle[1]);
             const double t = N[0] * first[2] + N[1] * middle[2] + N[2] * last[2];
-            a[g] = p->a + scale * (p->cosine * x_ + p->sine * y_ + p->b * t);
-            b[g] = p->b + scale * (p->cosine * y_ - p->sine * x_ - p->a * t);
+            strain->eps += scale * (p->cosine * x_ + p->sine * y_ + p->b * t);
+            strain->gamma += scale * (p->cosine * y_ - p->sine * x_ - p->a * t);
         }
         struct wb_beam_node *node = beam->trial + 2 * e;
         node[1].t += scale * middle[2];
         node[2].t += scale * last[2];
-        place_nodes(beam, node, a, b);
+        place_nodes(beam, e);
     }
     return scale;
 }
@@ -419,36 +456,36 @@ double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rota
 void wb_beam_revert(struct wb_beam *beam)
 {
     copy_nodes(beam, beam->trial, beam->committed);
+    copy_strains(beam, beam->trial_strain, beam->committed_strain);
 }
 
 void wb_beam_extrapolate(struct wb_beam *beam, double ratio)
 {
-    for (int e = 0; e < beam->n_elements; e++) {
-        double a[POINTS], b[POINTS];
-        for (int g = 0; g < POINTS; g++) {
-            struct wb_beam_point now, was;
-            wb_beam_element_kinematics(&beam->shape, g, beam->committed + 2 * e, &now);
-            wb_beam_element_kinematics(&beam->shape, g, beam->earlier + 2 * e, &was);
-            a[g] = now.a + ratio * (now.a - was.a);
-            b[g] = now.b + ratio * (now.b - was.b);
-        }
-        struct wb_beam_node *node = beam->trial + 2 * e;
-        for (int i = 1; i < WB_BEAM_ELEMENT_NODES; i++) {
-            const double now = beam->committed[2 * e + i].t, was = beam->earlier[2 * e + i].t;
-            node[i].t = now + ratio * (now - was);
-        }
-        place_nodes(beam, node, a, b);
+    for (int i = 0; i < beam->n_elements * POINTS; i++) {
+        const struct strain now = beam->committed_strain[i], was = beam->earlier_strain[i];
+        beam->trial_strain[i].eps = now.eps + ratio * (now.eps - was.eps);
+        beam->trial_strain[i].gamma = now.gamma + ratio * (now.gamma - was.gamma);
     }
+    for (int i = 1; i < beam->n_nodes; i++) {
+        const double now = beam->committed[i].t, was = beam->earlier[i].t;
+        beam->trial[i].t = now + ratio * (now - was);
+    }
+    for (int e = 0; e < beam->n_elements; e++)
+        place_nodes(beam, e);
 }
 
 void wb_beam_commit(struct wb_beam *beam)
 {
     struct wb_beam_node *oldest = beam->earlier;
+    struct strain *oldest_strain = beam->earlier_strain;
     double *old = beam->history;
 
     beam->earlier = beam->committed;
     beam->committed = oldest;
     copy_nodes(beam, beam->committed, beam->trial);
+    beam->earlier_strain = beam->committed_strain;
+    beam->committed_strain = oldest_strain;
+    copy_strains(beam, beam->committed_strain, beam->trial_strain);
     beam->history = beam->trial_history;
     beam->trial_history = old;
 }
@@ -457,6 +494,8 @@ void wb_beam_save(struct wb_beam *beam)
 {
     copy_nodes(beam, beam->saved, beam->committed);
     copy_nodes(beam, beam->saved_earlier, beam->earlier);
+    copy_strains(beam, beam->saved_strain, beam->committed_strain);
+    copy_strains(beam, beam->saved_earlier_strain, beam->earlier_strain);
     memcpy(beam->saved_history, beam->history, beam->history_size * sizeof *beam->history);
 }
 
@@ -464,8 +503,10 @@ void wb_beam_restore(struct wb_beam *beam)
 {
     copy_nodes(beam, beam->committed, beam->saved);
     copy_nodes(beam, beam->earlier, beam->saved_earlier);
-    copy_nodes(beam, beam->trial, beam->saved);
+    copy_strains(beam, beam->committed_strain, beam->saved_strain);
+    copy_strains(beam, beam->earlier_strain, beam->saved_earlier_strain);
     memcpy(beam->history, beam->saved_history, beam->history_size * sizeof *beam->history);
+    wb_beam_revert(beam);
 }
 
 const struct wb_beam_node *wb_beam_tip(const struct wb_beam *beam)
@@ -485,9 +526,10 @@ double wb_beam_root_moment(const struct wb_beam *beam)
 
 double wb_beam_noise(const struct wb_beam *beam)
 {
-    /* Positions are rounded to about epsilon L; strains divide differences of them by half an
-     * element. */
-    return 8.0 * DBL_EPSILON * beam->n_elements * wb_fibres_axial_stiffness(beam->fibres);
+    /* Strains are about 1e-3 and rounded to epsilon of that; some dozen such errors add up. */
+    const double stiffness =
+        fmax(wb_fibres_axial_stiffness(beam->fibres), wb_fibres_shear_stiffness(beam->fibres));
+    return 3e-2 * DBL_EPSILON * stiffness;
 }
 
 double wb_beam_scale_force(const struct wb_beam *beam)

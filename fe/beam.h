@@ -75,7 +75,7 @@ const struct wb_beam_node *wb_beam_reference_tip(const struct wb_beam *beam);
 /* Moment that the clamp exerts, N m, of the state last evaluated; positive bends upwards. */
 double wb_beam_root_moment(const struct wb_beam *beam);
 
-/* Force below which residuals are round-off of the node positions, N. */
+/* Force below which residuals are round-off, N. */
 double wb_beam_noise(const struct wb_beam *beam);
 
 /* Bending stiffness of the virgin section over the square of the length: a force to scale by, N. */

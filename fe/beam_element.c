@@ -16,24 +16,29 @@ void wb_beam_element_shape_init(struct wb_beam_element_shape *shape, double h)
     }
 }
 
-void wb_beam_element_kinematics(const struct wb_beam_element_shape *shape, int g,
-                                const struct wb_beam_node *nodes, struct wb_beam_point *point)
+void wb_beam_element_rotation(const struct wb_beam_element_shape *shape, int g,
+                              const struct wb_beam_node *nodes, struct wb_beam_point *point)
 {
     const double *N = shape->N[g];
     const double d0 = shape->dN[g][0], d2 = shape->dN[g][2];
+    const double t = N[0] * nodes[0].t + N[1] * nodes[1].t + N[2] * nodes[2].t;
 
     /* The derivatives add to zero, so they may act on differences, which lose fewer digits. */
+    point->k = d0 * (nodes[0].t - nodes[1].t) + d2 * (nodes[2].t - nodes[1].t);
+    point->cosine = cos(t);
+    point->sine = sin(t);
+}
+
+void wb_beam_element_kinematics(const struct wb_beam_element_shape *shape, int g,
+                                const struct wb_beam_node *nodes, struct wb_beam_point *point)
+{
+    const double d0 = shape->dN[g][0], d2 = shape->dN[g][2];
+
+    wb_beam_element_rotation(shape, g, nodes, point);
     const double x_ = d0 * (nodes[0].x - nodes[1].x) + d2 * (nodes[2].x - nodes[1].x);
     const double y_ = d0 * (nodes[0].y - nodes[1].y) + d2 * (nodes[2].y - nodes[1].y);
-    const double t_ = d0 * (nodes[0].t - nodes[1].t) + d2 * (nodes[2].t - nodes[1].t);
-    const double t = N[0] * nodes[0].t + N[1] * nodes[1].t + N[2] * nodes[2].t;
-    const double c = cos(t), s = sin(t);
-
-    point->cosine = c;
-    point->sine = s;
-    point->a = x_ * c + y_ * s;
-    point->b = y_ * c - x_ * s;
-    point->k = t_;
+    point->a = x_ * point->cosine + y_ * point->sine;
+    point->b = y_ * point->cosine - x_ * point->sine;
 }
 
 /* d(eps) = (c, s, b, 0), d(gamma) = (-s, c, -a, 0), d(kappa) = (0, 0, 0, 1) over (x', y', t, t').

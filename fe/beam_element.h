@@ -47,7 +47,11 @@ struct wb_beam_element_stiffness {
 
 void wb_beam_element_shape_init(struct wb_beam_element_shape *shape, double h);
 
-/* Kinematics of Gauss point g: fills cosine, sine, a, b, k. */
+/* Rotation at Gauss point g: fills cosine, sine, k. */
+void wb_beam_element_rotation(const struct wb_beam_element_shape *shape, int g,
+                              const struct wb_beam_node *nodes, struct wb_beam_point *point);
+
+/* All kinematics of Gauss point g, from positions: fills cosine, sine, a, b, k. */
 void wb_beam_element_kinematics(const struct wb_beam_element_shape *shape, int g,
                                 const struct wb_beam_node *nodes, struct wb_beam_point *point);
 
