@@ -1,6 +1,7 @@
 #include "daq/acquisition.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <poll.h>
 #include <stdarg.h>
@@ -23,6 +24,9 @@
 /* Remarks of one stream that are stored or shown in one second: a port full of rubbish would
  * otherwise fill the disk with complaints. */
 #define REMARKS_A_SECOND 20
+/* Remarks of one kind are shown to the operator this often; the recording has them all. */
+#define SHOW_PERIOD_NS (10 * WB_NS_PER_S)
+#define SHOWN_KINDS 16
 
 struct line {
     struct wb_acquisition *owner;
@@ -39,7 +43,11 @@ struct line {
     bool has_rate;
     int64_t remark_second;
     unsigned remarks, remarks_held;
-    uint64_t reported_drops;
+    struct {
+        char kind[32];
+        int64_t t_ns;
+    } shown[SHOWN_KINDS];
+    uint64_t kernel_drops; /* noted so far */
 };
 
 struct wb_acquisition {
@@ -322,6 +330,31 @@ static bool remark_allowed(struct line *line, int64_t t_ns)
     return false;
 }
 
+/* Chatter is for the recording; what hints at trouble is for the operator too, but not over and
+ * over. */
+static void show_remark(struct line *line, enum wb_log_level level, int64_t t_ns, const char *kind,
+                        const char *text)
+{
+    if (level > WB_LOG_WARNING) {
+        wb_debug("%s: %s", wb_role_name(line->role), text);
+        return;
+    }
+    int oldest = 0;
+    for (int i = 0; i < SHOWN_KINDS; i++) {
+        if (strcmp(line->shown[i].kind, kind) == 0) {
+            if (t_ns - line->shown[i].t_ns < SHOW_PERIOD_NS)
+                return;
+            oldest = i;
+            break;
+        }
+        if (line->shown[i].t_ns < line->shown[oldest].t_ns)
+            oldest = i;
+    }
+    snprintf(line->shown[oldest].kind, sizeof line->shown[oldest].kind, "%s", kind);
+    line->shown[oldest].t_ns = t_ns;
+    wb_warn("%s: %s", wb_role_name(line->role), text);
+}
+
 static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
                       const char *text)
 {
@@ -331,12 +364,25 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
         snprintf(a->latest.stage_error, sizeof a->latest.stage_error, "%s", text);
     if (remark_allowed(line, t_ns)) {
         push_event(a, t_ns, kind, text);
-        /* Chatter is for the recording; what hints at trouble is for the operator too. */
-        wb_log(level == WB_LOG_ERROR ? WB_LOG_WARNING : level, wb_role_name(line->role), "%s",
-               text);
+        show_remark(line, level, t_ns, kind, text);
     }
     if (a->user.remark)
         a->user.remark(a->user.context, level, t_ns, kind, text);
+}
+
+/* Datagrams that the kernel threw away never reached us: the recording says so. */
+static void note_kernel_drops(struct line *line, int64_t t_ns)
+{
+    const uint64_t drops = wb_stream_kernel_drops(line->stream);
+    if (drops == line->kernel_drops)
+        return;
+    char text[120];
+    snprintf(text, sizeof text,
+             "%s stream lost %" PRIu64 " datagrams in the kernel: they were not read in time",
+             wb_role_name(line->role), drops - line->kernel_drops);
+    line->kernel_drops = drops;
+    push_event(line->owner, t_ns, "drop", text);
+    wb_warn("%s", text);
 }
 
 static void read_line(struct line *line, int64_t woken_ns)
@@ -355,6 +401,7 @@ static void read_line(struct line *line, int64_t woken_ns)
         }
         if (n == 0)
             return;
+        note_kernel_drops(line, t_ns);
         state->chunks++;
         state->bytes += n;
         if (a->writer)
@@ -391,10 +438,11 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
         const bool lost = a->interlock.lost[line->role] || state->gone;
         if (lost != line->reported_lost) {
             push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
-            if (lost)
+            /* A device that went away has been told already. */
+            if (lost && !state->gone)
                 wb_warn("stream lost: %s (%s)", wb_role_name(line->role),
                         wb_stream_address(line->stream));
-            else
+            else if (!lost)
                 wb_info("stream found again: %s", wb_role_name(line->role));
             line->reported_lost = lost;
         }
