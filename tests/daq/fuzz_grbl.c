@@ -81,8 +81,8 @@ int main(int argc, char **argv)
 {
     static const char *const seeds[] = {
         "<Idle|MPos:0.000,-12.500,0.000|FS:0,0|Pn:XYZ|WCO:1.000,2.000,3.000|Ov:100,100,100>",
-        "ok\r\n<Jog|WPos:1.000,2.000,3.000|FS:120,0|WCO:1.000,2.000,3.000>\r\n"
-        "<Hold:0|WPos:1.000,2.000,3.000|FS:0,0>\r\nok\r\n",
+        ("ok\r\n<Jog|WPos:1.000,2.000,3.000|FS:120,0|WCO:1.000,2.000,3.000>\r\n"
+         "<Hold:0|WPos:1.000,2.000,3.000|FS:0,0>\r\nok\r\n"),
         "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n<Alarm|MPos:0,0,0>\r\n",
         "ALARM:1\r\nerror:9\r\n$110=500.000\r\n<Door:3|MPos:0.1>\r\n",
         "$J=G91 G21 X2.000 F120.000\n",
@@ -95,7 +95,7 @@ int main(int argc, char **argv)
         pointers[i] = (const uint8_t *)seeds[i];
         sizes[i] = strlen(seeds[i]);
     }
-    return fuzz_main(argc, argv, pointers, sizes, n, 100000);
+    return fuzz_main(argc, argv, pointers, sizes, n, 200000);
 }
 
 #endif
