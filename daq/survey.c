@@ -158,6 +158,8 @@ enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct
     struct looking looking = {.survey = survey};
     WB_TRY(note_walk(survey, wb_recording_each_meta(recording, look_at_meta, survey)));
     WB_TRY(note_walk(survey, wb_recording_each_chunk(recording, look_at_chunk, &looking)));
+    for (int i = 0; i < survey->n_streams; i++)
+        survey->missing += survey->streams[i].missing;
     WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, survey)));
     WB_TRY(note_walk(survey, wb_recording_each_clock(recording, look_at_clock, survey)));
     return decode ? decode_all(recording, survey) : WB_OK;
