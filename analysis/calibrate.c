@@ -13,6 +13,7 @@
 #include "analysis/errors.h"
 #include "analysis/first_guess.h"
 #include "analysis/jackknife.h"
+#include "analysis/scatter.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -336,11 +337,14 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
         status = optimise(result, &objective, settings);
     if (status == WB_OK)
         status = judge(result, &objective);
+    if (status == WB_OK)
+        status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
+                                     &result->material, &how);
     wb_computed_destroy(objective.computed);
     free(objective.force);
     if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
-        status = wb_jackknife_run(result->deviation, datasets, n, settings, curve,
-                                  &result->material, &result->evaluations);
+        status = wb_jackknife_run(result->deviation, datasets, n, settings, &result->material,
+                                  &result->evaluations);
     return status;
 }
 

@@ -72,6 +72,10 @@ struct wb_calibrate_result {
     double max_error;     /* largest of eq. 18 */
     double scatter_rms;   /* RMS over deflection of the samples' standard deviation over F_max: what
                              the scatter between samples explains */
+    /* The same of what is left when each sample is predicted with its own natural shape: the
+     * scatter of stiffness, yield and measurement without that of the bows, which the model knows.
+     */
+    double residual_scatter_rms;
     double cpu_s;
 };
 

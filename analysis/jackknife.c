@@ -13,82 +13,68 @@
 /* Steps of ln K and n for the slopes. */
 #define SLOPE_STEP 0.01
 /* A refit is settled when ln K and n move less than this. */
-#define SETTLED 5e-4
-#define MOST_STEPS 8
+#define SETTLED 1e-3
+#define MOST_STEPS 12
 /* Largest change of ln K and n in one step. */
-#define LARGEST_STEP 0.3
-#define LARGEST_EXPONENT 1.5
+#define LARGEST_STEP 0.5
+/* Where n may lie; K only needs to be positive, which its logarithm sees to. */
 #define SMALLEST_EXPONENT 0.01
+#define LARGEST_EXPONENT 1.5
 
-/* The grid of all samples, and the slopes of the computed force there. */
-struct slopes {
-    int n;
-    double *by_strength, *by_exponent; /* (n) dF/d ln K, dF/dn */
-    double *force;                     /* (n) workspace */
-};
-
-/* One leave-one-out fit. */
+/* One fit with a sample left out. */
 struct refit {
     struct wb_computed *computed;
     struct wb_curve curve;
     struct wb_material material;
+    /* (curve.n) computed force, its slopes by ln K and by n, workspace; one block, owned by force
+     */
+    double *force, *by_strength, *by_exponent, *previous;
+    int *evaluations;
 };
 
-static enum wb_status run(struct wb_computed *computed, const struct wb_material *material,
-                          const struct wb_curve *curve, double *force, int *evaluations,
+static enum wb_status run(struct refit *refit, double log_strength, double exponent, double *force,
                           bool *complete)
 {
+    struct wb_material material = refit->material;
     int reached;
-    WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, force, &reached));
-    ++*evaluations;
-    *complete = reached == curve->n;
+    material.strength_coefficient *= exp(log_strength);
+    material.hardening_exponent += exponent;
+    WB_TRY(wb_computed_curve(refit->computed, &material, refit->curve.n, refit->curve.step, force,
+                             &reached));
+    ++*refit->evaluations;
+    *complete = reached == refit->curve.n;
     return WB_OK;
 }
 
-/* dF/d ln K and dF/dn at the optimum, by forward differences. */
-static enum wb_status find_slopes(struct slopes *slopes, const struct wb_dataset *const *datasets,
-                                  int n, const struct wb_calibrate_settings *settings,
-                                  const struct wb_curve *curve, const struct wb_material *optimum,
-                                  int *evaluations, bool *complete)
+/* dF/d ln K and dF/dn at refit->material by forward differences; refit->force is there already. */
+static enum wb_status find_slopes(struct refit *refit, bool *complete)
 {
-    struct wb_test_info info;
-    wb_curve_mean_info(datasets, n, &info);
-    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                             settings->n_fibres};
-    struct wb_computed *computed;
-    WB_TRY(wb_computed_create(&computed, &info, optimum, &how));
-    struct wb_material stronger = *optimum, straighter = *optimum;
-    stronger.strength_coefficient *= exp(SLOPE_STEP);
-    straighter.hardening_exponent += SLOPE_STEP;
-    bool all[3] = {false, false, false};
-    enum wb_status status = run(computed, optimum, curve, slopes->force, evaluations, &all[0]);
-    if (status == WB_OK)
-        status = run(computed, &stronger, curve, slopes->by_strength, evaluations, &all[1]);
-    if (status == WB_OK)
-        status = run(computed, &straighter, curve, slopes->by_exponent, evaluations, &all[2]);
-    for (int i = 0; i < curve->n; i++) {
-        slopes->by_strength[i] = (slopes->by_strength[i] - slopes->force[i]) / SLOPE_STEP;
-        slopes->by_exponent[i] = (slopes->by_exponent[i] - slopes->force[i]) / SLOPE_STEP;
+    WB_TRY(run(refit, SLOPE_STEP, 0.0, refit->by_strength, complete));
+    if (*complete)
+        WB_TRY(run(refit, 0.0, SLOPE_STEP, refit->by_exponent, complete));
+    for (int i = 0; i < refit->curve.n; i++) {
+        refit->by_strength[i] = (refit->by_strength[i] - refit->force[i]) / SLOPE_STEP;
+        refit->by_exponent[i] = (refit->by_exponent[i] - refit->force[i]) / SLOPE_STEP;
     }
-    *complete = all[0] && all[1] && all[2];
-    wb_computed_destroy(computed);
-    return status;
+    return WB_OK;
 }
 
-/* Gauss-Newton step of (ln K, n) towards the curve; false when the two cannot be told apart. */
-static bool newton_step(const struct slopes *slopes, const struct refit *refit, double step[2])
+/* Gauss-Newton step of (ln K, n) with Levenberg's `damping`; false when the two cannot be told
+ * apart. */
+static bool newton_step(const struct refit *refit, double damping, double step[2])
 {
     double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0;
-    const int n = refit->curve.n < slopes->n ? refit->curve.n : slopes->n;
-    for (int i = 0; i < n; i++) {
-        const double a = slopes->by_strength[i], b = slopes->by_exponent[i];
-        const double residual = refit->curve.force[i] - slopes->force[i];
+    for (int i = 0; i < refit->curve.n; i++) {
+        const double a = refit->by_strength[i], b = refit->by_exponent[i];
+        const double residual = refit->curve.force[i] - refit->force[i];
         aa += a * a;
         ab += a * b;
         bb += b * b;
         ar += a * residual;
         br += b * residual;
     }
+    aa *= 1.0 + damping;
+    bb *= 1.0 + damping;
     const double determinant = aa * bb - ab * ab;
     if (!(determinant > 1e-10 * aa * bb))
         return false;
@@ -101,77 +87,96 @@ static bool newton_step(const struct slopes *slopes, const struct refit *refit, 
         step[0] *= LARGEST_STEP / largest;
         step[1] *= LARGEST_STEP / largest;
     }
+    const double exponent = refit->material.hardening_exponent;
+    step[1] = fmin(fmax(step[1], SMALLEST_EXPONENT - exponent), LARGEST_EXPONENT - exponent);
     return true;
 }
 
-/* Refits K and n of refit->material; *settled tells whether it worked. */
-static enum wb_status refit_hardening(struct refit *refit, const struct slopes *slopes,
-                                      int *evaluations, bool *settled)
+static double curve_error(const struct refit *refit, bool complete)
 {
-    struct wb_material *const material = &refit->material;
-    double step[2] = {0.0, 0.0}, best = HUGE_VAL;
+    return complete
+               ? wb_errors_l2(refit->curve.n, refit->curve.step, refit->curve.force, refit->force)
+               : HUGE_VAL;
+}
+
+/* Refits K and n of refit->material; *settled tells whether it worked. */
+static enum wb_status refit_hardening(struct refit *refit, bool *settled)
+{
+    double damping = 1e-3, step[2];
     bool complete;
     *settled = false;
+    WB_TRY(run(refit, 0.0, 0.0, refit->force, &complete));
+    double best = curve_error(refit, complete);
+    if (complete)
+        WB_TRY(find_slopes(refit, &complete));
+    if (!complete)
+        return WB_OK;
     for (int i = 0; i < MOST_STEPS && !*settled; i++) {
-        WB_TRY(
-            run(refit->computed, material, &refit->curve, slopes->force, evaluations, &complete));
-        const double error = complete ? wb_errors_l2(refit->curve.n, refit->curve.step,
-                                                     refit->curve.force, slopes->force)
-                                      : HUGE_VAL;
-        if (!(error < best * (1.0 + 1e-6))) {
-            /* It got worse: go half the way back. */
-            step[0] *= -0.5;
-            step[1] *= -0.5;
-            if (i == 0)
-                return WB_OK;
-        } else {
-            best = error;
-            if (!newton_step(slopes, refit, step))
-                return WB_OK;
-        }
+        double *const previous = refit->previous;
+        if (!newton_step(refit, damping, step))
+            return WB_OK;
+        /* The force of the last accepted point is kept until the trial proves better. */
+        memcpy(previous, refit->force, (size_t)refit->curve.n * sizeof *previous);
+        WB_TRY(run(refit, step[0], step[1], refit->force, &complete));
+        const double error = curve_error(refit, complete);
         *settled = fmax(fabs(step[0]), fabs(step[1])) < SETTLED;
-        const double exponent =
-            fmin(fmax(material->hardening_exponent + step[1], SMALLEST_EXPONENT), LARGEST_EXPONENT);
-        material->strength_coefficient *= exp(step[0]);
-        /* Held at a limit there is nothing left to settle in that direction. */
-        step[1] = exponent - material->hardening_exponent;
-        material->hardening_exponent = exponent;
+        if (!(error < best)) {
+            memcpy(refit->force, previous, (size_t)refit->curve.n * sizeof *previous);
+            damping *= 10.0;
+            continue;
+        }
+        best = error;
+        damping *= 0.1;
+        refit->material.strength_coefficient *= exp(step[0]);
+        refit->material.hardening_exponent += step[1];
+        if (!*settled)
+            WB_TRY(find_slopes(refit, &complete));
+        if (!complete)
+            return WB_OK;
     }
     return WB_OK;
+}
+
+/* Fills a refit whose curve is there; E and sigma_Y anew. */
+static enum wb_status prepare(struct refit *refit, const struct wb_dataset *const *others, int n,
+                              const struct wb_calibrate_settings *settings)
+{
+    struct wb_test_info info;
+    struct wb_first_guess guess;
+    const double yield_point =
+        settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
+    const size_t points = (size_t)refit->curve.n;
+    wb_curve_mean_info(others, n, &info);
+    WB_TRY(wb_first_guess_run(&guess, &refit->curve, &info, settings->elastic_zone, yield_point));
+    if (settings->youngs_modulus <= 0.0)
+        refit->material.youngs_modulus = guess.youngs_modulus;
+    if (settings->yield_stress <= 0.0)
+        refit->material.yield_stress = guess.yield_stress;
+    refit->force = calloc(4 * points, sizeof *refit->force);
+    if (!refit->force)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %zu points", points);
+    refit->by_strength = refit->force + points;
+    refit->by_exponent = refit->force + 2 * points;
+    refit->previous = refit->force + 3 * points;
+    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
+                                             settings->n_fibres};
+    return wb_computed_create(&refit->computed, &info, &refit->material, &how);
 }
 
 /* Calibrates all samples but one, from the optimum of all. */
 static enum wb_status leave_out(struct wb_material *material, bool *settled, int *evaluations,
                                 const struct wb_dataset *const *others, int n,
-                                const struct wb_calibrate_settings *settings,
-                                const struct slopes *slopes)
+                                const struct wb_calibrate_settings *settings)
 {
-    struct refit refit = {.material = *material};
-    struct wb_test_info info;
-    struct wb_first_guess guess;
-    const double yield_point =
-        settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
+    struct refit refit = {.material = *material, .evaluations = evaluations};
     *settled = false;
-    enum wb_status status = wb_curve_average(&refit.curve, others, n, settings->step);
-    if (status != WB_OK)
-        return status;
-    wb_curve_mean_info(others, n, &info);
-    status = wb_first_guess_run(&guess, &refit.curve, &info, settings->elastic_zone, yield_point);
-    if (status == WB_OK) {
-        const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                                 settings->n_fibres};
-        if (settings->youngs_modulus <= 0.0)
-            refit.material.youngs_modulus = guess.youngs_modulus;
-        if (settings->yield_stress <= 0.0)
-            refit.material.yield_stress = guess.yield_stress;
-        if (refit.curve.n > slopes->n)
-            refit.curve.n = slopes->n;
-        status = wb_computed_create(&refit.computed, &info, &refit.material, &how);
-    }
+    WB_TRY(wb_curve_average(&refit.curve, others, n, settings->step));
+    enum wb_status status = prepare(&refit, others, n, settings);
     if (status == WB_OK)
-        status = refit_hardening(&refit, slopes, evaluations, settled);
+        status = refit_hardening(&refit, settled);
     *material = refit.material;
     wb_computed_destroy(refit.computed);
+    free(refit.force);
     wb_curve_release(&refit.curve);
     return status;
 }
@@ -189,8 +194,7 @@ static double spread(const double *values, int n)
 
 static enum wb_status leave_each_out(double deviation[4], const struct wb_dataset *const *datasets,
                                      int n, const struct wb_calibrate_settings *settings,
-                                     const struct slopes *slopes, const struct wb_material *optimum,
-                                     int *evaluations)
+                                     const struct wb_material *optimum, int *evaluations)
 {
     enum wb_status status = WB_OK;
     bool all_settled = true;
@@ -206,7 +210,7 @@ static enum wb_status leave_each_out(double deviation[4], const struct wb_datase
             if (k != i)
                 others[kept++] = datasets[k];
         }
-        status = leave_out(&material, &settled, evaluations, others, kept, settings, slopes);
+        status = leave_out(&material, &settled, evaluations, others, kept, settings);
         all_settled = all_settled && settled;
         values[i] = material.youngs_modulus;
         values[n + i] = material.yield_stress;
@@ -222,30 +226,17 @@ static enum wb_status leave_each_out(double deviation[4], const struct wb_datase
 
 enum wb_status wb_jackknife_run(double deviation[4], const struct wb_dataset *const *datasets,
                                 int n, const struct wb_calibrate_settings *settings,
-                                const struct wb_curve *curve, const struct wb_material *optimum,
-                                int *evaluations)
+                                const struct wb_material *optimum, int *evaluations)
 {
     for (int k = 0; k < 4; k++)
         deviation[k] = (double)NAN;
     if (n < 2)
         return WB_OK;
-    const size_t points = (size_t)curve->n;
-    double *const memory = calloc(3 * points, sizeof *memory);
-    if (!memory)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d points", curve->n);
-    struct slopes slopes = {curve->n, memory, memory + points, memory + 2 * points};
-    bool complete = false;
-    enum wb_status status =
-        find_slopes(&slopes, datasets, n, settings, curve, optimum, evaluations, &complete);
-    if (status == WB_OK && complete) {
-        status = leave_each_out(deviation, datasets, n, settings, &slopes, optimum, evaluations);
-        if (status == WB_ERR_DATA) {
-            wb_warn("wire '%s': no uncertainties, because a sample left out makes the rest "
-                    "unusable",
-                    datasets[0]->info.wire);
-            status = WB_OK;
-        }
+    enum wb_status status = leave_each_out(deviation, datasets, n, settings, optimum, evaluations);
+    if (status == WB_ERR_DATA) {
+        wb_warn("wire '%s': no uncertainties, because a sample left out makes the rest unusable",
+                datasets[0]->info.wire);
+        status = WB_OK;
     }
-    free(memory);
     return status;
 }

@@ -28,7 +28,8 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
     memcpy(properties->deviation, result->deviation, sizeof properties->deviation);
     properties->calibration_length = result->info.length;
     properties->rms = result->rms;
-    properties->scatter_rms = result->n_samples > 1 ? result->scatter_rms : (double)NAN;
+    properties->residual_scatter_rms =
+        result->n_samples > 1 ? result->residual_scatter_rms : (double)NAN;
     properties->n_samples = result->n_samples;
     properties->is_virtual = result->info.is_virtual;
 }
@@ -95,8 +96,10 @@ static void put_calibration(struct wb_text *text, const struct wb_calibrate_resu
     put_number(text, "  ", "rms", result->rms);
     put_number(text, "  ", "max_error", result->max_error);
     wb_text_append(text, "  samples: %d\n", result->n_samples);
-    if (result->n_samples > 1)
+    if (result->n_samples > 1) {
         put_number(text, "  ", "scatter_rms", result->scatter_rms);
+        put_number(text, "  ", "residual_scatter_rms", result->residual_scatter_rms);
+    }
     wb_text_append(text, "  virtual_rig: %s\n", result->info.is_virtual ? "true" : "false");
     wb_text_append(text, "  simulation: %s\n", result->info.is_simulation ? "true" : "false");
     wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
@@ -166,7 +169,8 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_NUMBER("length_mm", &properties->calibration_length, WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_NUMBER("rms", &properties->rms, 1.0, 0.0, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("scatter_rms", &properties->scatter_rms, 1.0, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("residual_scatter_rms", &properties->residual_scatter_rms, 1.0,
+                                  0.0, 1e6),
         WB_CONFIG_OPTIONAL_INTEGER("samples", &properties->n_samples, 0, 100000),
         WB_CONFIG_OPTIONAL_BOOLEAN("virtual_rig", &properties->is_virtual),
         WB_CONFIG_IGNORED("elastic_zone"),
@@ -181,6 +185,7 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
         WB_CONFIG_IGNORED("max_force_N"),
         WB_CONFIG_IGNORED("max_deflection_mm"),
         WB_CONFIG_IGNORED("max_error"),
+        WB_CONFIG_IGNORED("scatter_rms"),
         WB_CONFIG_IGNORED("simulation"),
         WB_CONFIG_IGNORED("tool"),
         WB_CONFIG_IGNORED("datasets"),
@@ -221,7 +226,7 @@ enum wb_status wb_properties_read(const char *path, struct wb_properties *proper
     struct wb_properties read = {0};
     for (int k = 0; k < 4; k++)
         read.deviation[k] = (double)NAN;
-    read.calibration_length = read.rms = read.scatter_rms = (double)NAN;
+    read.calibration_length = read.rms = read.residual_scatter_rms = (double)NAN;
     WB_TRY(wb_config_read(&config, path));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);

@@ -7,6 +7,7 @@
 
 #include "analysis/computed.h"
 #include "analysis/errors.h"
+#include "analysis/scatter.h"
 #include "analysis/shapes.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -68,9 +69,10 @@ static void judge_scatter(struct wb_validate_result *result, const struct wb_pro
     result->expected_rms = result->scatter_share = (double)NAN;
     if (n < 2)
         return;
-    double square = result->scatter_rms * result->scatter_rms / n;
-    if (properties->n_samples > 1 && isfinite(properties->scatter_rms))
-        square += properties->scatter_rms * properties->scatter_rms / properties->n_samples;
+    double square = result->residual_scatter_rms * result->residual_scatter_rms / n;
+    if (properties->n_samples > 1 && isfinite(properties->residual_scatter_rms))
+        square += properties->residual_scatter_rms * properties->residual_scatter_rms /
+                  properties->n_samples;
     result->expected_rms = sqrt(square);
     const double rms = result->elastoplastic.rms;
     if (rms > 0.0)
@@ -96,11 +98,14 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     if (status == WB_OK)
         status = wb_shapes_compare(&distance, computed, &properties->material, datasets, n,
                                    curve->step, curve->max_deflection);
+    if (status == WB_OK)
+        status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
+                                     &properties->material, &how);
     if (status == WB_OK) {
+        judge_scatter(result, properties);
         result->shape_rms = distance.rms;
         result->shape_max = distance.largest;
         result->n_shape_points = distance.n_points;
-        judge_scatter(result, properties);
         if (result->elastoplastic.n_reached < 2)
             status = wb_fail(WB_ERR_CONVERGENCE,
                              "wire '%s': the beam with the calibrated properties does not "

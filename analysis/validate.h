@@ -27,9 +27,10 @@ struct wb_validate_result {
                          which is the origin, is left out; NaN without shapes */
     double shape_max; /* m */
     int n_shape_points;
-    double scatter_rms; /* as in calibrate */
+    double scatter_rms, residual_scatter_rms; /* as in calibrate */
     /* RMS error that the scatter between samples alone lets expect: standard errors of this
-     * average and of the one calibrated on (as far as known), added in squares. */
+     * average and of the one calibrated on (as far as known), from their residual scatter, added in
+     * squares. */
     double expected_rms;
     /* expected_rms squared over the elastoplastic RMS squared, at most 1: the share of the mean
      * square error that scatter explains; NaN with one sample. */

@@ -199,6 +199,7 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     wb_json_set_number(root, "rms", r->rms);
     wb_json_set_number(root, "max_error", r->max_error);
     wb_json_set_number(root, "scatter_rms", r->scatter_rms);
+    wb_json_set_number(root, "residual_scatter_rms", r->residual_scatter_rms);
     wb_json_set_number(root, "cpu_s", r->cpu_s);
     set_path(root, r);
     return wb_command_print_json(root);
@@ -235,9 +236,11 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
            r->failed_evaluations, wb_calibrate_end_text(r->end));
     if (r->restarted)
         printf("the restart from the optimum moved it by %.2g\n", r->restart_moved);
-    printf("RMS %.3g, largest error %.3g, scatter between samples %.3g "
-           "(all over F_max = %.4g N of the measured average)\n",
-           r->rms, r->max_error, r->scatter_rms, r->max_force);
+    printf("RMS %.3g, largest error %.3g (over F_max = %.4g N of the measured average)\n", r->rms,
+           r->max_error, r->max_force);
+    if (r->n_samples > 1)
+        printf("scatter between samples %.3g, of it not due to their natural shapes %.3g\n",
+               r->scatter_rms, r->residual_scatter_rms);
 }
 
 static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *result)
