@@ -7,6 +7,7 @@
 
 #include "base/config.h"
 #include "base/units.h"
+#include "daq/loadcell_line.h"
 
 #define WB_LOG_DOMAIN "rig"
 
@@ -173,6 +174,10 @@ static enum wb_status check_line_keys(const struct wb_config_node *map,
                                 "missing");
     if (cell->scale == 0.0)
         return wb_config_refuse(map, "scale", "expected anything but 0");
+    double newtons;
+    if (cell->unit[0] && !wb_line_unit_factor(cell->unit, WB_STANDARD_GRAVITY, &newtons))
+        return wb_config_refuse(map, "unit", "expected a unit such as g, kg, mN, N or lb, not '%s'",
+                                cell->unit);
     return WB_OK;
 }
 

@@ -222,6 +222,7 @@ static void bad_files_are_refused_with_file_line_and_key(void **state)
         {"  sign: +1\n", "  tare_command: '\\x00'\n", "tare_command: expected one of \\r"},
         {"  sign: +1\n", "  overload_tokens: OL\n", "overload_tokens: expected a list"},
         {"  sign: +1\n", "  overload_tokens: ['a b']\n", "overload_tokens: expected a word"},
+        {"  unit: g\n", "  unit: gramm\n", "unit: expected a unit such as g"},
         {"  sign: +1\n", "  scale: 0\n", "scale: expected anything but 0"},
         {"  sign: +1\n", "  sign: +1\n  sign: -1\n", "sign: given twice"},
     };
