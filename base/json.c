@@ -7,6 +7,8 @@
 #include <jansson.h>
 
 #include "base/file.h"
+#include "base/number.h"
+#include "base/text.h"
 
 #define WB_LOG_DOMAIN "json"
 
@@ -135,19 +137,82 @@ void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_j
     set(object, key, value ? json_deep_copy(value_of(value)) : json_null());
 }
 
+/* jansson prints 0.1 with 17 digits as 0.10000000000000001; people read these files, so containers
+ * and numbers are laid out here and everything else is left to jansson. */
+static void format_value(struct wb_text *text, const json_t *value, int depth);
+
+static void format_scalar(struct wb_text *text, const json_t *value)
+{
+    if (json_is_real(value)) {
+        char number_text[WB_NUMBER_TEXT];
+        wb_text_append(text, "%s", wb_number_format(json_real_value(value), number_text));
+        return;
+    }
+    char *scalar = json_dumps(value, JSON_ENCODE_ANY);
+    if (scalar)
+        wb_text_append(text, "%s", scalar);
+    else
+        text->failed = true;
+    free(scalar);
+}
+
+static void start_line(struct wb_text *text, bool first, int depth)
+{
+    wb_text_append(text, "%s\n%*s", first ? "" : ",", 2 * depth, "");
+}
+
+static void format_object(struct wb_text *text, json_t *object, int depth)
+{
+    bool first = true;
+    const char *key;
+    json_t *member_value;
+    wb_text_append(text, "{");
+    json_object_foreach(object, key, member_value)
+    {
+        json_t *name = json_string(key);
+        start_line(text, first, depth + 1);
+        format_scalar(text, name);
+        wb_text_append(text, ": ");
+        format_value(text, member_value, depth + 1);
+        json_decref(name);
+        first = false;
+    }
+    wb_text_append(text, "%s%*s}", first ? "" : "\n", first ? 0 : 2 * depth, "");
+}
+
+static void format_array(struct wb_text *text, const json_t *array, int depth)
+{
+    wb_text_append(text, "[");
+    for (size_t i = 0; i < json_array_size(array); i++) {
+        start_line(text, i == 0, depth + 1);
+        format_value(text, json_array_get(array, i), depth + 1);
+    }
+    const bool empty = json_array_size(array) == 0;
+    wb_text_append(text, "%s%*s]", empty ? "" : "\n", empty ? 0 : 2 * depth, "");
+}
+
+static void format_value(struct wb_text *text, const json_t *value, int depth)
+{
+    if (json_is_object(value))
+        format_object(text, (json_t *)(uintptr_t)value, depth);
+    else if (json_is_array(value))
+        format_array(text, value, depth);
+    else
+        format_scalar(text, value);
+}
+
 enum wb_status wb_json_format(const struct wb_json *root, char **text)
 {
-    char *body = lost_values == 0 && root
-                     ? json_dumps(value_of(root), JSON_INDENT(2) | JSON_REAL_PRECISION(17))
-                     : NULL;
-    const size_t length = body ? strlen(body) : 0;
-    char *with_newline = body ? realloc(body, length + 2) : NULL;
-    if (!with_newline) {
-        free(body);
+    struct wb_text formatted = {0};
+    if (lost_values == 0 && root) {
+        format_value(&formatted, value_of(root), 0);
+        wb_text_append(&formatted, "\n");
+    }
+    if (formatted.length == 0 || formatted.failed) {
+        wb_text_release(&formatted);
         return wb_fail(WB_ERR_MEMORY, "out of memory writing JSON");
     }
-    memcpy(with_newline + length, "\n", 2);
-    *text = with_newline;
+    *text = formatted.bytes;
     return WB_OK;
 }
 

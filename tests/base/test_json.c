@@ -55,6 +55,22 @@ static void what_json_cannot_say_becomes_null_or_ascii(void **state)
     wb_json_destroy(root);
 }
 
+static void numbers_are_as_short_as_they_can_be(void **state)
+{
+    (void)state;
+    struct wb_json *root = wb_json_create();
+    struct wb_json *list = wb_json_set_array(root, "a");
+    wb_json_append_number(list, 0.1);
+    wb_json_append_number(list, 85.0);
+    wb_json_append_array(list);
+    wb_json_append_object(list);
+    char *text;
+    assert_int_equal(wb_json_format(root, &text), WB_OK);
+    assert_string_equal(text, "{\n  \"a\": [\n    0.1,\n    85,\n    [],\n    {}\n  ]\n}\n");
+    free(text);
+    wb_json_destroy(root);
+}
+
 static void a_lost_value_is_reported_when_written(void **state)
 {
     (void)state;
@@ -85,6 +101,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_document_reads_back),
         cmocka_unit_test(what_json_cannot_say_becomes_null_or_ascii),
+        cmocka_unit_test(numbers_are_as_short_as_they_can_be),
         cmocka_unit_test(a_lost_value_is_reported_when_written),
         cmocka_unit_test(bad_json_is_refused),
     };
