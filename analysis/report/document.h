@@ -78,7 +78,7 @@ void wb_document_init(struct wb_document *document, const char *title, const cha
 void wb_document_release(struct wb_document *document);
 bool wb_document_failed(const struct wb_document *document);
 
-/* `anchor`: letters, digits and '-'; unique. */
+/* `anchor`: letters, digits and '-'; unique, or "" for none. */
 void wb_document_heading(struct wb_document *document, int level, const char *anchor,
                          const char *text);
 void wb_document_paragraph(struct wb_document *document, const char *markup);

@@ -37,6 +37,9 @@ int wb_figures_list(const struct wb_figures *figures, const struct wb_figure **l
 /* "measured (virtual rig)" or "measured", after where the used recordings come from. */
 const char *wb_figures_measured(const struct wb_results *results);
 
+/* Largest deflection of the first loading, m, and when it was reached, s (infinite without one). */
+double wb_figures_turn(const struct wb_dataset *dataset, double *t);
+
 /* A wire's name as part of file names, anchors and figure names: other characters become '-'. */
 void wb_figures_slug(char slug[64], const char *name);
 

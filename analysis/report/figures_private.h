@@ -62,7 +62,4 @@ WB_MUST_CHECK enum wb_status wb_figures_draw_optimiser(struct wb_figure **figure
 int wb_figures_frame(const struct wb_dataset *dataset, double deflection, int most, double *x,
                      double *y, double *at, double *t);
 
-/* Largest deflection of the first loading, m, and when it was reached, s. */
-double wb_figures_turn(const struct wb_dataset *dataset, double *t);
-
 #endif

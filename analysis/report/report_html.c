@@ -124,7 +124,10 @@ static enum wb_status put_figures(struct wb_text *html, const struct wb_document
 
 static void put_heading(struct wb_text *html, const struct wb_document_block *block)
 {
-    wb_text_append(html, "<h%d id=\"%s\">", block->level + 1, block->anchor);
+    wb_text_append(html, "<h%d", block->level + 1);
+    if (block->anchor[0])
+        wb_text_append(html, " id=\"%s\"", block->anchor);
+    wb_text_append(html, ">");
     wb_text_append_escaped(html, block->text);
     wb_text_append(html, "</h%d>\n", block->level + 1);
 }

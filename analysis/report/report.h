@@ -1,0 +1,24 @@
+/* The report: report.pdf, report.html, report.json and figures/ of a campaign's results.
+ *
+ * The same results of the same revision give the same bytes: nothing in them depends on the time of
+ * the run, on how long it took, on the folder or on this machine's paths.
+ */
+#ifndef WB_ANALYSIS_REPORT_REPORT_H
+#define WB_ANALYSIS_REPORT_REPORT_H
+
+#include <stdbool.h>
+
+#include "analysis/report/results.h"
+#include "base/status.h"
+
+/* Writes everything into `folder`, which is made. WB_ERR_EXISTS when it holds anything, unless
+ * `force`: then the files of the report before are replaced (and those that are no longer made are
+ * removed), others are left alone. All is drawn first and written into a hidden folder in it, so
+ * that on a failure the old report stays and nothing half-written is left behind. */
+WB_MUST_CHECK enum wb_status wb_report_write(const struct wb_results *results, const char *folder,
+                                             bool force);
+
+/* The text of report.json (caller frees). */
+WB_MUST_CHECK enum wb_status wb_report_json(const struct wb_results *results, char **text);
+
+#endif
