@@ -24,6 +24,7 @@ static const struct command commands[] = {
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},
     {"stage", wb_cmd_stage, "home, jog, unlock, free a specimen, check the load cell"},
     {"replay", wb_cmd_replay, "the bench from a recording"},
+    {"report", wb_cmd_report, "the calibration report of a campaign"},
     {"rig", wb_cmd_rig, "the virtual rig: a bench on pseudo-terminals and loopback"},
     {"solve", wb_cmd_solve, "compute a bending test with a finite element model"},
     {"validate", wb_cmd_validate, "error curves of properties on other datasets"},
