@@ -446,10 +446,12 @@ static bool check_zero(struct wb_bend_test *test)
     const double allowed =
         cell->noise > 0.0 ? NOISE_TIMES * cell->noise : NOISE_SHARE * cell->capacity;
     if (!(fabs(test->load.mean) <= ZERO_SHARE * cell->capacity))
-        return refuse(test,
-                      "the unloaded load cell reads %.2f mN, more than %g %% of its capacity of "
-                      "%.1f mN: is the strand slack, the cell zeroed, its unit right?",
-                      test->load.mean / WB_MN, ZERO_SHARE / WB_PERCENT, cell->capacity / WB_MN);
+        return refuse(
+            test,
+            "the unloaded load cell reads %.2f mN, more than %g %% of its capacity of "
+            "%.1f mN: is the strand slack (after a stop: 'wirebench stage RIG release'), the "
+            "cell zeroed, its unit right?",
+            test->load.mean / WB_MN, ZERO_SHARE / WB_PERCENT, cell->capacity / WB_MN);
     if (!(noise <= allowed))
         return refuse(test,
                       "the unloaded load cell's noise is %.3f mN, more than %.3f mN: is something "
@@ -573,12 +575,14 @@ static bool arrived(struct wb_bend_test *test, int64_t now_ns)
     }
     /* The first idle reports may be older than the command. */
     test->stands_since++;
-    if (latest->stage_error[0] && test->stands_since >= 2)
-        give_up(test, WB_INTERLOCK_STAGE, "the stage stands at %.2f mm instead of %.2f mm: %s",
-                travel / WB_MM, test->target / WB_MM, latest->stage_error);
-    else if (test->stands_since >= 5 && now_ns - test->phase_ns > WB_NS_PER_S)
-        give_up(test, WB_INTERLOCK_STAGE, "the stage stands at %.2f mm instead of going to %.2f mm",
-                travel / WB_MM, test->target / WB_MM);
+    const bool refused = latest->stage_error[0] && test->stands_since >= 2;
+    if (!refused && (test->stands_since < 5 || now_ns - test->phase_ns <= WB_NS_PER_S))
+        return false;
+    /* It stands: no hold is needed, which would only have to be released again. */
+    wb_acquisition_motion_ended(test->acquisition);
+    give_up(test, WB_INTERLOCK_STAGE, "the stage stands at %.2f mm instead of %.2f mm%s%s",
+            travel / WB_MM, test->target / WB_MM, refused ? ": " : "",
+            refused ? latest->stage_error : "");
     return false;
 }
 

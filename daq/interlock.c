@@ -50,9 +50,11 @@ void wb_interlock_default_settings(struct wb_interlock_settings *settings, const
     settings->overload = rig->load_cell.overload;
     settings->travel = rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
     settings->down = rig->stage.down;
-    const int64_t silence = wb_ns_from_seconds(rig->limits.stream_lost / rig->time_scale);
-    settings->stream_lost_ns[WB_ROLE_LOAD] = later(silence, WB_INTERLOCK_SILENCE_NS);
-    settings->stream_lost_ns[WB_ROLE_MOCAP] = later(silence, WB_INTERLOCK_SILENCE_NS);
+    int64_t silence = wb_ns_from_seconds(rig->limits.stream_lost / rig->time_scale);
+    if (rig->time_scale > 1.0)
+        silence = later(silence, WB_INTERLOCK_SILENCE_NS);
+    settings->stream_lost_ns[WB_ROLE_LOAD] = silence;
+    settings->stream_lost_ns[WB_ROLE_MOCAP] = silence;
     settings->stream_lost_ns[WB_ROLE_STAGE] = later(silence, WB_INTERLOCK_STAGE_SILENCE_NS);
 }
 

@@ -64,7 +64,7 @@ struct wb_interlock_settings {
  * never shorter than three questions. */
 void wb_interlock_default_settings(struct wb_interlock_settings *settings,
                                    const struct wb_rig *rig);
-#define WB_INTERLOCK_SILENCE_NS INT64_C(50000000)
+#define WB_INTERLOCK_SILENCE_NS INT64_C(250000000)
 #define WB_INTERLOCK_STAGE_SILENCE_NS INT64_C(600000000)
 
 struct wb_interlock {

@@ -18,9 +18,12 @@
 #define RESET_NS (4 * WB_NS_PER_S)
 #define HOMING_NS (180 * WB_NS_PER_S)
 
-/* Release: the reading is averaged over pieces of the way; the strand is slack when pieces this far
- * apart agree. */
-#define PIECE (0.5 * WB_MM)
+/* Release: it goes in steps, so that the end of the machine's travel is met with a small one. */
+#define STEP (2.0 * WB_MM)
+#define LEAST_STEP (0.1 * WB_MM)
+/* The reading is averaged over pieces of the way; the strand is slack when so many in a row agree.
+ */
+#define PIECE (0.25 * WB_MM)
 #define PIECES_APART 3
 #define LEVEL_SHARE 1e-3  /* of the capacity: the pieces agree */
 #define SLACK_SHARE 0.25  /* of the capacity: what may hang on the cell when the strand is slack */
@@ -53,6 +56,7 @@ struct wb_stage_job {
     enum phase phase;
     int64_t phase_ns, deadline_ns;
     double start_position, target; /* m, machine; m travel from the start, down positive */
+    double step, reach;            /* m, release: of one step, and of all of them */
     double first_force;            /* N; NaN before the first reading */
     uint64_t reports_seen;
     int idle_reports;
@@ -244,6 +248,34 @@ static void arm(struct wb_stage_job *job)
     wb_acquisition_arm(job->acquisition, &settings, job->start_position);
 }
 
+/* Starts a jog to a travel from the start. */
+static void jog_to(struct wb_stage_job *job, double target)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const double distance = target - travel_of(job, latest->stage.position);
+    job->target = target;
+    send(job, WB_STAGE_COMMAND_JOG, distance, PHASE_MOVE);
+    job->deadline_ns =
+        job->phase_ns + 5 * WB_NS_PER_S +
+        wb_ns_from_seconds(1.5 * fabs(distance) / (job->request.speed * job->rig.time_scale));
+}
+
+/* Release: the next step up, or the end of them. */
+static void step_up(struct wb_stage_job *job, double travel)
+{
+    const double left = job->reach + travel;
+    if (left > POSITION_TOLERANCE && job->step >= LEAST_STEP) {
+        jog_to(job, travel - fmin(job->step, left));
+        return;
+    }
+    wb_acquisition_motion_ended(job->acquisition);
+    set_end(job, WB_STAGE_JOB_STILL_LOADED,
+            "went up by %.2f mm%s, but the reading did not level off: look at the strand, then "
+            "release again or jog",
+            -travel / WB_MM, left > POSITION_TOLERANCE ? " to the end of the machine" : "");
+    finish(job);
+}
+
 static void begin_motion(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
@@ -263,14 +295,13 @@ static void begin_motion(struct wb_stage_job *job)
         give_up(job, WB_INTERLOCK_STAGE, "the stage does not tell its position");
         return;
     }
-    if (job->request.kind == WB_STAGE_JOB_RELEASE)
-        distance = -(fabs(distance) > 0.0 ? fmin(fabs(distance), job->rig.stage.travel)
-                                          : job->rig.stage.travel);
-    job->target = distance;
-    send(job, WB_STAGE_COMMAND_JOG, distance, PHASE_MOVE);
-    job->deadline_ns =
-        job->phase_ns + 5 * WB_NS_PER_S +
-        wb_ns_from_seconds(1.5 * fabs(distance) / (job->request.speed * job->rig.time_scale));
+    if (job->request.kind == WB_STAGE_JOB_RELEASE) {
+        job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->rig.stage.travel)
+                                          : job->rig.stage.travel;
+        job->step = STEP;
+        distance = -fmin(job->step, job->reach);
+    }
+    jog_to(job, distance);
 }
 
 static void step_connect(struct wb_stage_job *job, int64_t now_ns)
@@ -391,25 +422,33 @@ static void step_move(struct wb_stage_job *job, int64_t now_ns)
     if (!fresh_report(job, 0) || latest->stage.state != WB_STAGE_IDLE)
         return;
     const double travel = travel_of(job, latest->stage.position);
+    const bool releases = job->request.kind == WB_STAGE_JOB_RELEASE;
+    if (fabs(travel - job->target) <= POSITION_TOLERANCE && releases) {
+        step_up(job, travel);
+        return;
+    }
     if (fabs(travel - job->target) <= POSITION_TOLERANCE) {
         wb_acquisition_motion_ended(job->acquisition);
-        if (job->request.kind == WB_STAGE_JOB_RELEASE)
-            set_end(job, WB_STAGE_JOB_STILL_LOADED,
-                    "went up by %.2f mm, but the reading did not level off: look at the strand, "
-                    "then release again or jog",
-                    -travel / WB_MM);
-        else
-            set_end(job, WB_STAGE_JOB_DONE, "moved by %.3f mm", travel / WB_MM);
+        set_end(job, WB_STAGE_JOB_DONE, "moved by %.3f mm", travel / WB_MM);
         finish(job);
         return;
     }
     job->idle_reports++;
-    if (job->idle_reports >= 2 && latest->stage_error[0])
+    if (job->idle_reports >= 2 && releases && strncmp(latest->stage_error, "error:15", 8) == 0) {
+        job->step *= 0.5;
+        step_up(job, travel);
+        return;
+    }
+    /* It stands: no hold is needed, which would only have to be released again. */
+    if (job->idle_reports >= 2 && latest->stage_error[0]) {
+        wb_acquisition_motion_ended(job->acquisition);
         give_up(job, WB_INTERLOCK_STAGE, "the stage stopped after %.2f mm: %s", travel / WB_MM,
                 latest->stage_error);
-    else if (job->idle_reports >= 5 && now_ns - job->phase_ns > WB_NS_PER_S)
+    } else if (job->idle_reports >= 5 && now_ns - job->phase_ns > WB_NS_PER_S) {
+        wb_acquisition_motion_ended(job->acquisition);
         give_up(job, WB_INTERLOCK_STAGE, "the stage stands after %.2f mm of %.2f mm",
                 travel / WB_MM, job->target / WB_MM);
+    }
 }
 
 static void step_cancel(struct wb_stage_job *job, int64_t now_ns)

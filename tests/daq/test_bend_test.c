@@ -45,7 +45,7 @@ static int set_up(void **state)
     snprintf(fixture->specimen, sizeof fixture->specimen, "%s/specimen.yaml", fixture->folder);
     snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
     fixture->bench = fake_start();
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
     fake_write_specimen(fixture->specimen);
     wb_bend_test_default_request(&fixture->request);
     fixture->request.rig_path = fixture->rig;
@@ -290,7 +290,7 @@ static void overload_unit_change_and_alarm_hold_within_20_ms(void **state)
         bench->holds = 0;
         fake_stop(bench);
         fixture->bench = fake_start();
-        fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+        fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
     }
 }
 
@@ -309,13 +309,13 @@ static void silent_streams_hold_within_20_ms_of_their_expiry(void **state)
         assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
         assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
         assert_non_null(strstr(result.text, i ? "motion capture" : "load cell"));
-        /* T is 4 s of the rig, 100 ms of the host. */
-        assert_held_in_time(fixture, (i ? bench->frame_last_ns : bench->load_last_ns) + 100 * MS);
+        /* T is 10 s of the rig, 250 ms of the host. */
+        assert_held_in_time(fixture, (i ? bench->frame_last_ns : bench->load_last_ns) + 250 * MS);
         read_events(fixture);
         assert_non_null(strstr(fixture->events, i ? "stream_lost: mocap" : "stream_lost: load"));
         fake_stop(bench);
         fixture->bench = fake_start();
-        fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+        fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
     }
 }
 
@@ -472,6 +472,7 @@ static void a_stage_that_refuses_to_move_is_told(void **state)
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_int_equal(result.end, WB_BEND_TEST_FAILED);
     assert_non_null(strstr(result.text, "error:15"));
+    assert_int_equal(fixture->bench->holds, 0); /* it stands, and is not left on hold */
 }
 
 /* --- what keeps it from starting --- */
@@ -578,7 +579,7 @@ static void a_missing_port_is_one_message(void **state)
     char gone[64];
     snprintf(gone, sizeof gone, "%s", fixture->bench->load_path);
     snprintf(fixture->bench->load_path, sizeof fixture->bench->load_path, "/dev/pts/no-such");
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, 4.0);
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
     assert_not_opened(fixture, WB_ERR_NOT_FOUND, "/dev/pts/no-such");
     assert_int_not_equal(access(fixture->output, F_OK), 0);
 }

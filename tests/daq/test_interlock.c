@@ -188,15 +188,22 @@ static void defaults_come_from_the_rig(void **state)
     rig.load_cell.overload = 0.29;
     rig.stage.travel = 0.06;
     rig.stage.down = -1;
-    rig.limits.stream_lost = 2.0;
+    rig.limits.stream_lost = 8.0;
     struct wb_interlock_settings settings;
     wb_interlock_default_settings(&settings, &rig);
     assert_close(settings.force, 0.29, 0.0);
     assert_close(settings.overload, 0.29, 0.0);
     assert_close(settings.travel, 0.06, 0.0);
     assert_int_equal(settings.down, -1);
-    assert_int_equal(settings.stream_lost_ns[WB_ROLE_LOAD], 100 * MS);
+    assert_int_equal(settings.stream_lost_ns[WB_ROLE_LOAD], 400 * MS);
     assert_int_equal(settings.stream_lost_ns[WB_ROLE_STAGE], 600 * MS);
+    rig.limits.stream_lost = 1.0; /* 50 ms would be the scheduler's, not the instruments' */
+    wb_interlock_default_settings(&settings, &rig);
+    assert_int_equal(settings.stream_lost_ns[WB_ROLE_MOCAP], 250 * MS);
+    rig.time_scale = 1.0;
+    rig.limits.stream_lost = 0.1; /* on a real bench it is what the rig file says */
+    wb_interlock_default_settings(&settings, &rig);
+    assert_int_equal(settings.stream_lost_ns[WB_ROLE_MOCAP], 100 * MS);
     rig.limits.force = 0.2;
     rig.limits.travel = 0.05;
     wb_interlock_default_settings(&settings, &rig);

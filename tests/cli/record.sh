@@ -1,0 +1,241 @@
+#!/bin/bash
+# `wirebench record` and `stage` against the virtual rig, as a user meets them: a whole test, and
+# everything that goes wrong, each with its message, its exit code and a recording that can be read.
+# Usage: record.sh WIREBENCH SOURCE_ROOT
+set -u
+
+wirebench=$1
+root=$2
+specimen=$root/fixtures/specimens/type1-L85-1.yaml
+folder=$(mktemp -d /tmp/wb-record-XXXXXX)
+rigs=()
+failures=0
+
+end_rig() {
+    kill -INT "$1" 2>/dev/null
+    wait "$1" 2>/dev/null
+}
+
+clean_up() {
+    for rig in "${rigs[@]}"; do
+        end_rig "$rig"
+    done
+    rm -rf "$folder"
+}
+trap clean_up EXIT
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# start_rig NAME [RIG.yaml]: a virtual rig of its own in $folder/NAME; its process in $rig.
+start_rig() {
+    "$wirebench" rig "${2:-$root/fixtures/rigs/paper.yaml}" --specimen "$specimen" \
+        --run "$folder/$1" --time-scale 20 2>"$folder/$1.log" &
+    rig=$!
+    rigs+=("$rig")
+    for _ in $(seq 100); do
+        grep -q '^ready' "$folder/$1.log" && return
+        sleep 0.05
+    done
+    fail "$1: the rig is not ready: $(cat "$folder/$1.log")"
+}
+
+# record NAME OPTIONS...: records from the rig of that name; its exit code in $code.
+record() {
+    local name=$1
+    shift
+    "$wirebench" record "$folder/$name/rig.yaml" --specimen "$specimen" -o "$folder/$name.wbr" \
+        "$@" >"$folder/$name.out" 2>"$folder/$name.err" </dev/null
+    code=$?
+}
+
+expect() { # NAME CODE WORDS: the last record's exit code, and what it said
+    [ "$code" = "$2" ] || fail "$1: exit code $code, expected $2: $(cat "$folder/$1.err")"
+    grep -q -- "$3" "$folder/$1.err" "$folder/$1.out" ||
+        fail "$1: '$3' not said: $(cat "$folder/$1.err")"
+}
+
+readable() { # NAME KIND: the recording opens and holds an event of that kind
+    "$wirebench" export "$folder/$1.wbr" -o "$folder/$1.csv" >"$folder/$1.export" 2>&1 ||
+        fail "$1: not exported: $(cat "$folder/$1.export")"
+    grep -rqs -- "$2" "$folder/$1.csv" || fail "$1: no event '$2' in the recording"
+    for extra in "$folder/$1.wbr-wal" "$folder/$1.wbr-journal"; do
+        [ ! -e "$extra" ] || fail "$1: $extra was left behind"
+    done
+}
+
+wait_for_start() { # NAME: until the recording of that name runs
+    for _ in $(seq 100); do
+        [ -s "$folder/$1.wbr" ] && return
+        sleep 0.02
+    done
+    fail "$1: did not start"
+}
+
+whole_test() {
+    start_rig whole
+    record whole --travel-mm 10 --cycles 2 --operator 'A. Tester' --notes 'a note'
+    expect whole 0 'virtual rig, 2 cycles'
+    readable whole cycle_end
+    record whole --travel-mm 10
+    expect whole 1 'never overwritten'
+    end_rig "$rig"
+}
+
+ctrl_c() {
+    start_rig ctrlc
+    "$wirebench" record "$folder/ctrlc/rig.yaml" --specimen "$specimen" -o "$folder/ctrlc.wbr" \
+        >"$folder/ctrlc.out" 2>"$folder/ctrlc.err" </dev/null &
+    local recorder=$!
+    wait_for_start ctrlc
+    sleep 1.2
+    kill -INT $recorder
+    wait $recorder
+    code=$?
+    expect ctrlc 3 "stage $folder/ctrlc/rig.yaml release"
+    readable ctrlc 'interrupted'
+    # The stage stands on hold: a test is refused, a release frees it, and then all is well again.
+    mv "$folder/ctrlc.wbr" "$folder/ctrlc-first.wbr"
+    record ctrlc --travel-mm 5
+    expect ctrlc 1 "stage RIG release'"
+    rm -f "$folder/ctrlc.wbr"
+    "$wirebench" stage "$folder/ctrlc/rig.yaml" release >"$folder/release.out" 2>&1 ||
+        fail "release: $(cat "$folder/release.out")"
+    grep -q 'the specimen is free' "$folder/release.out" ||
+        fail "release: $(cat "$folder/release.out")"
+    "$wirebench" stage "$folder/ctrlc/rig.yaml" jog -0.5 >"$folder/jog.out" 2>&1 ||
+        fail "jog: $(cat "$folder/jog.out")"
+    record ctrlc --travel-mm 5
+    expect ctrlc 0 'virtual rig, 1 cycle'
+    end_rig "$rig"
+}
+
+force_limit() {
+    sed 's/force_mN: 275/force_mN: 45/' "$root/fixtures/rigs/paper.yaml" >"$folder/limit.yaml"
+    start_rig limit "$folder/limit.yaml"
+    record limit
+    expect limit 3 'beyond the force limit of 45.0 mN'
+    readable limit 'force limit'
+    end_rig "$rig"
+}
+
+rig_killed() {
+    start_rig killed
+    "$wirebench" record "$folder/killed/rig.yaml" --specimen "$specimen" -o "$folder/killed.wbr" \
+        >"$folder/killed.out" 2>"$folder/killed.err" </dev/null &
+    local recorder=$!
+    wait_for_start killed
+    sleep 1
+    kill -KILL "$rig"
+    wait "$rig" 2>/dev/null
+    wait $recorder
+    code=$?
+    expect killed 3 'switch off its power'
+    readable killed 'stream_lost'
+}
+
+rig_stalls() {
+    start_rig stalled
+    "$wirebench" record "$folder/stalled/rig.yaml" --specimen "$specimen" \
+        -o "$folder/stalled.wbr" >"$folder/stalled.out" 2>"$folder/stalled.err" </dev/null &
+    local recorder=$!
+    wait_for_start stalled
+    sleep 1
+    kill -STOP "$rig"
+    wait $recorder
+    code=$?
+    kill -CONT "$rig"
+    expect stalled 3 'has sent no valid sample for'
+    readable stalled 'soft reset'
+    end_rig "$rig"
+}
+
+full_disk() {
+    start_rig full
+    # 1 MiB blocks of 1024 bytes: the recording grows past it within the test. No SIGXFSZ.
+    (
+        trap '' XFSZ
+        ulimit -f 1024
+        exec "$wirebench" record "$folder/full/rig.yaml" --specimen "$specimen" \
+            -o "$folder/full.wbr" >"$folder/full.out" 2>"$folder/full.err" </dev/null
+    )
+    code=$?
+    expect full 3 'cannot be written'
+    # It could not be closed properly, so info may say 3, but it reads what was written.
+    "$wirebench" info "$folder/full.wbr" >"$folder/full.info" 2>&1
+    code=$?
+    [ $code = 0 ] || [ $code = 3 ] || fail "full: not readable: $(cat "$folder/full.info")"
+    grep -q cycle_start "$folder/full.info" || fail "full: $(cat "$folder/full.info")"
+    end_rig "$rig"
+}
+
+# The ports, one by one, of a rig that is otherwise well.
+bad_ports() {
+    start_rig ports
+    local good=$folder/ports/rig.yaml
+    mkdir "$folder/missing" "$folder/silent" "$folder/unknown" "$folder/unit"
+
+    sed 's|address: "pty:.*"|address: "pty:/dev/pts/no-such"|' "$good" >"$folder/missing/rig.yaml"
+    record missing
+    expect missing 1 "/dev/pts/no-such"
+    [ ! -e "$folder/missing.wbr" ] || fail "missing: a recording was left behind"
+    [ "$(wc -l <"$folder/missing.err")" = 1 ] || fail "missing: $(cat "$folder/missing.err")"
+
+    sed 's|udp:127.0.0.1:[0-9]*|udp:127.0.0.1:9|' "$good" >"$folder/silent/rig.yaml"
+    record silent
+    expect silent 1 'no NatNet answer from udp:127.0.0.1:9'
+    [ ! -e "$folder/silent.wbr" ] || fail "silent: a recording was left behind"
+
+    sed 's|^  capacity_g: 20|  capacity_kg: 0.02|' "$good" >"$folder/unknown/rig.yaml"
+    record unknown
+    expect unknown 1 'capacity_kg'
+
+    sed 's|^  unit: g|  unit: furlong|' "$good" >"$folder/unit/rig.yaml"
+    record unit
+    expect unit 1 'furlong'
+
+    # Busy: a first record holds the ports.
+    "$wirebench" record "$good" --specimen "$specimen" -o "$folder/first.wbr" \
+        >"$folder/first.out" 2>"$folder/first.err" </dev/null &
+    local recorder=$!
+    wait_for_start first
+    record ports
+    expect ports 1 'use'
+    [ ! -e "$folder/ports.wbr" ] || fail "busy: a recording was left behind"
+    kill -INT $recorder
+    wait $recorder
+    end_rig "$rig"
+}
+
+wrong_usage() {
+    "$wirebench" record >/dev/null 2>&1
+    [ $? = 2 ] || fail "record without a rig is not a usage error"
+    "$wirebench" record rig.yaml --cycles 0 --specimen a -o b >/dev/null 2>&1
+    [ $? = 2 ] || fail "0 cycles are not a usage error"
+    "$wirebench" stage rig.yaml fly >/dev/null 2>&1
+    [ $? = 2 ] || fail "an unknown action is not a usage error"
+}
+
+# Side by side, as rigs may run.
+cases=(whole_test ctrl_c force_limit rig_killed rig_stalls full_disk bad_ports wrong_usage)
+pids=()
+for case in "${cases[@]}"; do
+    (
+        rigs=()
+        trap 'for rig in "${rigs[@]}"; do end_rig "$rig"; done' EXIT
+        "$case"
+        exit $failures
+    ) &
+    pids+=($!)
+done
+for i in "${!cases[@]}"; do
+    if wait "${pids[$i]}"; then
+        echo "ok: ${cases[$i]}"
+    else
+        echo "not ok: ${cases[$i]}"
+        failures=$((failures + 1))
+    fi
+done
+exit $((failures > 0))
