@@ -73,7 +73,7 @@ static void lookup_outside_the_table_is_negative(void **unused)
     assert_true(wb_hardening_lookup(table, begin) > 0.0);
     assert_true(wb_hardening_lookup(table, ldexp(begin, WB_HARDENING_OCTAVES)) < 0.0);
     assert_true(wb_hardening_lookup(table, 0.0) < 0.0);
-    assert_true(wb_hardening_lookup(table, INFINITY) < 0.0);
+    assert_true(wb_hardening_lookup(table, (double)INFINITY) < 0.0);
     assert_true(wb_hardening_lookup(table, (double)NAN) < 0.0);
     free(table);
 }
