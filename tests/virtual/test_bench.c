@@ -1,0 +1,345 @@
+/* The whole virtual rig through its ports, with the real drivers in the real acquisition loop. */
+#include "fixtures/virtual/bench.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/interrupt.h"
+#include "base/progress.h"
+#include "base/units.h"
+#include "daq/acquisition.h"
+#include "tests/check.h"
+
+enum {
+    MOST = 20000
+};
+
+/* What was heard, by sample number. */
+struct ears {
+    int n_load, n_mocap, n_probe;
+    double force[MOST];
+    int64_t load_ns[MOST];
+    int32_t frame[MOST];
+    double position[MOST]; /* sum of the first marker's coordinates */
+};
+
+struct scene {
+    char folder[64], rig_path[WB_PATH], paper[WB_PATH], specimen[WB_PATH];
+    struct wb_bench *bench;
+    pthread_t thread;
+    volatile bool stop;
+    struct wb_rig rig;
+    struct wb_acquisition *acquisition;
+    struct ears ears;
+};
+
+static void hear_load(void *context, const struct wb_load_sample *sample)
+{
+    struct ears *const ears = context;
+    if (ears->n_load == MOST)
+        return;
+    ears->force[ears->n_load] = sample->force;
+    ears->load_ns[ears->n_load++] = sample->t_ns;
+}
+
+static void hear_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    struct ears *const ears = context;
+    if (ears->n_mocap == MOST)
+        return;
+    ears->frame[ears->n_mocap] = frame->frame_number;
+    ears->position[ears->n_mocap] = 0.0;
+    for (int i = 0; i < 3 && frame->n_markers > 0; i++)
+        ears->position[ears->n_mocap] += (double)frame->markers[0].position[i];
+    ears->n_mocap++;
+}
+
+static void hear_probe(void *context, const struct wb_clock_probe *probe)
+{
+    (void)probe;
+    ((struct ears *)context)->n_probe++;
+}
+
+static void *live(void *context)
+{
+    struct scene *const scene = context;
+    wb_bench_run(scene->bench, &scene->stop);
+    return NULL;
+}
+
+static void quiet(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)context;
+    (void)domain;
+    if (level == WB_LOG_ERROR)
+        print_message("%s\n", message);
+}
+
+static void start_bench(struct scene *scene, struct wb_bench_settings settings)
+{
+    memset(scene, 0, sizeof *scene);
+    strcpy(scene->folder, "/tmp/wb-bench-XXXXXX");
+    assert_non_null(mkdtemp(scene->folder));
+    assert_int_equal(wb_file_join(scene->rig_path, scene->folder, "rig.yaml"), WB_OK);
+    assert_int_equal(wb_file_find_data(scene->paper, "fixtures/rigs/paper.yaml"), WB_OK);
+    assert_int_equal(wb_file_find_data(scene->specimen, "fixtures/specimens/type1-L85-1.yaml"),
+                     WB_OK);
+    settings.rig = scene->paper;
+    settings.specimen = scene->specimen;
+    wb_log_set_sink(quiet, NULL);
+    assert_int_equal(wb_bench_open(&scene->bench, &settings), WB_OK);
+    assert_int_equal(wb_bench_write_rig(scene->bench, scene->rig_path), WB_OK);
+    assert_int_equal(wb_rig_read(scene->rig_path, &scene->rig), WB_OK);
+    assert_int_equal(pthread_create(&scene->thread, NULL, live, scene), 0);
+}
+
+static void connect_to(struct scene *scene)
+{
+    const struct wb_sink sink = {
+        .context = &scene->ears, .load = hear_load, .mocap = hear_mocap, .probe = hear_probe};
+    assert_int_equal(
+        wb_acquisition_open(&scene->acquisition, &scene->rig, WB_ACQUISITION_ALL, &sink), WB_OK);
+    wb_acquisition_start(scene->acquisition, NULL);
+}
+
+static void listen_for(struct scene *scene, double seconds)
+{
+    const int64_t end_ns = wb_progress_now_ns() + wb_ns_from_seconds(seconds);
+    for (int64_t left; (left = end_ns - wb_progress_now_ns()) > 0;)
+        assert_int_equal(wb_acquisition_step(scene->acquisition, left), WB_ACQUISITION_CONTINUE);
+}
+
+static void stop_bench(struct scene *scene)
+{
+    wb_acquisition_close(scene->acquisition);
+    scene->stop = true;
+    pthread_join(scene->thread, NULL);
+    wb_bench_close(scene->bench);
+    wb_log_set_sink(NULL, NULL);
+    unlink(scene->rig_path);
+    rmdir(scene->folder);
+}
+
+static struct scene *make_scene(void)
+{
+    struct scene *const scene = malloc(sizeof *scene);
+    assert_non_null(scene);
+    return scene;
+}
+
+static void rates_are_those_of_the_bench_times_the_scale(void **state)
+{
+    (void)state;
+    static const double scales[] = {1.0, 20.0};
+    struct scene *const scene = make_scene();
+    for (int i = 0; i < 2; i++) {
+        const struct wb_bench_settings settings = {.seed = 2, .time_scale = scales[i]};
+        start_bench(scene, settings);
+        connect_to(scene);
+        listen_for(scene, 0.2);
+        memset(&scene->ears, 0, sizeof scene->ears);
+        listen_for(scene, 0.6);
+        assert_close_relative(scene->ears.n_load, 0.6 * 80.0 * scales[i], 0.15);
+        assert_close_relative(scene->ears.n_mocap, 0.6 * 120.0 * scales[i], 0.15);
+        assert_true(scene->ears.n_probe > 0);
+        /* No frame is left out. */
+        for (int n = 1; n < scene->ears.n_mocap; n++)
+            assert_int_equal(scene->ears.frame[n], scene->ears.frame[n - 1] + 1);
+        stop_bench(scene);
+    }
+    free(scene);
+}
+
+/* A rig is the same again from its seed: frame n and reading n hold the same numbers, whenever
+ * somebody began to listen. */
+static void the_same_seed_gives_the_same_samples(void **state)
+{
+    (void)state;
+    static double position[2][MOST], force[2][MOST];
+    struct scene *const scene = make_scene();
+    int least = MOST, from = 0;
+    for (int run = 0; run < 2; run++) {
+        const struct wb_bench_settings settings = {.seed = 5, .time_scale = 10.0};
+        start_bench(scene, settings);
+        usleep(run == 0 ? 1000 : 60000);
+        connect_to(scene);
+        listen_for(scene, 0.6);
+        const struct ears *const ears = &scene->ears;
+        assert_true(ears->n_mocap > 100);
+        for (int n = 0; n < ears->n_mocap; n++)
+            position[run][ears->frame[n]] = ears->position[n];
+        from = ears->frame[0] > from ? ears->frame[0] : from;
+        const int last = ears->frame[ears->n_mocap - 1];
+        least = last < least ? last : least;
+        memcpy(force[run], ears->force, sizeof force[run]);
+        stop_bench(scene);
+    }
+    assert_true(least - from > 100);
+    for (int n = from; n <= least; n++)
+        assert_close(position[0][n], position[1][n], 0.0);
+    /* Readings carry no number: the second run began later, so find its place in the first. */
+    int shift = 0;
+    while (shift < 400 && memcmp(force[0] + shift, force[1], 20 * sizeof force[0][0]) != 0)
+        shift++;
+    assert_true(shift < 400);
+    free(scene);
+}
+
+static void other_seeds_give_other_noise(void **state)
+{
+    (void)state;
+    struct scene *const scene = make_scene();
+    double first[2][10];
+    for (int run = 0; run < 2; run++) {
+        const struct wb_bench_settings settings = {.seed = (uint64_t)run, .time_scale = 10.0};
+        start_bench(scene, settings);
+        connect_to(scene);
+        listen_for(scene, 0.2);
+        assert_true(scene->ears.n_load > 10);
+        memcpy(first[run], scene->ears.force, sizeof first[run]);
+        stop_bench(scene);
+    }
+    assert_memory_not_equal(first[0], first[1], sizeof first[0]);
+    free(scene);
+}
+
+static void several_rigs_run_side_by_side(void **state)
+{
+    (void)state;
+    enum {
+        N = 4
+    };
+    struct scene *scenes[N];
+    for (int i = 0; i < N; i++) {
+        const struct wb_bench_settings settings = {.seed = (uint64_t)i};
+        scenes[i] = make_scene();
+        start_bench(scenes[i], settings);
+        connect_to(scenes[i]);
+    }
+    for (int turn = 0; turn < 20; turn++)
+        for (int i = 0; i < N; i++)
+            listen_for(scenes[i], 0.01);
+    for (int i = 0; i < N; i++) {
+        assert_true(scenes[i]->ears.n_load > 20);
+        assert_true(scenes[i]->ears.n_mocap > 20);
+        stop_bench(scenes[i]);
+        free(scenes[i]);
+    }
+}
+
+/* The stage is told to go down; the cell feels it and the cameras see it. */
+static void a_jog_loads_the_wire(void **state)
+{
+    (void)state;
+    struct scene *const scene = make_scene();
+    const struct wb_bench_settings settings = {.seed = 3, .time_scale = 20.0};
+    struct wb_bench_counts counts;
+    start_bench(scene, settings);
+    connect_to(scene);
+    listen_for(scene, 0.2);
+    const double zero = scene->ears.force[scene->ears.n_load - 1];
+    assert_int_equal(wb_acquisition_command(scene->acquisition, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM,
+                                            20.0 * WB_MM),
+                     WB_OK);
+    listen_for(scene, 1.5);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(scene->acquisition);
+    assert_int_equal(latest->stage.state, WB_STAGE_IDLE);
+    assert_close(latest->stage.position, -52.0 * WB_MM, 1e-6);
+    assert_true(scene->ears.force[scene->ears.n_load - 1] - zero > 30.0 * WB_MN);
+    wb_acquisition_motion_ended(scene->acquisition);
+    stop_bench(scene);
+
+    /* The same by the bench's own account, in a run without threads. */
+    assert_int_equal(wb_file_find_data(scene->paper, "fixtures/rigs/paper.yaml"), WB_OK);
+    const struct wb_bench_settings again = {
+        .rig = scene->paper, .specimen = scene->specimen, .seed = 3, .time_scale = 20.0};
+    assert_int_equal(wb_bench_open(&scene->bench, &again), WB_OK);
+    for (int i = 0; i < 20; i++)
+        wb_bench_step(scene->bench, WB_NS_PER_MS);
+    wb_bench_count(scene->bench, &counts);
+    assert_true(counts.readings > 0 && counts.frames > 0 && counts.failures == 0);
+    assert_close(counts.travel, 0.0, 1e-9);
+    assert_close(counts.tension, 0.0, 0.0);
+    wb_bench_close(scene->bench);
+    free(scene);
+}
+
+/* A process that was held up makes up for every sample. */
+static void lateness_leaves_no_holes(void **state)
+{
+    (void)state;
+    struct scene *const scene = make_scene();
+    struct wb_bench_counts before, after;
+    assert_int_equal(wb_file_find_data(scene->paper, "fixtures/rigs/paper.yaml"), WB_OK);
+    assert_int_equal(wb_file_find_data(scene->specimen, "fixtures/specimens/type1-L85-1.yaml"),
+                     WB_OK);
+    const struct wb_bench_settings settings = {
+        .rig = scene->paper, .specimen = scene->specimen, .seed = 3};
+    assert_int_equal(wb_bench_open(&scene->bench, &settings), WB_OK);
+    const int64_t start_ns = wb_progress_now_ns();
+    wb_bench_step(scene->bench, 0);
+    wb_bench_count(scene->bench, &before);
+    usleep(500000);
+    wb_bench_step(scene->bench, 0);
+    wb_bench_count(scene->bench, &after);
+    const double passed = wb_seconds_from_ns(wb_progress_now_ns() - start_ns);
+    assert_true((double)after.readings > 75.0 * 0.5);
+    assert_true((double)after.frames > 118.0 * 0.5);
+    assert_true((double)after.frames < 122.0 * passed + 2.0);
+    assert_true(after.latest > 0.4);
+    wb_bench_close(scene->bench);
+    free(scene);
+}
+
+static int refusals;
+
+static void count_refusals(void *context, enum wb_log_level level, const char *domain,
+                           const char *message)
+{
+    (void)context;
+    (void)domain;
+    (void)message;
+    refusals += level == WB_LOG_ERROR;
+}
+
+static void bad_settings_give_one_message(void **state)
+{
+    (void)state;
+    char rig[WB_PATH], specimen[WB_PATH], wires[WB_PATH];
+    struct wb_bench *bench;
+    assert_int_equal(wb_file_find_data(rig, "fixtures/rigs/paper.yaml"), WB_OK);
+    assert_int_equal(wb_file_find_data(specimen, "fixtures/specimens/type1-L85-1.yaml"), WB_OK);
+    assert_int_equal(wb_file_find_data(wires, "fixtures/wires/type1.yaml"), WB_OK);
+    const struct wb_bench_settings cases[] = {
+        {.rig = "/nowhere.yaml", .specimen = specimen},
+        {.rig = rig, .specimen = "/nowhere.yaml"},
+        {.rig = specimen, .specimen = specimen},
+        {.rig = rig, .specimen = rig},
+        {.rig = rig, .specimen = specimen, .composites = wires},
+        {.rig = rig, .specimen = specimen, .natnet = {4, 4}},
+    };
+    wb_log_set_sink(count_refusals, NULL);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        refusals = 0;
+        assert_int_not_equal(wb_bench_open(&bench, &cases[i]), WB_OK);
+        assert_null(bench);
+        assert_int_equal(refusals, 1);
+    }
+    wb_log_set_sink(NULL, NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rates_are_those_of_the_bench_times_the_scale),
+        cmocka_unit_test(the_same_seed_gives_the_same_samples),
+        cmocka_unit_test(other_seeds_give_other_noise),
+        cmocka_unit_test(several_rigs_run_side_by_side),
+        cmocka_unit_test(a_jog_loads_the_wire),
+        cmocka_unit_test(lateness_leaves_no_holes),
+        cmocka_unit_test(bad_settings_give_one_message),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,123 @@
+/* The instrument's end of a pseudo-terminal, against the real stream. */
+#include "fixtures/virtual/pty_port.h"
+
+#include <unistd.h>
+
+#include "daq/stream.h"
+#include "tests/check.h"
+
+static struct wb_stream *open_stream(const struct wb_pty_port *port)
+{
+    struct wb_stream *stream;
+    char address[96];
+    snprintf(address, sizeof address, "pty:%s", port->path);
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    return stream;
+}
+
+/* What the stream has to read; the kernel passes bytes on by a worker, so wait a little. */
+static size_t read_all(struct wb_stream *stream, char *text, size_t size)
+{
+    size_t n = 0, got;
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(wb_stream_read(stream, text + n, size - n, &got), WB_OK);
+        n += got;
+        usleep(1000);
+    }
+    return n;
+}
+
+static void opening_and_closing_is_seen(void **state)
+{
+    (void)state;
+    struct wb_pty_port port;
+    assert_int_equal(wb_pty_port_open(&port), WB_OK);
+    assert_false(wb_pty_port_update(&port));
+    assert_false(port.is_open);
+    for (int i = 0; i < 3; i++) {
+        struct wb_stream *const stream = open_stream(&port);
+        assert_true(wb_pty_port_update(&port));
+        assert_true(port.is_open);
+        assert_false(wb_pty_port_update(&port));
+        wb_stream_close(stream);
+        assert_false(wb_pty_port_update(&port));
+        assert_false(port.is_open);
+    }
+    wb_pty_port_close(&port);
+}
+
+static void bytes_go_both_ways_unchanged(void **state)
+{
+    (void)state;
+    struct wb_pty_port port;
+    unsigned char all[256], back[256];
+    char text[600];
+    for (int i = 0; i < 256; i++)
+        all[i] = (unsigned char)i;
+    assert_int_equal(wb_pty_port_open(&port), WB_OK);
+    struct wb_stream *const stream = open_stream(&port);
+    wb_pty_port_update(&port);
+    wb_pty_port_write(&port, all, sizeof all);
+    assert_int_equal(read_all(stream, text, sizeof text), sizeof all);
+    assert_memory_equal(text, all, sizeof all);
+    assert_int_equal(wb_stream_write(stream, all, sizeof all), WB_OK);
+    usleep(5000);
+    assert_int_equal(wb_pty_port_read(&port, back, sizeof back), sizeof all);
+    assert_memory_equal(back, all, sizeof all);
+    assert_int_equal(wb_pty_port_read(&port, back, sizeof back), 0);
+    /* Nothing is echoed. */
+    assert_int_equal(read_all(stream, text, sizeof text), 0);
+    wb_stream_close(stream);
+    wb_pty_port_close(&port);
+}
+
+static void bytes_for_a_closed_port_are_lost(void **state)
+{
+    (void)state;
+    struct wb_pty_port port;
+    char text[100];
+    assert_int_equal(wb_pty_port_open(&port), WB_OK);
+    wb_pty_port_update(&port);
+    wb_pty_port_write(&port, "early", 5);
+    struct wb_stream *stream = open_stream(&port);
+    wb_pty_port_update(&port);
+    assert_int_equal(read_all(stream, text, sizeof text), 0);
+    /* What one program left unread, the next does not find. */
+    wb_pty_port_write(&port, "unread", 6);
+    usleep(5000);
+    wb_stream_close(stream);
+    wb_pty_port_update(&port);
+    stream = open_stream(&port);
+    wb_pty_port_update(&port);
+    wb_pty_port_write(&port, "fresh", 5);
+    assert_int_equal(read_all(stream, text, sizeof text), 5);
+    assert_memory_equal(text, "fresh", 5);
+    wb_stream_close(stream);
+    wb_pty_port_close(&port);
+}
+
+static void a_reader_that_sleeps_does_not_block(void **state)
+{
+    (void)state;
+    struct wb_pty_port port;
+    char block[1000];
+    memset(block, 'x', sizeof block);
+    assert_int_equal(wb_pty_port_open(&port), WB_OK);
+    struct wb_stream *const stream = open_stream(&port);
+    wb_pty_port_update(&port);
+    for (int i = 0; i < 200; i++)
+        wb_pty_port_write(&port, block, sizeof block);
+    wb_stream_close(stream);
+    wb_pty_port_close(&port);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(opening_and_closing_is_seen),
+        cmocka_unit_test(bytes_go_both_ways_unchanged),
+        cmocka_unit_test(bytes_for_a_closed_port_are_lost),
+        cmocka_unit_test(a_reader_that_sleeps_does_not_block),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

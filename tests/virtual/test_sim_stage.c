@@ -1,0 +1,505 @@
+/* The simulated GRBL stage: against GRBL's documented answers, and under the real driver. */
+#include "fixtures/virtual/sim_stage.h"
+
+#include <stdlib.h>
+
+#include "base/units.h"
+#include "daq/driver.h"
+#include "daq/grbl.h"
+#include "tests/check.h"
+
+struct scene {
+    struct wb_sim_stage stage;
+    double t;
+    char said[4096];
+};
+
+static const struct wb_sim_stage_settings plain = {
+    .axis = 'X', .down = 1, .travel = 60.0 * WB_MM, .time_scale = 1.0};
+
+static void open_scene(struct scene *scene, const struct wb_sim_stage_settings *settings)
+{
+    memset(scene, 0, sizeof *scene);
+    wb_sim_stage_init(&scene->stage, settings);
+}
+
+static const char *listen(struct scene *scene)
+{
+    scene->said[wb_sim_stage_take(&scene->stage, scene->said, sizeof scene->said - 1)] = '\0';
+    return scene->said;
+}
+
+/* Sends text and returns what came back at once. */
+static const char *tell(struct scene *scene, const char *text)
+{
+    wb_sim_stage_receive(&scene->stage, scene->t, text, strlen(text));
+    return listen(scene);
+}
+
+static void wait(struct scene *scene, double seconds)
+{
+    scene->t += seconds;
+    wb_sim_stage_advance(&scene->stage, scene->t);
+}
+
+static double travel(struct scene *scene)
+{
+    return wb_sim_stage_travel(&scene->stage, scene->t);
+}
+
+static void assert_state(struct scene *scene, const char *state)
+{
+    char expected[32];
+    snprintf(expected, sizeof expected, "<%s|MPos:", state);
+    const char *const report = tell(scene, "?");
+    if (strncmp(report, expected, strlen(expected)) != 0)
+        fail_msg("report '%s', expected state %s", report, state);
+}
+
+static void settings_and_questions_are_answered(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    wb_sim_stage_greet(&scene.stage);
+    assert_string_equal(listen(&scene), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_string_equal(tell(&scene, "\n"), "ok\r\n");
+    assert_non_null(strstr(tell(&scene, "$I\n"), "virtual rig"));
+    assert_non_null(strstr(tell(&scene, "$$\n"), "$130=64.000\r\n"));
+    assert_non_null(strstr(tell(&scene, "$#\n"), "[G54:0.000,0.000,0.000]\r\n"));
+    assert_non_null(strstr(tell(&scene, "$G\n"), "G21 G90"));
+    assert_string_equal(tell(&scene, "$120=100\n"), "ok\r\n");
+    assert_non_null(strstr(tell(&scene, "$$\n"), "$120=100.000\r\n"));
+    assert_string_equal(tell(&scene, "$120=-1\n"), "error:4\r\n");
+    assert_string_equal(tell(&scene, "$999=1\n"), "error:3\r\n");
+    assert_string_equal(tell(&scene, "$QQ\n"), "error:3\r\n");
+    assert_string_equal(tell(&scene, "hello\n"), "error:2\r\n");
+    assert_string_equal(tell(&scene, "G4 P0.01 (sync)\n"), "");
+    wait(&scene, 0.02);
+    assert_string_equal(listen(&scene), "ok\r\n");
+}
+
+static void a_jog_moves_the_clamp_at_the_feed(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    assert_close(travel(&scene), 0.0, 1e-9);
+    assert_string_equal(tell(&scene, "$J=G91 G21 X53.000 F60.000\n"), "ok\r\n");
+    wait(&scene, 10.0);
+    assert_state(&scene, "Jog");
+    assert_close(travel(&scene), (10.0 - 0.01) * WB_MM, 2e-6);
+    wait(&scene, 42.9);
+    assert_state(&scene, "Jog");
+    wait(&scene, 0.2);
+    assert_state(&scene, "Idle");
+    assert_close(travel(&scene), 53.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(&scene, "$J=G91 G21 X-53.000 F6000.000\n"), "ok\r\n");
+    /* Clipped to the axis's 10 mm/s. */
+    wait(&scene, 5.0);
+    assert_state(&scene, "Jog");
+    wait(&scene, 1.0);
+    assert_close(travel(&scene), 0.0, 1e-9);
+}
+
+static void down_can_be_the_negative_direction(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct wb_sim_stage_settings settings = plain;
+    settings.down = -1;
+    settings.axis = 'Z';
+    open_scene(&scene, &settings);
+    assert_string_equal(tell(&scene, "$J=G91 G21 Z-20 F600\n"), "ok\r\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), 20.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(&scene, "$J=G91 G21 Z30 F600\n"), "error:15\r\n");
+}
+
+static void jogs_beyond_the_travel_are_refused(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    assert_string_equal(tell(&scene, "$J=G91 G21 X62.1 F600\n"), "error:15\r\n");
+    assert_string_equal(tell(&scene, "$J=G91 G21 X-2.1 F600\n"), "error:15\r\n");
+    assert_string_equal(tell(&scene, "$J=G91 G21 X62.0 F600\n"), "ok\r\n");
+    wait(&scene, 20.0);
+    assert_close(travel(&scene), 62.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(&scene, "$J=G91 X1\n"), "error:22\r\n");
+    assert_string_equal(tell(&scene, "$J=G91 F10\n"), "error:26\r\n");
+    assert_string_equal(tell(&scene, "$J=G0 X1 F10\n"), "error:16\r\n");
+}
+
+static void jogs_in_a_row_run_on_without_a_halt(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    tell(&scene, "$J=G91 G21 X2 F60\n");
+    wait(&scene, 1.5);
+    assert_string_equal(tell(&scene, "$J=G91 G21 X2 F60\n"), "ok\r\n");
+    wait(&scene, 0.5);
+    const double at_two = travel(&scene);
+    wait(&scene, 0.1);
+    assert_close(travel(&scene) - at_two, 0.1 * WB_MM, 2e-6);
+    wait(&scene, 3.0);
+    assert_state(&scene, "Idle");
+    assert_close(travel(&scene), 4.0 * WB_MM, 1e-9);
+}
+
+static void opposite_jogs_wait_for_each_other(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    tell(&scene, "$J=G91 G21 X5 F600\n");
+    assert_string_equal(tell(&scene, "$J=G91 G21 X-4 F600\n"), "ok\r\n");
+    double highest = 0.0;
+    for (int i = 0; i < 400; i++) {
+        wait(&scene, 0.01);
+        highest = fmax(highest, travel(&scene));
+    }
+    assert_close(highest, 5.0 * WB_MM, 20e-6);
+    assert_close(travel(&scene), 1.0 * WB_MM, 1e-9);
+}
+
+static void a_hold_cancels_a_jog_and_ends_idle(void **state)
+{
+    (void)state;
+    static const char *const bytes[] = {"!", "\x85"};
+    for (int i = 0; i < 2; i++) {
+        struct scene scene;
+        open_scene(&scene, &plain);
+        tell(&scene, "$J=G91 G21 X30 F600\n");
+        tell(&scene, "$J=G91 G21 X-5 F600\n");
+        wait(&scene, 1.2);
+        const double at = travel(&scene);
+        tell(&scene, bytes[i]);
+        assert_state(&scene, "Jog");
+        wait(&scene, 0.5);
+        assert_state(&scene, "Idle");
+        /* It took 0.2 s from 10 mm/s, 1 mm, and forgot the rest. */
+        assert_close(travel(&scene), at + 1.0 * WB_MM, 3e-6);
+        wait(&scene, 5.0);
+        assert_close(travel(&scene), at + 1.0 * WB_MM, 3e-6);
+    }
+}
+
+static void a_hold_at_rest_deafens_until_resumed(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    tell(&scene, "!");
+    assert_state(&scene, "Hold:0");
+    assert_string_equal(tell(&scene, "$J=G91 G21 X1 F60\n"), "");
+    wait(&scene, 3.0);
+    assert_close(travel(&scene), 0.0, 1e-9);
+    /* The line waited in the buffer. */
+    assert_string_equal(tell(&scene, "~"), "ok\r\n");
+    assert_state(&scene, "Jog");
+    wait(&scene, 2.0);
+    assert_close(travel(&scene), 1.0 * WB_MM, 1e-9);
+}
+
+static void a_program_move_holds_and_goes_on(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    assert_string_equal(tell(&scene, "G91 G1 X10 F600\n"), "ok\r\n");
+    wait(&scene, 0.5);
+    tell(&scene, "!");
+    assert_state(&scene, "Hold:1");
+    wait(&scene, 0.5);
+    assert_state(&scene, "Hold:0");
+    tell(&scene, "~");
+    assert_state(&scene, "Run");
+    wait(&scene, 2.0);
+    assert_state(&scene, "Idle");
+    assert_close(travel(&scene), 10.0 * WB_MM, 1e-9);
+}
+
+static void a_reset_in_motion_alarms_and_locks(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    tell(&scene, "$J=G91 G21 X30 F600\n");
+    wait(&scene, 1.0);
+    const double at = travel(&scene);
+    assert_string_equal(tell(&scene, "\x18"), "ALARM:3\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
+                                              "[MSG:'$H'|'$X' to unlock]\r\n");
+    assert_state(&scene, "Alarm");
+    wait(&scene, 1.0);
+    assert_close(travel(&scene), at, 1e-9);
+    assert_string_equal(tell(&scene, "$J=G91 G21 X1 F60\n"), "error:8\r\n");
+    assert_string_equal(tell(&scene, "G91 G1 X1 F60\n"), "error:9\r\n");
+    assert_string_equal(tell(&scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+    assert_state(&scene, "Idle");
+}
+
+static void a_reset_at_rest_only_greets(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    assert_string_equal(tell(&scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    tell(&scene, "!");
+    assert_string_equal(tell(&scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_state(&scene, "Idle");
+}
+
+static void a_program_move_beyond_the_travel_alarms_until_reset(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    assert_string_equal(tell(&scene, "G91 G1 X100 F600\n"),
+                        "ALARM:2\r\n[MSG:Reset to continue]\r\n");
+    assert_string_equal(tell(&scene, "$X\n"), "error:3\r\n");
+    tell(&scene, "\x18");
+    assert_string_equal(tell(&scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+}
+
+static void homing_brings_the_clamp_to_the_start(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    tell(&scene, "$J=G91 G21 X20 F600\n");
+    wait(&scene, 3.0);
+    assert_string_equal(tell(&scene, "$H\n"), "");
+    assert_state(&scene, "Home");
+    wait(&scene, 2.0);
+    assert_string_equal(tell(&scene, "$J=G91 G21 X1 F60\n"), "");
+    wait(&scene, 10.0);
+    assert_string_equal(listen(&scene), "ok\r\nok\r\n");
+    wait(&scene, 2.0);
+    assert_close(travel(&scene), 1.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(&scene, "$22=0\n"), "ok\r\n");
+    assert_string_equal(tell(&scene, "$H\n"), "error:5\r\n");
+}
+
+static void a_reset_while_homing_is_alarm_six(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    tell(&scene, "$H\n");
+    wait(&scene, 0.1);
+    assert_int_equal(strncmp(tell(&scene, "\x18"), "ALARM:6\r\n", 9), 0);
+}
+
+static void lost_steps_stay_until_homed(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct wb_sim_stage_settings settings = plain;
+    settings.lost_steps = 0.8 * WB_MM;
+    settings.lost_at = 20.0 * WB_MM;
+    open_scene(&scene, &settings);
+    tell(&scene, "$J=G91 G21 X30 F600\n");
+    double before = 0.0;
+    for (int i = 0; i < 400; i++) {
+        wait(&scene, 0.01);
+        assert_true(travel(&scene) >= before - 1e-9);
+        before = travel(&scene);
+    }
+    assert_close(travel(&scene), 29.2 * WB_MM, 2e-6);
+    tell(&scene, "$J=G91 G21 X-30 F600\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), -0.8 * WB_MM, 2e-6);
+    tell(&scene, "$H\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), 0.0, 2e-6);
+}
+
+static void reports_have_the_work_offset_now_and_then(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    int offsets = 0;
+    for (int i = 0; i < 100; i++)
+        offsets += strstr(tell(&scene, "?"), "|WCO:") != NULL;
+    assert_int_equal(offsets, 10);
+    assert_string_equal(tell(&scene, "$10=0\n"), "ok\r\n");
+    assert_non_null(strstr(tell(&scene, "?"), "WPos:"));
+}
+
+static void a_reset_empties_the_receive_buffer(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    tell(&scene, "$J=G91 G21 X1");
+    tell(&scene, "\x18");
+    assert_string_equal(tell(&scene, "\n"), "ok\r\n");
+}
+
+static void endless_lines_are_refused(void **state)
+{
+    (void)state;
+    struct scene scene;
+    char flood[1000];
+    open_scene(&scene, &plain);
+    memset(flood, 'X', sizeof flood);
+    wb_sim_stage_receive(&scene.stage, 0.0, flood, 100);
+    assert_string_equal(tell(&scene, "\n"), "error:11\r\n");
+    wb_sim_stage_receive(&scene.stage, 0.0, flood, sizeof flood);
+    assert_non_null(strstr(listen(&scene), "error:11\r\n"));
+    assert_string_equal(tell(&scene, "$I\n") + strlen(scene.said) - 4, "ok\r\n");
+}
+
+static void with_a_time_scale_feeds_are_the_hosts(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct wb_sim_stage_settings settings = plain;
+    settings.time_scale = 10.0;
+    open_scene(&scene, &settings);
+    /* 10 mm/s of the host is 1 mm/s of the bench. */
+    tell(&scene, "$J=G91 G21 X53 F600\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), (10.0 - 0.01) * WB_MM, 2e-6);
+    assert_non_null(strstr(tell(&scene, "?"), "FS:600,0"));
+}
+
+/* The real driver on the simulated stage. */
+struct driven {
+    struct scene scene;
+    void *state;
+    struct wb_stage_report last;
+    int reports, errors;
+    int64_t now_ns;
+};
+
+static void keep_report(void *context, const struct wb_stage_report *report)
+{
+    struct driven *const driven = context;
+    driven->last = *report;
+    driven->reports++;
+}
+
+static void keep_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
+                        const char *text)
+{
+    (void)t_ns;
+    (void)kind;
+    (void)text;
+    ((struct driven *)context)->errors += level == WB_LOG_ERROR;
+}
+
+static void exchange(struct driven *driven, struct wb_outbox *outbox)
+{
+    const struct wb_sink sink = {.context = driven, .stage = keep_report, .remark = keep_remark};
+    driven->scene.t = wb_seconds_from_ns(driven->now_ns);
+    wb_sim_stage_receive(&driven->scene.stage, driven->scene.t, outbox->bytes, outbox->n_bytes);
+    wb_outbox_clear(outbox);
+    const char *const text = listen(&driven->scene);
+    wb_driver_grbl.receive(driven->state, driven->now_ns, (const uint8_t *)text, strlen(text),
+                           &sink);
+}
+
+static void live(struct driven *driven, double seconds)
+{
+    struct wb_outbox outbox;
+    wb_outbox_clear(&outbox);
+    for (int i = 0; i < (int)(seconds * 100.0); i++) {
+        driven->now_ns += 10 * WB_NS_PER_MS;
+        wb_driver_grbl.tick(driven->state, driven->now_ns, &outbox);
+        exchange(driven, &outbox);
+    }
+}
+
+static void command(struct driven *driven, enum wb_stage_command what, double distance,
+                    double speed)
+{
+    struct wb_outbox outbox;
+    wb_outbox_clear(&outbox);
+    assert_int_equal(wb_driver_grbl.command(driven->state, what, distance, speed, &outbox), WB_OK);
+    exchange(driven, &outbox);
+}
+
+static void open_driven(struct driven *driven)
+{
+    struct wb_rig rig;
+    struct wb_outbox outbox;
+    memset(driven, 0, sizeof *driven);
+    memset(&rig, 0, sizeof rig);
+    rig.stage.axis = 'X';
+    rig.stage.down = 1;
+    rig.time_scale = 1.0;
+    open_scene(&driven->scene, &plain);
+    driven->state = calloc(1, wb_driver_grbl.state_size);
+    assert_non_null(driven->state);
+    assert_int_equal(wb_driver_grbl.init(driven->state, &rig), WB_OK);
+    wb_outbox_clear(&outbox);
+    wb_driver_grbl.start(driven->state, 0, &outbox);
+    exchange(driven, &outbox);
+    live(driven, 0.1);
+    assert_true(wb_driver_grbl.ready(driven->state));
+}
+
+static void the_real_driver_jogs_holds_resets_and_homes(void **state)
+{
+    (void)state;
+    struct driven driven;
+    open_driven(&driven);
+    assert_close(driven.last.position, -62.0 * WB_MM, 1e-9);
+    command(&driven, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM, 10.0 * WB_MM);
+    live(&driven, 1.0);
+    assert_int_equal(driven.last.state, WB_STAGE_JOG);
+    command(&driven, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
+    live(&driven, 0.5);
+    assert_int_equal(driven.last.state, WB_STAGE_IDLE);
+    const double held = driven.last.position;
+    assert_true(held > -53.0 * WB_MM && held < -50.0 * WB_MM);
+    assert_int_equal(driven.errors, 0);
+
+    command(&driven, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM, 10.0 * WB_MM);
+    live(&driven, 1.0);
+    command(&driven, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
+    live(&driven, 0.5);
+    assert_int_equal(driven.last.state, WB_STAGE_ALARM);
+    assert_int_equal(driven.last.alarm, 3);
+    assert_int_equal(driven.errors, 1);
+
+    command(&driven, WB_STAGE_COMMAND_HOME, 0.0, 0.0);
+    live(&driven, 15.0);
+    assert_int_equal(driven.last.state, WB_STAGE_IDLE);
+    assert_int_equal(driven.last.alarm, 0);
+    assert_close(driven.last.position, -62.0 * WB_MM, 1e-9);
+    command(&driven, WB_STAGE_COMMAND_JOG, 100.0 * WB_MM, 10.0 * WB_MM);
+    assert_int_equal(driven.errors, 2);
+    free(driven.state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(settings_and_questions_are_answered),
+        cmocka_unit_test(a_jog_moves_the_clamp_at_the_feed),
+        cmocka_unit_test(down_can_be_the_negative_direction),
+        cmocka_unit_test(jogs_beyond_the_travel_are_refused),
+        cmocka_unit_test(jogs_in_a_row_run_on_without_a_halt),
+        cmocka_unit_test(opposite_jogs_wait_for_each_other),
+        cmocka_unit_test(a_hold_cancels_a_jog_and_ends_idle),
+        cmocka_unit_test(a_hold_at_rest_deafens_until_resumed),
+        cmocka_unit_test(a_program_move_holds_and_goes_on),
+        cmocka_unit_test(a_reset_in_motion_alarms_and_locks),
+        cmocka_unit_test(a_reset_at_rest_only_greets),
+        cmocka_unit_test(a_program_move_beyond_the_travel_alarms_until_reset),
+        cmocka_unit_test(homing_brings_the_clamp_to_the_start),
+        cmocka_unit_test(a_reset_while_homing_is_alarm_six),
+        cmocka_unit_test(lost_steps_stay_until_homed),
+        cmocka_unit_test(reports_have_the_work_offset_now_and_then),
+        cmocka_unit_test(a_reset_empties_the_receive_buffer),
+        cmocka_unit_test(endless_lines_are_refused),
+        cmocka_unit_test(with_a_time_scale_feeds_are_the_hosts),
+        cmocka_unit_test(the_real_driver_jogs_holds_resets_and_homes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
