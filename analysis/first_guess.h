@@ -39,10 +39,9 @@ struct wb_first_guess {
 };
 
 /* All of it from an averaged curve of a wire with `info`'s length and diameter. The force at a
- * deflection is that of a straight line fitted to the five grid points around it; the slope past
- * yield is fitted over the 3 % of L behind the yield point. A curve that cannot serve is
- * WB_ERR_DATA with the reason: too short to yield, reversed sign, not rising, falling behind the
- * yield point. */
+ * deflection is that of a straight line fitted within 1.25 % of L around it; the slope past yield
+ * is fitted over the 3 % of L behind the yield point. A curve that cannot serve is WB_ERR_DATA with
+ * the reason: too short to yield, reversed sign, not rising, falling behind the yield point. */
 WB_MUST_CHECK enum wb_status wb_first_guess_run(struct wb_first_guess *guess,
                                                 const struct wb_curve *curve,
                                                 const struct wb_test_info *info,

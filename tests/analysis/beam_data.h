@@ -1,0 +1,144 @@
+/* Datasets made by the 1D beam itself with the paper's properties, for tests of the calibration;
+ * and a log sink that keeps the last message. */
+#ifndef WB_TESTS_ANALYSIS_BEAM_DATA_H
+#define WB_TESTS_ANALYSIS_BEAM_DATA_H
+
+#include "tests/check.h"
+
+#include <stdlib.h>
+
+#include "analysis/computed.h"
+#include "analysis/dataset.h"
+#include "base/log.h"
+#include "base/units.h"
+
+/* Coarser than the default 50 elements: fast, and the same on both sides of every comparison. */
+#define BEAM_ELEMENTS 10
+
+/* Tables 2 and 3 of the paper: mm, g/cm3, MPa. */
+struct paper_wire {
+    const char *name;
+    double outer_mm, density, modulus, yield, strength, exponent;
+};
+static const struct paper_wire paper_wires[3] = {
+    {"type1", 1.10, 4.06, 5021, 3.90, 3222, 0.99},
+    {"type2", 1.25, 4.31, 5641, 4.95, 850, 0.78},
+    {"type3", 1.40, 4.97, 4528, 4.52, 1327, 0.90},
+};
+
+static inline struct wb_material beam_material(int type)
+{
+    const struct paper_wire *const wire = &paper_wires[type];
+    return (struct wb_material){
+        .hardening = WB_HARDENING_ISOTROPIC_POWER,
+        .youngs_modulus = wire->modulus * WB_MPA,
+        .poissons_ratio = 0.39,
+        .yield_stress = wire->yield * WB_MPA,
+        .strength_coefficient = wire->strength * WB_MPA,
+        .hardening_exponent = wire->exponent,
+    };
+}
+
+/* The paper's test: strand of 760 mm, counterweight 2.7 g, weight; a bow of constant curvature. */
+static inline struct wb_test_info beam_info(int type, double length, double bow)
+{
+    const struct paper_wire *const wire = &paper_wires[type];
+    const double diameter = wire->outer_mm * WB_MM;
+    struct wb_test_info info = {
+        .sample = 1,
+        .length = length,
+        .outer_diameter = diameter,
+        .mass_per_length = wire->density * WB_G_PER_CM3 * M_PI * diameter * diameter / 4.0,
+        .poissons_ratio = 0.39,
+        .strand_length = 0.76,
+        .counterweight = 2.7e-3,
+        .gravity = WB_STANDARD_GRAVITY,
+        .rest_level = (double)NAN,
+        .is_simulation = true,
+    };
+    snprintf(info.wire, sizeof info.wire, "%s", wire->name);
+    if (bow != 0.0) {
+        info.n_natural_shape = 1;
+        info.natural_shape[0] = 2.0 * bow / length;
+    }
+    return info;
+}
+
+/* Rows every `step` up to `last`, forces times `factor`, and shapes of seven markers. */
+static inline void beam_dataset(struct wb_dataset *dataset, const struct wb_test_info *info,
+                                const struct wb_material *material, double step, double last,
+                                double factor)
+{
+    const struct wb_computed_settings settings = {.n_elements = BEAM_ELEMENTS};
+    struct wb_computed *computed;
+    double s[7], x[7], y[7];
+    bool reached;
+    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    dataset->info = *info;
+    for (int i = 0; i < 7; i++)
+        s[i] = info->length * i / 6;
+    assert_int_equal(wb_computed_create(&computed, info, material, &settings), WB_OK);
+    assert_int_equal(wb_computed_start(computed, material, &reached), WB_OK);
+    assert_true(reached);
+    for (int k = 0; k * step <= last * (1.0 + 1e-9); k++) {
+        struct wb_row row = {.t = 1e3 * k * step, .cycle = 1, .deflection = k * step};
+        row.stage = row.tip_x = row.tip_angle = (double)NAN;
+        if (k > 0) {
+            assert_int_equal(wb_computed_move(computed, k * step, &row.force, &reached), WB_OK);
+            assert_true(reached);
+        }
+        row.force *= factor;
+        row.tension = row.force;
+        assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+        wb_computed_shape(computed, 7, s, x, y);
+        for (int i = 0; i < 7; i++) {
+            const struct wb_shape_row shape = {row.t, row.deflection, i, s[i], x[i], y[i]};
+            assert_int_equal(wb_dataset_add_shape_row(dataset, &shape), WB_OK);
+        }
+    }
+    wb_computed_destroy(computed);
+}
+
+/* A dataset from a function of deflection, for curves without a beam. */
+static inline void plain_dataset(struct wb_dataset *dataset, double (*force)(double), double step,
+                                 double last)
+{
+    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    dataset->info = beam_info(0, 0.085, 0.0);
+    for (int k = 0; k * step <= last * (1.0 + 1e-9); k++) {
+        struct wb_row row = {.t = 1e3 * k * step, .cycle = 1, .deflection = k * step};
+        row.stage = row.tip_x = row.tip_angle = (double)NAN;
+        row.force = row.tension = force(row.deflection);
+        assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+    }
+}
+
+/* The last message logged while last_message_install() holds. */
+static char last_message[512];
+static int message_count;
+
+static inline void keep_message(void *context, enum wb_log_level level, const char *domain,
+                                const char *message)
+{
+    (void)context;
+    (void)domain;
+    if (level <= WB_LOG_WARNING) {
+        snprintf(last_message, sizeof last_message, "%s", message);
+        message_count++;
+    }
+}
+
+static inline void last_message_install(void)
+{
+    last_message[0] = '\0';
+    message_count = 0;
+    wb_log_set_sink(keep_message, NULL);
+}
+
+#define assert_said(part)                                                                          \
+    do {                                                                                           \
+        if (!strstr(last_message, (part)))                                                         \
+            fail_msg("expected a message with '%s', got '%s'", (part), last_message);              \
+    } while (0)
+
+#endif
