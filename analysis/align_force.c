@@ -48,14 +48,18 @@ static double settle_time(const struct wb_align *align)
     return fmax(SETTLE_DELAYS * align->filter_delay, LEAST_SETTLE);
 }
 
+static double reading_period(const struct wb_align *align)
+{
+    const struct wb_align_reading *const r = wb_align_readings(align);
+    const size_t n = align->readings.n;
+    return n > 1 && r[n - 1].t > r[0].t ? (r[n - 1].t - r[0].t) / (double)(n - 1) : 1.0;
+}
+
 /* Standard deviation of a row's reading: a straight line through n readings, taken at its middle,
  * has that of a mean. */
 static double row_noise(const struct wb_align *align)
 {
-    const struct wb_align_reading *const r = wb_align_readings(align);
-    const size_t n = align->readings.n;
-    const double period = n > 1 ? (r[n - 1].t - r[0].t) / (double)(n - 1) : 1.0;
-    const double in_row = fmax(1.0 / align->settings.row_rate / period, 5.0);
+    const double in_row = fmax(1.0 / align->settings.row_rate / reading_period(align), 5.0);
     return align->reading_noise / sqrt(in_row);
 }
 
@@ -174,7 +178,7 @@ static void find_zeros(struct wb_align *align)
 {
     const double tare_t = tare_time(align);
     align->zeros[0] = (struct wb_align_zero){
-        .t = tare_t,
+        .t = tare_t - 0.5 * (double)align->tare_samples * reading_period(align),
         .deviation = align->reading_noise / sqrt((double)align->tare_samples),
     };
     align->n_zeros = 1;
@@ -332,6 +336,8 @@ static bool find_taut(struct wb_align *align, size_t *settled)
            (!is_first_loading(&align->rows[i]) || align->rows[i].t < align->taut_t + settle))
         i++;
     *settled = i;
+    if (i < align->n_rows)
+        align->settled_t = align->rows[i].t;
     return i < align->n_rows;
 }
 

@@ -1,20 +1,37 @@
 /* The specimen's natural shape: its bow, from what it does at zero deflection.
  *
- * Small slopes, clamped at s = 0, a net vertical force P at the tip, weight w per length:
- *     y(s) = n(s) + P/EI (L s^2/2 - s^3/6) - w/EI (s^4/24 - L s^3/6 + L^2 s^2/4),
- * n(s) the natural shape. Wherever the tip is held (by strand or rest), its height Y = y(L) tells
- * P: y(s) - Y p(u) - w L^4/EI (p(u)/8 - g(u)) = n(s) - n(L) p(u),    u = s/L, p(u) = (3 u^2 -
- * u^3)/2,  g(u) = u^4/24 - u^3/6 + u^2/4. The right side is small, n(L)/13.5 at most for a uniform
- * curvature, and each marker has an error of its own. The force knows more: at Y = 0 the strand
- * carries F_0 = counterweight + 3/8 w L - n(L) 3 EI/L^3, and 3 EI/L^3 is the initial slope of the
- * loading curve. Both are joined by generalised least squares for theta0(s) = sum_i b_i u^(i+1),
- * n(s) = L sum_i b_i u^(i+2)/(i+2).
+ * Small slopes, clamped at s = 0, a net vertical force P at the tip, weight w per length, natural
+ * shape n(s), u = s/L:
+ *
+ *     y(s) = n(s) + P/EI (L s^2/2 - s^3/6) - w/EI (s^4/24 - L s^3/6 + L^2 s^2/4)
+ *
+ * Wherever the tip is held (by strand or rest), its height Y = y(L) tells P, and then
+ *
+ *     y(s) - Y p(u) - w L^4/EI (p(u)/8 - g(u)) = n(s) - n(L) p(u)
+ *
+ *     p(u) = (3 u^2 - u^3)/2,  g(u) = u^4/24 - u^3/6 + u^2/4
+ *
+ * The right side is small, n(L)/13.5 at most for a uniform curvature, and each marker has an error
+ * of its own. The force knows more: the natural tip offset is where the loading curve would carry
+ * nothing but the weights, F_w = counterweight + 3/8 w L.
+ *
+ * A wire yields early, so it matters how it came to zero deflection. Bowed downwards it was lifted
+ * by the rest from its natural shape: the loading curve goes on from there, and is extrapolated
+ * back (second degree) to F_w. Bowed upwards it was pulled down onto the rest by the weights, and
+ * loading reverses that: by Masing's rule the reversed branch is the first one doubled, so the
+ * natural place lies half-way between the rest, force F_r, and where the force is 2 F_w - F_r.
+ *
+ * Force and markers are joined by generalised least squares for
+ *
+ *     theta0(s) = sum_i b_i u^(i+1),  n(s) = L sum_i b_i u^(i+2)/(i+2)
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
+#include <gsl/gsl_multifit.h>
 
 #include "analysis/align_private.h"
 #include "base/units.h"
@@ -25,8 +42,11 @@
 #define NEAR_ZERO (1.5 * WB_MM)
 /* Markers sit on the wire no better than this when the specimen file does not say. */
 #define DEFAULT_OFFSET_ERROR (0.05 * WB_MM)
-/* Relative error of the initial slope as a bending stiffness, beyond its noise. */
-#define STIFFNESS_ERROR 0.02
+/* The loading curve is extrapolated from so much of it, over the length. */
+#define EXTRAPOLATION_PART 0.06
+/* The bow from the force is uncertain by this part of what following the wire's yielding changed
+ * against a straight line. */
+#define PATH_ERROR 0.2
 /* A second term must be so many times its uncertainty. */
 #define SIGNIFICANT 3.0
 #define MAX_TERMS 2
@@ -102,30 +122,144 @@ static void observe_markers(const struct wb_align *align, double weight, double 
     }
 }
 
-/* The bow as the force tells it. The level of zero deflection is the tip's marker over the
- * clamp's. */
-static double observe_force(const struct wb_align *align, double weight, struct observations *obs,
-                            double *deviation)
+/* --- the bow from the force --- */
+
+struct loading {
+    size_t n;
+    double *y, *force; /* m, N: vertical force less F_w; one allocation, owned by y */
+};
+
+static enum wb_status gather_loading(const struct wb_align *align, double carried,
+                                     struct loading *loading)
+{
+    loading->n = 0;
+    loading->y = malloc(2 * align->n_rows * sizeof *loading->y);
+    if (!loading->y)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+    loading->force = loading->y + align->n_rows;
+    for (size_t i = 0; i < align->n_rows && align->rows[i].cycle == 1; i++) {
+        const struct wb_align_row *const row = &align->rows[i];
+        if (row->phase != WB_PHASE_LOAD || row->t < align->settled_t)
+            continue;
+        loading->y[loading->n] = row->tip_y;
+        loading->force[loading->n++] = row->vertical - carried;
+    }
+    return WB_OK;
+}
+
+/* Second-degree fit of the force up to `highest`: coefficients of 1, y, y^2. */
+static bool fit_parabola(const struct loading *loading, double highest, double *coefficients)
+{
+    size_t n = 0;
+    while (n < loading->n && loading->y[n] < highest)
+        n++;
+    if (n < 10)
+        return false;
+    gsl_matrix *const x = gsl_matrix_alloc(n, 3);
+    gsl_matrix *const covariance = gsl_matrix_alloc(3, 3);
+    gsl_multifit_linear_workspace *const work = gsl_multifit_linear_alloc(n, 3);
+    gsl_vector_view c = gsl_vector_view_array(coefficients, 3);
+    gsl_vector_view f = gsl_vector_view_array(loading->force, n);
+    bool fitted = false;
+    if (x && covariance && work) {
+        for (size_t i = 0; i < n; i++) {
+            gsl_matrix_set(x, i, 0, 1.0);
+            gsl_matrix_set(x, i, 1, loading->y[i]);
+            gsl_matrix_set(x, i, 2, loading->y[i] * loading->y[i]);
+        }
+        double squares;
+        fitted = gsl_multifit_linear(x, &f.vector, &c.vector, covariance, &squares, work) ==
+                     GSL_SUCCESS &&
+                 coefficients[1] > 0.0;
+    }
+    gsl_multifit_linear_free(work);
+    gsl_matrix_free(covariance);
+    gsl_matrix_free(x);
+    return fitted;
+}
+
+/* The root of c0 + c1 y + c2 y^2 next to zero on the rising branch; its top when there is none. */
+static double root_near_zero(const double *c)
+{
+    const double discriminant = c[1] * c[1] - 4.0 * c[0] * c[2];
+    if (!(discriminant > 0.0))
+        return -0.5 * c[1] / c[2];
+    return -2.0 * c[0] / (c[1] + sqrt(discriminant));
+}
+
+/* Deflection at which the loading curve passes a force: the first mean of ten rows beyond it, then
+ * a straight line through a millimetre on both sides. NaN when it does not get there. */
+static double crossing(const struct loading *loading, double force)
+{
+    enum {
+        MEAN = 10
+    };
+    double sum = 0.0;
+    size_t i = 0;
+    for (; i < loading->n; i++) {
+        sum += loading->force[i] - (i >= MEAN ? loading->force[i - MEAN] : 0.0);
+        if (i + 1 >= MEAN && sum / MEAN > force)
+            break;
+    }
+    if (i >= loading->n)
+        return (double)NAN;
+    const double about = loading->y[i >= MEAN / 2 ? i - MEAN / 2 : 0];
+    size_t first = 0, last = i + 1;
+    while (first < i && loading->y[first] < about - 1.0 * WB_MM)
+        first++;
+    while (last < loading->n && loading->y[last] < about + 1.0 * WB_MM)
+        last++;
+    struct wb_align_line line;
+    if (!wb_align_fit_line(loading->y + first, loading->force + first, last - first, &line) ||
+        !(line.slope > 0.0))
+        return (double)NAN;
+    return (force - line.value) / line.slope;
+}
+
+/* The natural tip offset, and in `path` how uncertain it is for the way the wire yielded. */
+static double bow_from_loading(const struct wb_align *align, const struct loading *loading,
+                               double *path)
+{
+    double c[3];
+    const double straight = -(align->zero_force - align->carried) / align->stiffness;
+    *path = PATH_ERROR * fabs(straight);
+    if (!fit_parabola(loading, EXTRAPOLATION_PART * align->specimen.length, c))
+        return straight;
+    const double rest = align->dataset->info.rest_level;
+    const double at_rest = isfinite(rest) ? c[0] + rest * (c[1] + rest * c[2]) : 1.0;
+    double bow = root_near_zero(c);
+    if (at_rest < 0.0) {
+        const double mirrored = crossing(loading, -at_rest);
+        if (isfinite(mirrored))
+            bow = 0.5 * (rest + mirrored);
+    }
+    *path = PATH_ERROR * fabs(bow - straight);
+    return bow;
+}
+
+/* The level of zero deflection is the tip's marker over the clamp's, so both their errors are in
+ * the bow as they are. */
+static void observe_force(const struct wb_align *align, double bow, double path,
+                          struct observations *obs, double *deviation)
 {
     const int tip = align->specimen.n_markers - 1;
-    const double length = align->specimen.length, k = align->stiffness;
-    const double carried = align->rig.strand.counterweight * align->gravity;
-    const double bow = (carried + 0.375 * weight * length - align->zero_force) / k;
+    const double length = align->specimen.length;
     const double own = align->specimen.marker_offset_uncertainty > 0.0
                            ? align->specimen.marker_offset_uncertainty
                            : DEFAULT_OFFSET_ERROR;
-    const double zero = hypot(align->zero_force_deviation, align->zeros[0].deviation) / k;
-    const double slope = bow * hypot(align->stiffness_deviation / k, STIFFNESS_ERROR);
+    const double zero =
+        hypot(align->zero_force_deviation, align->zeros[0].deviation) / align->stiffness;
     for (int term = 0; term < MAX_TERMS; term++)
         obs->design[obs->n][term] = length / (term + 2);
     obs->value[obs->n] = bow;
     obs->errors[obs->n][0] = -own;
     obs->errors[obs->n][tip] = own;
-    obs->errors[obs->n][tip + 1] = hypot(zero, slope);
-    *deviation = sqrt(2.0 * own * own + zero * zero + slope * slope);
+    obs->errors[obs->n][tip + 1] = hypot(zero, path);
+    *deviation = sqrt(2.0 * own * own + zero * zero + path * path);
     obs->n++;
-    return bow;
 }
+
+/* --- joining --- */
 
 struct estimate {
     int n_terms;
@@ -260,6 +394,7 @@ enum wb_status wb_align_natural(struct wb_align *align)
     const double length = align->specimen.length;
     const double weight = wb_wire_mass_per_length(&align->wire) * align->gravity;
     memset(&obs, 0, sizeof obs);
+    align->carried = align->rig.strand.counterweight * align->gravity + 0.375 * weight * length;
     info->rest_level = find_rest(align);
     struct estimate from_markers = {.bow = (double)NAN, .bow_deviation = (double)NAN};
     struct estimate estimate;
@@ -268,8 +403,14 @@ enum wb_status wb_align_natural(struct wb_align *align)
     if (obs.n > 0 && !estimate_terms(&obs, 0, 1, length, &from_markers))
         from_markers.bow = from_markers.bow_deviation = (double)NAN;
     /* Force tells the bow only when the tare is known to be that of an unloaded cell. */
-    if (align->slack_seen)
-        from_force = observe_force(align, weight, &obs, &from_force_deviation);
+    if (align->slack_seen) {
+        struct loading loading;
+        double path;
+        WB_TRY(gather_loading(align, align->carried, &loading));
+        from_force = bow_from_loading(align, &loading, &path);
+        free(loading.y);
+        observe_force(align, from_force, path, &obs, &from_force_deviation);
+    }
     if (obs.n == 0 || !estimate_shape(&obs, length, &estimate)) {
         wb_align_warn(align, "the natural shape cannot be told from this recording: the wire is "
                              "taken as straight");

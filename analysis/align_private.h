@@ -122,12 +122,13 @@ struct wb_align {
     double taut_level;    /* m: tip_y - lean - travel while the strand is taut; NaN unknown */
     size_t n_zeros;
     struct wb_align_zero zeros[WB_ALIGN_MAX_ZEROS];
-    bool slack_seen; /* some zero-load stretch was seen, so that the tare is a true zero */
-    double taut_t;   /* s: where the first loading became taut */
+    bool slack_seen;  /* some zero-load stretch was seen, so that the tare is a true zero */
+    double taut_t;    /* s: where the first loading became taut */
+    double settled_t; /* s: from where on the filter no longer remembers that */
+    double carried;   /* N: weights that the strand carries at zero deflection */
     double zero_force, zero_force_deviation; /* N: vertical force at zero deflection */
     double stiffness, stiffness_deviation;   /* N/m: initial slope of the loading curve */
-    double speed;                   /* m/s of bench time: typical deflection rate of the loadings */
-    size_t start_first, start_last; /* rows at rest or near zero deflection, before loading */
+    double speed; /* m/s of bench time: typical deflection rate of the loadings */
 };
 
 struct wb_align_reading *wb_align_readings(const struct wb_align *align);

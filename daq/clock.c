@@ -294,28 +294,49 @@ size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, do
     return n_segments;
 }
 
-/* The least lateness of readings first..last-1 behind a constant rate. */
+/* Arrivals less a constant rate, s. */
+static double lateness(const int64_t *host_ns, size_t i, size_t zero, double period)
+{
+    return wb_seconds_from_ns(host_ns[i] - host_ns[zero]) - ((double)i - (double)zero) * period;
+}
+
 static double least_lateness(const int64_t *host_ns, size_t first, size_t last, size_t zero,
                              double period)
 {
     double least = HUGE_VAL;
-    for (size_t i = first; i < last; i++) {
-        const double late =
-            wb_seconds_from_ns(host_ns[i] - host_ns[zero]) - ((double)i - (double)zero) * period;
-        least = fmin(least, late);
-    }
+    for (size_t i = first; i < last; i++)
+        least = fmin(least, lateness(host_ns, i, zero, period));
     return least;
+}
+
+/* How much arrivals usually scatter: the median, over windows, of the largest lateness over the
+ * least. */
+static double usual_jitter(const int64_t *host_ns, size_t n, size_t window, double period)
+{
+    enum {
+        MOST = 256
+    };
+    double spreads[MOST];
+    size_t n_spreads = 0;
+    const size_t stride = n / window > MOST ? n / MOST : window;
+    for (size_t first = 0; first + window <= n && n_spreads < MOST; first += stride) {
+        double most = -HUGE_VAL;
+        for (size_t i = first; i < first + window; i++)
+            most = fmax(most, lateness(host_ns, i, first, period));
+        spreads[n_spreads++] = most - least_lateness(host_ns, first, first + window, first, period);
+    }
+    return n_spreads > 0 ? median(spreads, n_spreads) : 0.0;
 }
 
 size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts, size_t most)
 {
-    enum {
-        WINDOW = 32
-    };
     if (n == 0 || most == 0)
         return 0;
     const double period =
         n > 1 ? wb_seconds_from_ns(host_ns[n - 1] - host_ns[0]) / (double)(n - 1) : 0.0;
+    /* A fifth of a second, for the host to catch up: 32 to 1024 readings. */
+    const size_t window = (size_t)fmax(32.0, fmin(1024.0, period > 0.0 ? 0.2 / period : 32.0));
+    const double jitter = usual_jitter(host_ns, n, window, period);
     size_t n_segments = 0;
     starts[n_segments++] = 0;
     for (size_t i = 1; i < n && n_segments < most; i++) {
@@ -323,11 +344,11 @@ size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts,
         if (wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]) < fmax(2.5 * period, 5e-3))
             continue;
         const size_t start = starts[n_segments - 1];
-        const size_t before = i - start > WINDOW ? i - WINDOW : start;
-        const size_t after = n - i > WINDOW ? i + WINDOW : n;
+        const size_t before = i - start > window ? i - window : start;
+        const size_t after = n - i > window ? i + window : n;
         const double shift = least_lateness(host_ns, i, after, i, period) -
                              least_lateness(host_ns, before, i, i, period);
-        if (shift > fmax(0.8 * period, 3e-3))
+        if (shift > fmax(fmax(0.8 * period, 3e-3), 1.5 * jitter))
             starts[n_segments++] = i;
     }
     return n_segments;
