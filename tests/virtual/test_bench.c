@@ -240,10 +240,10 @@ static void a_jog_loads_the_wire(void **state)
     connect_to(scene);
     listen_for(scene, 0.2);
     const double zero = scene->ears.force[scene->ears.n_load - 1];
-    assert_int_equal(wb_acquisition_command(scene->acquisition, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM,
+    assert_int_equal(wb_acquisition_command(scene->acquisition, WB_STAGE_COMMAND_JOG, 10.0 * WB_MM,
                                             20.0 * WB_MM),
                      WB_OK);
-    listen_for(scene, 1.5);
+    listen_for(scene, 0.9);
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(scene->acquisition);
     assert_int_equal(latest->stage.state, WB_STAGE_IDLE);
     assert_close(latest->stage.position, -52.0 * WB_MM, 1e-6);
