@@ -12,6 +12,7 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/remark_gate.h"
 #include "daq/stream.h"
 
 #define WB_LOG_DOMAIN "acquisition"
@@ -21,12 +22,6 @@
 /* Reads of one stream in one step, so that a flood on one cannot starve the others. */
 #define READS_A_STEP 64
 #define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
-/* Remarks of one stream that are stored or shown in one second: a port full of rubbish would
- * otherwise fill the disk with complaints. */
-#define REMARKS_A_SECOND 20
-/* Remarks of one kind are shown to the operator this often; the recording has them all. */
-#define SHOW_PERIOD_NS (10 * WB_NS_PER_S)
-#define SHOWN_KINDS 16
 
 struct line {
     struct wb_acquisition *owner;
@@ -35,19 +30,14 @@ struct line {
     void *state;
     struct wb_stream *stream;
     int id; /* in the recording */
-    bool reported_lost, write_failed;
+    bool reported_lost;
     int64_t write_again_ns; /* after a port that took no bytes: not before */
     uint64_t counted;       /* valid samples so far */
     uint64_t rate_from;     /* counted at rate_ns */
     int64_t rate_ns;
     bool has_rate;
-    int64_t remark_second;
-    unsigned remarks, remarks_held;
-    struct {
-        char kind[32];
-        int64_t t_ns;
-    } shown[SHOWN_KINDS];
-    uint64_t kernel_drops; /* noted so far */
+    struct wb_remark_gate gate;
+    uint64_t kernel_drops; /* datagrams the kernel lost, as far as told */
 };
 
 struct wb_acquisition {
@@ -59,7 +49,7 @@ struct wb_acquisition {
     struct line *by_role[WB_INTERLOCK_ROLES];
     struct wb_interlock interlock;
     struct wb_stop stop;
-    bool moving, started;
+    bool moving, started, hold_sent;
     enum wb_stop_state reported_stop;
     struct wb_acquisition_latest latest;
     int64_t next_tick_ns;
@@ -105,6 +95,17 @@ static void lose_device(struct line *line)
     a->interlock.lost[line->role] = true;
 }
 
+/* False when a write would have to wait: asked before all writes that are not urgent, because
+ * waiting for one instrument must not delay the hold byte to another. */
+static bool takes_bytes(const struct line *line)
+{
+    int descriptors[2];
+    if (wb_stream_descriptors(line->stream, descriptors) == 0)
+        return true;
+    struct pollfd polled = {.fd = descriptors[0], .events = POLLOUT};
+    return poll(&polled, 1, 0) > 0;
+}
+
 /* Writes what a driver wants to send. A port that took no bytes is left alone for a second, so that
  * waiting for it cannot hold up the others; real-time bytes of the stage are always tried. */
 static enum wb_status send_outbox(struct line *line, bool urgent)
@@ -118,6 +119,10 @@ static enum wb_status send_outbox(struct line *line, bool urgent)
         status = WB_ERR_IO;
     else if (!urgent && now_ns < line->write_again_ns)
         status = WB_ERR_TIMEOUT;
+    else if (!urgent && outbox->n_entries > 0 && !takes_bytes(line)) {
+        line->write_again_ns = now_ns + WB_NS_PER_S;
+        status = WB_ERR_TIMEOUT;
+    }
     for (size_t i = 0; status == WB_OK && i < outbox->n_entries; i++) {
         status = wb_stream_write(line->stream, outbox->bytes + begin, outbox->ends[i] - begin);
         begin = outbox->ends[i];
@@ -157,6 +162,7 @@ static void hold_now(struct wb_acquisition *a)
     enum wb_status status = WB_OK;
     if (stage && a->moving)
         status = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
+    a->hold_sent = status == WB_OK;
     const int64_t now_ns = wb_acquisition_now_ns();
     if (!stage || !a->moving)
         wb_stop_settle(&a->stop, WB_STOP_STANDING, now_ns);
@@ -207,6 +213,8 @@ static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
     enum wb_status status = WB_OK;
     switch (wb_stop_tick(&a->stop, now_ns)) {
     case WB_STOP_DO_ASK:
+        if (a->stop.state == WB_STOP_HOLDING && !a->hold_sent)
+            a->hold_sent = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0) == WB_OK;
         status = send_command(stage, WB_STAGE_COMMAND_STATUS, 0.0, 0.0);
         break;
     case WB_STOP_DO_RESET:
@@ -307,54 +315,6 @@ static void on_probe(void *context, const struct wb_clock_probe *probe)
         a->user.probe(a->user.context, probe);
 }
 
-/* Counts remarks by the second; those above the allowance are only counted. */
-static bool remark_allowed(struct line *line, int64_t t_ns)
-{
-    struct wb_acquisition *const a = line->owner;
-    const int64_t second = t_ns / WB_NS_PER_S;
-    if (second != line->remark_second) {
-        if (line->remarks_held > 0) {
-            char text[96];
-            snprintf(text, sizeof text, "%u more remarks of the %s stream within a second",
-                     line->remarks_held, wb_role_name(line->role));
-            push_event(a, t_ns, "remarks", text);
-        }
-        line->remark_second = second;
-        line->remarks = line->remarks_held = 0;
-    }
-    if (line->remarks < REMARKS_A_SECOND) {
-        line->remarks++;
-        return true;
-    }
-    line->remarks_held++;
-    return false;
-}
-
-/* Chatter is for the recording; what hints at trouble is for the operator too, but not over and
- * over. */
-static void show_remark(struct line *line, enum wb_log_level level, int64_t t_ns, const char *kind,
-                        const char *text)
-{
-    if (level > WB_LOG_WARNING) {
-        wb_debug("%s: %s", wb_role_name(line->role), text);
-        return;
-    }
-    int oldest = 0;
-    for (int i = 0; i < SHOWN_KINDS; i++) {
-        if (strcmp(line->shown[i].kind, kind) == 0) {
-            if (t_ns - line->shown[i].t_ns < SHOW_PERIOD_NS)
-                return;
-            oldest = i;
-            break;
-        }
-        if (line->shown[i].t_ns < line->shown[oldest].t_ns)
-            oldest = i;
-    }
-    snprintf(line->shown[oldest].kind, sizeof line->shown[oldest].kind, "%s", kind);
-    line->shown[oldest].t_ns = t_ns;
-    wb_warn("%s: %s", wb_role_name(line->role), text);
-}
-
 static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
                       const char *text)
 {
@@ -362,10 +322,21 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
     struct wb_acquisition *const a = line->owner;
     if (line->role == WB_ROLE_STAGE && level <= WB_LOG_WARNING)
         snprintf(a->latest.stage_error, sizeof a->latest.stage_error, "%s", text);
-    if (remark_allowed(line, t_ns)) {
-        push_event(a, t_ns, kind, text);
-        show_remark(line, level, t_ns, kind, text);
+    unsigned held;
+    const bool store = wb_remark_gate_store(&line->gate, t_ns, &held);
+    if (held > 0) {
+        char more[96];
+        snprintf(more, sizeof more, "%u more remarks of the %s stream within a second", held,
+                 wb_role_name(line->role));
+        push_event(a, t_ns, "remarks", more);
     }
+    if (store)
+        push_event(a, t_ns, kind, text);
+    /* Chatter is for the recording; what hints at trouble is for the operator too. */
+    if (level > WB_LOG_WARNING)
+        wb_debug("%s: %s", wb_role_name(line->role), text);
+    else if (wb_remark_gate_show(&line->gate, t_ns, kind))
+        wb_warn("%s: %s", wb_role_name(line->role), text);
     if (a->user.remark)
         a->user.remark(a->user.context, level, t_ns, kind, text);
 }
@@ -448,8 +419,9 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
         }
         state->lost = lost;
         state->ready = !state->gone && line->driver->ready && line->driver->ready(line->state);
+        state->drops = line->kernel_drops;
         if (a->writer)
-            state->drops = wb_writer_drops(a->writer, line->id);
+            state->drops += wb_writer_drops(a->writer, line->id);
     }
 }
 

@@ -100,7 +100,8 @@ struct wb_acquisition_stream_state {
     bool ready, lost; /* lost: silent for longer than the interlock allows */
     double rate;      /* valid samples/s, smoothed over about a second */
     uint64_t samples; /* decoded, valid or not */
-    uint64_t chunks, bytes, drops;
+    uint64_t chunks, bytes;
+    uint64_t drops; /* reads lost by the writer, and datagrams lost in the kernel */
 };
 
 struct wb_acquisition_latest {

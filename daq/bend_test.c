@@ -12,22 +12,14 @@
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "base/version.h"
-#include "daq/marker_check.h"
+#include "daq/start_check.h"
 #include "daq/test_recording.h"
 
 #define WB_LOG_DOMAIN "record"
 
 /* The stage is where it should be within this. */
 #define POSITION_TOLERANCE (0.05 * WB_MM)
-/* A zero beyond this share of the capacity is no zero: something hangs on the cell. */
-#define ZERO_SHARE 0.1
-/* Noise beyond so many times the rig's own, or this share of the capacity where it is not known. */
-#define NOISE_TIMES 5.0
-#define NOISE_SHARE 0.01
-/* A marker is seen when it is there in this share of the frames; cameras lose one now and then. */
-#define SEEN_SHARE 0.5
-#define LEAST_READINGS 10
-#define LEAST_FRAMES 10
+#define LEAST_READINGS 10 /* of a tare */
 #define CHECK_TIMEOUT_NS (5 * WB_NS_PER_S)
 
 enum phase {
@@ -43,12 +35,6 @@ enum phase {
 
 static const char *const phase_names[] = {"connecting", "check", "tare",     "down",
                                           "up",         "rest",  "stopping", "end"};
-
-/* Running mean and scatter (Welford). */
-struct average {
-    uint64_t n;
-    double mean, squares;
-};
 
 struct wb_bend_test {
     struct wb_bend_test_request request; /* its paths are not kept beyond open */
@@ -66,11 +52,10 @@ struct wb_bend_test {
     double turn_travel;           /* largest reached in this cycle */
     uint64_t reports_seen;        /* stage reports looked at */
     uint64_t stands_since;        /* reports in a row that show it standing elsewhere */
-    struct average load;          /* of check and tare */
+    struct wb_start_check check;
+    struct wb_average zero; /* N, of the tare */
     bool has_tare;
     double tare;
-    int n_frames; /* of the check */
-    int seen[WB_SPECIMEN_MAX_MARKERS];
     int64_t duration_ns;
     double hold_latency, confirm_latency; /* s; NaN without a hold */
     struct wb_bend_test_result result;
@@ -85,19 +70,6 @@ void wb_bend_test_default_request(struct wb_bend_test_request *request)
     request->check_time = 1.0;
     request->tare_time = 2.0;
     request->rest_time = 2.0;
-}
-
-static void average_add(struct average *average, double value)
-{
-    average->n++;
-    const double off = value - average->mean;
-    average->mean += off / (double)average->n;
-    average->squares += off * (value - average->mean);
-}
-
-static double average_deviation(const struct average *average)
-{
-    return average->n > 1 ? sqrt(average->squares / (double)(average->n - 1)) : 0.0;
 }
 
 /* Rig time in s as host time: a virtual rig may run faster. */
@@ -116,8 +88,10 @@ static double travel_of(const struct wb_bend_test *test, double position)
 static void on_load(void *context, const struct wb_load_sample *sample)
 {
     struct wb_bend_test *const test = context;
-    if (sample->valid && (test->phase == PHASE_CHECK || test->phase == PHASE_TARE))
-        average_add(&test->load, sample->force);
+    if (sample->valid && test->phase == PHASE_CHECK)
+        wb_average_add(&test->check.load, sample->force);
+    if (sample->valid && test->phase == PHASE_TARE)
+        wb_average_add(&test->zero, sample->force);
     if (sample->valid && test->result.started && test->phase < PHASE_STOP)
         test->result.peak_tension = fmax(test->result.peak_tension, sample->force - test->tare);
     if (test->request.sink.load)
@@ -127,13 +101,8 @@ static void on_load(void *context, const struct wb_load_sample *sample)
 static void on_mocap(void *context, const struct wb_mocap_frame *frame)
 {
     struct wb_bend_test *const test = context;
-    if (test->phase == PHASE_CHECK) {
-        bool seen[WB_SPECIMEN_MAX_MARKERS];
-        wb_marker_check_frame(frame, &test->specimen, seen);
-        test->n_frames++;
-        for (int m = 0; m < test->specimen.n_markers; m++)
-            test->seen[m] += seen[m];
-    }
+    if (test->phase == PHASE_CHECK)
+        wb_start_check_frame(&test->check, frame, &test->specimen);
     if (test->request.sink.mocap)
         test->request.sink.mocap(test->request.sink.context, frame);
 }
@@ -381,83 +350,10 @@ static bool gone(const struct wb_bend_test *test, enum wb_role role)
 
 /* --- start check --- */
 
-static bool refuse(struct wb_bend_test *test, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static bool refuse(struct wb_bend_test *test, const char *format, ...)
+static void refuse(struct wb_bend_test *test, const char *text)
 {
-    char text[WB_INTERLOCK_TEXT];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
     wb_acquisition_event(test->acquisition, "check", "refused: %s", text);
     give_up(test, WB_INTERLOCK_STAGE, "start check: %s", text);
-    return false;
-}
-
-static bool check_stage(struct wb_bend_test *test)
-{
-    const struct wb_stage_report *const stage = &wb_acquisition_latest(test->acquisition)->stage;
-    switch (stage->state) {
-    case WB_STAGE_IDLE:
-        break;
-    case WB_STAGE_ALARM:
-        return refuse(test,
-                      "the stage is in alarm (%d): mend the cause, then run "
-                      "'wirebench stage RIG unlock' or 'home'",
-                      stage->alarm);
-    case WB_STAGE_HOLD:
-        return refuse(test, "the stage is on hold from before: run 'wirebench stage RIG release'");
-    default:
-        return refuse(test, "the stage is not idle: wait for it, or reset it");
-    }
-    if (!isfinite(stage->position))
-        return refuse(test, "the stage does not tell its position");
-    return true;
-}
-
-static bool check_markers(struct wb_bend_test *test)
-{
-    char missing[160] = "";
-    int n_missing = 0;
-    const int n = test->specimen.n_markers;
-    for (int m = 0; m < n; m++) {
-        if (test->seen[m] >= SEEN_SHARE * test->n_frames)
-            continue;
-        const size_t used = strlen(missing);
-        snprintf(missing + used, sizeof missing - used, "%s%d (%g mm)", n_missing ? ", " : "",
-                 m + 1, test->specimen.markers[m] / WB_MM);
-        n_missing++;
-    }
-    if (n_missing == n)
-        return refuse(test, "none of the %d markers is seen on a wire of %g mm", n,
-                      test->specimen.length / WB_MM);
-    if (n_missing > 0)
-        return refuse(test, "%d of %d markers seen; not seen, counted from one end: %s",
-                      n - n_missing, n, missing);
-    return true;
-}
-
-static bool check_zero(struct wb_bend_test *test)
-{
-    const struct wb_rig_load_cell *const cell = &test->rig.load_cell;
-    const double noise = average_deviation(&test->load);
-    const double allowed =
-        cell->noise > 0.0 ? NOISE_TIMES * cell->noise : NOISE_SHARE * cell->capacity;
-    if (!(fabs(test->load.mean) <= ZERO_SHARE * cell->capacity))
-        return refuse(
-            test,
-            "the unloaded load cell reads %.2f mN, more than %g %% of its capacity of "
-            "%.1f mN: is the strand slack (after a stop: 'wirebench stage RIG release'), the "
-            "cell zeroed, its unit right?",
-            test->load.mean / WB_MN, ZERO_SHARE / WB_PERCENT, cell->capacity / WB_MN);
-    if (!(noise <= allowed))
-        return refuse(test,
-                      "the unloaded load cell's noise is %.3f mN, more than %.3f mN: is something "
-                      "touching it?",
-                      noise / WB_MN, allowed / WB_MN);
-    return true;
 }
 
 static void arm(struct wb_bend_test *test)
@@ -492,9 +388,11 @@ static void step_connect(struct wb_bend_test *test, int64_t now_ns)
              latest->stream[WB_ROLE_STAGE].ready) {
         test->result.recorded = true;
         /* Before the interlock, whose message would be the poorer one. */
-        if (!check_stage(test))
+        char text[WB_START_CHECK_TEXT];
+        if (!wb_start_check_stage(&latest->stage, text)) {
+            refuse(test, text);
             return;
-        memset(&test->load, 0, sizeof test->load);
+        }
         arm(test);
         enter(test, PHASE_CHECK);
     } else if (now_ns - test->phase_ns > allowed_ns) {
@@ -504,25 +402,28 @@ static void step_connect(struct wb_bend_test *test, int64_t now_ns)
 
 static void step_check(struct wb_bend_test *test, int64_t now_ns)
 {
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->acquisition);
+    const struct wb_start_check *const check = &test->check;
     const int64_t waited_ns = now_ns - test->phase_ns;
-    const bool enough = test->load.n >= LEAST_READINGS && test->n_frames >= LEAST_FRAMES;
+    const bool enough = wb_start_check_enough(check);
+    char text[WB_START_CHECK_TEXT];
     if (waited_ns < host_ns(test, test->request.check_time) ||
         (!enough && waited_ns < CHECK_TIMEOUT_NS))
         return;
-    if (!enough) {
-        (void)refuse(test, "only %" PRIu64 " readings and %d frames came in %.1f s", test->load.n,
-                     test->n_frames, wb_seconds_from_ns(waited_ns));
+    if (!enough)
+        snprintf(text, sizeof text, "only %" PRId64 " readings and %d frames came in %.1f s",
+                 check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
+    if (!enough || !wb_start_check_stage(&latest->stage, text) ||
+        !wb_start_check_markers(check, &test->specimen, text) ||
+        !wb_start_check_zero(check, &test->rig.load_cell, text)) {
+        refuse(test, text);
         return;
     }
-    if (!check_stage(test) || !check_markers(test) || !check_zero(test))
-        return;
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->acquisition);
     test->start_position = latest->stage.position;
     wb_acquisition_event(test->acquisition, "check",
                          "passed: %d markers seen, zero %.3f mN, noise %.4f mN, travel %g mm free",
-                         test->specimen.n_markers, test->load.mean / WB_MN,
-                         average_deviation(&test->load) / WB_MN, test->request.travel / WB_MM);
-    memset(&test->load, 0, sizeof test->load);
+                         test->specimen.n_markers, check->load.mean / WB_MN,
+                         wb_average_deviation(&check->load) / WB_MN, test->request.travel / WB_MM);
     arm(test);
     enter(test, PHASE_TARE);
 }
@@ -598,13 +499,13 @@ static void begin_cycle(struct wb_bend_test *test)
 static void step_tare(struct wb_bend_test *test, int64_t now_ns)
 {
     if (now_ns - test->phase_ns < host_ns(test, test->request.tare_time) ||
-        test->load.n < LEAST_READINGS)
+        test->zero.n < LEAST_READINGS)
         return;
-    test->tare = test->load.mean;
+    test->tare = test->zero.mean;
     test->has_tare = true;
     wb_acquisition_event(test->acquisition, "tare",
-                         "{\"force_N\": %.17g, \"samples\": %" PRIu64 ", \"sd_N\": %.17g}",
-                         test->tare, test->load.n, average_deviation(&test->load));
+                         "{\"force_N\": %.17g, \"samples\": %" PRId64 ", \"sd_N\": %.17g}",
+                         test->tare, test->zero.n, wb_average_deviation(&test->zero));
     arm(test);
     begin_cycle(test);
 }
@@ -722,9 +623,9 @@ enum wb_status wb_bend_test_close(struct wb_bend_test *test, struct wb_bend_test
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
         test->result.samples[role] = latest->stream[role].samples;
         test->result.bytes += latest->stream[role].bytes;
+        test->result.drops += latest->stream[role].drops;
     }
     wb_acquisition_close(test->acquisition);
-    test->result.drops = wb_writer_drops(test->writer, -1);
     const enum wb_status status = wb_writer_finish(test->writer);
     if (!test->result.recorded)
         unlink(test->output_path);

@@ -7,6 +7,7 @@
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "daq/acquisition.h"
+#include "daq/average.h"
 
 #define WB_LOG_DOMAIN "check"
 
@@ -15,33 +16,15 @@
 #define SETTLE_NS (2 * WB_NS_PER_S)
 #define LEAST_READINGS 10
 
-struct average {
-    int64_t n;
-    double mean, squares;
-};
-
 struct wb_mass_check {
     struct wb_rig rig;
     struct wb_acquisition *acquisition;
     enum wb_mass_check_phase phase;
     int64_t phase_ns, duration_ns;
-    struct average zero, loaded;
+    struct wb_average zero, loaded;
     double reading;
     bool overload;
 };
-
-static void average_add(struct average *average, double value)
-{
-    average->n++;
-    const double off = value - average->mean;
-    average->mean += off / (double)average->n;
-    average->squares += off * (value - average->mean);
-}
-
-static double deviation(const struct average *average)
-{
-    return average->n > 1 ? sqrt(average->squares / (double)(average->n - 1)) : 0.0;
-}
 
 static void on_load(void *context, const struct wb_load_sample *sample)
 {
@@ -52,9 +35,9 @@ static void on_load(void *context, const struct wb_load_sample *sample)
         return;
     check->reading = sample->force;
     if (check->phase == WB_MASS_CHECK_ZERO)
-        average_add(&check->zero, sample->force);
+        wb_average_add(&check->zero, sample->force);
     else if (check->phase == WB_MASS_CHECK_LOADED)
-        average_add(&check->loaded, sample->force);
+        wb_average_add(&check->loaded, sample->force);
 }
 
 enum wb_status wb_mass_check_open(struct wb_mass_check **out, const struct wb_rig *rig,
@@ -160,8 +143,8 @@ void wb_mass_check_result(const struct wb_mass_check *check, double known, doubl
     const double g = check->rig.gravity;
     result->zero = check->zero.mean;
     result->loaded = check->loaded.mean;
-    result->zero_sd = deviation(&check->zero);
-    result->loaded_sd = deviation(&check->loaded);
+    result->zero_sd = wb_average_deviation(&check->zero);
+    result->loaded_sd = wb_average_deviation(&check->loaded);
     result->n_zero = check->zero.n;
     result->n_loaded = check->loaded.n;
     result->mass = (result->loaded - result->zero) / g;

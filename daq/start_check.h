@@ -1,0 +1,40 @@
+/* The start check of a test: is the stage ready, are all markers seen, is the zero of the load cell
+ * a zero? Pure judgement on what was gathered; the reason of a refusal is written for the operator.
+ */
+#ifndef WB_DAQ_START_CHECK_H
+#define WB_DAQ_START_CHECK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "daq/average.h"
+#include "daq/rig.h"
+#include "daq/sample.h"
+#include "daq/specimen.h"
+
+#define WB_START_CHECK_TEXT 240
+
+/* Frames and readings of the unloaded bench. All zero is empty. */
+struct wb_start_check {
+    int n_frames;
+    int seen[WB_SPECIMEN_MAX_MARKERS]; /* frames in which each marker was seen */
+    struct wb_average load;            /* N */
+};
+
+void wb_start_check_frame(struct wb_start_check *check, const struct wb_mocap_frame *frame,
+                          const struct wb_specimen *specimen);
+
+/* Enough was gathered to judge. */
+bool wb_start_check_enough(const struct wb_start_check *check);
+
+/* Each returns true when all is well, or writes the reason of the refusal.
+ * A marker counts as seen when it is there in half of the frames: cameras lose one now and then. A
+ * zero is one within a tenth of the capacity, with noise up to 5 times the rig's own (up to 1 % of
+ * the capacity where the rig file does not tell it). */
+bool wb_start_check_stage(const struct wb_stage_report *report, char text[WB_START_CHECK_TEXT]);
+bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_specimen *specimen,
+                            char text[WB_START_CHECK_TEXT]);
+bool wb_start_check_zero(const struct wb_start_check *check, const struct wb_rig_load_cell *cell,
+                         char text[WB_START_CHECK_TEXT]);
+
+#endif
