@@ -1,0 +1,21 @@
+#!/bin/sh
+# Every command of the tool and every long option of its --help stands in docs/commands.md.
+# Usage: commands-documented.sh WIREBENCH SOURCE_ROOT
+set -eu
+tool=$1
+manual=$2/docs/commands.md
+bad=0
+commands=$("$tool" --help | awk '/^  [a-z]/ && NF > 2 && !/--/ { print $1 }')
+[ "$(echo "$commands" | wc -w)" -ge 12 ] || { echo "too few commands in --help"; exit 1; }
+for command in $commands; do
+    grep -qE "wirebench $command" "$manual" || { echo "'$command' is not documented"; bad=1; }
+    for option in $("$tool" "$command" --help | grep -oE '^ +(-[a-z], )?--[a-z][a-z-]+' |
+        grep -oE -- '--[a-z-]+' | sort -u); do
+        case $option in --help | --usage) continue ;; esac
+        grep -qF -- "\`$option" "$manual" || {
+            echo "'$command $option' is not documented"
+            bad=1
+        }
+    done
+done
+exit $bad
