@@ -109,8 +109,8 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
         if (result->elastoplastic.n_reached < 2)
             status = wb_fail(WB_ERR_CONVERGENCE,
                              "wire '%s': the beam with the calibrated properties does not "
-                             "converge at zero deflection",
-                             result->info.wire);
+                             "converge even at %g mm",
+                             result->info.wire, curve->step / WB_MM);
         else if (result->elastoplastic.n_reached < curve->n)
             wb_warn("wire '%s': the beam stops converging at %.2f of %.2f mm; errors are of that "
                     "part",

@@ -1,0 +1,95 @@
+#include "tests/analysis/beam_data.h"
+
+#include "analysis/jackknife.h"
+
+static const double mm = WB_MM;
+
+enum {
+    MOST = 3
+};
+
+static int silence(void **state)
+{
+    (void)state;
+    last_message_install();
+    return 0;
+}
+
+static struct wb_calibrate_settings quick_settings(void)
+{
+    struct wb_calibrate_settings settings;
+    wb_calibrate_default_settings(&settings);
+    settings.yield_point = 0.04;
+    settings.n_elements = BEAM_ELEMENTS;
+    settings.step = 1.0 * mm;
+    return settings;
+}
+
+/* Deviations of samples whose K differ by these factors, E and sigma_Y being given. */
+static int run(double deviation[4], int n, const double strength[MOST], double last)
+{
+    const struct wb_test_info info = beam_info(2, 0.085, 0.0);
+    const struct wb_material truth = beam_material(2);
+    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_dataset dataset[MOST];
+    const struct wb_dataset *datasets[MOST];
+    int evaluations = 0;
+    settings.youngs_modulus = truth.youngs_modulus;
+    settings.yield_stress = truth.yield_stress;
+    for (int i = 0; i < n; i++) {
+        struct wb_material material = truth;
+        material.strength_coefficient *= strength[i];
+        beam_dataset(&dataset[i], &info, &material, 1.0 * mm, last, 1.0);
+        datasets[i] = &dataset[i];
+    }
+    assert_int_equal(wb_jackknife_run(deviation, datasets, n, &settings, &truth, &evaluations),
+                     WB_OK);
+    for (int i = 0; i < n; i++)
+        wb_dataset_release(&dataset[i]);
+    return evaluations;
+}
+
+static void scatter_of_k_alone_is_found_in_k(void **state)
+{
+    (void)state;
+    const double strength[MOST] = {0.98, 1.0, 1.02};
+    double deviation[4];
+    const int evaluations = run(deviation, 3, strength, 53 * mm);
+    /* Standard error of three values 2 % apart: 0.02/sqrt(3); the forces are nearly linear in K. */
+    assert_close_relative(deviation[2] / beam_material(2).strength_coefficient, 0.02 / sqrt(3.0),
+                          0.03);
+    assert_true(deviation[3] < 1e-3);
+    assert_close(deviation[0], 0.0, 1e-3);
+    assert_true(evaluations >= 9 && evaluations < 60);
+}
+
+static void equal_samples_have_no_deviation(void **state)
+{
+    (void)state;
+    const double strength[MOST] = {1.0, 1.0, 1.0};
+    double deviation[4];
+    run(deviation, 2, strength, 53 * mm);
+    for (int k = 0; k < 3; k++)
+        assert_true(deviation[k] / beam_material(2).youngs_modulus < 1e-6);
+    assert_true(deviation[3] < 1e-6);
+}
+
+static void one_sample_tells_nothing(void **state)
+{
+    (void)state;
+    const double strength[MOST] = {1.0, 1.0, 1.0};
+    double deviation[4];
+    assert_int_equal(run(deviation, 1, strength, 53 * mm), 0);
+    for (int k = 0; k < 4; k++)
+        assert_true(isnan(deviation[k]));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scatter_of_k_alone_is_found_in_k),
+        cmocka_unit_test(equal_samples_have_no_deviation),
+        cmocka_unit_test(one_sample_tells_nothing),
+    };
+    return cmocka_run_group_tests(tests, silence, NULL);
+}
