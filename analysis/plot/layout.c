@@ -132,11 +132,11 @@ static void frame_plot(struct wb_layout_panel *layout, cairo_t *cairo, double le
     double left = 2.0, right = 2.0, top = 3.0 + legend_height, bottom = 2.0;
     if (!panel->hidden_axes) {
         const double line = 1.35 * layout->text_size;
-        left = widest_label(cairo, layout, &layout->y) + 5.0 + (panel->y_label ? line + 3.0 : 0.0);
+        left = widest_label(cairo, layout, &layout->y) + 5.0 + (panel->y_label ? line + 5.0 : 0.0);
         bottom = line + 3.0 + (panel->x_label ? line + 2.0 : 0.0);
         /* Half of the last tick label of x may stand out to the right. */
         right = panel->right_factor > 0.0 ? widest_label(cairo, layout, &layout->right) + 5.0 +
-                                                (panel->right_label ? line + 3.0 : 0.0)
+                                                (panel->right_label ? line + 5.0 : 0.0)
                                           : fmax(4.0, 1.2 * layout->text_size);
         top = fmax(top, 0.6 * layout->text_size + legend_height);
     }

@@ -33,6 +33,12 @@ static PangoLayout *layout_of(cairo_t *cairo, const char *markup,
         pango_layout_set_markup(layout, markup, -1);
     else
         pango_layout_set_text(layout, markup, -1);
+    /* A checksum or a path that is broken must not get hyphens. */
+    PangoAttrList *const given = pango_layout_get_attributes(layout);
+    PangoAttrList *const attributes = given ? pango_attr_list_ref(given) : pango_attr_list_new();
+    pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));
+    pango_layout_set_attributes(layout, attributes);
+    pango_attr_list_unref(attributes);
     if (style->width > 0.0) {
         pango_layout_set_width(layout, (int)(style->width * PANGO_SCALE));
         pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);

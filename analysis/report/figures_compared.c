@@ -68,7 +68,7 @@ enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
                                            struct wb_colour colour)
 {
     const struct wb_validate_result *const fit = &wire->fit;
-    WB_TRY(wb_figures_start(figure, results, wire, "calibration", WB_REPORT_WIDTH, 205.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "calibration", WB_REPORT_WIDTH, 192.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, fit->curve.max_force);
     add_measured(panel, &fit->curve, colour);
@@ -83,7 +83,7 @@ enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
                                           struct wb_colour colour)
 {
     const struct wb_validate_result *const validation = &wire->validation;
-    WB_TRY(wb_figures_start(figure, results, wire, "validation", WB_REPORT_WIDTH, 205.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "validation", WB_REPORT_WIDTH, 200.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, validation->curve.max_force);
     /* The elastic curve goes far beyond; it may leave the frame. */
@@ -112,7 +112,7 @@ enum wb_status wb_figures_draw_error(struct wb_figure **figure, const struct wb_
                                      const struct wb_results_wire *wire, struct wb_colour colour)
 {
     const struct wb_campaign *const campaign = results->campaign;
-    WB_TRY(wb_figures_start(figure, results, wire, "error", WB_REPORT_WIDTH, 160.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "error", WB_REPORT_WIDTH, 155.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
     const struct wb_figure_style calibration = {
@@ -176,6 +176,6 @@ enum wb_status wb_figures_draw_optimiser(struct wb_figure **figure,
 {
     if (wire->calibration.n_path < 1)
         return WB_OK;
-    WB_TRY(wb_figures_start(figure, results, wire, "optimiser", WB_REPORT_WIDTH, 180.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "optimiser", WB_REPORT_WIDTH, 170.0));
     return add_path(*figure, &wire->calibration, colour);
 }

@@ -61,7 +61,8 @@ static int n_cycles(const struct wb_dataset *dataset)
     return n;
 }
 
-/* Adds the rows of one cycle (only its loading, or all of it but slack) as a line. */
+/* Adds the rows of one cycle (only its loading, or all of it but slack) as a line. Below zero
+ * deflection, where no cycle is, the tip lies on its rest. */
 static enum wb_status add_rows(struct wb_panel *panel, const char *label,
                                const struct wb_dataset *dataset, int cycle, bool loading_only,
                                const struct wb_figure_style *style)
@@ -80,7 +81,8 @@ static enum wb_status add_rows(struct wb_panel *panel, const char *label,
         if (row->cycle != cycle)
             continue;
         const bool shown =
-            row->phase == WB_PHASE_LOAD || (!loading_only && row->phase == WB_PHASE_UNLOAD);
+            row->deflection >= 0.0 &&
+            (row->phase == WB_PHASE_LOAD || (!loading_only && row->phase == WB_PHASE_UNLOAD));
         /* A gap in time is a gap in the line. */
         const bool gap = isfinite(last) && row->t - last > 1.0;
         x[n] = row->deflection / WB_MM;
@@ -117,7 +119,7 @@ enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
     if (!best)
         return WB_OK;
     WB_TRY(
-        wb_figures_start(&figures->cycles, results, wire, "cycles", WB_REPORT_HALF_WIDTH, 190.0));
+        wb_figures_start(&figures->cycles, results, wire, "cycles", WB_REPORT_HALF_WIDTH, 168.0));
     figures->cycles_test = best;
     struct wb_panel *const panel = wb_figure_add_panel(figures->cycles);
     wb_figures_set_force_axes(panel, 0.0);
@@ -136,7 +138,7 @@ enum wb_status wb_figures_draw_samples(struct wb_figure **figure, const struct w
                                        const struct wb_results_wire *wire, struct wb_colour colour)
 {
     static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
-    WB_TRY(wb_figures_start(figure, results, wire, "samples", WB_REPORT_HALF_WIDTH, 190.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "samples", WB_REPORT_HALF_WIDTH, 168.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, wire->fit.curve.max_force);
     char label[64];
@@ -174,7 +176,7 @@ enum wb_status wb_figures_draw_shapes(struct wb_figures_wire *figures,
     }
     if (!test)
         return WB_OK;
-    WB_TRY(wb_figures_start(&figures->shapes, results, wire, "shapes", WB_REPORT_WIDTH, 225.0));
+    WB_TRY(wb_figures_start(&figures->shapes, results, wire, "shapes", WB_REPORT_WIDTH, 178.0));
     figures->shapes_test = test;
     struct wb_panel *const panel = wb_figure_add_panel(figures->shapes);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
@@ -232,7 +234,7 @@ static void add_arrow(struct wb_panel *panel, double x, double from, double to,
     wb_figure_add_line(panel, NULL, 5, xs, ys, style);
 }
 
-/* The bench beside the wire's drawing: what is not to scale is broken off. */
+/* Clamp, strand, cell and counterweight around the wire; all lengths in mm. */
 static void add_bench(struct wb_panel *panel, const struct wb_results_test *test, double tip_x,
                       double tip_y)
 {
@@ -247,17 +249,19 @@ static void add_bench(struct wb_panel *panel, const struct wb_results_test *test
     snprintf(text, sizeof text, "clamp on the stage, down at %.3g mm/s",
              test->rig.stage.speed / WB_MM);
     wb_figure_add_text(panel, -3.0, -15.0, -1, text);
-    const double top = tip_y + 24.0;
-    const double strand_x[] = {tip_x, length}, strand_y[] = {tip_y, top};
+    /* The strand's true direction: its upper end is straight above the straight wire's tip. */
+    const double strand_mm = test->rig.strand.length / WB_MM;
+    const double lean = strand_mm > 0.0 ? (length - tip_x) / strand_mm : 0.0;
+    const double top = tip_y + 26.0, top_x = tip_x + 26.0 * lean;
+    const double strand_x[] = {tip_x, top_x}, strand_y[] = {tip_y, top};
     wb_figure_add_line(panel, NULL, 2, strand_x, strand_y, &strand);
-    add_box(panel, length - 7.0, top, length + 7.0, top + 8.0, &solid);
-    snprintf(text, sizeof text, "load cell, %.3g g",
+    add_box(panel, top_x - 7.0, top, top_x + 7.0, top + 8.0, &solid);
+    snprintf(text, sizeof text, "load cell, %.3g g, stands still",
              test->rig.load_cell.capacity / (WB_STANDARD_GRAVITY * WB_G));
-    wb_figure_add_text(panel, length + 10.0, top + 4.0, -1, text);
-    if (test->rig.strand.length > 0.0) {
-        snprintf(text, sizeof text, "strand of %.4g mm (shortened)",
-                 test->rig.strand.length / WB_MM);
-        wb_figure_add_text(panel, length + 10.0, tip_y + 13.0, -1, text);
+    wb_figure_add_text(panel, top_x + 10.0, top + 4.0, -1, text);
+    if (strand_mm > 0.0) {
+        snprintf(text, sizeof text, "strand of %.4g mm, drawn shortened", strand_mm);
+        wb_figure_add_text(panel, top_x + 3.0, tip_y + 15.0, -1, text);
     }
     if (test->rig.strand.counterweight > 0.0) {
         const double line_x[] = {tip_x, tip_x}, line_y[] = {tip_y, tip_y - 9.0};

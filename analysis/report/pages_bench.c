@@ -139,6 +139,18 @@ static void put_pair(struct wb_document *document, struct wb_document_table *tab
     wb_pages_put_row(document, table, false, &row);
 }
 
+/* As their makers write it. */
+static const char *protocol_name(const char *protocol)
+{
+    static const char *const names[][2] = {
+        {"natnet", "NatNet"}, {"grbl", "GRBL"}, {"mt-sics", "MT-SICS"}};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (strcmp(protocol, names[i][0]) == 0)
+            return names[i][1];
+    }
+    return protocol;
+}
+
 static bool same_bench(const struct wb_rig *a, const struct wb_rig *b)
 {
     return strcmp(a->name, b->name) == 0 && a->is_virtual == b->is_virtual &&
@@ -150,7 +162,7 @@ static bool same_bench(const struct wb_rig *a, const struct wb_rig *b)
 static void put_rig(struct wb_document *document, const struct wb_results *results,
                     const struct wb_results_test *test)
 {
-    static const struct wb_document_column columns[] = {{"Bench"}, {.heading = "", .wraps = true}};
+    static const struct wb_document_column columns[] = {{""}, {.heading = "", .wraps = true}};
     const struct wb_rig *const rig = &test->rig;
     const struct wb_rig_load_cell *const cell = &rig->load_cell;
     bool same = true;
@@ -161,7 +173,8 @@ static void put_rig(struct wb_document *document, const struct wb_results *resul
         document,
         same ? NULL : "Not all recordings were made on the same bench; this is the first one's.", 2,
         columns);
-    put_pair(document, table, "Name", "%s%s", rig->name, test->is_virtual ? " (virtual rig)" : "");
+    put_pair(document, table, "Name", "%s%s", rig->name,
+             test->is_virtual && !strstr(rig->name, "virtual") ? " (virtual rig)" : "");
     put_pair(document, table, "Load cell",
              "%.4g g, reads on to %.4g %%, serial number %s, "
              "calibrated %s",
@@ -174,10 +187,11 @@ static void put_rig(struct wb_document *document, const struct wb_results *resul
     put_pair(document, table, "Motion capture",
              "%s, %.4g frames a second expected, %d markers on "
              "the wire, %.3g mm off its axis",
-             rig->mocap.protocol, rig->mocap.frame_rate, test->specimen.n_markers,
+             protocol_name(rig->mocap.protocol), rig->mocap.frame_rate, test->specimen.n_markers,
              test->specimen.marker_offset / WB_MM);
-    put_pair(document, table, "Stage", "%s, %.3g mm/s, %.4g mm of travel", rig->stage.protocol,
-             rig->stage.speed / WB_MM, rig->stage.travel / WB_MM);
+    put_pair(document, table, "Stage", "%s, %.3g mm/s, %.4g mm of travel",
+             protocol_name(rig->stage.protocol), rig->stage.speed / WB_MM,
+             rig->stage.travel / WB_MM);
     if (rig->strand.length > 0.0)
         put_pair(document, table, "Strand", "%.4g mm, counterweight %.3g g at the tip",
                  rig->strand.length / WB_MM, rig->strand.counterweight / WB_G);

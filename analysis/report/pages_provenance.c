@@ -15,7 +15,6 @@ static void put_test_rows(struct wb_document *document, struct wb_document_table
         wb_pages_cell_plain(&row, WB_TONE_PLAIN, test->wanted->name);
         if (!test->usable) {
             wb_pages_cell(&row, WB_TONE_WARNING, "not used");
-            wb_pages_cell_plain(&row, WB_TONE_QUIET, "");
         } else {
             char start[40];
             snprintf(start, sizeof start, "%.19s", test->start_utc);
@@ -23,7 +22,6 @@ static void put_test_rows(struct wb_document *document, struct wb_document_table
             if (t)
                 *t = ' ';
             wb_pages_cell_plain(&row, WB_TONE_PLAIN, start);
-            wb_pages_cell_plain(&row, WB_TONE_PLAIN, test->tool_revision);
         }
         if (test->wanted->seed >= 0)
             wb_pages_cell(&row, WB_TONE_PLAIN, "%d", test->wanted->seed);
@@ -35,22 +33,46 @@ static void put_test_rows(struct wb_document *document, struct wb_document_table
     }
 }
 
+/* The revisions that recorded, each once, in the order of the list. */
+static void append_revisions(struct wb_text *caption, const struct wb_results *results)
+{
+    struct wb_text list = {0};
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_results_tests *const both[] = {&results->wires[i].calibration_tests,
+                                                       &results->wires[i].validation_tests};
+        for (int k = 0; k < 2; k++) {
+            for (int j = 0; j < both[k]->n; j++) {
+                const char *const revision = both[k]->items[j].tool_revision;
+                if (!revision[0] || strstr(wb_text_string(&list), revision))
+                    continue;
+                wb_text_append(&list, list.length > 0 ? ", " : "");
+                wb_text_append_escaped(&list, revision);
+            }
+        }
+    }
+    if (list.length > 0)
+        wb_text_append(caption, " Recorded with revision %s.", wb_text_string(&list));
+    caption->failed |= list.failed;
+    wb_text_release(&list);
+}
+
 static void put_recordings(struct wb_document *document, const struct wb_results *results)
 {
     static const struct wb_document_column columns[] = {
         {.heading = "Recording"},
         {.heading = "Start (UTC)"},
-        {.heading = "Recorded with"},
         {.heading = "Seed", .right = true},
-        {.heading = "SHA-256", .monospace = true, .wraps = true},
+        {.heading = "SHA-256", .monospace = true},
     };
     wb_document_heading(document, 2, "recordings", "Recordings");
-    struct wb_document_table *const table = wb_document_table(
-        document,
-        results->any_virtual
-            ? "All checksums are those of the uncompressed recordings. Seed: of the virtual rig."
-            : "All checksums are those of the uncompressed recordings.",
-        5, columns);
+    struct wb_text caption = {0};
+    wb_text_append(&caption, "All checksums are those of the uncompressed recordings.%s",
+                   results->any_virtual ? " Seed: of the virtual rig." : "");
+    append_revisions(&caption, results);
+    struct wb_document_table *const table =
+        wb_document_table(document, wb_text_string(&caption), 4, columns);
+    document->failed |= caption.failed;
+    wb_text_release(&caption);
     for (int i = 0; i < results->n_wires; i++) {
         put_test_rows(document, table, &results->wires[i].calibration_tests, true);
         put_test_rows(document, table, &results->wires[i].validation_tests, true);

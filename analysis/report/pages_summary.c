@@ -157,6 +157,7 @@ static void put_properties(struct wb_document *document, const struct wb_results
         {.heading = "Published", .right = true},
         {.heading = "Ratio", .right = true},
     };
+    const struct wb_calibrate_settings *const settings = &results->campaign->calibrate;
     char source[300] = "none", caption[900];
     for (int i = 0; i < results->n_wires; i++) {
         if (results->wires[i].wanted->has_reference) {
@@ -166,9 +167,12 @@ static void put_properties(struct wb_document *document, const struct wb_results
     }
     wb_document_heading(document, 2, "properties", "Calibrated properties");
     snprintf(caption, sizeof caption,
-             "\xc2\xb1: standard uncertainty from the scatter between samples (jackknife). "
-             "Published: %s. Ratio: calibrated over published.",
-             source);
+             "<i>E</i> from eq. 10 at a deflection of %g of the length, "
+             "<i>\xcf\x83</i><sub>Y</sub> from eq. 11 at %g of it. \xc2\xb1: standard "
+             "uncertainty from the scatter between samples (jackknife). Published: %s. Ratio: "
+             "calibrated over published.",
+             settings->elastic_zone,
+             settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone, source);
     struct wb_document_table *const table = wb_document_table(document, caption, 7, columns);
     for (int i = 0; i < results->n_wires; i++) {
         for (int k = 0; k < 4; k++)

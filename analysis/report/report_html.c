@@ -47,6 +47,7 @@ static const char style[] =
     "tr.group td{border-top:1px solid var(--rule)}\n"
     "tbody tr:last-child td{border-bottom:1px solid var(--grey)}\n"
     ".right{text-align:right}\n"
+    "td.whole{white-space:nowrap}\n"
     "td.mono{font-family:'DejaVu Sans Mono',ui-monospace,monospace;font-size:.74rem;"
     "word-break:break-all}\n"
     "pre{margin:.8rem 0;padding:.7rem 1rem;overflow-x:auto;border-left:4px solid var(--grey);"
@@ -79,7 +80,10 @@ static void put_table(struct wb_text *html, const struct wb_document_table *tabl
     if (table->caption)
         wb_text_append(html, "<caption>%s</caption>\n", table->caption);
     wb_text_append(html, "<thead><tr>");
+    bool any = false;
     for (int i = 0; i < table->n_columns; i++)
+        any |= table->columns[i].heading[0] != '\0';
+    for (int i = 0; any && i < table->n_columns; i++)
         wb_text_append(html, "<th%s>%s</th>", table->columns[i].right ? " class=\"right\"" : "",
                        table->columns[i].heading);
     wb_text_append(html, "</tr></thead>\n<tbody>\n");
@@ -89,8 +93,9 @@ static void put_table(struct wb_text *html, const struct wb_document_table *tabl
         for (int i = 0; i < table->n_columns; i++) {
             const struct wb_document_cell *const cell = &table->cells[row * table->n_columns + i];
             wb_text_append(
-                html, "<td class=\"%s%s%s\">%s</td>", table->columns[i].right ? "right " : "",
-                table->columns[i].monospace ? "mono " : "", tone_class(cell->tone), cell->text);
+                html, "<td class=\"%s%s%s%s\">%s</td>", table->columns[i].right ? "right " : "",
+                table->columns[i].wraps ? "" : "whole ", table->columns[i].monospace ? "mono " : "",
+                tone_class(cell->tone), cell->text);
         }
         wb_text_append(html, "</tr>\n");
     }

@@ -347,10 +347,20 @@ static void put_row(struct pen *pen, const struct wb_document_table *table, int 
     pen->y += height;
 }
 
+static bool has_headings(const struct wb_document_table *table)
+{
+    for (int i = 0; i < table->n_columns; i++) {
+        if (table->columns[i].heading[0])
+            return true;
+    }
+    return false;
+}
+
 static void put_table_head(struct pen *pen, const struct wb_document_table *table,
                            const double *widths)
 {
-    put_row(pen, table, -1, widths);
+    if (has_headings(table))
+        put_row(pen, table, -1, widths);
     if (!pen->dry)
         rule(pen, margin_left, margin_left + WB_REPORT_WIDTH, pen->y, 0.8, wb_palette_grey());
     pen->y += 1.0;
