@@ -130,6 +130,24 @@ static void answers_depend_on_the_path_not_on_the_asking(void **state)
     wb_live_wire_destroy(rarely);
 }
 
+/* Looking ahead into an interval and turning back leaves no trace. */
+static void a_look_ahead_is_taken_back(void **state)
+{
+    (void)state;
+    struct setup setup;
+    setup_bench(&setup, "type2-L85-1", 4);
+    struct wb_live_wire *const straight = make(&setup, NULL);
+    struct wb_live_wire *const nosy = make(&setup, NULL);
+    const double before = tension_at(straight, 40.0);
+    assert_close(tension_at(nosy, 40.0), before, 0.0);
+    assert_true(tension_at(nosy, 40.09) > before);
+    assert_close(tension_at(nosy, 40.0), before, 0.0);
+    for (int mm = 39; mm >= 20; mm--)
+        assert_close(tension_at(nosy, mm), tension_at(straight, mm), 1e-8);
+    wb_live_wire_destroy(straight);
+    wb_live_wire_destroy(nosy);
+}
+
 static void the_same_seed_gives_the_same_wire_to_the_bit(void **state)
 {
     (void)state;
@@ -273,6 +291,7 @@ int main(void)
         cmocka_unit_test(interpolation_equals_a_finer_grid),
         cmocka_unit_test(coarse_mesh_and_strips_are_fine_enough),
         cmocka_unit_test(answers_depend_on_the_path_not_on_the_asking),
+        cmocka_unit_test(a_look_ahead_is_taken_back),
         cmocka_unit_test(the_same_seed_gives_the_same_wire_to_the_bit),
         cmocka_unit_test(unloading_goes_another_way_and_ends_without_load),
         cmocka_unit_test(the_wires_resemble_the_paper_but_not_exactly),

@@ -1,6 +1,7 @@
 /* The instrument's end of a pseudo-terminal, against the real stream. */
 #include "fixtures/virtual/pty_port.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "daq/stream.h"
@@ -71,6 +72,25 @@ static void bytes_go_both_ways_unchanged(void **state)
     wb_pty_port_close(&port);
 }
 
+/* A program that sets nothing finds no echo and no line editing. */
+static void the_line_is_raw_from_the_start(void **state)
+{
+    (void)state;
+    struct wb_pty_port port;
+    char text[16];
+    assert_int_equal(wb_pty_port_open(&port), WB_OK);
+    const int slave = open(port.path, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    assert_true(slave >= 0);
+    wb_pty_port_update(&port);
+    wb_pty_port_write(&port, "a\rb", 3);
+    usleep(5000);
+    assert_int_equal(read(slave, text, sizeof text), 3);
+    assert_memory_equal(text, "a\rb", 3);
+    assert_int_equal(wb_pty_port_read(&port, text, sizeof text), 0);
+    close(slave);
+    wb_pty_port_close(&port);
+}
+
 static void bytes_for_a_closed_port_are_lost(void **state)
 {
     (void)state;
@@ -116,6 +136,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(opening_and_closing_is_seen),
         cmocka_unit_test(bytes_go_both_ways_unchanged),
+        cmocka_unit_test(the_line_is_raw_from_the_start),
         cmocka_unit_test(bytes_for_a_closed_port_are_lost),
         cmocka_unit_test(a_reader_that_sleeps_does_not_block),
     };

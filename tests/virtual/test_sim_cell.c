@@ -214,9 +214,18 @@ static void beyond_its_overload_it_says_so(void **state)
         for (int k = 0; k < 100; k++)
             weigh(&scene, 1.45 * capacity);
         assert_int_equal(scene.heard.overloads, 0);
+        assert_false(scene.cell.over);
         for (int k = 0; k < 100; k++)
             weigh(&scene, 1.6 * capacity);
         assert_true(scene.heard.overloads > 90);
+        assert_true(scene.cell.over);
+        /* Taring away what hangs on it does not make the cell stronger. */
+        for (int k = 0; k < 100; k++)
+            weigh(&scene, capacity);
+        wb_sim_cell_receive(&scene.cell, "T\r\n", 3);
+        for (int k = 0; k < 100; k++)
+            weigh(&scene, 1.6 * capacity);
+        assert_true(scene.cell.over && !scene.cell.under);
         for (int k = 0; k < 100; k++)
             weigh(&scene, 0.0);
         const int so_far = scene.heard.overloads;

@@ -6,21 +6,30 @@
 
 static const struct wb_natnet_version v30 = {3, 0};
 
-/* A view that any test can bend: a straight wire, level. */
-static void straight(const struct setup *setup, double travel, struct wb_live_wire_view *view)
+static double slope_at(int marker)
+{
+    return 0.15 * marker;
+}
+
+/* A wire of no equilibrium, but with heights and slopes that differ from marker to marker. */
+static void shape(const struct setup *setup, double travel, struct wb_live_wire_view *view)
 {
     memset(view, 0, sizeof *view);
     view->travel = travel;
     view->n_markers = setup->specimen.n_markers;
-    for (int i = 0; i < view->n_markers; i++)
+    for (int i = 0; i < view->n_markers; i++) {
         view->x[i] = setup->specimen.markers[i];
+        view->y[i] = 2.0 * WB_MM * i;
+        view->angle[i] = slope_at(i);
+    }
 }
 
-/* Where marker m of a straight, level wire really is in the lab. */
+/* Where marker m of that wire really is in the lab. */
 static void expected(const struct setup *setup, int m, double travel, double lab[3])
 {
-    const double bench[3] = {setup->specimen.markers[m], setup->truth.marker_offsets[m] - travel,
-                             0.0};
+    const double offset = setup->truth.marker_offsets[m];
+    const double bench[3] = {setup->specimen.markers[m] - offset * sin(slope_at(m)),
+                             2.0 * WB_MM * m + offset * cos(slope_at(m)) - travel, 0.0};
     wb_truth_to_lab(&setup->truth, 'y', bench, lab);
 }
 
@@ -56,7 +65,7 @@ static void markers_are_measured_with_their_noise(void **state)
     int n = 0;
     for (uint64_t k = 0; k < 3000; k++) {
         const double travel = 1e-5 * (double)k;
-        straight(&setup, travel, &view);
+        shape(&setup, travel, &view);
         wb_sim_mocap_frame(&mocap, k, &view, frame);
         for (int m = 0; m < setup.specimen.n_markers; m++) {
             double lab[3];
@@ -90,7 +99,7 @@ static void frames_depend_on_seed_and_number_only(void **state)
     assert_non_null(a);
     assert_non_null(b);
     setup_bench(&setup, "type1-L85-1", 4);
-    straight(&setup, 0.0, &view);
+    shape(&setup, 0.0, &view);
     wb_sim_mocap_init(&one, &setup.truth, 'y', 7, v30);
     wb_sim_mocap_init(&two, &setup.truth, 'y', 7, v30);
     for (uint64_t k = 0; k < 500; k++) {
@@ -146,7 +155,7 @@ static void a_marker_comes_back_under_a_new_id(void **state)
     struct wb_natnet_frame *const frame = malloc(sizeof *frame);
     assert_non_null(frame);
     setup_bench(&setup, "type1-L85-1", 4);
-    straight(&setup, 0.0, &view);
+    shape(&setup, 0.0, &view);
     wb_sim_mocap_init(&mocap, &setup.truth, 'y', 7, v30);
     int32_t id[7] = {0};
     bool seen[7] = {false};
@@ -185,7 +194,7 @@ static void the_order_changes_and_a_ghost_comes_and_goes(void **state)
     struct wb_natnet_frame *const frame = malloc(sizeof *frame);
     assert_non_null(frame);
     setup_bench(&setup, "type1-L85-1", 4);
-    straight(&setup, 0.0, &view);
+    shape(&setup, 0.0, &view);
     wb_sim_mocap_init(&mocap, &setup.truth, 'y', 7, v30);
     double first[3], ghost[3];
     expected(&setup, 3, 0.0, first);
@@ -214,7 +223,7 @@ static void filled_markers_are_flagged_and_wrong(void **state)
     struct wb_natnet_frame *const frame = malloc(sizeof *frame);
     assert_non_null(frame);
     setup_bench(&setup, "type1-L85-1", 4);
-    straight(&setup, 0.0, &view);
+    shape(&setup, 0.0, &view);
     for (int old = 0; old < 2; old++) {
         const struct wb_natnet_version version = {2, old ? 5 : 7};
         struct wb_sim_mocap mocap;
