@@ -29,6 +29,10 @@ static const char schema[] =
 enum wb_status wb_recording_fail(const struct wb_recording *recording, int code, const char *doing)
 {
     const char *path = recording->path;
+    /* SQLite keeps the system's reason for some failures only; the others leave it in errno. */
+    int error = recording->db ? sqlite3_system_errno(recording->db) : 0;
+    if (error == 0)
+        error = errno;
     switch (code & 0xff) {
     case SQLITE_FULL:
         return wb_fail(WB_ERR_IO, "'%s': cannot %s: the disk is full", path, doing);
@@ -47,7 +51,6 @@ enum wb_status wb_recording_fail(const struct wb_recording *recording, int code,
     default:
         break;
     }
-    int error = recording->db ? sqlite3_system_errno(recording->db) : 0;
     if (error == EFBIG)
         return wb_fail(WB_ERR_IO, "'%s': cannot %s: the largest file size allowed is reached", path,
                        doing);
@@ -230,9 +233,12 @@ static enum wb_status begin(struct wb_recording *recording)
  * nothing; everything else is latched. */
 static enum wb_status insert(struct wb_recording *recording, sqlite3_stmt *statement)
 {
+    errno = 0;
     int code = sqlite3_step(statement);
+    int error = errno;
     sqlite3_reset(statement);
     sqlite3_clear_bindings(statement);
+    errno = error;
     if (code == SQLITE_DONE)
         return WB_OK;
     if ((code & 0xff) == SQLITE_CONSTRAINT)
@@ -314,6 +320,7 @@ enum wb_status wb_recording_flush(struct wb_recording *recording)
 {
     if (recording->failed != WB_OK || !recording->in_transaction)
         return recording->failed;
+    errno = 0;
     int code = sqlite3_exec(recording->db, "COMMIT", NULL, NULL, NULL);
     if (code != SQLITE_OK)
         return latch(recording, wb_recording_fail(recording, code, "write"));

@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <signal.h>
 #include <sqlite3.h>
+#include <stdatomic.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -231,9 +232,22 @@ static void view_instead_of_a_table_is_not_run(void **state)
 
 /* --- full disks --- */
 
+static void count_round(void *context)
+{
+    atomic_fetch_add((atomic_int *)context, 1);
+}
+
+/* Waits until what was pushed before has been written: two rounds of the writer later it was. */
+static void wait_for_rounds(const struct wb_writer *writer, atomic_int *rounds)
+{
+    int from = atomic_load(rounds);
+    while (atomic_load(rounds) < from + 2 && wb_writer_status(writer) == WB_OK)
+        usleep(200);
+}
+
 /* Pushes chunks until the writer says that it cannot write, then reads what is there. 0 when all
  * is as promised. */
-static int fill_until_full(struct bench *bench, const char *path)
+static int fill_until_full(struct bench *bench, const char *path, const char *reason)
 {
     struct wb_recording *recording = NULL;
     if (wb_recording_create(&recording, path) != WB_OK)
@@ -247,6 +261,9 @@ static int fill_until_full(struct bench *bench, const char *path)
     struct wb_writer_settings settings;
     wb_writer_default_settings(&settings);
     settings.flush_interval_ns = 1000000;
+    atomic_int rounds = 0;
+    settings.before_write = count_round;
+    settings.context = &rounds;
     struct wb_writer *writer = NULL;
     if (wb_writer_start(&writer, recording, &settings) != WB_OK)
         return 12;
@@ -259,7 +276,7 @@ static int fill_until_full(struct bench *bench, const char *path)
         if (!wb_writer_push_chunk(writer, stream, bench_time(stream, seq / 3), bytes, n))
             break;
         if (seq % 100 == 99)
-            usleep(200);
+            wait_for_rounds(writer, &rounds);
     }
     if (wb_writer_status(writer) != WB_ERR_IO)
         return 13;
@@ -267,7 +284,7 @@ static int fill_until_full(struct bench *bench, const char *path)
         return 14; /* an honest writer refuses from now on */
     if (wb_writer_finish(writer) != WB_ERR_IO)
         return 15;
-    if (bench->messages != 1)
+    if (bench->messages != 1 || !strstr(bench->message, reason))
         return 16;
     if (wb_recording_open(&recording, path) != WB_OK)
         return 17;
@@ -305,7 +322,7 @@ static int fill_to_size_limit(struct bench *bench)
     struct rlimit limit = {.rlim_cur = 300 << 10, .rlim_max = RLIM_INFINITY};
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0)
         return 1;
-    return fill_until_full(bench, bench->path);
+    return fill_until_full(bench, bench->path, "largest file size");
 }
 
 static void size_limit_is_one_message_and_what_was_flushed_is_readable(void **state)
@@ -325,7 +342,7 @@ static int fill_small_disk(struct bench *bench)
     if (mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) != 0 ||
         mount("tmpfs", disk, "tmpfs", 0, "size=400k") != 0)
         return 77;
-    int code = fill_until_full(bench, path);
+    int code = fill_until_full(bench, path, "disk is full");
     umount(disk);
     return code;
 }
