@@ -1,0 +1,99 @@
+#!/bin/bash
+# `wirebench rig` as a user meets it: ready, its rig file, its end, and what it refuses.
+# Usage: rig.sh WIREBENCH SOURCE_ROOT
+set -u
+
+wirebench=$1
+root=$2
+rig=$root/fixtures/rigs/paper.yaml
+specimen=$root/fixtures/specimens/type1-L85-1.yaml
+folder=$(mktemp -d /tmp/wb-rig-XXXXXX)
+running=()
+failures=0
+
+clean_up() {
+    for process in "${running[@]}"; do
+        kill -INT "$process" 2>/dev/null
+        wait "$process" 2>/dev/null
+    done
+    rm -rf "$folder"
+}
+trap clean_up EXIT
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+start() { # NAME OPTIONS...: a rig in $folder/NAME, its process in $process
+    local name=$1
+    shift
+    "$wirebench" rig "$rig" --specimen "$specimen" --run "$folder/$name/deep" "$@" \
+        2>"$folder/$name.log" &
+    process=$!
+    running+=("$process")
+    for _ in $(seq 100); do
+        grep -q '^ready' "$folder/$name.log" && return
+        sleep 0.05
+    done
+    fail "$name: not ready: $(cat "$folder/$name.log")"
+}
+
+refused() { # CODE WORDS OPTIONS...: one message with these words, this exit code, no rig file
+    local code=$1 words=$2
+    shift 2
+    timeout 10 "$wirebench" rig "$@" >"$folder/out" 2>"$folder/err"
+    local got=$?
+    [ $got = "$code" ] || fail "rig $*: exit code $got, expected $code"
+    grep -q -- "$words" "$folder/err" || fail "rig $*: '$words' not said: $(cat "$folder/err")"
+    [ "$code" = 2 ] || [ "$(grep -c error: "$folder/err")" = 1 ] ||
+        fail "rig $*: not one message: $(cat "$folder/err")"
+    [ ! -e "$folder/refused/rig.yaml" ] || fail "rig $*: left a rig file"
+}
+
+# Two at once, each with ports of its own, and truths that differ.
+start one --seed 1
+one=$process
+start two --seed 2 --natnet-version 4.1 --time-scale 5 --lost-steps 0.8@20
+for name in one two; do
+    file=$folder/$name/deep/rig.yaml
+    grep -q '^name: "virtual rig' "$file" || fail "$name: the name does not say virtual rig"
+    grep -q '^virtual: true' "$file" || fail "$name: not marked as virtual"
+    grep -q '^    source: virtual rig' "$file" || fail "$name: no truth"
+done
+grep -q '^time_scale: 5$' "$folder/two/deep/rig.yaml" || fail "two: no time scale"
+grep -q 'lost_steps_mm: 0.8$' "$folder/two/deep/rig.yaml" || fail "two: no lost steps"
+[ "$(cat "$folder"/*/deep/rig.yaml | grep -oE '"(pty|udp):[^"]+"' | sort -u | wc -l)" = 6 ] ||
+    fail "ports are shared"
+[ "$(cat "$folder"/*/deep/rig.yaml | grep 'bow_mm' | sort -u | wc -l)" = 2 ] ||
+    fail "both seeds gave the same wire"
+
+# It ends with Ctrl-C, and its file with it.
+kill -INT "$one"
+wait "$one"
+code=$?
+[ $code = 0 ] || fail "ended with $code"
+[ ! -e "$folder/one/deep/rig.yaml" ] || fail "the file outlived its rig"
+[ "$(grep -c error: "$folder/one.log")" = 0 ] || fail "complained: $(cat "$folder/one.log")"
+
+refused 2 'no rig file' --specimen "$specimen" --run "$folder/refused"
+refused 2 'no --specimen' "$rig" --run "$folder/refused"
+refused 2 'no folder' "$rig" --specimen "$specimen"
+refused 2 'too many' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
+refused 2 'seed' "$rig" --specimen "$specimen" --run "$folder/refused" --seed x
+refused 2 'version such as 3.0' "$rig" --specimen "$specimen" --run "$folder/refused" \
+    --natnet-version 3
+refused 2 'MM@MM' "$rig" --specimen "$specimen" --run "$folder/refused" --lost-steps 3
+refused 2 'time-scale' "$rig" --specimen "$specimen" --run "$folder/refused" --time-scale 0
+refused 1 '2.5 to 4.1' "$rig" --specimen "$specimen" --run "$folder/refused" --natnet-version 4.2
+refused 1 'nowhere.yaml' "$folder/nowhere.yaml" --specimen "$specimen" --run "$folder/refused"
+refused 1 'nowhere.yaml' "$rig" --specimen "$folder/nowhere.yaml" --run "$folder/refused"
+sed 's/^wire: .*/wire: 8awg/' "$specimen" >"$folder/thick.yaml"
+refused 1 'what wire' "$rig" --specimen "$folder/thick.yaml" --run "$folder/refused"
+echo text >"$folder/file"
+refused 1 'file' "$rig" --specimen "$specimen" --run "$folder/file/below"
+sed '/^strand:/,/counterweight_g/d' "$rig" >"$folder/no-strand.yaml"
+refused 1 'needs the strand' "$folder/no-strand.yaml" --specimen "$specimen" \
+    --run "$folder/refused"
+
+[ $failures = 0 ]
