@@ -281,7 +281,8 @@ int wb_layout_legend(const struct wb_layout_panel *panel, cairo_t *cairo,
 static bool place_inset(struct wb_place *place, const struct wb_layout_panel *outer,
                         struct wb_layout_panel *inset)
 {
-    static const double parts[] = {0.52, 0.47, 0.42, 0.38, 0.34, 0.30, 0.26};
+    static const double parts[] = {0.50, 0.46, 0.43, 0.40, 0.38, 0.36,
+                                   0.34, 0.32, 0.30, 0.28, 0.26};
     double ratio = 0.7;
     if (inset->panel->equal_aspect) {
         fit_scales(inset);

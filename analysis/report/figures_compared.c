@@ -68,9 +68,11 @@ enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
                                            struct wb_colour colour)
 {
     const struct wb_validate_result *const fit = &wire->fit;
-    WB_TRY(wb_figures_start(figure, results, wire, "calibration", WB_REPORT_WIDTH, 192.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "calibration", WB_REPORT_WIDTH, 208.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, fit->curve.max_force);
+    /* Room above for the inset. */
+    wb_figure_set_y_range(panel, (double)NAN, 1.25 * fit->curve.max_force / WB_MN);
     add_measured(panel, &fit->curve, colour);
     wb_figures_add_curve(panel, "computed, calibrated", &fit->curve, fit->elastoplastic.force,
                          WB_MN, &computed_style);
@@ -83,7 +85,7 @@ enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
                                           struct wb_colour colour)
 {
     const struct wb_validate_result *const validation = &wire->validation;
-    WB_TRY(wb_figures_start(figure, results, wire, "validation", WB_REPORT_WIDTH, 200.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "validation", WB_REPORT_WIDTH, 208.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, validation->curve.max_force);
     /* The elastic curve goes far beyond; it may leave the frame. */

@@ -119,7 +119,7 @@ enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
     if (!best)
         return WB_OK;
     WB_TRY(
-        wb_figures_start(&figures->cycles, results, wire, "cycles", WB_REPORT_HALF_WIDTH, 168.0));
+        wb_figures_start(&figures->cycles, results, wire, "cycles", WB_REPORT_HALF_WIDTH, 200.0));
     figures->cycles_test = best;
     struct wb_panel *const panel = wb_figure_add_panel(figures->cycles);
     wb_figures_set_force_axes(panel, 0.0);
@@ -138,7 +138,7 @@ enum wb_status wb_figures_draw_samples(struct wb_figure **figure, const struct w
                                        const struct wb_results_wire *wire, struct wb_colour colour)
 {
     static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
-    WB_TRY(wb_figures_start(figure, results, wire, "samples", WB_REPORT_HALF_WIDTH, 168.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "samples", WB_REPORT_HALF_WIDTH, 200.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, wire->fit.curve.max_force);
     char label[64];
@@ -176,7 +176,7 @@ enum wb_status wb_figures_draw_shapes(struct wb_figures_wire *figures,
     }
     if (!test)
         return WB_OK;
-    WB_TRY(wb_figures_start(&figures->shapes, results, wire, "shapes", WB_REPORT_WIDTH, 178.0));
+    WB_TRY(wb_figures_start(&figures->shapes, results, wire, "shapes", WB_REPORT_WIDTH, 300.0));
     figures->shapes_test = test;
     struct wb_panel *const panel = wb_figure_add_panel(figures->shapes);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
