@@ -342,7 +342,7 @@ static int shield_number(int argc, char **argv, char **shielded)
 
 int wb_cmd_stage(int argc, char **argv)
 {
-    struct options options = {.seconds = 5.0, .tolerance = NAN};
+    struct options options = {.seconds = 5.0, .tolerance = (double)NAN};
     struct wb_rig rig;
     char *shielded[64];
     if (argc > 60) {

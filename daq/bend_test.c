@@ -193,8 +193,8 @@ enum wb_status wb_bend_test_open(struct wb_bend_test **out,
     if (!test)
         return wb_fail(WB_ERR_MEMORY, "no memory for the test");
     test->request = *request;
-    test->hold_latency = test->confirm_latency = NAN;
-    test->start_position = NAN;
+    test->hold_latency = test->confirm_latency = (double)NAN;
+    test->start_position = (double)NAN;
     const enum wb_status status = start(test, request);
     test->request.rig_path = test->request.specimen_path = test->request.output_path = NULL;
     test->request.operator_name = test->request.notes = NULL;

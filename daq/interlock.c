@@ -63,7 +63,7 @@ void wb_interlock_init(struct wb_interlock *interlock, const struct wb_interlock
 {
     memset(interlock, 0, sizeof *interlock);
     interlock->settings = *settings;
-    interlock->start_position = NAN;
+    interlock->start_position = (double)NAN;
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
         interlock->last_ns[role] = now_ns;
 }

@@ -45,7 +45,7 @@ static int count_fit(const struct cloud *cloud, const struct wb_specimen *specim
         const double along = (s[m] - s[markers[0]]) / (s[markers[1]] - s[markers[0]]);
         const double expected[3] = {p[0] + along * (q[0] - p[0]), p[1] + along * (q[1] - p[1]),
                                     p[2] + along * (q[2] - p[2])};
-        double nearest = INFINITY;
+        double nearest = (double)INFINITY;
         for (int c = 0; c < cloud->n; c++)
             nearest = fmin(nearest, distance(expected, cloud->at[c]));
         seen[m] = nearest <= tolerance;
@@ -63,12 +63,12 @@ int wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_sp
     struct cloud cloud;
     gather(frame, &cloud);
     const int n = specimen->n_markers;
-    double spacing = INFINITY;
+    double spacing = (double)INFINITY;
     for (int m = 1; m < n; m++)
         spacing = fmin(spacing, specimen->markers[m] - specimen->markers[m - 1]);
     const double tolerance = 0.4 * spacing;
     int best = 0;
-    double best_misfit = INFINITY;
+    double best_misfit = (double)INFINITY;
     memset(seen, 0, WB_SPECIMEN_MAX_MARKERS * sizeof seen[0]);
     /* Pairs far apart fix the line well; when one end is hidden, the next one serves. */
     for (int i = 0; i < n; i++) {

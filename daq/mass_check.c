@@ -48,7 +48,7 @@ enum wb_status wb_mass_check_open(struct wb_mass_check **out, const struct wb_ri
         return wb_fail(WB_ERR_MEMORY, "no memory for the check");
     check->rig = *rig;
     check->duration_ns = wb_ns_from_seconds(seconds);
-    check->reading = NAN;
+    check->reading = (double)NAN;
     const struct wb_sink sink = {.context = check, .load = on_load};
     const enum wb_status status =
         wb_acquisition_open(&check->acquisition, rig, WB_ACQUISITION_LOAD, &sink);

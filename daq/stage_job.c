@@ -140,7 +140,7 @@ static void note_force(struct wb_stage_job *job, double force)
 /* True when the last complete pieces say that the reading no longer changes on the way up. */
 static bool strand_is_slack(const struct wb_stage_job *job)
 {
-    double low = INFINITY, high = -INFINITY;
+    double low = (double)INFINITY, high = -(double)INFINITY;
     for (int i = 1; i <= PIECES_APART; i++) {
         const struct piece *const piece = &job->pieces[i];
         if (piece->n == 0 || piece->number != job->pieces[0].number - i)
@@ -189,8 +189,8 @@ enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig 
         return wb_fail(WB_ERR_MEMORY, "no memory for the stage's job");
     job->rig = *rig;
     job->request = *request;
-    job->first_force = NAN;
-    job->start_position = NAN;
+    job->first_force = (double)NAN;
+    job->start_position = (double)NAN;
     if (!(job->request.connect_timeout > 0.0))
         job->request.connect_timeout = 6.0;
     if (!(job->request.speed > 0.0))

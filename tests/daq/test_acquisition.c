@@ -202,7 +202,7 @@ static void a_silent_stream_is_lost_and_found_again(void **state)
     run_for(fixture, 300 * MS);
     struct wb_interlock_settings settings;
     wb_interlock_default_settings(&settings, &fixture->rig);
-    wb_acquisition_arm(fixture->acquisition, &settings, NAN);
+    wb_acquisition_arm(fixture->acquisition, &settings, (double)NAN);
     wb_acquisition_disarm(fixture->acquisition);
     fixture->bench->mocap_silent = true;
     run_for(fixture, 250 * MS);

@@ -611,7 +611,7 @@ static void too_much_travel_is_refused_before_anything_is_opened(void **state)
     struct fixture *const fixture = *state;
     fixture->request.travel = 59.0 * WB_MM;
     assert_not_opened(fixture, WB_ERR_ARGUMENT, "59 mm is not free");
-    fixture->request.travel = NAN;
+    fixture->request.travel = (double)NAN;
     assert_not_opened(fixture, WB_ERR_ARGUMENT, "not free");
 }
 

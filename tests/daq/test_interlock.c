@@ -71,7 +71,7 @@ static void the_cell_saying_overload_trips_without_a_number(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
-    const struct wb_load_sample sample = {.t_ns = 11 * S, .force = NAN, .overload = true};
+    const struct wb_load_sample sample = {.t_ns = 11 * S, .force = (double)NAN, .overload = true};
     assert_true(wb_interlock_load(&interlock, &sample));
     assert_int_equal(interlock.reason, WB_INTERLOCK_OVERLOAD);
     interlock = armed();
@@ -83,7 +83,7 @@ static void a_reading_that_is_not_a_number_trips(void **state)
 {
     (void)state;
     struct wb_interlock interlock = armed();
-    const struct wb_load_sample sample = reading(NAN, 11 * S);
+    const struct wb_load_sample sample = reading((double)NAN, 11 * S);
     assert_true(wb_interlock_load(&interlock, &sample));
 }
 
@@ -116,7 +116,7 @@ static void travel_is_counted_from_the_start_and_downwards(void **state)
     report.position = 0.3011;
     assert_true(wb_interlock_stage(&interlock, &report)); /* above the start */
     interlock = armed();
-    report.position = NAN;
+    report.position = (double)NAN;
     assert_false(wb_interlock_stage(&interlock, &report));
 }
 
@@ -160,7 +160,7 @@ static void invalid_readings_are_no_sign_of_life(void **state)
     struct wb_interlock interlock = armed();
     interlock.settings.stream_lost_ns[WB_ROLE_MOCAP] = 0;
     interlock.settings.stream_lost_ns[WB_ROLE_STAGE] = 0;
-    const struct wb_load_sample sample = {.t_ns = 10 * S + 900 * MS, .force = NAN};
+    const struct wb_load_sample sample = {.t_ns = 10 * S + 900 * MS, .force = (double)NAN};
     assert_false(wb_interlock_load(&interlock, &sample));
     assert_true(wb_interlock_tick(&interlock, 11 * S));
 }

@@ -159,7 +159,7 @@ static void stage_must_be_idle_at_a_known_position(void **state)
     char text[WB_START_CHECK_TEXT];
     struct wb_stage_report report = {.state = WB_STAGE_IDLE, .position = 0.1};
     assert_true(wb_start_check_stage(&report, text));
-    report.position = NAN;
+    report.position = (double)NAN;
     assert_false(wb_start_check_stage(&report, text));
     report = (struct wb_stage_report){.state = WB_STAGE_JOG, .position = 0.1};
     assert_false(wb_start_check_stage(&report, text));
