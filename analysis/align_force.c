@@ -392,6 +392,13 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
     return WB_OK;
 }
 
+double wb_align_level_uncertainty(const struct wb_align *align)
+{
+    const double vertical =
+        align->frame.up_from_motion ? align->frame.up_uncertainty * align->specimen.length : 0.0;
+    return hypot(M_SQRT2 * align->specimen.marker_offset_uncertainty, vertical);
+}
+
 static void describe_zero(struct wb_align *align)
 {
     double lean = 0.0;
@@ -410,7 +417,7 @@ static void describe_zero(struct wb_align *align)
     wb_align_correct(align, &strand,
                      "largest difference of tension and its vertical part; the strand's upper end "
                      "is taken to be straight above the straight wire's tip");
-    const double level = M_SQRT2 * align->specimen.marker_offset_uncertainty;
+    const double level = wb_align_level_uncertainty(align);
     const struct wb_align_correction zero = {
         .name = "force at zero deflection",
         .unit = "mN",
@@ -428,15 +435,16 @@ static void describe_zero(struct wb_align *align)
 
 /* --- timing --- */
 
-/* Area of the first cycle's loop, and how it changes with a lag of the force: a lag makes a false
- * loop of width 2 v dt. */
+/* Area of the first cycle's loop above zero deflection, and how it changes with a lag of the
+ * force: a lag makes a false loop of width 2 v dt. */
 static void loop_area(const struct wb_align *align, double *area, double *per_second)
 {
     const struct wb_align_row *last = NULL;
     *area = *per_second = 0.0;
     for (size_t i = 1; i + 1 < align->n_rows; i++) {
         const struct wb_align_row *const row = &align->rows[i];
-        if (row->cycle != 1 || row->phase == WB_PHASE_SLACK)
+        if (row->cycle != 1 || row->phase == WB_PHASE_SLACK || row->t < align->settled_t ||
+            !(row->tip_y > 0.0))
             continue;
         const double dt = align->rows[i + 1].t - align->rows[i - 1].t;
         const double rate = (align->rows[i + 1].vertical - align->rows[i - 1].vertical) / dt;

@@ -247,8 +247,11 @@ static void observe_force(const struct wb_align *align, double bow, double path,
     const double own = align->specimen.marker_offset_uncertainty > 0.0
                            ? align->specimen.marker_offset_uncertainty
                            : DEFAULT_OFFSET_ERROR;
-    const double zero =
+    const double vertical =
+        align->frame.up_from_motion ? length * align->frame.up_uncertainty : 0.0;
+    const double force =
         hypot(align->zero_force_deviation, align->zeros[0].deviation) / align->stiffness;
+    const double zero = hypot(force, vertical);
     for (int term = 0; term < MAX_TERMS; term++)
         obs->design[obs->n][term] = length / (term + 2);
     obs->value[obs->n] = bow;

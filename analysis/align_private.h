@@ -161,6 +161,10 @@ struct wb_align_line {
 };
 bool wb_align_fit_line(const double *x, const double *y, size_t n, struct wb_align_line *line);
 
+/* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
+ * vertical over the wire's length. */
+double wb_align_level_uncertainty(const struct wb_align *align);
+
 double wb_align_median(double *values, size_t n); /* sorts; NaN when n is 0 */
 
 /* --- the document --- */

@@ -51,6 +51,7 @@ static void describe_markers(struct wb_align *align)
     wb_align_set(plane, "clamp_motion_mm", frame->motion / WB_MM);
     wb_align_set(plane, "clamp_path_rms_mm", frame->straightness / WB_MM);
     wb_align_set(plane, "vertical_tilt_deg", frame->tilt / WB_DEGREE);
+    wb_align_set(plane, "vertical_uncertainty_mrad", frame->up_uncertainty * 1e3);
     wb_json_set_text(plane, "vertical",
                      frame->up_from_motion ? "direction of the clamp's motion"
                                            : "the motion-capture server's up axis");

@@ -125,6 +125,8 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
     frame->motion = range_along(tracks, cloud, 0, directions[0]);
     frame->up_from_motion = frame->motion >= LEAST_MOTION;
     frame->straightness = frame->up_from_motion ? hypot(spread[1], spread[2]) : 0.0;
+    frame->up_uncertainty =
+        frame->up_from_motion ? spread[1] / (spread[0] * sqrt((double)scatter.n)) : (double)NAN;
     if (frame->up_from_motion) {
         const double sign = dot(directions[0], server_up) < 0.0 ? -1.0 : 1.0;
         for (int k = 0; k < 3; k++)

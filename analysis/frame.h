@@ -15,13 +15,14 @@
 
 struct wb_bench_frame {
     double up[3], along[3], normal[3]; /* unit vectors y, x and x cross y, in server coordinates */
-    bool up_from_motion; /* else the clamp hardly moved and up is the server's up axis */
-    double motion;       /* m, range of the clamp marker along up */
-    double tilt;         /* rad, angle between up and the server's up axis */
-    double straightness; /* m, RMS distance of the clamp marker's path from a straight line */
-    double planarity;    /* m, RMS distance of the markers from the bending plane */
-    double plane_tilt;   /* rad, angle of the freely fitted plane's normal to the horizontal;
-                            0 where the wire did not bend enough to tell */
+    bool up_from_motion;   /* else the clamp hardly moved and up is the server's up axis */
+    double up_uncertainty; /* rad, standard error of up's direction in the bending plane */
+    double motion;         /* m, range of the clamp marker along up */
+    double tilt;           /* rad, angle between up and the server's up axis */
+    double straightness;   /* m, RMS distance of the clamp marker's path from a straight line */
+    double planarity;      /* m, RMS distance of the markers from the bending plane */
+    double plane_tilt;     /* rad, angle of the freely fitted plane's normal to the horizontal;
+                              0 where the wire did not bend enough to tell */
     size_t n_frames;
     /* (n_frames x 3) clamp marker, smoothed over time, in server coordinates; NaN in frames too
      * far from one in which it was seen. Owned. */
