@@ -126,7 +126,7 @@ static const struct argp argp = {
         "jog MM   moves the clamp down (negative: up) at the rig's speed.\n"
         "unlock   brings the stage out of hold or alarm without moving it.\n"
         "release  frees a specimen after a stop: brings the stage out of hold or alarm and goes "
-        "slowly up until the strand is slack (the reading stays level over 1.5 mm), at most by "
+        "slowly up until the strand is slack (the reading stays level over 0.75 mm), at most by "
         "MM (default: the stage's travel).\n"
         "check    compares the load cell with a known mass (default: the rig's "
         "check_mass_g).\v"

@@ -21,7 +21,7 @@ enum wb_stage_job_kind {
     WB_STAGE_JOB_JOG,    /* by `distance` */
     WB_STAGE_JOB_UNLOCK, /* out of hold or alarm, without a motion */
     /* Out of hold or alarm, then slowly up (half the rig's speed) until the strand is slack: the
-     * reading stays level over 1.5 mm near zero. */
+     * reading stays level over 0.75 mm near zero. */
     WB_STAGE_JOB_RELEASE
 };
 
