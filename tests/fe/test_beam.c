@@ -104,6 +104,20 @@ static void natural_curvature_is_free_of_stress(void **unused)
     wb_beam_evaluate(beam, 1.0, &balance);
     assert_true(balance.largest_force == 0.0);
     assert_true(balance.largest_residual == 0.0);
+
+    /* Its reference is the integral of the curvature: t = c sin(60 s) / 60, here by fine sums. */
+    enum {
+        FINE = 170000
+    };
+    double x = 0.0, y = 0.0;
+    for (int i = 0; i < FINE; i++) {
+        const double t = curvature * sin(60.0 * 0.085 * (i + 0.5) / FINE) / 60.0;
+        x += 0.085 / FINE * cos(t);
+        y += 0.085 / FINE * sin(t);
+    }
+    assert_close(wb_beam_reference_tip(beam)->x, x, 1e-10);
+    assert_close(wb_beam_reference_tip(beam)->y, y, 1e-10);
+    assert_close(wb_beam_reference_tip(beam)->t, curvature * sin(60.0 * 0.085) / 60.0, 1e-10);
     wb_beam_destroy(beam);
 
     /* The reference of a constant curvature is an arc. */
