@@ -45,7 +45,7 @@ double wb_dataset_bow(const struct wb_test_info *info)
 {
     if (info->n_natural_shape == 0)
         return 0.0;
-    /* Simpson's rule; 64 intervals of a smooth polynomial angle leave round-off only. */
+    /* Simpson's rule; 64 intervals of a polynomial angle leave less than 1e-9 of it. */
     enum {
         N = 64
     };

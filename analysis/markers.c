@@ -15,6 +15,10 @@
 #define DEFAULT_PERIOD (1.0 / 120.0)
 /* Among so many frames the cheapest complete chain is where following starts. */
 #define START_FRAMES 240
+/* How much a frame counts in which a marker is not seen, but carried along by seen neighbours on
+ * both sides, or on one. */
+#define CARRIED_BY_TWO 0.02
+#define CARRIED_BY_ONE 0.3
 /* A link that is off by four tolerances is a wrong marker. */
 #define BROKEN_LINK_COST 16.0
 
@@ -86,7 +90,8 @@ struct tracker {
     struct wb_marker_settings settings;
     double smallest_spacing;
     double predicted[WB_SPECIMEN_MAX_MARKERS][3];
-    int unseen[WB_SPECIMEN_MAX_MARKERS]; /* frames since it was seen */
+    /* Frames since it was seen, each by how little is known of its motion then. */
+    double unseen[WB_SPECIMEN_MAX_MARKERS];
 };
 
 static int32_t *row_of(const struct wb_marker_tracks *tracks, size_t frame)
@@ -232,6 +237,9 @@ static void carry_along(struct tracker *tracker, const int *chosen, double (*mov
             left--;
         while (right < n && chosen[right] < 0)
             right++;
+        tracker->unseen[marker] += left >= 0 && right < n   ? CARRIED_BY_TWO
+                                   : left >= 0 || right < n ? CARRIED_BY_ONE
+                                                            : 1.0;
         double part = left < 0 ? 1.0 : 0.0;
         if (left >= 0 && right < n)
             part = (s[marker] - s[left]) / (s[right] - s[left]);
@@ -256,7 +264,8 @@ static void update(struct tracker *tracker, size_t frame, const int *chosen)
     for (int marker = 0; marker < n; marker++) {
         for (int k = 0; k < 3; k++)
             tracker->predicted[marker][k] += moved[marker][k];
-        tracker->unseen[marker] = chosen[marker] >= 0 ? 0 : tracker->unseen[marker] + 1;
+        if (chosen[marker] >= 0)
+            tracker->unseen[marker] = 0.0;
         row_of(tracker->tracks, frame)[marker] =
             chosen[marker] >= 0
                 ? (int32_t)(tracker->cloud->frames[frame].first + (size_t)chosen[marker])
@@ -267,15 +276,9 @@ static void update(struct tracker *tracker, size_t frame, const int *chosen)
 static void follow(struct tracker *tracker, size_t frame)
 {
     int chosen[WB_SPECIMEN_MAX_MARKERS];
-    for (int marker = 0; marker < tracker->specimen->n_markers; marker++) {
-        /* The gate is counted in frames since the marker was seen, this one included. */
-        tracker->unseen[marker]++;
-    }
     assign_nearest(tracker, frame, chosen);
     drop_broken_links(tracker, frame, chosen);
     search_again(tracker, frame, chosen);
-    for (int marker = 0; marker < tracker->specimen->n_markers; marker++)
-        tracker->unseen[marker]--;
     update(tracker, frame, chosen);
 }
 
@@ -338,7 +341,7 @@ static void place(struct tracker *tracker, size_t start, const int *chosen)
     const double *const s = tracker->specimen->markers;
     int left = 0;
     for (int marker = 0; marker < tracker->specimen->n_markers; marker++) {
-        tracker->unseen[marker] = chosen[marker] < 0;
+        tracker->unseen[marker] = 0.0;
         if (chosen[marker] >= 0) {
             left = marker;
             memcpy(tracker->predicted[marker], points[chosen[marker]],
