@@ -103,7 +103,8 @@ static void show(const struct wb_bend_test *test)
     struct wb_bend_test_status status;
     wb_bend_test_status(test, &status);
     const struct wb_acquisition_latest *const latest = status.latest;
-    char phase[32], force[64] = "-- mN", travel[32] = "-- mm", markers[32] = "no markers";
+    char phase[32], force[64] = "-- mN", travel[32] = "--", deflection[32] = "-- mm",
+                    markers[32] = "no markers";
     if (status.cycle > 0)
         snprintf(phase, sizeof phase, "%s %d/%d", status.phase, status.cycle, status.cycles);
     else
@@ -111,8 +112,10 @@ static void show(const struct wb_bend_test *test)
     if (status.has_tension)
         snprintf(force, sizeof force, "%.2f mN %.3f g", status.tension / WB_MN,
                  status.tension / status.gravity / WB_G);
+    if (status.has_deflection)
+        snprintf(deflection, sizeof deflection, "%.1f mm", status.deflection / WB_MM);
     if (status.has_travel)
-        snprintf(travel, sizeof travel, "%.2f mm", status.travel / WB_MM);
+        snprintf(travel, sizeof travel, "%.2f", status.travel / WB_MM);
     if (latest->has_mocap)
         snprintf(markers, sizeof markers, "markers %d/%d", latest->markers_seen,
                  status.markers_expected);
@@ -120,9 +123,10 @@ static void show(const struct wb_bend_test *test)
     const uint64_t drops =
         stream[WB_ROLE_LOAD].drops + stream[WB_ROLE_MOCAP].drops + stream[WB_ROLE_STAGE].drops;
     const int seconds = (int)status.elapsed;
-    wb_live_line_show("%s%s %d:%02d  %s  %s  %s  %" PRIu64 " drops  %.0f+%.0f+%.0f/s",
+    wb_live_line_show("%s%s %d:%02d  %s  travel %s deflection %s  %s  %" PRIu64
+                      " drops  %.0f+%.0f+%.0f/s",
                       status.is_virtual ? "[virtual rig] " : "", phase, seconds / 60, seconds % 60,
-                      force, travel, markers, drops, stream[WB_ROLE_LOAD].rate,
+                      force, travel, deflection, markers, drops, stream[WB_ROLE_LOAD].rate,
                       stream[WB_ROLE_MOCAP].rate, stream[WB_ROLE_STAGE].rate);
 }
 

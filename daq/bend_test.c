@@ -14,6 +14,7 @@
 #include "base/version.h"
 #include "daq/start_check.h"
 #include "daq/test_recording.h"
+#include "daq/tip_watch.h"
 
 #define WB_LOG_DOMAIN "record"
 
@@ -54,6 +55,7 @@ struct wb_bend_test {
     uint64_t stands_since;        /* reports in a row that show it standing elsewhere */
     struct wb_start_check check;
     struct wb_average zero; /* N, of the tare */
+    struct wb_tip_watch tip;
     bool has_tare;
     double tare;
     int64_t duration_ns;
@@ -103,6 +105,10 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
     struct wb_bend_test *const test = context;
     if (test->phase == PHASE_CHECK)
         wb_start_check_frame(&test->check, frame, &test->specimen);
+    if (test->phase == PHASE_TARE)
+        wb_tip_watch_rest(&test->tip, frame, &test->specimen, test->rig.mocap.up);
+    else if (test->phase > PHASE_TARE)
+        wb_tip_watch_follow(&test->tip, frame);
     if (test->request.sink.mocap)
         test->request.sink.mocap(test->request.sink.context, frame);
 }
@@ -596,6 +602,8 @@ void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_st
         latest->has_stage && isfinite(test->start_position) && isfinite(latest->stage.position);
     if (status->has_travel)
         status->travel = travel_of(test, latest->stage.position);
+    status->has_deflection = test->tip.settled;
+    status->deflection = test->tip.deflection;
     status->elapsed = wb_seconds_from_ns(wb_acquisition_now_ns() - test->started_ns);
     status->gravity = test->rig.gravity;
     status->markers_expected = test->specimen.n_markers;

@@ -61,11 +61,12 @@ void wb_bend_test_stop(struct wb_bend_test *test);
 struct wb_bend_test_status {
     const char *phase; /* "connecting", "check", "tare", "down", "up", "rest", "stopping", "end" */
     int cycle, cycles; /* cycle from 1; 0 before the first */
-    bool has_tension, has_travel;
-    double tension; /* N, reading less tare (0 before the tare is known) */
-    double travel;  /* m, as commanded, down positive */
-    double elapsed; /* s of host time since the start */
-    double gravity; /* m/s2, of the rig */
+    bool has_tension, has_travel, has_deflection;
+    double tension;    /* N, reading less tare (0 before the tare is known) */
+    double travel;     /* m, as commanded, down positive */
+    double deflection; /* m, of the tip against the clamp as the cameras see it, roughly */
+    double elapsed;    /* s of host time since the start */
+    double gravity;    /* m/s2, of the rig */
     int markers_expected;
     bool is_virtual;
     const struct wb_acquisition_latest *latest; /* owned by the test */

@@ -1,7 +1,6 @@
 #include "daq/marker_check.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "daq/acquisition.h"
 
@@ -9,6 +8,7 @@
 
 struct cloud {
     int n;
+    int index[MAX_CANDIDATES];    /* in the frame */
     double at[MAX_CANDIDATES][3]; /* m */
 };
 
@@ -21,7 +21,7 @@ static void gather(const struct wb_mocap_frame *frame, struct cloud *cloud)
             continue;
         for (int k = 0; k < 3; k++)
             cloud->at[cloud->n][k] = (double)marker->position[k];
-        cloud->n++;
+        cloud->index[cloud->n++] = i;
     }
 }
 
@@ -31,34 +31,60 @@ static double distance(const double a[3], const double b[3])
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-/* How many markers fit a straight wire that has marker i at point p and marker j at point q; the
- * sum of their distances breaks ties. */
-static int count_fit(const struct cloud *cloud, const struct wb_specimen *specimen,
-                     const int markers[2], const int points[2], double tolerance, bool *seen,
-                     double *misfit)
+/* Which markers fit a straight wire that has marker i at point p and marker j at point q; the sum
+ * of their distances breaks ties. */
+static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, const int markers[2],
+                const int points[2], double tolerance, struct wb_marker_places *places,
+                double *misfit)
 {
     const double *const s = specimen->markers;
     const double *const p = cloud->at[points[0]], *const q = cloud->at[points[1]];
-    int n_seen = 0;
+    places->n_seen = 0;
     *misfit = 0.0;
     for (int m = 0; m < specimen->n_markers; m++) {
         const double along = (s[m] - s[markers[0]]) / (s[markers[1]] - s[markers[0]]);
         const double expected[3] = {p[0] + along * (q[0] - p[0]), p[1] + along * (q[1] - p[1]),
                                     p[2] + along * (q[2] - p[2])};
         double nearest = (double)INFINITY;
-        for (int c = 0; c < cloud->n; c++)
-            nearest = fmin(nearest, distance(expected, cloud->at[c]));
-        seen[m] = nearest <= tolerance;
-        if (seen[m]) {
-            n_seen++;
+        places->index[m] = -1;
+        for (int c = 0; c < cloud->n; c++) {
+            const double off = distance(expected, cloud->at[c]);
+            if (off < nearest && off <= tolerance)
+                places->index[m] = cloud->index[c];
+            nearest = fmin(nearest, off);
+        }
+        if (places->index[m] >= 0) {
+            places->n_seen++;
             *misfit += nearest;
         }
     }
-    return n_seen;
 }
 
-int wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
-                          bool seen[WB_SPECIMEN_MAX_MARKERS])
+/* Tries marker i at every point and marker j at every other one that is as far away as it should
+ * be. */
+static void try_pair(const struct cloud *cloud, const struct wb_specimen *specimen,
+                     const int markers[2], double tolerance, struct wb_marker_places *best,
+                     double *best_misfit)
+{
+    const double apart = specimen->markers[markers[1]] - specimen->markers[markers[0]];
+    for (int p = 0; p < cloud->n; p++) {
+        for (int q = 0; q < cloud->n; q++) {
+            if (q == p || !(fabs(distance(cloud->at[p], cloud->at[q]) - apart) <= tolerance))
+                continue;
+            struct wb_marker_places places;
+            double misfit;
+            fit(cloud, specimen, markers, (const int[]){p, q}, tolerance, &places, &misfit);
+            if (places.n_seen > best->n_seen ||
+                (places.n_seen == best->n_seen && misfit < *best_misfit)) {
+                *best = places;
+                *best_misfit = misfit;
+            }
+        }
+    }
+}
+
+void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
+                           struct wb_marker_places *places)
 {
     struct cloud cloud;
     gather(frame, &cloud);
@@ -67,34 +93,17 @@ int wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_sp
     for (int m = 1; m < n; m++)
         spacing = fmin(spacing, specimen->markers[m] - specimen->markers[m - 1]);
     const double tolerance = 0.4 * spacing;
-    int best = 0;
-    double best_misfit = (double)INFINITY;
-    memset(seen, 0, WB_SPECIMEN_MAX_MARKERS * sizeof seen[0]);
+    double misfit = (double)INFINITY;
+    places->n_seen = 0;
+    for (int m = 0; m < WB_SPECIMEN_MAX_MARKERS; m++)
+        places->index[m] = -1;
     /* Pairs far apart fix the line well; when one end is hidden, the next one serves. */
-    for (int i = 0; i < n; i++) {
-        for (int j = n - 1; j > i && j - i >= n / 2 && best < n; j--) {
-            const double apart = specimen->markers[j] - specimen->markers[i];
-            for (int p = 0; p < cloud.n; p++) {
-                for (int q = 0; q < cloud.n; q++) {
-                    if (q == p || !(fabs(distance(cloud.at[p], cloud.at[q]) - apart) <= tolerance))
-                        continue;
-                    bool fits[WB_SPECIMEN_MAX_MARKERS];
-                    double misfit;
-                    const int count = count_fit(&cloud, specimen, (const int[]){i, j},
-                                                (const int[]){p, q}, tolerance, fits, &misfit);
-                    if (count > best || (count == best && misfit < best_misfit)) {
-                        best = count;
-                        best_misfit = misfit;
-                        memcpy(seen, fits, (size_t)n * sizeof seen[0]);
-                    }
-                }
-            }
-        }
-    }
+    for (int i = 0; i < n; i++)
+        for (int j = n - 1; j > i && j - i >= n / 2 && places->n_seen < n; j--)
+            try_pair(&cloud, specimen, (const int[]){i, j}, tolerance, places, &misfit);
     /* One marker alone fixes no line, but it is seen. */
-    if (best == 0 && cloud.n > 0) {
-        seen[0] = true;
-        best = 1;
+    if (places->n_seen == 0 && cloud.n > 0) {
+        places->index[0] = cloud.index[0];
+        places->n_seen = 1;
     }
-    return best;
 }

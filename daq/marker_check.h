@@ -5,17 +5,21 @@
 #ifndef WB_DAQ_MARKER_CHECK_H
 #define WB_DAQ_MARKER_CHECK_H
 
-#include <stdbool.h>
-
 #include "daq/sample.h"
 #include "daq/specimen.h"
 
-/* Looks for the specimen's markers among the measured ones of a frame of the unloaded wire. Sets
- * `seen` for each of the specimen's markers, and returns how many were seen. A marker may lie off
- * the line by 0.4 of the smallest spacing: the wire's bow, its sag and the markers' height. Which
- * end is the clamp cannot be told when the spacing is symmetric; the count does not need it. Frames
- * with more than 32 measured markers are searched among the first 32. */
-int wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
-                          bool seen[WB_SPECIMEN_MAX_MARKERS]);
+/* Where the specimen's markers are in a frame: for each an index into frame->markers, -1 when it
+ * was not seen. */
+struct wb_marker_places {
+    int n_seen;
+    int index[WB_SPECIMEN_MAX_MARKERS];
+};
+
+/* Looks for the specimen's markers among the measured ones of a frame of the unloaded wire. A
+ * marker may lie off the line by 0.4 of the smallest spacing: the wire's bow, its sag and the
+ * markers' height. Which end is the clamp cannot be told when the spacing is symmetric; the count
+ * does not need it. Frames with more than 32 measured markers are searched among the first 32. */
+void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
+                           struct wb_marker_places *places);
 
 #endif

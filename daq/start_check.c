@@ -17,11 +17,11 @@
 void wb_start_check_frame(struct wb_start_check *check, const struct wb_mocap_frame *frame,
                           const struct wb_specimen *specimen)
 {
-    bool seen[WB_SPECIMEN_MAX_MARKERS];
-    wb_marker_check_frame(frame, specimen, seen);
+    struct wb_marker_places places;
+    wb_marker_check_frame(frame, specimen, &places);
     check->n_frames++;
     for (int m = 0; m < specimen->n_markers; m++)
-        check->seen[m] += seen[m];
+        check->seen[m] += places.index[m] >= 0;
 }
 
 bool wb_start_check_enough(const struct wb_start_check *check)

@@ -1,0 +1,66 @@
+#include "daq/tip_watch.h"
+
+#include <math.h>
+
+#include "base/units.h"
+#include "daq/acquisition.h"
+#include "daq/marker_check.h"
+
+/* An end moves far less than this from one frame to the next, and no other marker is so near. */
+#define REACH (5.0 * WB_MM)
+#define SMOOTHING 0.1
+
+/* Finds both ends anew near where they were; false when one is hidden (it keeps its place). */
+static bool follow_ends(struct wb_tip_watch *watch, const struct wb_mocap_frame *frame)
+{
+    bool both = true;
+    for (int end = 0; end < 2; end++) {
+        double *const at = watch->at[end];
+        double nearest = REACH;
+        int found = -1;
+        for (int i = 0; i < frame->n_markers; i++) {
+            const float *const p = frame->markers[i].position;
+            const double off = sqrt(pow((double)p[0] - at[0], 2) + pow((double)p[1] - at[1], 2) +
+                                    pow((double)p[2] - at[2], 2));
+            if (wb_acquisition_marker_measured(&frame->markers[i]) && off < nearest) {
+                nearest = off;
+                found = i;
+            }
+        }
+        both = both && found >= 0;
+        for (int k = 0; found >= 0 && k < 3; k++)
+            at[k] = (double)frame->markers[found].position[k];
+    }
+    return both;
+}
+
+void wb_tip_watch_rest(struct wb_tip_watch *watch, const struct wb_mocap_frame *frame,
+                       const struct wb_specimen *specimen, char up)
+{
+    if (watch->found) {
+        if (follow_ends(watch, frame)) {
+            wb_average_add(&watch->rest, watch->at[1][watch->up] - watch->at[0][watch->up]);
+            watch->settled = true;
+        }
+        return;
+    }
+    struct wb_marker_places places;
+    wb_marker_check_frame(frame, specimen, &places);
+    const int ends[2] = {places.index[0], places.index[specimen->n_markers - 1]};
+    if (ends[0] < 0 || ends[1] < 0)
+        return;
+    for (int end = 0; end < 2; end++)
+        for (int k = 0; k < 3; k++)
+            watch->at[end][k] = (double)frame->markers[ends[end]].position[k];
+    watch->up = up == 'z' ? 2 : 1;
+    watch->found = true;
+}
+
+void wb_tip_watch_follow(struct wb_tip_watch *watch, const struct wb_mocap_frame *frame)
+{
+    if (!watch->settled || !follow_ends(watch, frame))
+        return;
+    /* Which end is the tip shows by itself: it is the one that stays higher. */
+    const double now = fabs(watch->at[1][watch->up] - watch->at[0][watch->up] - watch->rest.mean);
+    watch->deflection += SMOOTHING * (now - watch->deflection);
+}

@@ -1,0 +1,31 @@
+/* The deflection for the operator's eye while a test runs: how much higher the tip's marker has
+ * come above the clamp's, followed from frame to frame. The analysis does it properly later, from
+ * the recording; this is only for the live line.
+ */
+#ifndef WB_DAQ_TIP_WATCH_H
+#define WB_DAQ_TIP_WATCH_H
+
+#include <stdbool.h>
+
+#include "daq/average.h"
+#include "daq/sample.h"
+#include "daq/specimen.h"
+
+/* All zero is not started. */
+struct wb_tip_watch {
+    bool found;             /* both ends are being followed */
+    bool settled;           /* the heights at rest are known */
+    int up;                 /* index of the vertical coordinate */
+    double at[2][3];        /* m, server's frame: where the two ends were seen last */
+    struct wb_average rest; /* m: their difference of height at rest */
+    double deflection;      /* m, smoothed over some frames */
+};
+
+/* A frame of the unloaded wire: finds the ends, then averages their heights. */
+void wb_tip_watch_rest(struct wb_tip_watch *watch, const struct wb_mocap_frame *frame,
+                       const struct wb_specimen *specimen, char up);
+
+/* A frame of the test. */
+void wb_tip_watch_follow(struct wb_tip_watch *watch, const struct wb_mocap_frame *frame);
+
+#endif
