@@ -3,6 +3,8 @@
 #ifndef WB_TESTS_DAQ_SAMPLE_LOG_H
 #define WB_TESTS_DAQ_SAMPLE_LOG_H
 
+#include <stdlib.h>
+
 #include "base/text.h"
 #include "daq/driver.h"
 #include "daq/recording.h"
