@@ -12,7 +12,7 @@
 
 /* A clamp that moved less than this tells no direction. */
 #define LEAST_MOTION (5.0 * WB_MM)
-/* Markers that leave the vertical by less than this tell no plane of their own. */
+/* Markers that leave the vertical, or their own line, by less than this tell no plane. */
 #define LEAST_SPREAD (5.0 * WB_MM)
 
 static double dot(const double *a, const double *b)
@@ -223,7 +223,8 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
     const double vertical = dot(directions[0], frame->up);
     for (int k = 0; k < 3; k++)
         frame->along[k] = sign * (directions[0][k] - vertical * frame->up[k]);
-    if (!(normalise(frame->along) > 1e-6))
+    if (!(normalise(frame->along) > 0.0) ||
+        !(dot(flat.sum, frame->along) / (double)flat.n > LEAST_SPREAD))
         return wb_fail(WB_ERR_DATA, "the markers lie one above the other along the clamp's motion: "
                                     "no bending plane (is the rig's mocap.up right?)");
     cross(frame->along, frame->up, frame->normal);
