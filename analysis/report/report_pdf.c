@@ -486,7 +486,9 @@ static void walk(struct pen *pen)
 static void set_metadata(cairo_surface_t *surface, const struct wb_document *document)
 {
     /* Cairo would take the time of the run: the same recordings must give the same bytes. */
-    const char *const date = document->date_utc[0] ? document->date_utc : "2000-01-01T00:00:00Z";
+    char date[32] = "2000-01-01T00:00:00Z";
+    if (strlen(document->date_utc) >= 19)
+        snprintf(date, sizeof date, "%.19sZ", document->date_utc);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, date);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_MOD_DATE, date);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, document->title);

@@ -359,7 +359,7 @@ static enum wb_status prepare_tests(struct wb_results_tests *tests,
     return WB_OK;
 }
 
-static enum wb_status prepare(struct wb_results *results, const struct wb_campaign *campaign)
+enum wb_status wb_results_init(struct wb_results *results, const struct wb_campaign *campaign)
 {
     memset(results, 0, sizeof *results);
     results->campaign = campaign;
@@ -370,6 +370,7 @@ static enum wb_status prepare(struct wb_results *results, const struct wb_campai
     for (int i = 0; i < campaign->n_wires; i++) {
         struct wb_results_wire *const wire = &results->wires[i];
         wire->wanted = &campaign->wires[i];
+        wire->calibration_state = WB_RESULTS_MISSING;
         wire->validation_state =
             campaign->validation_length > 0.0 ? WB_RESULTS_MISSING : WB_RESULTS_NOT_WANTED;
         WB_TRY(prepare_tests(&wire->calibration_tests, &wire->wanted->calibration));
@@ -394,7 +395,7 @@ static void count_tests(struct wb_results *results, struct wb_results_tests *tes
     }
 }
 
-static void judge(struct wb_results *results)
+void wb_results_judge(struct wb_results *results)
 {
     const struct wb_campaign *const campaign = results->campaign;
     results->all_virtual = true;
@@ -422,7 +423,7 @@ static void judge(struct wb_results *results)
 enum wb_status wb_results_compute(struct wb_results *results, const struct wb_campaign *campaign,
                                   int n_threads, wb_results_progress *progress, void *context)
 {
-    enum wb_status status = prepare(results, campaign);
+    enum wb_status status = wb_results_init(results, campaign);
     struct schedule schedule = {.lock = PTHREAD_MUTEX_INITIALIZER,
                                 .changed = PTHREAD_COND_INITIALIZER,
                                 .results = results,
@@ -446,7 +447,7 @@ enum wb_status wb_results_compute(struct wb_results *results, const struct wb_ca
     run_threads(&schedule, n_threads);
     free(schedule.jobs);
     results->interrupted = wb_interrupted();
-    judge(results);
+    wb_results_judge(results);
     return WB_OK;
 }
 

@@ -80,6 +80,13 @@ WB_MUST_CHECK enum wb_status wb_results_compute(struct wb_results *results,
                                                 wb_results_progress *progress, void *context);
 void wb_results_release(struct wb_results *results); /* accepts a zeroed one */
 
+/* The two ends of wb_results_compute(), for results that come from elsewhere: makes all places with
+ * nothing in them, and after they were filled counts and decides what is complete, where it comes
+ * from and whether it keeps the limits. */
+WB_MUST_CHECK enum wb_status wb_results_init(struct wb_results *results,
+                                             const struct wb_campaign *campaign);
+void wb_results_judge(struct wb_results *results);
+
 /* How much of the mean square error of a step the scatter between samples explains, 0 to 1; NaN
  * where it is not known. Both means scatter: that of the curve it is compared with, and, for a
  * validation, that of the curves the model was calibrated on. With s the RMS over deflection of the
