@@ -106,8 +106,10 @@ static void print_meta(struct facts *facts, const char *label, const char *key)
 static enum wb_status print_event(void *context, const struct wb_event *event)
 {
     const struct facts *facts = context;
-    printf("    %9.3f s  %-12s %s\n", wb_survey_seconds(facts->survey.first_ns, event->t_ns),
-           event->kind, event->text);
+    double t = wb_survey_seconds(facts->survey.first_ns, event->t_ns);
+    if (t < 0.0 && t > -5e-4)
+        t = 0.0; /* not "-0.000" */
+    printf("    %9.3f s  %-12s %s\n", t, event->kind, event->text);
     return WB_OK;
 }
 
@@ -141,7 +143,8 @@ static enum wb_status print_text(struct facts *facts, const char *path)
                facts->specimen.length / WB_MM, facts->specimen.sample, facts->specimen.n_markers);
     if (facts->has_rig)
         printf("  %-10s %s%s\n", "rig", facts->rig.name,
-               survey->is_virtual ? " (virtual rig)" : "");
+               survey->is_virtual && !strstr(facts->rig.name, "virtual rig") ? " (virtual rig)"
+                                                                             : "");
     print_meta(facts, "cycles", "cycles");
     print_meta(facts, "tool", "tool_version");
     print_meta(facts, "revision", "tool_revision");

@@ -133,7 +133,8 @@ wb_recording_each_meta(struct wb_recording *recording,
                        enum wb_status (*visit)(void *context, const char *key, const char *value),
                        void *context);
 
-/* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. */
+/* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. Of a recording
+ * that was not closed: of the file followed by its write-ahead log (`-wal`). */
 WB_MUST_CHECK enum wb_status wb_recording_sha256(const char *path, char hex[65]);
 
 /* Compresses a closed recording to `target` (.wbr.zst), written atomically; the same recording and

@@ -137,8 +137,45 @@ static enum wb_status hash_compressed(int from, const char *path, char hex[65])
     return status;
 }
 
+/* The log beside a recording that was not closed holds a part of it. */
+static bool find_wal(const char *path, char wal[WB_PATH])
+{
+    struct stat there;
+    int n = snprintf(wal, WB_PATH, "%s-wal", path);
+    return n > 0 && n < WB_PATH && stat(wal, &there) == 0 && there.st_size > 0;
+}
+
+static enum wb_status append_file(int to, const char *path)
+{
+    char *bytes = NULL;
+    size_t size = 0;
+    WB_TRY(wb_file_read(path, &bytes, &size));
+    enum wb_status status =
+        write_all(to, bytes, size, "a recording to the temporary folder ($TMPDIR)");
+    free(bytes);
+    return status;
+}
+
+static enum wb_status hash_with_wal(const char *path, const char *wal, char hex[65])
+{
+    char temporary[WB_PATH];
+    int to = -1;
+    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
+    unlink(temporary);
+    enum wb_status status = append_file(to, path);
+    if (status == WB_OK)
+        status = append_file(to, wal);
+    if (status == WB_OK)
+        status = wb_hash_descriptor(to, path, hex);
+    close(to);
+    return status;
+}
+
 enum wb_status wb_recording_sha256(const char *path, char hex[65])
 {
+    char wal[WB_PATH];
+    if (find_wal(path, wal))
+        return hash_with_wal(path, wal, hex);
     int descriptor;
     WB_TRY(open_file(path, &descriptor));
     uint8_t magic[4];
@@ -150,14 +187,6 @@ enum wb_status wb_recording_sha256(const char *path, char hex[65])
         status = wb_hash_descriptor(descriptor, path, hex);
     close(descriptor);
     return status;
-}
-
-/* What follows a recording that was not closed holds a part of it. */
-static bool has_wal(const char *path)
-{
-    char wal[WB_PATH];
-    int n = snprintf(wal, sizeof wal, "%s-wal", path);
-    return n > 0 && (size_t)n < sizeof wal && access(wal, F_OK) == 0;
 }
 
 static enum wb_status write_compressed(const char *target, const void *bytes, size_t size)
@@ -183,7 +212,8 @@ static enum wb_status write_compressed(const char *target, const void *bytes, si
 
 enum wb_status wb_recording_compress(const char *path, const char *target)
 {
-    if (has_wal(path))
+    char wal[WB_PATH];
+    if (find_wal(path, wal))
         return wb_fail(WB_ERR_BUSY, "'%s' is being recorded or was not closed", path);
     if (wb_file_exists(target))
         return wb_fail(WB_ERR_EXISTS,

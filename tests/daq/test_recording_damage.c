@@ -12,6 +12,14 @@
 #include "daq/writer.h"
 #include "tests/daq/recording_fixture.h"
 
+static void run_sql(const char *path, const char *sql)
+{
+    sqlite3 *db = NULL;
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(db);
+}
+
 static void killed_writer_leaves_what_was_flushed(void **state)
 {
     struct bench *bench = *state;
@@ -50,6 +58,28 @@ static void killed_writer_leaves_what_was_flushed(void **state)
     assert_int_equal(bench_walk(recording, &tally), WB_OK);
     assert_int_equal(tally.chunks, 1500);
     assert_true(tally.exact);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+
+    /* It is told by its sum, log included, and is not compressed without the log. */
+    char sum[65], expected[80], command[400];
+    assert_int_equal(wb_recording_sha256(bench->path, sum), WB_OK);
+    snprintf(command, sizeof command, "cat %s %s-wal | sha256sum > %s/sum", bench->path,
+             bench->path, bench->folder);
+    assert_int_equal(system(command), 0);
+    snprintf(command, sizeof command, "%s/sum", bench->folder);
+    FILE *file = fopen(command, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(expected, sizeof expected, file));
+    fclose(file);
+    assert_memory_equal(sum, expected, 64);
+    snprintf(command, sizeof command, "%s/packed.zst", bench->folder);
+    assert_int_equal(wb_recording_compress(bench->path, command), WB_ERR_BUSY);
+    /* What the manual says makes it one plain file. */
+    run_sql(bench->path, "PRAGMA journal_mode=DELETE");
+    assert_false(bench_exists(bench->folder, "test.wbr-wal"));
+    assert_int_equal(wb_recording_open(&recording, bench->path), WB_OK);
+    assert_int_equal(bench_walk(recording, &tally), WB_OK);
+    assert_int_equal(tally.chunks, 1500);
     assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
@@ -153,14 +183,6 @@ static void truncated_compressed_recording_gives_what_is_left(void **state)
     assert_true(tally.chunks > 0 && tally.chunks < 9000);
     assert_int_equal(wb_recording_close(recording), WB_OK);
     assert_int_equal(wb_recording_sha256(packed, hex), WB_ERR_DATA);
-}
-
-static void run_sql(const char *path, const char *sql)
-{
-    sqlite3 *db = NULL;
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
-    sqlite3_close(db);
 }
 
 static void what_is_no_recording_is_refused_with_the_reason(void **state)
