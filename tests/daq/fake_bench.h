@@ -52,6 +52,7 @@ struct fake_bench {
     /* What it saw, ns of the monotonic clock; 0 not yet. */
     atomic_llong limit_sent_ns, hold_ns, reset_ns, load_last_ns, frame_last_ns, report_last_ns;
     atomic_int holds;
+    atomic_llong worst_gap_ns; /* longest that this thread itself was kept from running */
 
     /* The thread's own. */
     double position_mm, target_mm, feed_mm_s;
@@ -290,11 +291,15 @@ static inline void fake_datagram(struct fake_bench *bench)
 static inline void *fake_run(void *context)
 {
     struct fake_bench *const bench = context;
+    int64_t before_ns = wb_acquisition_now_ns();
     while (!bench->quit) {
         struct pollfd polled[2] = {{.fd = bench->stage, .events = POLLIN},
                                    {.fd = bench->udp, .events = POLLIN}};
         poll(polled, 2, 1);
         const int64_t now_ns = wb_acquisition_now_ns();
+        if (now_ns - before_ns > bench->worst_gap_ns)
+            bench->worst_gap_ns = now_ns - before_ns;
+        before_ns = now_ns;
         fake_move(bench, now_ns);
         char bytes[512];
         ssize_t n;
@@ -360,6 +365,14 @@ static inline struct fake_bench *fake_start(void)
     bench->moved_ns = bench->next_load_ns = bench->next_frame_ns = now_ns;
     assert_int_equal(pthread_create(&bench->thread, NULL, fake_run, bench), 0);
     return bench;
+}
+
+/* How late the hold byte may be seen: 20 ms, and more on a machine so busy that it keeps even this
+ * thread from running, for which no program of ours is to blame. */
+static inline int64_t fake_patience_ns(const struct fake_bench *bench)
+{
+    const int64_t stalled_ns = bench->worst_gap_ns - 5 * WB_NS_PER_MS;
+    return WB_STOP_HOLD_NS + (stalled_ns > 0 ? 3 * stalled_ns : 0);
 }
 
 /* Ends the thread and closes everything: what an unplugged cable looks like. */

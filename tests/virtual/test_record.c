@@ -40,8 +40,13 @@ static void start_rig(struct fixture *fixture, const char *specimen, int major, 
     assert_non_null(mkdtemp(fixture->folder));
     snprintf(fixture->rig, sizeof fixture->rig, "%s/rig.yaml", fixture->folder);
     snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
-    snprintf(fixture->paper, sizeof fixture->paper, "%s/fixtures/rigs/paper.yaml",
-             root ? root : ".");
+    /* 20 s of a rig that runs 20 times faster: a busy machine is no lost stream. */
+    char command[1024];
+    snprintf(fixture->paper, sizeof fixture->paper, "%s/paper.yaml", fixture->folder);
+    snprintf(command, sizeof command,
+             "sed 's/stream_lost_s: 1/stream_lost_s: 20/' %s/fixtures/rigs/paper.yaml > %s",
+             root ? root : ".", fixture->paper);
+    assert_int_equal(system(command), 0);
     snprintf(fixture->specimen, sizeof fixture->specimen, "%s/fixtures/specimens/%s",
              root ? root : ".", specimen);
     const struct wb_bench_settings settings = {
