@@ -42,11 +42,11 @@ static void append_revisions(struct wb_text *caption, const struct wb_results *r
                                                        &results->wires[i].validation_tests};
         for (int k = 0; k < 2; k++) {
             for (int j = 0; j < both[k]->n; j++) {
-                const char *const revision = both[k]->items[j].tool_revision;
+                char revision[400];
+                wb_pages_escape(revision, sizeof revision, both[k]->items[j].tool_revision);
                 if (!revision[0] || strstr(wb_text_string(&list), revision))
                     continue;
-                wb_text_append(&list, list.length > 0 ? ", " : "");
-                wb_text_append_escaped(&list, revision);
+                wb_text_append(&list, "%s%s", list.length > 0 ? ", " : "", revision);
             }
         }
     }
@@ -59,7 +59,7 @@ static void append_revisions(struct wb_text *caption, const struct wb_results *r
 static void put_recordings(struct wb_document *document, const struct wb_results *results)
 {
     static const struct wb_document_column columns[] = {
-        {.heading = "Recording"},
+        {.heading = "Recording", .wraps = true},
         {.heading = "Start (UTC)"},
         {.heading = "Seed", .right = true},
         {.heading = "SHA-256", .monospace = true},
