@@ -8,6 +8,19 @@ static int parse(const char *line, bool jog, struct wb_gcode_words *words)
     return wb_gcode_parse(line, words);
 }
 
+static void blanks_and_comments_are_left_out(void **state)
+{
+    (void)state;
+    char line[16];
+    static const char raw[] = " g1 (fast; or not) x2\t; to the end";
+    assert_true(wb_gcode_clean(raw, strlen(raw), line, sizeof line));
+    assert_string_equal(line, "G1X2");
+    assert_true(wb_gcode_clean("", 0, line, sizeof line));
+    assert_string_equal(line, "");
+    assert_true(wb_gcode_clean("123456789012345", 15, line, sizeof line));
+    assert_false(wb_gcode_clean("1234567890123456", 16, line, sizeof line));
+}
+
 static void words_and_modes_are_read(void **state)
 {
     (void)state;
@@ -59,6 +72,7 @@ static void faults_have_the_numbers_of_grbl(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(blanks_and_comments_are_left_out),
         cmocka_unit_test(words_and_modes_are_read),
         cmocka_unit_test(modes_that_are_not_named_stay),
         cmocka_unit_test(faults_have_the_numbers_of_grbl),

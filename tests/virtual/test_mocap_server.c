@@ -8,6 +8,7 @@
 
 #include "daq/driver.h"
 #include "daq/natnet_encode.h"
+#include "fixtures/virtual/random.h"
 #include "tests/virtual/setup.h"
 
 struct scene {
@@ -262,6 +263,41 @@ static void requests_are_answered(void **state)
     free(scene);
 }
 
+/* Any datagram: at most an answer, and the frames go on. */
+static void random_datagrams_do_no_harm(void **state)
+{
+    (void)state;
+    struct scene *const scene = malloc(sizeof *scene);
+    assert_non_null(scene);
+    open_scene(scene, (struct wb_natnet_version){3, 0});
+    turn(scene);
+    turn(scene);
+    for (uint64_t i = 0; i < 3000; i++) {
+        uint8_t bytes[64], answer[2048];
+        const size_t n = wb_random_bits(2, i, 0) % sizeof bytes;
+        for (size_t k = 0; k < n; k++)
+            bytes[k] = (uint8_t)wb_random_bits(2, i, k + 1);
+        if (n >= 4) {
+            /* Mostly known messages of the right length, but no goodbye. */
+            bytes[0] = (uint8_t)(wb_random_bits(2, i, 100) % 16);
+            bytes[0] = bytes[0] == WB_NATNET_DISCONNECT ? 0 : bytes[0];
+            bytes[1] = bytes[3] = 0;
+            bytes[2] = (uint8_t)(n - 4);
+        }
+        assert_true(sendto(scene->socket, bytes, n, 0, (const struct sockaddr *)&scene->address,
+                           sizeof scene->address) == (ssize_t)n);
+        wb_mocap_server_receive(scene->server, 1.0, scene->now_ns);
+        while (recv(scene->socket, answer, sizeof answer, 0) >= 0) {
+        }
+    }
+    const int before = scene->frames;
+    for (int i = 0; i < 10; i++)
+        turn(scene);
+    assert_int_equal(scene->frames, before + 10);
+    close_scene(scene);
+    free(scene);
+}
+
 static int refused;
 
 static void count_errors(void *context, enum wb_log_level level, const char *domain,
@@ -304,6 +340,7 @@ int main(void)
         cmocka_unit_test(a_silent_client_is_dropped_and_told),
         cmocka_unit_test(a_client_that_says_goodbye_gets_no_more_frames),
         cmocka_unit_test(requests_are_answered),
+        cmocka_unit_test(random_datagrams_do_no_harm),
         cmocka_unit_test(several_servers_have_ports_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,6 +6,7 @@
 #include "base/units.h"
 #include "daq/driver.h"
 #include "daq/grbl.h"
+#include "fixtures/virtual/random.h"
 #include "tests/check.h"
 
 struct scene {
@@ -316,6 +317,56 @@ static void lost_steps_stay_until_homed(void **state)
     assert_close(travel(&scene), 0.0, 2e-6);
 }
 
+static void end_stops_stall_the_motor(void **state)
+{
+    (void)state;
+    struct scene scene;
+    open_scene(&scene, &plain);
+    assert_string_equal(tell(&scene, "$20=0\n"), "ok\r\n");
+    assert_string_equal(tell(&scene, "$J=G91 G21 X70 F600\n"), "ok\r\n");
+    for (int i = 0; i < 100; i++) {
+        wait(&scene, 0.1);
+        travel(&scene);
+    }
+    assert_close(travel(&scene), 62.5 * WB_MM, 2e-6);
+    /* It was told 70 mm: going back by 70 mm is 7.5 mm too far, into the other stop. */
+    tell(&scene, "$J=G91 G21 X-70 F600\n");
+    for (int i = 0; i < 100; i++) {
+        wait(&scene, 0.1);
+        travel(&scene);
+    }
+    assert_close(travel(&scene), -2.5 * WB_MM, 2e-6);
+    assert_string_equal(tell(&scene, "$H\n"), "");
+    wait(&scene, 20.0);
+    assert_string_equal(listen(&scene), "ok\r\n");
+    assert_close(travel(&scene), 0.0, 2e-6);
+}
+
+/* Any bytes at any time: it stays within its stops and goes on answering. */
+static void random_bytes_do_no_harm(void **state)
+{
+    (void)state;
+    static const char alphabet[] = "?!~\x18\x85\n\r$JGXYFMH=0129.-+ (;)\xff\x91$X\n$H\n";
+    struct scene scene;
+    open_scene(&scene, &plain);
+    for (uint64_t i = 0; i < 40000; i++) {
+        char bytes[8];
+        for (uint64_t k = 0; k < sizeof bytes; k++) {
+            const uint64_t pick = wb_random_bits(1, i, k);
+            bytes[k] =
+                pick % 7 == 0 ? (char)(pick >> 8) : alphabet[(pick >> 8) % (sizeof alphabet - 1)];
+        }
+        wb_sim_stage_receive(&scene.stage, scene.t, bytes, sizeof bytes);
+        listen(&scene);
+        wait(&scene, 0.02);
+        const double at = travel(&scene);
+        assert_true(at >= -2.6 * WB_MM && at <= 62.6 * WB_MM);
+    }
+    tell(&scene, "\x18");
+    wait(&scene, 1.0);
+    assert_non_null(strstr(tell(&scene, "\n$I\n"), "virtual rig"));
+}
+
 static void reports_have_the_work_offset_now_and_then(void **state)
 {
     (void)state;
@@ -495,6 +546,8 @@ int main(void)
         cmocka_unit_test(homing_brings_the_clamp_to_the_start),
         cmocka_unit_test(a_reset_while_homing_is_alarm_six),
         cmocka_unit_test(lost_steps_stay_until_homed),
+        cmocka_unit_test(end_stops_stall_the_motor),
+        cmocka_unit_test(random_bytes_do_no_harm),
         cmocka_unit_test(reports_have_the_work_offset_now_and_then),
         cmocka_unit_test(a_reset_empties_the_receive_buffer),
         cmocka_unit_test(endless_lines_are_refused),
