@@ -1,0 +1,181 @@
+/* One dataset at a glance: figures and summary are there, say where they come from, and are the
+ * same every time. */
+#include "analysis/quicklook.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/log.h"
+#include "tests/check.h"
+
+static char folder[64];
+
+static void quiet(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)context;
+    (void)level;
+    (void)domain;
+    (void)message;
+}
+
+static int start(void **state)
+{
+    (void)state;
+    wb_log_set_sink(quiet, NULL);
+    snprintf(folder, sizeof folder, "%s/wirebench-quicklook-XXXXXX",
+             access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int finish(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -r '%s'", folder);
+    return system(command);
+}
+
+/* Two cycles up and down, with a slack end. */
+static void fill(struct wb_dataset *dataset)
+{
+    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    strcpy(dataset->info.wire, "type <2>");
+    dataset->info.sample = 2;
+    dataset->info.length = 0.085;
+    dataset->info.outer_diameter = 1.25e-3;
+    dataset->info.is_virtual = true;
+    wb_json_set_text(dataset->document, "name", "a&b.wbr");
+    struct wb_json *const list = wb_json_set_array(dataset->document, "corrections");
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "name", "tare");
+    wb_json_set_number(entry, "value_mN", -1.25);
+    wb_json_set_number(entry, "uncertainty_mN", 0.007);
+    wb_json_append_text(wb_json_set_array(dataset->document, "warnings"), "the cat walked by");
+    for (int i = 0; i < 400; i++) {
+        const int in = i % 200;
+        const double y = 1e-3 * (in < 100 ? 0.4 * in : fmax(80.0 - 0.4 * in, 10.0));
+        const struct wb_row row = {
+            .t = 0.05 * i,
+            .cycle = 1 + i / 200,
+            .phase = in < 100   ? WB_PHASE_LOAD
+                     : in < 175 ? WB_PHASE_UNLOAD
+                                : WB_PHASE_SLACK,
+            .deflection = y,
+            .tension = 0.03 + y,
+            .force = 1.5 * y,
+            .stage = y,
+            .tip_x = 0.08,
+            .tip_angle = 0.1,
+        };
+        assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+        for (int marker = 0; marker < 3 && i % 4 == 0; marker++) {
+            const struct wb_shape_row shape = {.t = row.t,
+                                               .deflection = y,
+                                               .marker = marker,
+                                               .s = 0.04 * marker,
+                                               .x = 0.04 * marker,
+                                               .y = 0.25 * y * marker * marker};
+            assert_int_equal(wb_dataset_add_shape_row(dataset, &shape), WB_OK);
+        }
+    }
+}
+
+static char *read_whole(const char *path, const char *name, size_t *size)
+{
+    char file[WB_PATH], *bytes;
+    assert_int_equal(wb_file_join(file, path, name), WB_OK);
+    assert_int_equal(wb_file_read(file, &bytes, size), WB_OK);
+    return bytes;
+}
+
+static void assert_says(const char *path, const char *name, const char *text)
+{
+    size_t size;
+    char *const bytes = read_whole(path, name, &size);
+    if (!strstr(bytes, text))
+        fail_msg("%s does not say '%s'", name, text);
+    free(bytes);
+}
+
+static void all_files_are_written_and_say_virtual_rig(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset, back;
+    char path[WB_PATH];
+    size_t size;
+    snprintf(path, sizeof path, "%s/look", folder);
+    fill(&dataset);
+    assert_int_equal(wb_quicklook_write(&dataset, path, false), WB_OK);
+    assert_int_equal(wb_quicklook_write(&dataset, path, false), WB_ERR_EXISTS);
+    assert_int_equal(wb_quicklook_write(&dataset, path, true), WB_OK);
+    assert_says(path, "summary.txt", "measured on a virtual rig");
+    assert_says(path, "summary.txt", "type <2>, sample 2, 85 mm");
+    assert_says(path, "summary.txt", "cycles              2");
+    assert_says(path, "summary.txt", "largest deflection  39.60 mm");
+    assert_says(path, "summary.txt", "largest force       59.40 mN (tension 69.60 mN)");
+    assert_says(path, "summary.txt", "-1.25 +- 0.007 mN");
+    assert_says(path, "summary.txt", "- the cat walked by");
+    static const char *const figures[] = {"force_deflection.png", "shapes.png"};
+    for (int i = 0; i < 2; i++) {
+        char *const bytes = read_whole(path, figures[i], &size);
+        assert_true(size > 2000 && memcmp(bytes, "\x89PNG", 4) == 0);
+        free(bytes);
+    }
+    char *const pdf = read_whole(path, "force_deflection.pdf", &size);
+    assert_memory_equal(pdf, "%PDF", 4);
+    free(pdf);
+    assert_says(path, "force_deflection.svg", "<svg");
+    assert_says(path, "shapes.svg", "<svg");
+    /* It is a dataset as well. */
+    assert_int_equal(wb_dataset_read(&back, path), WB_OK);
+    assert_int_equal(back.n_rows, 400);
+    wb_dataset_release(&back);
+    wb_dataset_release(&dataset);
+}
+
+static void the_same_dataset_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"force_deflection.svg", "force_deflection.png",
+                                        "force_deflection.pdf", "shapes.svg", "summary.txt"};
+    struct wb_dataset dataset;
+    char paths[2][WB_PATH];
+    fill(&dataset);
+    for (int i = 0; i < 2; i++) {
+        snprintf(paths[i], WB_PATH, "%s/same-%d", folder, i);
+        assert_int_equal(wb_quicklook_write(&dataset, paths[i], false), WB_OK);
+    }
+    for (size_t k = 0; k < sizeof files / sizeof files[0]; k++) {
+        size_t size[2];
+        char *const a = read_whole(paths[0], files[k], &size[0]);
+        char *const b = read_whole(paths[1], files[k], &size[1]);
+        assert_int_equal(size[0], size[1]);
+        assert_memory_equal(a, b, size[0]);
+        free(a);
+        free(b);
+    }
+    wb_dataset_release(&dataset);
+}
+
+static void a_dataset_without_shapes_or_rows_has_a_summary(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset;
+    struct wb_text text = {0};
+    assert_int_equal(wb_dataset_init(&dataset), WB_OK);
+    assert_int_equal(wb_quicklook_summary(&dataset, &text), WB_OK);
+    assert_non_null(strstr(wb_text_string(&text), "no warnings"));
+    wb_text_release(&text);
+    wb_dataset_release(&dataset);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_files_are_written_and_say_virtual_rig),
+        cmocka_unit_test(the_same_dataset_gives_the_same_bytes),
+        cmocka_unit_test(a_dataset_without_shapes_or_rows_has_a_summary),
+    };
+    return cmocka_run_group_tests(tests, start, finish);
+}
