@@ -126,7 +126,7 @@ int wb_cmd_verify(int argc, char **argv)
     struct options options = {.n = 0};
     wb_command_parse(&argp, argc, argv, &options);
     struct wb_json *root = options.json ? wb_json_create() : NULL;
-    struct wb_json *array = wb_json_set_array(root, "recordings");
+    struct wb_json *array = root ? wb_json_set_array(root, "recordings") : NULL;
     int code = WB_EXIT_OK;
     for (int i = 0; i < options.n; i++) {
         struct wb_survey survey;
