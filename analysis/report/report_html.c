@@ -24,7 +24,7 @@ static const char style[] =
     "h2{margin:2.6rem 0 .6rem;padding-top:.6rem;font-size:1.5rem;line-height:1.25;"
     "scroll-margin-top:3rem}\n"
     "h3{margin:1.6rem 0 .4rem;font-size:1.08rem;scroll-margin-top:3rem}\n"
-    "p{margin:.4rem 0 .8rem;max-width:52rem}\n"
+    "p{margin:.4rem 0 .8rem;max-width:52rem;overflow-wrap:anywhere}\n"
     "ul{margin:.4rem 0 .8rem;padding-left:1.2rem}\n"
     "li{margin:.15rem 0}\n"
     ".notice{margin:.8rem 0;padding:.7rem 1rem;max-width:none;border-left:4px solid var(--grey);"
@@ -39,8 +39,7 @@ static const char style[] =
     ".table{overflow-x:auto;margin:.8rem 0 1.2rem}\n"
     "table{border-collapse:collapse;width:100%;font-size:.88rem;"
     "font-variant-numeric:tabular-nums}\n"
-    "caption{caption-side:bottom;padding-top:.4rem;color:var(--grey);text-align:left;"
-    "font-size:.84rem}\n"
+    ".caption{margin:-.8rem 0 1.2rem;max-width:none;color:var(--grey);font-size:.84rem}\n"
     "th{padding:.3rem .6rem;border-bottom:2px solid var(--grey);color:var(--grey);"
     "text-align:left;vertical-align:bottom;font-weight:700}\n"
     "td{padding:.22rem .6rem;vertical-align:top}\n"
@@ -77,8 +76,6 @@ static void put_table(struct wb_text *html, const struct wb_document_table *tabl
     if (!table)
         return;
     wb_text_append(html, "<div class=\"table\"><table>\n");
-    if (table->caption)
-        wb_text_append(html, "<caption>%s</caption>\n", table->caption);
     wb_text_append(html, "<thead><tr>");
     bool any = false;
     for (int i = 0; i < table->n_columns; i++)
@@ -100,6 +97,9 @@ static void put_table(struct wb_text *html, const struct wb_document_table *tabl
         wb_text_append(html, "</tr>\n");
     }
     wb_text_append(html, "</tbody></table></div>\n");
+    /* Not a <caption>: that would be as wide as a table that scrolls. */
+    if (table->caption)
+        wb_text_append(html, "<p class=\"caption\">%s</p>\n", table->caption);
 }
 
 /* The SVG element alone, without the XML declaration that only a file may have. */
