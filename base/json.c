@@ -41,7 +41,11 @@ void wb_json_destroy(struct wb_json *root)
 
 static struct wb_json *set(struct wb_json *object, const char *key, json_t *value)
 {
-    if (!value || !object || json_object_set_new(value_of(object), key, value) != 0) {
+    if (!object) {
+        json_decref(value);
+        value = NULL;
+    }
+    if (!value || json_object_set_new(value_of(object), key, value) != 0) {
         lost_values++;
         return NULL;
     }
@@ -50,7 +54,11 @@ static struct wb_json *set(struct wb_json *object, const char *key, json_t *valu
 
 static struct wb_json *append(struct wb_json *array, json_t *value)
 {
-    if (!value || !array || json_array_append_new(value_of(array), value) != 0) {
+    if (!array) {
+        json_decref(value);
+        value = NULL;
+    }
+    if (!value || json_array_append_new(value_of(array), value) != 0) {
         lost_values++;
         return NULL;
     }
