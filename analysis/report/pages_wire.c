@@ -138,11 +138,14 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
     wb_document_heading(document, 2, "", "Numbers");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Scatter: RMS over deflection of the samples' standard deviation. Share: part of the mean "
-        "square error that the scatter of the means explains, "
-        "(<i>s</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
-        "<i>s</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>) / RMS<sup>2</sup>, at most 1; the "
-        "first term is zero for the calibration.",
+        "Scatter: RMS over deflection of the samples' standard deviation, <i>s</i>, and what "
+        "remains "
+        "of it when each sample is computed with its own natural shape, <i>r</i>. Expected from "
+        "it: "
+        "(<i>r</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
+        "<i>r</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>)<sup>1/2</sup> of the validation's "
+        "and the calibration's samples, for the calibration its own term alone. Share: its square "
+        "over RMS<sup>2</sup>, at most 1.",
         4, columns);
     put_number(document, table, "RMS (eq. 19)", part, fit->elastoplastic.rms,
                v ? val->elastoplastic.rms : none, 4);
@@ -152,9 +155,17 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
                v ? val->elastoplastic.max_error : none, 4);
     put_number(document, table, "RMS of the linear elastic beam", part, fit->elastic.rms,
                v ? val->elastic.rms : none, 4);
-    put_number(document, table, "Scatter between samples", part,
+    put_number(document, table, "Scatter between samples <i>s</i>", part,
                fit->curve.n_samples > 1 ? wire->calibration.scatter_rms : none,
                v && val->curve.n_samples > 1 ? val->scatter_rms : none, 4);
+    put_number(document, table, "Scatter beyond the natural shapes <i>r</i>", part,
+               fit->curve.n_samples > 1 ? wire->calibration.residual_scatter_rms : none,
+               v && val->curve.n_samples > 1 ? val->residual_scatter_rms : none, 4);
+    put_number(document, table, "RMS expected from that scatter", part,
+               fit->curve.n_samples > 1
+                   ? wire->calibration.residual_scatter_rms / sqrt(fit->curve.n_samples)
+                   : none,
+               v ? val->expected_rms : none, 4);
     put_number(document, table, "Share that the scatter explains", "1",
                wb_results_calibration_share(wire), wb_results_validation_share(wire), 2);
     put_number(document, table, "Shapes, RMS distance", "mm", fit->shape_rms / WB_MM,

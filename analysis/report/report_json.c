@@ -93,7 +93,7 @@ static void put_prediction(struct wb_json *object, const char *key,
 }
 
 static void put_comparison(struct wb_json *object, const struct wb_validate_result *result,
-                           double scatter, double share)
+                           double scatter, double residual, double share)
 {
     const struct wb_curve *const curve = &result->curve;
     wb_json_set_integer(object, "samples", curve->n_samples);
@@ -102,6 +102,8 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
     wb_json_set_number(object, "max_deflection_mm", curve->max_deflection / WB_MM);
     wb_json_set_number(object, "scatter_rms_over_F_max",
                        curve->n_samples > 1 ? scatter : (double)NAN);
+    wb_json_set_number(object, "residual_scatter_rms_over_F_max",
+                       curve->n_samples > 1 ? residual : (double)NAN);
     wb_json_set_number(object, "share_explained_by_scatter", share);
     wb_json_set_number(object, "shape_rms_mm", result->shape_rms / WB_MM);
     wb_json_set_number(object, "shape_largest_mm", result->shape_max / WB_MM);
@@ -117,6 +119,14 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
     put_array(measured, "standard_deviation_mN", curve->deviation, curve->n, WB_MN);
     put_prediction(object, "elastoplastic", &result->elastoplastic);
     put_prediction(object, "linear_elastic", &result->elastic);
+}
+
+static void put_validation(struct wb_json *object, const struct wb_results_wire *wire)
+{
+    put_comparison(object, &wire->validation, wire->validation.scatter_rms,
+                   wire->validation.residual_scatter_rms, wb_results_validation_share(wire));
+    wb_json_set_number(object, "rms_expected_from_scatter_over_F_max",
+                       wire->validation.expected_rms);
 }
 
 static void put_values(struct wb_json *object, const char *name, const double values[4])
@@ -175,7 +185,7 @@ static void put_wire(struct wb_json *list, const struct wb_results_wire *wire)
         wb_json_set_number(calibration, "rms_over_F_max", wire->calibration.rms);
         wb_json_set_number(calibration, "largest_error_over_F_max", wire->calibration.max_error);
         put_comparison(calibration, &wire->fit, wire->calibration.scatter_rms,
-                       wb_results_calibration_share(wire));
+                       wire->calibration.residual_scatter_rms, wb_results_calibration_share(wire));
         put_search(calibration, &wire->calibration);
     } else {
         wb_json_set_text(calibration, "problem", wb_text_string(&wire->calibration_problem));
@@ -183,8 +193,7 @@ static void put_wire(struct wb_json *list, const struct wb_results_wire *wire)
     struct wb_json *const validation = wb_json_set_object(entry, "validation");
     wb_json_set_text(validation, "state", state_text(wire->validation_state));
     if (wire->validation_state == WB_RESULTS_DONE)
-        put_comparison(validation, &wire->validation, wire->validation.scatter_rms,
-                       wb_results_validation_share(wire));
+        put_validation(validation, wire);
     else if (wire->validation_state != WB_RESULTS_NOT_WANTED)
         wb_json_set_text(validation, "problem", wb_text_string(&wire->validation_problem));
 }

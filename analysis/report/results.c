@@ -479,37 +479,17 @@ void wb_results_release(struct wb_results *results)
     memset(results, 0, sizeof *results);
 }
 
-/* Variance of the mean of a curve's samples, in units of F_max. */
-static double variance_of_mean(double scatter, int n_samples)
-{
-    return n_samples > 1 ? scatter * scatter / n_samples : (double)NAN;
-}
-
-static double share_of(double variance, double rms)
-{
-    return rms > 0.0 ? fmin(1.0, variance / (rms * rms)) : (double)NAN;
-}
-
-/* fmin() would let a NaN pass as 1. */
-static double known_share(double variance, double rms)
-{
-    return isfinite(variance) ? share_of(variance, rms) : (double)NAN;
-}
-
 double wb_results_calibration_share(const struct wb_results_wire *wire)
 {
-    if (wire->calibration_state != WB_RESULTS_DONE)
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    if (wire->calibration_state != WB_RESULTS_DONE || c->n_samples < 2 || !(c->rms > 0.0) ||
+        !isfinite(c->residual_scatter_rms))
         return (double)NAN;
-    return known_share(variance_of_mean(wire->calibration.scatter_rms, wire->fit.curve.n_samples),
-                       wire->calibration.rms);
+    const double expected = c->residual_scatter_rms / sqrt((double)c->n_samples);
+    return fmin(1.0, expected * expected / (c->rms * c->rms));
 }
 
 double wb_results_validation_share(const struct wb_results_wire *wire)
 {
-    if (wire->validation_state != WB_RESULTS_DONE)
-        return (double)NAN;
-    const double variance =
-        variance_of_mean(wire->validation.scatter_rms, wire->validation.curve.n_samples) +
-        variance_of_mean(wire->calibration.scatter_rms, wire->fit.curve.n_samples);
-    return known_share(variance, wire->validation.elastoplastic.rms);
+    return wire->validation_state == WB_RESULTS_DONE ? wire->validation.scatter_share : (double)NAN;
 }

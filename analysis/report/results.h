@@ -88,10 +88,11 @@ WB_MUST_CHECK enum wb_status wb_results_init(struct wb_results *results,
 void wb_results_judge(struct wb_results *results);
 
 /* How much of the mean square error of a step the scatter between samples explains, 0 to 1; NaN
- * where it is not known. Both means scatter: that of the curve it is compared with, and, for a
- * validation, that of the curves the model was calibrated on. With s the RMS over deflection of the
- * samples' standard deviation over F_max, and n samples, the share is
- * (s_v^2/n_v + s_c^2/n_c) / RMS^2, and s_c^2/n_c / RMS^2 for a calibration. */
+ * where it is not known. Both means scatter: that of the curve it is compared with and, for a
+ * validation, that of the curves the model was calibrated on. With r the RMS over deflection of the
+ * standard deviation that remains between the samples when each is predicted with its own natural
+ * shape, over F_max, and n samples, the share is (r_v^2/n_v + r_c^2/n_c) / RMS^2 for a validation
+ * and r_c^2/n_c / RMS^2 for a calibration, at most 1. */
 double wb_results_calibration_share(const struct wb_results_wire *wire);
 double wb_results_validation_share(const struct wb_results_wire *wire);
 
