@@ -111,6 +111,17 @@ static void listen_for(struct scene *scene, double seconds)
         assert_int_equal(wb_acquisition_step(scene->acquisition, left), WB_ACQUISITION_CONTINUE);
 }
 
+/* Listens until so much was heard; a machine that is busy gets its time. */
+static void listen_until(struct scene *scene, int readings, int frames)
+{
+    const int64_t end_ns = wb_progress_now_ns() + 20 * WB_NS_PER_S;
+    while (scene->ears.n_load < readings || scene->ears.n_mocap < frames) {
+        assert_true(wb_progress_now_ns() < end_ns);
+        assert_int_equal(wb_acquisition_step(scene->acquisition, 5 * WB_NS_PER_MS),
+                         WB_ACQUISITION_CONTINUE);
+    }
+}
+
 static void stop_bench(struct scene *scene)
 {
     wb_acquisition_close(scene->acquisition);
@@ -129,6 +140,18 @@ static struct scene *make_scene(void)
     return scene;
 }
 
+/* Readings and frames over `seconds` of the bench, as a share of what they should be. */
+static void measure_rates(struct scene *scene, double scale, double share[2])
+{
+    listen_for(scene, 0.1);
+    const int64_t start_ns = wb_progress_now_ns();
+    memset(&scene->ears, 0, sizeof scene->ears);
+    listen_for(scene, 0.6);
+    const double passed = wb_seconds_from_ns(wb_progress_now_ns() - start_ns) * scale;
+    share[0] = scene->ears.n_load / (80.0 * passed);
+    share[1] = scene->ears.n_mocap / (120.0 * passed);
+}
+
 static void rates_are_those_of_the_bench_times_the_scale(void **state)
 {
     (void)state;
@@ -136,13 +159,18 @@ static void rates_are_those_of_the_bench_times_the_scale(void **state)
     struct scene *const scene = make_scene();
     for (int i = 0; i < 2; i++) {
         const struct wb_bench_settings settings = {.seed = 2, .time_scale = scales[i]};
+        double share[2] = {0.0, 0.0};
         start_bench(scene, settings);
         connect_to(scene);
-        listen_for(scene, 0.2);
-        memset(&scene->ears, 0, sizeof scene->ears);
-        listen_for(scene, 0.6);
-        assert_close_relative(scene->ears.n_load, 0.6 * 80.0 * scales[i], 0.15);
-        assert_close_relative(scene->ears.n_mocap, 0.6 * 120.0 * scales[i], 0.15);
+        /* On a busy machine what was due earlier arrives within the time that is measured: try
+         * again. A wrong rate is wrong each time. */
+        for (int attempt = 0; attempt < 10; attempt++) {
+            measure_rates(scene, scales[i], share);
+            if (fabs(share[0] - 1.0) < 0.08 && fabs(share[1] - 1.0) < 0.08)
+                break;
+        }
+        assert_close(share[0], 1.0, 0.08);
+        assert_close(share[1], 1.0, 0.08);
         assert_true(scene->ears.n_probe > 0);
         /* No frame is left out. */
         for (int n = 1; n < scene->ears.n_mocap; n++)
@@ -163,11 +191,10 @@ static void the_same_seed_gives_the_same_samples(void **state)
     for (int run = 0; run < 2; run++) {
         const struct wb_bench_settings settings = {.seed = 5, .time_scale = 10.0};
         start_bench(scene, settings);
-        usleep(run == 0 ? 1000 : 60000);
+        usleep(run == 0 ? 0 : 30000);
         connect_to(scene);
-        listen_for(scene, 0.6);
+        listen_until(scene, run == 0 ? 600 : 50, run == 0 ? 900 : 300);
         const struct ears *const ears = &scene->ears;
-        assert_true(ears->n_mocap > 100);
         for (int n = 0; n < ears->n_mocap; n++)
             position[run][ears->frame[n]] = ears->position[n];
         from = ears->frame[0] > from ? ears->frame[0] : from;
@@ -181,9 +208,9 @@ static void the_same_seed_gives_the_same_samples(void **state)
         assert_close(position[0][n], position[1][n], 0.0);
     /* Readings carry no number: the second run began later, so find its place in the first. */
     int shift = 0;
-    while (shift < 400 && memcmp(force[0] + shift, force[1], 20 * sizeof force[0][0]) != 0)
+    while (shift < 580 && memcmp(force[0] + shift, force[1], 20 * sizeof force[0][0]) != 0)
         shift++;
-    assert_true(shift < 400);
+    assert_true(shift < 580);
     free(scene);
 }
 
@@ -196,8 +223,7 @@ static void other_seeds_give_other_noise(void **state)
         const struct wb_bench_settings settings = {.seed = (uint64_t)run, .time_scale = 10.0};
         start_bench(scene, settings);
         connect_to(scene);
-        listen_for(scene, 0.2);
-        assert_true(scene->ears.n_load > 10);
+        listen_until(scene, 10, 0);
         memcpy(first[run], scene->ears.force, sizeof first[run]);
         stop_bench(scene);
     }
@@ -218,12 +244,8 @@ static void several_rigs_run_side_by_side(void **state)
         start_bench(scenes[i], settings);
         connect_to(scenes[i]);
     }
-    for (int turn = 0; turn < 20; turn++)
-        for (int i = 0; i < N; i++)
-            listen_for(scenes[i], 0.01);
     for (int i = 0; i < N; i++) {
-        assert_true(scenes[i]->ears.n_load > 20);
-        assert_true(scenes[i]->ears.n_mocap > 20);
+        listen_until(scenes[i], 20, 20);
         stop_bench(scenes[i]);
         free(scenes[i]);
     }
@@ -238,14 +260,18 @@ static void a_jog_loads_the_wire(void **state)
     struct wb_bench_counts counts;
     start_bench(scene, settings);
     connect_to(scene);
-    listen_for(scene, 0.2);
+    listen_until(scene, 20, 20);
     const double zero = scene->ears.force[scene->ears.n_load - 1];
     assert_int_equal(wb_acquisition_command(scene->acquisition, WB_STAGE_COMMAND_JOG, 10.0 * WB_MM,
                                             20.0 * WB_MM),
                      WB_OK);
-    listen_for(scene, 0.9);
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(scene->acquisition);
-    assert_int_equal(latest->stage.state, WB_STAGE_IDLE);
+    const int64_t end_ns = wb_progress_now_ns() + 20 * WB_NS_PER_S;
+    while (!(latest->stage.position > -52.001 * WB_MM && latest->stage.state == WB_STAGE_IDLE)) {
+        assert_true(wb_progress_now_ns() < end_ns);
+        listen_for(scene, 0.02);
+    }
+    listen_until(scene, scene->ears.n_load + 100, 0);
     assert_close(latest->stage.position, -52.0 * WB_MM, 1e-6);
     assert_true(scene->ears.force[scene->ears.n_load - 1] - zero > 30.0 * WB_MN);
     wb_acquisition_motion_ended(scene->acquisition);
