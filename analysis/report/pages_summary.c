@@ -272,17 +272,51 @@ static int put_alignment_warnings(struct wb_document *document,
     return shown;
 }
 
+/* What a reader must know of a search before trusting K and n. */
+static int put_search_warnings(struct wb_document *document, const struct wb_results_wire *wire)
+{
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    char label[300], item[700];
+    int n = 0;
+    if (wire->calibration_state != WB_RESULTS_DONE)
+        return 0;
+    wb_pages_escape(label, sizeof label, wire->wanted->label);
+    if (c->end != WB_CALIBRATE_SIZE && c->end != WB_CALIBRATE_ERROR) {
+        snprintf(item, sizeof item, "%s: the search for K and n ended because %s.", label,
+                 wb_calibrate_end_text(c->end));
+        wb_document_item(document, WB_TONE_WARNING, item);
+        n++;
+    }
+    if (c->restarted && !(c->restart_moved <= 1e-3)) {
+        snprintf(item, sizeof item,
+                 "%s: a restart of the search moved K and n by up to %.2g %%: other pairs fit as "
+                 "well.",
+                 label, 100.0 * c->restart_moved);
+        wb_document_item(document, WB_TONE_PLAIN, item);
+        n++;
+    }
+    if (c->failed_evaluations > 0) {
+        snprintf(item, sizeof item, "%s: %d of %d runs of the beam did not converge.", label,
+                 c->failed_evaluations, c->evaluations);
+        wb_document_item(document, WB_TONE_PLAIN, item);
+        n++;
+    }
+    return n;
+}
+
 static void put_warnings(struct wb_document *document, const struct wb_results *results)
 {
     wb_document_heading(document, 2, "warnings", "Warnings");
-    int shown = 0;
+    int shown = 0, of_searches = 0;
+    for (int i = 0; i < results->n_wires; i++)
+        of_searches += put_search_warnings(document, &results->wires[i]);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_results_wire *const wire = &results->wires[i];
         shown = put_alignment_warnings(document, &wire->calibration_tests, shown);
         shown = put_alignment_warnings(document, &wire->validation_tests, shown);
     }
-    if (shown == 0)
-        wb_document_item(document, WB_TONE_QUIET, "None from the alignment of the recordings.");
+    if (shown + of_searches == 0)
+        wb_document_item(document, WB_TONE_QUIET, "None.");
     if (shown > MOST_WARNINGS) {
         char text[120];
         snprintf(text, sizeof text, "%d more on the pages of the wires.", shown - MOST_WARNINGS);
