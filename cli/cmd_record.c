@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/live_line.h"
+#include "daq/acquisition.h"
 #include "daq/bend_test.h"
 
 #define WB_LOG_DOMAIN "record"
@@ -224,6 +225,7 @@ int wb_cmd_record(int argc, char **argv)
     wb_bend_test_default_request(&options.request);
     wb_command_parse(&argp, argc, argv, &options);
     wb_interrupt_install();
+    wb_acquisition_raise_priority();
     if (wb_bend_test_open(&test, &options.request) != WB_OK)
         return WB_EXIT_FAILED;
     wb_live_line_open();

@@ -7,6 +7,7 @@
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "daq/acquisition.h"
 #include "fixtures/virtual/bench.h"
 
 #define WB_LOG_DOMAIN "rig"
@@ -128,6 +129,7 @@ int wb_cmd_rig(int argc, char **argv)
     static const volatile bool never = false;
     wb_command_parse(&argp, argc, argv, &options);
     wb_interrupt_install();
+    wb_acquisition_raise_priority();
     if (wb_file_make_folder(options.run) != WB_OK ||
         wb_file_join(path, options.run, "rig.yaml") != WB_OK)
         return WB_EXIT_FAILED;

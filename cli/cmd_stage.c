@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/live_line.h"
+#include "daq/acquisition.h"
 #include "daq/mass_check.h"
 #include "daq/rig.h"
 #include "daq/stage_job.h"
@@ -352,6 +353,7 @@ int wb_cmd_stage(int argc, char **argv)
     argc = shield_number(argc, argv, shielded);
     wb_command_parse(&argp, argc, shielded, &options);
     wb_interrupt_install();
+    wb_acquisition_raise_priority();
     if (wb_rig_read(options.rig_path, &rig) != WB_OK)
         return WB_EXIT_FAILED;
     const int action = find_action(options.action);

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "base/interrupt.h"
@@ -21,6 +22,8 @@
 #define TICK_NS (20 * WB_NS_PER_MS)
 /* Reads of one stream in one step, so that a flood on one cannot starve the others. */
 #define READS_A_STEP 64
+/* Being late by more than this is a stall. */
+#define STALL_NS (30 * WB_NS_PER_MS)
 #define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
 
 struct line {
@@ -53,6 +56,7 @@ struct wb_acquisition {
     enum wb_stop_state reported_stop;
     struct wb_acquisition_latest latest;
     int64_t next_tick_ns;
+    int64_t left_ns; /* end of the step before */
     struct wb_outbox outbox;
     uint8_t buffer[WB_STREAM_READ_MAX];
 };
@@ -62,6 +66,12 @@ int64_t wb_acquisition_now_ns(void)
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
     return (int64_t)time.tv_sec * WB_NS_PER_S + time.tv_nsec;
+}
+
+void wb_acquisition_raise_priority(void)
+{
+    if (setpriority(PRIO_PROCESS, 0, -15) != 0)
+        wb_debug("the priority stays as it is: %s", strerror(errno));
 }
 
 bool wb_acquisition_marker_measured(const struct wb_marker *marker)
@@ -469,6 +479,16 @@ static void check_rest(struct wb_acquisition *a, int64_t now_ns)
         wb_acquisition_stop(a, WB_INTERLOCK_DISK, "the recording cannot be written any more");
 }
 
+/* Time in which this process was kept from running says nothing about the instruments: those that
+ * are asked for each sample could not be asked. It does not count as their silence. */
+static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
+{
+    if (stalled_ns < STALL_NS)
+        return;
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
+        a->interlock.last_ns[role] += stalled_ns;
+}
+
 static int64_t earlier(int64_t a, int64_t b)
 {
     return a < b ? a : b;
@@ -512,12 +532,14 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
 {
     bool readable[WB_INTERLOCK_ROLES];
     int64_t woken_ns;
-    int64_t deadline_ns = wb_acquisition_now_ns() + (timeout_ns > 0 ? timeout_ns : 0);
+    const int64_t begun_ns = wb_acquisition_now_ns();
+    int64_t deadline_ns = begun_ns + (timeout_ns > 0 ? timeout_ns : 0);
     deadline_ns = earlier(deadline_ns, a->next_tick_ns);
     deadline_ns = earlier(deadline_ns, wb_interlock_deadline(&a->interlock));
     deadline_ns = earlier(deadline_ns, wb_stop_deadline(&a->stop));
     if (wait_for_bytes(a, deadline_ns, readable, &woken_ns) != WB_OK)
         return WB_ACQUISITION_FAILED;
+    forgive_stall(a, begun_ns - a->left_ns + (woken_ns > deadline_ns ? woken_ns - deadline_ns : 0));
     for (int i = 0; i < a->n_lines; i++)
         if (readable[i])
             read_line(&a->lines[i], woken_ns);
@@ -529,6 +551,7 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
         tick_lines(a, now_ns);
     note_losses(a, now_ns);
     note_rates(a, now_ns);
+    a->left_ns = wb_acquisition_now_ns();
     for (int i = 0; i < a->n_lines; i++)
         if (!a->latest.stream[a->lines[i].role].gone)
             return WB_ACQUISITION_CONTINUE;
@@ -595,6 +618,7 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
     a->writer = writer;
     a->started = true;
     a->next_tick_ns = now_ns + TICK_NS;
+    a->left_ns = now_ns;
     wb_interlock_init(&a->interlock, &unwatched, now_ns);
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];

@@ -125,6 +125,11 @@ bool wb_acquisition_marker_measured(const struct wb_marker *marker);
 void wb_acquisition_event(struct wb_acquisition *acquisition, const char *kind, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));
 
+/* Asks the system to run this thread, and those it will start, before others: on a machine busy
+ * with other work a loop may be kept waiting for a second, and with it the hold byte. Not everybody
+ * is allowed to; then nothing happens. */
+void wb_acquisition_raise_priority(void);
+
 /* The monotonic clock all stamps come from, ns. */
 int64_t wb_acquisition_now_ns(void);
 

@@ -12,8 +12,8 @@
 #define WB_LOG_DOMAIN "check"
 
 #define CONNECT_NS (6 * WB_NS_PER_S)
-/* Time for a hung mass to come to rest and for the cell's filter to follow. */
-#define SETTLE_NS (2 * WB_NS_PER_S)
+/* Time of the rig for a hung mass to come to rest and for the cell's filter to follow, s. */
+#define SETTLE 2.0
 #define LEAST_READINGS 10
 
 struct wb_mass_check {
@@ -118,7 +118,8 @@ enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t
         enter(check, WB_MASS_CHECK_ZERO);
     else if (check->phase == WB_MASS_CHECK_ZERO && long_enough && check->zero.n >= LEAST_READINGS)
         enter(check, WB_MASS_CHECK_WAITING);
-    else if (check->phase == WB_MASS_CHECK_SETTLING && now_ns - check->phase_ns >= SETTLE_NS)
+    else if (check->phase == WB_MASS_CHECK_SETTLING &&
+             now_ns - check->phase_ns >= wb_ns_from_seconds(SETTLE / check->rig.time_scale))
         enter(check, WB_MASS_CHECK_LOADED);
     else if (check->phase == WB_MASS_CHECK_LOADED && long_enough &&
              check->loaded.n >= LEAST_READINGS)

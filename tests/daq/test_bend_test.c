@@ -321,6 +321,22 @@ static void silent_streams_hold_within_20_ms_of_their_expiry(void **state)
     }
 }
 
+static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    fixture->bench->spring_mg_mm = 10;
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
+    open_and_get_down(fixture, &test);
+    /* Longer than the stage, which is asked for its reports, may be silent. */
+    usleep(800000);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    if (result.end != WB_BEND_TEST_DONE)
+        fail_msg("ended early: %s", result.text);
+}
+
 static void a_stage_running_on_is_held_at_the_travel_limit(void **state)
 {
     struct fixture *const fixture = *state;
@@ -637,6 +653,7 @@ int main(void)
         TEST(force_limit_holds_within_20_ms_and_the_specimen_stays),
         TEST(overload_unit_change_and_alarm_hold_within_20_ms),
         TEST(silent_streams_hold_within_20_ms_of_their_expiry),
+        TEST(a_stall_of_our_own_is_not_taken_for_silence),
         TEST(a_stage_running_on_is_held_at_the_travel_limit),
         TEST(a_stage_deaf_to_hold_is_reset_after_500_ms),
         TEST(a_stage_that_obeys_nothing_is_called_moving),
