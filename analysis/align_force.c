@@ -141,13 +141,15 @@ static bool hangs_slack(const struct wb_align *align, const struct wb_align_row 
 /* --- zero drift --- */
 
 /* Mean reading of a zero-load stretch, rows first..last-1, without what the filter still carries
- * at its ends. */
-static void add_zero(struct wb_align *align, size_t first, size_t last)
+ * at its ends; `begins` tells that it continues the tare. */
+static void add_zero(struct wb_align *align, size_t first, size_t last, bool begins)
 {
     const double settle = settle_time(align);
     const struct wb_align_row *const rows = align->rows;
-    const double from = rows[first].t + (first == 0 ? 0.0 : settle);
-    const double until = rows[last - 1].t - (last == align->n_rows ? 0.0 : settle);
+    const double from = rows[first].t + (begins ? 0.0 : settle);
+    /* A filter does not look ahead, but the stamps were moved back by its delay. */
+    const double until =
+        rows[last - 1].t - (last == align->n_rows ? 0.0 : 2.0 * align->filter_delay);
     double n = 0.0, sum = 0.0, sum_t = 0.0, squares = 0.0;
     for (size_t i = first; i < last; i++) {
         if (rows[i].t < from || rows[i].t > until)
@@ -185,12 +187,13 @@ static void find_zeros(struct wb_align *align)
     size_t first = 0;
     while (first < align->n_rows && align->rows[first].t < tare_t)
         first++;
+    const size_t after_tare = first;
     while (first < align->n_rows) {
         size_t last = first;
         while (last < align->n_rows && hangs_slack(align, &align->rows[last]))
             last++;
         if (last > first)
-            add_zero(align, first, last);
+            add_zero(align, first, last, first == after_tare);
         first = last + 1;
     }
     align->slack_seen = align->n_zeros > 1;
@@ -271,18 +274,21 @@ static void describe_drift(struct wb_align *align)
                          n, seen * 60.0 / WB_MN, outside, seen * outside / WB_MN);
         return;
     }
-    /* Only the tare: nothing in the recording tells drift from load. */
+    /* Only the tare and the rest of the time before the test (which may have moved the zero by its
+     * noise): nothing in the recording tells drift from load. */
+    correction.value = zeros[0].value;
     const double rate = TYPICAL_DRIFT * align->rig.load_cell.capacity / 60.0;
     correction.uncertainty = rate * outside;
     wb_align_correct(align, &correction,
-                     "not corrected: the cell was surely without load only at the tare; the "
+                     "not corrected: the cell was surely without load only before the test; the "
                      "uncertainty is a bound from what such cells do, %.0e of the capacity a "
                      "minute",
                      TYPICAL_DRIFT);
-    wb_align_warn(align,
-                  "zero drift is not corrected, there is no zero-load stretch besides the tare; it "
-                  "is bounded by %.3g mN",
-                  rate * outside / WB_MN);
+    wb_align_warn(
+        align,
+        "zero drift is not corrected, there is no zero-load stretch after the test began; it "
+        "is bounded by %.3g mN",
+        rate * outside / WB_MN);
 }
 
 /* --- tension --- */

@@ -10,6 +10,8 @@
 
 #define BURST_NS WB_NS_PER_S
 #define LEAST_PROBE_SPAN 2.0 /* s */
+/* Within this time of the host a delay has passed and stamps are on time again. */
+#define SETTLING_NS (2 * WB_NS_PER_S)
 
 int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device)
 {
@@ -281,14 +283,37 @@ enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *d
 
 /* --- segments --- */
 
+/* Least lateness, over that of stamp `zero`, of stamps first, first + step, ... that arrived within
+ * SETTLING_NS of the first of them. */
+static double least_shift(const double *device, const int64_t *host_ns, size_t n, double slope,
+                          size_t zero, size_t first, int step)
+{
+    double least = HUGE_VAL;
+    for (size_t i = first; i < n; i += (size_t)step) {
+        if (llabs(host_ns[i] - host_ns[first]) > SETTLING_NS)
+            break;
+        least = fmin(least, wb_seconds_from_ns(host_ns[i] - host_ns[zero]) -
+                                slope * (device[i] - device[zero]));
+    }
+    return least;
+}
+
 size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, double nominal_slope,
                       double jump, size_t *starts, size_t most)
 {
     size_t n_segments = 0;
-    for (size_t i = 0; i < n && n_segments < most; i++) {
-        const double device_step = i == 0 ? 0.0 : nominal_slope * (device[i] - device[i - 1]);
-        const double host_step = i == 0 ? 0.0 : wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]);
-        if (i == 0 || !(fabs(host_step - device_step) <= jump))
+    if (n > 0 && most > 0)
+        starts[n_segments++] = 0;
+    for (size_t i = 1; i < n && n_segments < most; i++) {
+        const double device_step = nominal_slope * (device[i] - device[i - 1]);
+        const double host_step = wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]);
+        if (fabs(host_step - device_step) <= jump)
+            continue;
+        /* A busy host is late once and catches up; a clock that was set stays so. Index 0 - 1 wraps
+         * beyond n and ends the walk backwards. */
+        const double before = least_shift(device, host_ns, n, nominal_slope, i - 1, i - 1, -1);
+        const double after = least_shift(device, host_ns, n, nominal_slope, i - 1, i, 1);
+        if (!(fabs(after - before) <= 0.5 * jump))
             starts[n_segments++] = i;
     }
     return n_segments;

@@ -200,6 +200,21 @@ static void a_restarted_server_begins_a_segment(void **state)
     assert_int_equal(wb_clock_split(device, host_ns, N_FRAMES, 1.0, 0.5, starts, 2), 2);
 }
 
+static void a_busy_host_begins_none(void **state)
+{
+    (void)state;
+    static double device[N_FRAMES];
+    static int64_t host_ns[N_FRAMES];
+    make_frames(device, host_ns, 1e-3);
+    /* For 2.7 s nothing is taken; then all that waited comes at once. */
+    const int64_t until = host_ns[6000] + INT64_C(2700000000);
+    for (int i = 6000; i < N_FRAMES && host_ns[i] < until; i++)
+        host_ns[i] = until;
+    size_t starts[4];
+    assert_int_equal(wb_clock_split(device, host_ns, N_FRAMES, 1.0, 0.5, starts, 4), 1);
+    assert_int_equal(wb_clock_split(device, host_ns, 0, 1.0, 0.5, starts, 4), 0);
+}
+
 static void lost_readings_begin_a_segment_and_late_ones_do_not(void **state)
 {
     (void)state;
@@ -236,6 +251,7 @@ int main(void)
         cmocka_unit_test(envelope_is_the_best_of_all_lines_below),
         cmocka_unit_test(short_or_repeated_stamps_take_the_nominal_slope),
         cmocka_unit_test(a_restarted_server_begins_a_segment),
+        cmocka_unit_test(a_busy_host_begins_none),
         cmocka_unit_test(lost_readings_begin_a_segment_and_late_ones_do_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
