@@ -30,8 +30,14 @@ void wb_fibres_destroy(struct wb_fibres *fibres);
 /* Exchanges the materials (as many as the section has) and tabulates anew. */
 void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material *materials);
 
-/* Chooses the slow kernel (for tests and benchmarks). A history of one serves the other. */
-void wb_fibres_set_reference(struct wb_fibres *fibres, bool reference);
+enum wb_fibres_kernel {
+    WB_FIBRES_FASTEST,  /* with the vector instructions that the processor has; the default */
+    WB_FIBRES_PORTABLE, /* the same source without them: the same bits */
+    WB_FIBRES_REFERENCE /* the slow twin */
+};
+
+/* Chooses a kernel (for tests and benchmarks). A history of one serves the others. */
+void wb_fibres_set_kernel(struct wb_fibres *fibres, enum wb_fibres_kernel kernel);
 
 /* Doubles in the history of one section point. All zero is the virgin state. */
 size_t wb_fibres_history_size(const struct wb_fibres *fibres);

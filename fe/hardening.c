@@ -115,21 +115,3 @@ void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_mat
         interpolate(node, value, table->coefficients[piece]);
     }
 }
-
-double wb_hardening_lookup(const struct wb_hardening_table *table, double scaled)
-{
-    const uint64_t bits = double_to_bits(scaled);
-    const long long piece = (long long)(bits >> table->shift) - table->first;
-    if (piece < 0 || piece >= table->pieces)
-        return -1.0;
-
-    /* The remaining bits of the mantissa are the place within the piece, from -1/2 to 1/2. */
-    const uint64_t one = UINT64_C(0x3FF0000000000000);
-    const uint64_t rest = (bits << (52 - table->shift)) & UINT64_C(0x000FFFFFFFFFFFFF);
-    const double t = bits_to_double(rest | one) - 1.5;
-    const double *a = table->coefficients[piece];
-    const double t2 = t * t;
-    const double t4 = t2 * t2;
-    return ((a[0] + a[1] * t) + (a[2] + a[3] * t) * t2) +
-           ((a[4] + a[5] * t) + (a[6] + a[7] * t) * t2) * t4;
-}

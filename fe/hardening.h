@@ -13,6 +13,9 @@
 #ifndef WB_FE_HARDENING_H
 #define WB_FE_HARDENING_H
 
+#include <stdbool.h>
+#include <string.h>
+
 #include "fe/material.h"
 
 enum {
@@ -36,7 +39,36 @@ double wb_hardening_ratio(const struct wb_material *material, double overstress)
  * positive) gives a table of NaN, which the solver's finite checks find. */
 void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_material *material);
 
-/* r from the table; `scaled` is c / sigma_Y. Returns a negative number outside the table. */
-double wb_hardening_lookup(const struct wb_hardening_table *table, double scaled);
+/* r from the table; `scaled` is c / sigma_Y. Outside the table, and for what is not a number, it is
+ * some finite number of no meaning: check with wb_hardening_covers() first or later. Branch-free,
+ * so that a loop over it vectorises. */
+static inline double wb_hardening_lookup(const struct wb_hardening_table *table, double scaled)
+{
+    unsigned long long bits;
+    memcpy(&bits, &scaled, sizeof bits);
+    long long piece = (long long)(bits >> table->shift) - table->first;
+    piece = piece < 0 ? 0 : piece;
+    piece = piece < table->pieces ? piece : table->pieces - 1;
+
+    /* The remaining bits of the mantissa are the place within the piece, from -1/2 to 1/2. */
+    const unsigned long long rest = (bits << (52 - table->shift)) & 0x000FFFFFFFFFFFFFULL;
+    const unsigned long long place = rest | 0x3FF0000000000000ULL;
+    double t;
+    memcpy(&t, &place, sizeof t);
+    t -= 1.5;
+
+    const double *a = table->coefficients[piece];
+    const double t2 = t * t;
+    const double t4 = t2 * t2;
+    return ((a[0] + a[1] * t) + (a[2] + a[3] * t) * t2) +
+           ((a[4] + a[5] * t) + (a[6] + a[7] * t) * t2) * t4;
+}
+
+/* Whether c / sigma_Y lies in the table. */
+static inline bool wb_hardening_covers(double scaled)
+{
+    const double begin = 1.0 / (1 << -WB_HARDENING_LOWEST_OCTAVE);
+    return scaled >= begin && scaled < begin * (1 << WB_HARDENING_OCTAVES);
+}
 
 #endif

@@ -68,7 +68,7 @@ static void fast_kernel_agrees_with_its_slow_twin(void **unused)
         wire.material.hardening_exponent = 0.05 + 1.45 * test_random(&random);
         struct wb_section s = trial % 4 == 3 ? composite() : test_section(&wire);
         struct point fast = make_point(&s), slow = make_point(&s);
-        wb_fibres_set_reference(slow.fibres, true);
+        wb_fibres_set_kernel(slow.fibres, WB_FIBRES_REFERENCE);
         const double scale = wb_fibres_axial_stiffness(fast.fibres) * 1e-3;
 
         for (int step = 0; step < 60; step++) {
@@ -90,6 +90,35 @@ static void fast_kernel_agrees_with_its_slow_twin(void **unused)
                      wb_fibres_largest_plastic_strain(slow.fibres, slow.before), 1e-12);
         release_point(&fast);
         release_point(&slow);
+        wb_section_release(&s);
+    }
+}
+
+static void vector_instructions_do_not_change_a_bit(void **unused)
+{
+    (void)unused;
+    uint64_t random = 43;
+    for (int trial = 0; trial < 12; trial++) {
+        const struct test_wire wire = test_wire_type(1 + trial % 3);
+        struct wb_section s = trial % 4 == 3 ? composite() : test_section(&wire);
+        struct point fastest = make_point(&s), portable = make_point(&s);
+        wb_fibres_set_kernel(portable.fibres, WB_FIBRES_PORTABLE);
+        for (int step = 0; step < 200; step++) {
+            const double eps = 2e-3 * (test_random(&random) - 0.5);
+            /* Also beyond the table, where the law is solved. */
+            const double kappa = (step % 50 == 0 ? 1e5 : 80.0) * (test_random(&random) - 0.5);
+            const struct wb_fibres_response a = respond(&fastest, eps, kappa);
+            const struct wb_fibres_response b = respond(&portable, eps, kappa);
+            assert_memory_equal(&a, &b, sizeof a);
+            if (step % 3 == 0) {
+                accept(&fastest);
+                accept(&portable);
+            }
+        }
+        assert_memory_equal(fastest.before, portable.before,
+                            wb_fibres_history_size(portable.fibres) * sizeof(double));
+        release_point(&fastest);
+        release_point(&portable);
         wb_section_release(&s);
     }
 }
@@ -223,7 +252,7 @@ static void virgin_shortcut_is_seamless(void **unused)
     const struct test_wire wire = test_wire_type(2);
     struct wb_section s = test_section(&wire);
     struct point p = make_point(&s), q = make_point(&s);
-    wb_fibres_set_reference(q.fibres, true);
+    wb_fibres_set_kernel(q.fibres, WB_FIBRES_REFERENCE);
     const double outermost = s.fibres[0].y;
     const double limit = wire.material.yield_stress / wire.material.youngs_modulus / outermost;
     for (int i = -3; i <= 3; i++) {
@@ -259,6 +288,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fast_kernel_agrees_with_its_slow_twin),
+        cmocka_unit_test(vector_instructions_do_not_change_a_bit),
         cmocka_unit_test(tangent_is_the_derivative_of_the_resultants),
         cmocka_unit_test(fully_plastic_moment_of_the_circle_is_four_thirds),
         cmocka_unit_test(rectangle_follows_its_closed_form),
