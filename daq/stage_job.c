@@ -61,7 +61,6 @@ struct wb_stage_job {
     uint64_t reports_seen;
     int idle_reports;
     struct piece pieces[PIECES_APART + 1]; /* the newest first */
-    bool slack;
     bool standing;
     enum wb_stage_job_end end;
     char text[WB_INTERLOCK_TEXT];
@@ -413,7 +412,6 @@ static void step_move(struct wb_stage_job *job, int64_t now_ns)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
     if (job->request.kind == WB_STAGE_JOB_RELEASE && strand_is_slack(job)) {
-        job->slack = true;
         send(job, WB_STAGE_COMMAND_JOG_CANCEL, 0.0, PHASE_CANCEL);
         return;
     }
