@@ -304,39 +304,12 @@ static bool place_inset(struct wb_place *place, const struct wb_layout_panel *ou
     return false;
 }
 
-static enum wb_status lay_panel(struct wb_layout_panel *layout, struct wb_layout_panel *inset,
-                                cairo_t *cairo)
+/* The axes, below a legend that stands above them when it found no room inside. */
+static void lay_frame(struct wb_layout_panel *layout, cairo_t *cairo)
 {
-    lay_axes(layout, cairo, 0.0);
-    struct wb_place *place;
-    WB_TRY(wb_place_create(&place, layout->plot.width, layout->plot.height));
-    mark_series(place, layout, cairo);
-    bool inset_inside = true;
-    if (inset->panel)
-        inset_inside = place_inset(place, layout, inset);
-
-    struct wb_typeset_size size;
-    layout->has_legend = wb_layout_legend(layout, cairo, NULL, NULL, &size) > 0;
-    if (layout->has_legend) {
-        layout->legend_outside =
-            !wb_place_find(place, size.width, size.height, 5.0, &layout->legend);
-        layout->legend.x += layout->plot.x;
-        layout->legend.y += layout->plot.y;
-    }
-    wb_place_destroy(place);
-    if (inset_inside && !layout->legend_outside)
-        return WB_OK;
-
-    /* What found no room inside gets its own outside: an inset to the right, a legend above. */
-    if (!inset_inside) {
-        inset->room = layout->room;
-        inset->room.width *= 0.36;
-        layout->room.width -= inset->room.width + 6.0;
-        inset->room.x = layout->room.x + layout->room.width + 6.0;
-    }
     double legend_height = 0.0;
-    if (layout->has_legend) {
-        layout->legend_outside = true;
+    if (layout->legend_outside) {
+        struct wb_typeset_size size;
         layout->legend = (struct wb_place_box){layout->room.x + 24.0, layout->room.y + 2.0,
                                                layout->room.width - 30.0, 0.0};
         wb_layout_legend(layout, cairo, NULL, NULL, &size);
@@ -346,6 +319,57 @@ static enum wb_status lay_panel(struct wb_layout_panel *layout, struct wb_layout
             layout->legend.y += 1.9 * layout->text_size;
     }
     lay_axes(layout, cairo, legend_height);
+}
+
+/* Places what there is of inset and legend into the plot as it is laid; tells which found room. */
+static enum wb_status place_inside(struct wb_layout_panel *layout, struct wb_layout_panel *inset,
+                                   cairo_t *cairo, bool *inset_fits, bool *legend_fits)
+{
+    struct wb_place *place;
+    WB_TRY(wb_place_create(&place, layout->plot.width, layout->plot.height));
+    mark_series(place, layout, cairo);
+    *inset_fits = !inset->panel || place_inset(place, layout, inset);
+    *legend_fits = true;
+    if (layout->has_legend && !layout->legend_outside) {
+        struct wb_typeset_size size;
+        wb_layout_legend(layout, cairo, NULL, NULL, &size);
+        *legend_fits = wb_place_find(place, size.width, size.height, 5.0, &layout->legend);
+        layout->legend.x += layout->plot.x;
+        layout->legend.y += layout->plot.y;
+    }
+    wb_place_destroy(place);
+    return WB_OK;
+}
+
+static enum wb_status lay_panel(struct wb_layout_panel *layout, struct wb_layout_panel *inset,
+                                cairo_t *cairo)
+{
+    struct wb_typeset_size size;
+    bool inset_fits, legend_fits;
+    layout->has_legend = wb_layout_legend(layout, cairo, NULL, NULL, &size) > 0;
+    lay_frame(layout, cairo);
+    WB_TRY(place_inside(layout, inset, cairo, &inset_fits, &legend_fits));
+    if (!legend_fits) {
+        /* The legend goes above the axes; the plot is smaller then, so the inset moves too. */
+        layout->legend_outside = true;
+        lay_frame(layout, cairo);
+        WB_TRY(place_inside(layout, inset, cairo, &inset_fits, &legend_fits));
+    }
+    if (inset_fits)
+        return WB_OK;
+
+    /* An inset without room stands to the right of the axes. */
+    inset->room = layout->room;
+    inset->room.width *= 0.36;
+    layout->room.width -= inset->room.width + 6.0;
+    inset->room.x = layout->room.x + layout->room.width + 6.0;
+    lay_frame(layout, cairo);
+    struct wb_layout_panel none = {0};
+    WB_TRY(place_inside(layout, &none, cairo, &inset_fits, &legend_fits));
+    if (!legend_fits) {
+        layout->legend_outside = true;
+        lay_frame(layout, cairo);
+    }
     return WB_OK;
 }
 

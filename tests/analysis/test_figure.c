@@ -247,6 +247,36 @@ static void a_legend_without_room_stands_outside_of_the_axes(void **state)
     wb_figure_destroy(figure);
 }
 
+static void an_inset_covers_no_data_when_the_legend_had_to_leave(void **state)
+{
+    (void)state;
+    struct wb_figure *figure;
+    assert_int_equal(wb_figure_create(&figure, "both", 300.0, 200.0), WB_OK);
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    const struct wb_figure_style style = {.colour = wb_palette_ink(), .width = 1.0};
+    /* Room in the upper left corner, but not for the inset and a long legend both. */
+    double x[50], y[50];
+    for (int i = 0; i < 50; i++) {
+        x[i] = i;
+        y[i] = i < 24 ? i % 2 : 20.0 * (i % 2) + 20.0;
+    }
+    wb_figure_add_line(panel, "a label so long that it takes a whole line of it", 50, x, y, &style);
+    wb_figure_add_line(wb_figure_add_inset(panel), NULL, 50, x, y, &style);
+    cairo_surface_t *const surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 8, 8);
+    cairo_t *const cairo = cairo_create(surface);
+    struct wb_layout layout;
+    assert_int_equal(wb_layout_compute(&layout, figure, cairo), WB_OK);
+    assert_true(layout.panels[0].legend_outside);
+    const struct wb_place_box *const room = &layout.insets[0].room;
+    for (int i = 0; i < 50; i++)
+        assert_false(within(room, wb_layout_x(&layout.panels[0], x[i]),
+                            wb_layout_y(&layout.panels[0], y[i])));
+    assert_true(room->y >= layout.panels[0].legend.y + layout.panels[0].legend.height);
+    cairo_destroy(cairo);
+    cairo_surface_destroy(surface);
+    wb_figure_destroy(figure);
+}
+
 static void values_stand_where_the_scales_say(void **state)
 {
     (void)state;
@@ -393,6 +423,7 @@ int main(void)
         cmocka_unit_test(a_full_plot_has_no_room_and_an_empty_one_gives_a_corner),
         cmocka_unit_test(legends_and_insets_cover_no_data),
         cmocka_unit_test(a_legend_without_room_stands_outside_of_the_axes),
+        cmocka_unit_test(an_inset_covers_no_data_when_the_legend_had_to_leave),
         cmocka_unit_test(values_stand_where_the_scales_say),
         cmocka_unit_test(equal_aspect_gives_both_axes_the_same_unit),
         cmocka_unit_test(the_same_description_gives_the_same_bytes),
