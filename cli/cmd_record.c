@@ -235,7 +235,7 @@ int wb_cmd_record(int argc, char **argv)
     if (result.end != WB_BEND_TEST_DONE)
         tell_stop(&result, options.request.rig_path);
     if (result.drops > 0)
-        wb_warn("%" PRIu64 " reads were lost because the disk did not keep up", result.drops);
+        wb_warn("%" PRIu64 " reads are missing from the recording", result.drops);
     if (!result.recorded)
         wb_info("nothing was recorded: '%s' was not kept", options.request.output_path);
     const int code = exit_code(&result, status);
