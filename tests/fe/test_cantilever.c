@@ -61,6 +61,26 @@ static void small_deflection_is_that_of_euler_and_bernoulli(void **unused)
     release_rig(&rig);
 }
 
+static void stout_wire_shears_like_timoshenkos(void **unused)
+{
+    (void)unused;
+    const double L = 0.03, d = 0.01, delta = 1e-6;
+    const struct wb_material m = {WB_HARDENING_NONE_ELASTIC, 5e9, 0.3, 0.0, 0.0, 0.0};
+    struct wb_section section;
+    struct wb_cantilever_model model;
+    assert_int_equal(wb_section_init_circle(&section, d, &m, 0), WB_OK);
+    wb_cantilever_default_model(&model);
+    model.section = &section;
+    model.length = L;
+    struct wb_cantilever *c = test_cantilever(&model);
+    const double EI = m.youngs_modulus * M_PI * pow(d, 4) / 64.0;
+    const double GA = wb_section_shear_modulus(&m) * M_PI * d * d / 4.0;
+    const double force = delta / (L * L * L / (3.0 * EI) + L / GA);
+    assert_close_relative(test_move(c, WB_CONTROL_DEFLECTION, delta).tension, force, 1e-6);
+    wb_cantilever_destroy(c);
+    wb_section_release(&section);
+}
+
 /* Mattiasson 1981, IJNME 17:145: a = P L^2 / E I, w/L, u/L, theta. */
 static const double dead_load[][4] = {
     {0.2, .066364, .002647, .099636},  {0.4, .130975, .010354, .197155},
@@ -397,6 +417,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_deflection_is_that_of_euler_and_bernoulli),
+        cmocka_unit_test(stout_wire_shears_like_timoshenkos),
         cmocka_unit_test(dead_load_follows_mattiasson),
         cmocka_unit_test(follower_load_follows_the_elastica),
         cmocka_unit_test(end_moment_rolls_the_wire_into_a_circle),

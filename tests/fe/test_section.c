@@ -80,6 +80,15 @@ static void parts_add_up_with_their_materials(void **unused)
     wb_section_release(&s);
 }
 
+static void shear_has_cowpers_factor(void **unused)
+{
+    (void)unused;
+    struct wb_material m = pvc;
+    m.poissons_ratio = 0.3;
+    /* G k with G = E / 2.6 and k = 6 x 1.3 / (7 + 1.8) */
+    assert_close_relative(wb_section_shear_modulus(&m), 50e6 / 2.6 * 7.8 / 8.8, 1e-14);
+}
+
 static void ignore_message(void *context, enum wb_log_level level, const char *domain,
                            const char *message)
 {
@@ -126,6 +135,7 @@ int main(void)
         cmocka_unit_test(default_circle_has_twenty_fibres),
         cmocka_unit_test(ring_has_its_area_and_second_moment),
         cmocka_unit_test(parts_add_up_with_their_materials),
+        cmocka_unit_test(shear_has_cowpers_factor),
         cmocka_unit_test(nonsense_is_refused_with_one_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
