@@ -28,9 +28,9 @@ void wb_dataset_csv_format_number(double value, int shift, char *text)
     *mark = '\0';
 
     const char *const sign = scientific[0] == '-' ? "-" : "";
-    char mantissa[WB_DATASET_CSV_NUMBER];
+    char mantissa[20];
     int n = 0;
-    for (const char *c = scientific; *c; c++) {
+    for (const char *c = scientific; *c && n < (int)sizeof mantissa - 1; c++) {
         if (*c >= '0' && *c <= '9')
             mantissa[n++] = *c;
     }

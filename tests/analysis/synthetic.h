@@ -49,6 +49,7 @@ struct syn {
     bool model_filled; /* the hidden marker is sent, flagged, at a wrong place */
     bool stray, ids_change;
     double gap_from, gap_until; /* load cell silent */
+    double corrupt;             /* part of the chunks that get wrong bytes */
     double restart_at;          /* s: the server's clock starts anew; 0: never */
     double sign;                /* of the load cell; 0 means 1 */
     /* The bench. */
@@ -198,10 +199,16 @@ static inline double syn_server(const struct syn *syn, double t)
     return syn->server_zero + since + (t + 100.0) * (1.0 - 50e-6);
 }
 
-static inline void syn_chunk(struct wb_recording *recording, int stream, int64_t *seq, int64_t t_ns,
-                             const void *bytes, size_t n)
+static inline void syn_chunk(struct syn *syn, struct wb_recording *recording, int stream,
+                             int64_t *seq, int64_t t_ns, const void *bytes, size_t n)
 {
-    if (wb_recording_append_chunk(recording, stream, (*seq)++, t_ns, bytes, n) != WB_OK)
+    static uint8_t copy[8192];
+    memcpy(copy, bytes, n);
+    if (syn->corrupt > 0.0 && syn_uniform(syn) < syn->corrupt) {
+        for (int i = 0; i < 3; i++)
+            copy[(size_t)(syn_uniform(syn) * (double)n)] = (uint8_t)(256.0 * syn_uniform(syn));
+    }
+    if (wb_recording_append_chunk(recording, stream, (*seq)++, t_ns, copy, n) != WB_OK)
         abort();
 }
 
@@ -276,7 +283,7 @@ static inline void syn_write_mocap(struct syn *syn, struct wb_recording *recordi
     };
     int64_t seq = 0;
     size_t size = wb_natnet_encode_server(bytes, sizeof bytes, &server);
-    syn_chunk(recording, stream, &seq, syn_host(syn, begin - 0.1), bytes, size);
+    syn_chunk(syn, recording, stream, &seq, syn_host(syn, begin - 0.1), bytes, size);
     const int n = (int)((end - begin) * 120.0);
     for (int i = 0; i < n; i++) {
         const double t = begin + i / 120.0;
@@ -284,7 +291,7 @@ static inline void syn_write_mocap(struct syn *syn, struct wb_recording *recordi
         const double u = syn_uniform(syn);
         syn_frame(syn, &frame, i, t, &state);
         size = wb_natnet_encode_frame(bytes, sizeof bytes, version, &frame);
-        syn_chunk(recording, stream, &seq,
+        syn_chunk(syn, recording, stream, &seq,
                   syn_host(syn, t) + (int64_t)(1e6 * (0.3 + 2.0 * u * u * u)), bytes, size);
         if (syn->version_major >= 3 && i % 60 == 0) {
             const int64_t sent = syn_host(syn, t + 1e-3);
@@ -292,7 +299,7 @@ static inline void syn_write_mocap(struct syn *syn, struct wb_recording *recordi
             const double at = t + 1e-3 + 1e-9 * (double)there * syn->time_scale;
             size = wb_natnet_encode_echo_response(bytes, sizeof bytes, (uint64_t)sent,
                                                   (uint64_t)(syn_server(syn, at) * 1e7));
-            syn_chunk(recording, stream, &seq, sent + 2 * there, bytes, size);
+            syn_chunk(syn, recording, stream, &seq, sent + 2 * there, bytes, size);
         }
     }
 }
@@ -320,7 +327,7 @@ static inline void syn_write_load(struct syn *syn, struct wb_recording *recordin
         const double u = syn_uniform(syn);
         if (t >= syn->gap_from && t < syn->gap_until)
             continue;
-        syn_chunk(recording, stream, &seq, syn_host(syn, t) + (int64_t)(2e6 * u * u), line,
+        syn_chunk(syn, recording, stream, &seq, syn_host(syn, t) + (int64_t)(2e6 * u * u), line,
                   (size_t)length);
     }
 }
@@ -330,7 +337,7 @@ static inline void syn_write_stage(struct syn *syn, struct wb_recording *recordi
 {
     int64_t seq = 0;
     const char *const banner = "\r\nGrbl 1.1h ['$' for help]\r\n";
-    syn_chunk(recording, stream, &seq, syn_host(syn, begin), banner, strlen(banner));
+    syn_chunk(syn, recording, stream, &seq, syn_host(syn, begin), banner, strlen(banner));
     const int n = (int)((end - begin) * 5.0);
     for (int i = 1; i < n; i++) {
         char line[96];
@@ -338,7 +345,7 @@ static inline void syn_write_stage(struct syn *syn, struct wb_recording *recordi
         const int length =
             snprintf(line, sizeof line, "<Run|MPos:%.3f,0.000,0.000|FS:60,0>\r\n",
                      -60.0 + syn_commanded(syn, t - 0.012 * syn->time_scale) / WB_MM);
-        syn_chunk(recording, stream, &seq, syn_host(syn, t), line, (size_t)length);
+        syn_chunk(syn, recording, stream, &seq, syn_host(syn, t), line, (size_t)length);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "analysis/align.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "daq/natnet_encode.h"
 #include "daq/recording.h"
 #include "fixtures/virtual/live_wire.h"
@@ -197,15 +198,12 @@ static void set_meta(const char *key, const char *name)
     char path[WB_PATH], *text;
     assert_int_equal(wb_file_find_data(path, name), WB_OK);
     assert_int_equal(wb_file_read(path, &text, NULL), WB_OK);
-    /* The rig file as the virtual rig would write it: the cell streams, and it says so. */
-    char *const with_end = malloc(strlen(text) + 64);
-    assert_non_null(with_end);
-    sprintf(with_end, "%s", text);
+    struct wb_text value = {0};
+    wb_text_append(&value, "%s", text);
     if (strcmp(key, "rig") == 0)
-        sprintf(with_end + strlen(with_end), "\nvirtual: true\ntime_scale: %g\n",
-                session.time_scale);
-    assert_int_equal(wb_recording_set_meta(session.recording, key, with_end), WB_OK);
-    free(with_end);
+        wb_text_append(&value, "\nvirtual: true\ntime_scale: %g\n", session.time_scale);
+    assert_int_equal(wb_recording_set_meta(session.recording, key, wb_text_string(&value)), WB_OK);
+    wb_text_release(&value);
     free(text);
 }
 
