@@ -110,10 +110,12 @@ static void print_summary(const struct wb_results *results, const char *folder)
            folder);
 }
 
-static enum wb_status print_json(const struct wb_results *results)
+/* The same text as the file's. */
+static enum wb_status print_json(const char *folder)
 {
-    char *text;
-    WB_TRY(wb_report_json(results, &text));
+    char path[WB_PATH], *text;
+    WB_TRY(wb_file_join(path, folder, "report.json"));
+    WB_TRY(wb_file_read(path, &text, NULL));
     fputs(text, stdout);
     free(text);
     return WB_OK;
@@ -129,7 +131,7 @@ static int finish(const struct options *o, const struct wb_results *results)
         return WB_EXIT_FAILED;
     if (!o->json)
         print_summary(results, o->output);
-    else if (print_json(results) != WB_OK)
+    else if (print_json(o->output) != WB_OK)
         return WB_EXIT_FAILED;
     if (!results->is_complete)
         return WB_EXIT_INCOMPLETE;

@@ -86,6 +86,15 @@ enum wb_status wb_figures_start(struct wb_figure **figure, const struct wb_resul
     return WB_OK;
 }
 
+void wb_figures_state_max_force(struct wb_figure *figure, const struct wb_results *results,
+                                double max_force)
+{
+    char footer[160];
+    snprintf(footer, sizeof footer, "%s \xc2\xb7 <i>F</i><sub>max</sub> = %.1f mN",
+             wb_figures_measured(results), max_force / WB_MN);
+    wb_figure_set_footer(figure, footer);
+}
+
 /* --- all wires in one --- */
 
 static void add_overview(struct wb_panel *panel, const struct wb_results *results, int index,
@@ -156,8 +165,9 @@ static enum wb_status draw_errors(struct wb_figure **figure, const struct wb_res
                                "Error / <i>F</i><sub>max</sub>");
         }
         char label[160];
-        snprintf(label, sizeof label, "%s, RMS %.4f", wire->wanted->label,
-                 wire->validation.elastoplastic.rms);
+        snprintf(label, sizeof label, "%s, RMS %.4f, <i>F</i><sub>max</sub> %.1f mN",
+                 wire->wanted->label, wire->validation.elastoplastic.rms,
+                 wire->validation.curve.max_force / WB_MN);
         const struct wb_figure_style style = {
             .colour = wb_palette_wire(i), .width = 1.3, .dash = dashes[i % 4]};
         wb_figures_add_curve(panel, label, &wire->validation.curve,

@@ -71,6 +71,7 @@ enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
     WB_TRY(wb_figures_start(figure, results, wire, "calibration", WB_REPORT_WIDTH, 208.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, fit->curve.max_force);
+    wb_figures_state_max_force(*figure, results, fit->curve.max_force);
     /* Room above for the inset. */
     wb_figure_set_y_range(panel, (double)NAN, 1.25 * fit->curve.max_force / WB_MN);
     add_measured(panel, &fit->curve, colour);
@@ -88,6 +89,7 @@ enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
     WB_TRY(wb_figures_start(figure, results, wire, "validation", WB_REPORT_WIDTH, 208.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, validation->curve.max_force);
+    wb_figures_state_max_force(*figure, results, validation->curve.max_force);
     /* The elastic curve goes far beyond; it may leave the frame. */
     wb_figure_set_y_range(panel, (double)NAN, 1.45 * validation->curve.max_force / WB_MN);
     add_measured(panel, &validation->curve, colour);
@@ -104,9 +106,9 @@ enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
 static void add_error(struct wb_panel *panel, const char *what, double length,
                       const struct wb_validate_result *result, const struct wb_figure_style *style)
 {
-    char label[120];
-    snprintf(label, sizeof label, "%s, %g mm: RMS %.4f", what, length / WB_MM,
-             result->elastoplastic.rms);
+    char label[160];
+    snprintf(label, sizeof label, "%s, %g mm: RMS %.4f, <i>F</i><sub>max</sub> %.1f mN", what,
+             length / WB_MM, result->elastoplastic.rms, result->curve.max_force / WB_MN);
     wb_figures_add_curve(panel, label, &result->curve, result->elastoplastic.error, 1.0, style);
 }
 

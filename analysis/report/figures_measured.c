@@ -141,6 +141,7 @@ enum wb_status wb_figures_draw_samples(struct wb_figure **figure, const struct w
     WB_TRY(wb_figures_start(figure, results, wire, "samples", WB_REPORT_HALF_WIDTH, 200.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, wire->fit.curve.max_force);
+    wb_figures_state_max_force(*figure, results, wire->fit.curve.max_force);
     char label[64];
     snprintf(label, sizeof label, "range of %d", wire->fit.curve.n_samples);
     wb_figures_add_range(panel, label, &wire->fit.curve, colour);

@@ -23,6 +23,10 @@ WB_MUST_CHECK enum wb_status wb_figures_start(struct wb_figure **figure,
                                               const struct wb_results_wire *wire, const char *kind,
                                               double width, double height);
 
+/* Adds F_max to the footer, where a scale or an error is a part of it. */
+void wb_figures_state_max_force(struct wb_figure *figure, const struct wb_results *results,
+                                double max_force);
+
 WB_MUST_CHECK enum wb_status wb_figures_draw_bench(struct wb_figure **figure,
                                                    const struct wb_results *results);
 

@@ -63,8 +63,7 @@ static enum wb_status draw_document(struct outputs *outputs, const struct wb_res
     return status;
 }
 
-static enum wb_status format_json(const struct wb_results *results, const struct outputs *outputs,
-                                  char **text)
+static enum wb_status draw_json(struct outputs *outputs, const struct wb_results *results)
 {
     const char **const names = calloc((size_t)outputs->n + 1, sizeof *names);
     if (!names)
@@ -74,15 +73,11 @@ static enum wb_status format_json(const struct wb_results *results, const struct
     names[outputs->n] = "report.json";
     struct wb_json *const root = wb_report_json_build(results, names, outputs->n + 1);
     free(names);
-    const enum wb_status status = wb_json_format(root, text);
-    wb_json_destroy(root);
-    return status;
-}
-
-static enum wb_status draw_json(struct outputs *outputs, const struct wb_results *results)
-{
     char *text;
-    WB_TRY(format_json(results, outputs, &text));
+    const enum wb_status status = wb_json_format(root, &text);
+    wb_json_destroy(root);
+    if (status != WB_OK)
+        return status;
     struct output *const json = &outputs->items[outputs->n++];
     snprintf(json->name, sizeof json->name, "report.json");
     wb_text_append_bytes(&json->bytes, text, strlen(text));
@@ -121,12 +116,6 @@ static void release(struct outputs *outputs)
     for (int i = 0; outputs->items && i < outputs->n; i++)
         wb_text_release(&outputs->items[i].bytes);
     free(outputs->items);
-}
-
-enum wb_status wb_report_json(const struct wb_results *results, char **text)
-{
-    const struct outputs none = {0};
-    return format_json(results, &none, text);
 }
 
 /* --- writing --- */

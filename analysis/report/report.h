@@ -18,7 +18,4 @@
 WB_MUST_CHECK enum wb_status wb_report_write(const struct wb_results *results, const char *folder,
                                              bool force);
 
-/* The text of report.json (caller frees). */
-WB_MUST_CHECK enum wb_status wb_report_json(const struct wb_results *results, char **text);
-
 #endif
