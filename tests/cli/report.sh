@@ -1,0 +1,70 @@
+#!/bin/bash
+# `wirebench report` as a user meets it: exit codes, what it prints, what it leaves alone.
+# Usage: report.sh WIREBENCH
+set -u
+
+wirebench=$1
+folder=$(mktemp -d /tmp/wb-report-XXXXXX)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
+    local expected=$1 code
+    shift
+    "$wirebench" report "$@" >"$folder/out" 2>"$folder/err"
+    code=$?
+    [ $code -eq "$expected" ] || fail "report $*: exit code $code, expected $expected"
+}
+
+cat >"$folder/empty.yaml" <<'YAML'
+title: Nothing there
+index: none.yaml
+calibration_length_mm: 85
+validation_length_mm: 100
+samples: 2
+wires:
+  - wire: type1
+YAML
+
+run 2
+run 2 "$folder/empty.yaml"
+run 2 "$folder/empty.yaml" -o "$folder/r" --threads 0
+run 2 "$folder/empty.yaml" other.yaml -o "$folder/r"
+[ -e "$folder/r" ] && fail 'wrong usage made a folder'
+
+run 1 "$folder/none.yaml" -o "$folder/r"
+grep -q 'none.yaml' "$folder/err" || fail 'a missing campaign is not named'
+echo 'speed: 3' >"$folder/bad.yaml"
+run 1 "$folder/bad.yaml" -o "$folder/r"
+grep -q 'bad.yaml:1: .*speed' "$folder/err" || fail 'an unknown key is not named with its line'
+[ -e "$folder/r" ] && fail 'a bad campaign made a folder'
+
+# Without recordings all is written, and the code says that it is incomplete.
+run 3 "$folder/empty.yaml" -o "$folder/r"
+for file in report.pdf report.html report.json; do
+    [ -s "$folder/r/$file" ] || fail "no $file"
+    grep -qF "$folder/r/$file" "$folder/out" || fail "$file is not told"
+done
+grep -qF 'calibration missing' "$folder/out" || fail 'the missing calibration is not told'
+[ "$(find "$folder/r" -name '.new*' | wc -l)" -eq 0 ] || fail 'something half-written is left'
+
+# A folder that holds something is left alone without --force, before anything is computed.
+cp "$folder/r/report.json" "$folder/before.json"
+run 1 "$folder/empty.yaml" -o "$folder/r"
+grep -q -- '--force' "$folder/err" || fail 'the message does not name --force'
+run 3 "$folder/empty.yaml" -o "$folder/r" --force --json
+cmp -s "$folder/before.json" "$folder/r/report.json" || fail 'the same campaign gave other bytes'
+cmp -s "$folder/out" "$folder/r/report.json" || fail '--json does not print report.json'
+
+# No place to write.
+echo text >"$folder/file"
+run 1 "$folder/empty.yaml" -o "$folder/file/r"
+run 1 "$folder/empty.yaml" -o /proc/wirebench
+
+[ $failures -eq 0 ] && echo 'report: all good'
+exit $((failures > 0))
