@@ -125,6 +125,8 @@ static void describe_rows(struct wb_align *align)
     wb_json_set_integer(rows, "left_out", (int64_t)align->n_dropped_rows);
     wb_json_set_integer(rows, "gaps", (int64_t)n_gaps);
     wb_align_set(rows, "longest_gap_s", longest);
+    wb_align_set(rows, "deflection_level_uncertainty_mm",
+                 wb_align_level_uncertainty(align) / WB_MM);
     wb_json_set_text(rows, "note",
                      "a row is the mean of the frames of 1/row_rate seconds in which the tip's "
                      "marker was seen, with the readings around that time; nothing is filled in");

@@ -206,7 +206,8 @@ static enum wb_status map_cameras(struct wb_align *align)
 
 /* Readings that were asked for one by one keep their arrival; a stream's arrivals are put on a
  * line over the readings' number, which takes out the host's jitter. */
-static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, double *number)
+static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, double *number,
+                                 size_t *n_used)
 {
     struct wb_align_reading *const readings = wb_align_readings(align);
     const size_t n = align->readings.n;
@@ -229,16 +230,23 @@ static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, doubl
         scatter = fmax(scatter, line.scatter);
     }
     align->load_scatter = scatter * align->rig.time_scale;
+    *n_used = n_segments;
+    return WB_OK;
+}
+
+static void describe_load(struct wb_align *align, bool polled, size_t n_segments)
+{
+    const struct wb_align_reading *const readings = wb_align_readings(align);
+    const size_t n = align->readings.n;
+    const double span = n > 1 ? readings[n - 1].t - readings[0].t : 0.0;
     struct wb_json *const object = wb_json_set_object(align->checks, "load_cell_stream");
+    wb_json_set_text(object, "method", polled ? "arrival of each answer" : "lower envelope");
     wb_json_set_integer(object, "readings", (int64_t)n);
     wb_json_set_integer(object, "invalid_readings", (int64_t)align->n_invalid);
     wb_json_set_integer(object, "segments", (int64_t)n_segments);
-    if (n > 1 && host_ns[n - 1] > host_ns[0])
-        wb_align_set(object, "rate_per_s",
-                     (double)(n - 1) /
-                         (wb_seconds_from_ns(host_ns[n - 1] - host_ns[0]) * align->rig.time_scale));
-    wb_align_set(object, "arrival_scatter_ms", align->load_scatter * 1e3);
-    return WB_OK;
+    if (span > 0.0)
+        wb_align_set(object, "rate_per_s", (double)(n - 1) / span);
+    wb_align_set(object, "arrival_scatter_ms", polled ? (double)NAN : align->load_scatter * 1e3);
 }
 
 static void drop_invalid_readings(struct wb_align *align)
@@ -257,7 +265,9 @@ static enum wb_status map_load(struct wb_align *align)
 {
     struct wb_align_reading *const readings = wb_align_readings(align);
     const size_t n = align->readings.n;
-    if (align->rig.load_cell.poll_command[0]) {
+    const bool polled = align->rig.load_cell.poll_command[0] != '\0';
+    size_t n_segments = 1;
+    if (polled) {
         for (size_t i = 0; i < n; i++)
             readings[i].t = bench_time(align, readings[i].t_ns);
     } else {
@@ -265,13 +275,14 @@ static enum wb_status map_load(struct wb_align *align)
         double *const number = malloc((n + 1) * sizeof *number);
         enum wb_status status = WB_ERR_MEMORY;
         if (host_ns && number)
-            status = map_stream(align, host_ns, number);
+            status = map_stream(align, host_ns, number, &n_segments);
         free(host_ns);
         free(number);
         if (status != WB_OK)
             return wb_fail(status, "%s: the load cell's readings cannot be put on a clock",
                            align->name);
     }
+    describe_load(align, polled, n_segments);
     align->filter_delay = align->rig.load_cell.filter_delay;
     align->filter_delay_uncertainty = align->rig.load_cell.filter_delay_uncertainty;
     for (size_t i = 0; i < n; i++)

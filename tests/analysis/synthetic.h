@@ -57,6 +57,7 @@ struct syn {
     int version_major, version_minor;
     double plane_angle; /* rad */
     bool z_up, no_motion;
+    bool polled; /* the load cell is asked for each reading */
 
     /* Work. */
     uint64_t seed;
@@ -397,6 +398,7 @@ static inline void syn_write_meta(const struct syn *syn, struct wb_recording *re
              "  filter_delay_ms: %g\n"
              "  filter_delay_uncertainty_ms: 5\n"
              "  noise_mg: 10\n"
+             "%s"
              "mocap:\n"
              "  address: memory:mocap\n"
              "  protocol: natnet\n"
@@ -414,7 +416,9 @@ static inline void syn_write_meta(const struct syn *syn, struct wb_recording *re
              "  counterweight_g: 2.7\n"
              "virtual: true\n"
              "time_scale: %g\n",
-             SYN_FILTER * 1e3, syn->z_up ? 'z' : 'y', syn->time_scale);
+             SYN_FILTER * 1e3,
+             syn->polled ? "  poll_command: \"W\\r\"\n  poll_period_ms: 12.5\n" : "",
+             syn->z_up ? 'z' : 'y', syn->time_scale);
     if (wb_recording_set_meta(recording, "rig", rig) != WB_OK ||
         wb_recording_set_meta(recording, "specimen", syn_specimen) != WB_OK ||
         wb_recording_set_meta(recording, "wire", syn_wire) != WB_OK ||

@@ -452,6 +452,19 @@ static void cameras_may_stand_anyhow(void **state)
     }
 }
 
+static void polled_readings_keep_their_arrival(void **state)
+{
+    (void)state;
+    struct syn syn;
+    struct wb_dataset dataset;
+    syn_default(&syn);
+    syn.polled = true;
+    align(&syn, &dataset);
+    assert_true_to(&syn, &dataset);
+    assert_true(isnan(check(&dataset, "load_cell_stream", "arrival_scatter_ms")));
+    wb_dataset_release(&dataset);
+}
+
 static void what_cannot_serve_is_refused_with_the_reason(void **state)
 {
     (void)state;
@@ -552,6 +565,7 @@ int main(void)
         cmocka_unit_test(the_clock_is_mapped_by_the_probes),
         cmocka_unit_test(a_scaled_bench_keeps_its_own_time),
         cmocka_unit_test(cameras_may_stand_anyhow),
+        cmocka_unit_test(polled_readings_keep_their_arrival),
         cmocka_unit_test(what_cannot_serve_is_refused_with_the_reason),
         cmocka_unit_test(wrong_bytes_never_crash_it),
         cmocka_unit_test(the_same_recording_gives_the_same_bytes),
