@@ -239,15 +239,15 @@ void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, con
 }
 
 void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
-                        const double *low, const double *high, struct wb_colour colour)
+                        const double *const edges[2], struct wb_colour colour)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_BAND, label);
     if (!series)
         return;
     series->style.colour = colour;
     series->x = copy_values(panel->figure, x, n);
-    series->y = copy_values(panel->figure, low, n);
-    series->high = copy_values(panel->figure, high, n);
+    series->y = copy_values(panel->figure, edges[0], n);
+    series->high = copy_values(panel->figure, edges[1], n);
     series->n = series->x && series->y && series->high ? n : 0;
 }
 

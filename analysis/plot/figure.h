@@ -87,8 +87,9 @@ void wb_figure_hide_axes(struct wb_panel *panel);
 /* Series, drawn in the order bands, lines, points. `label` NULL: not in the legend. */
 void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *y, const struct wb_figure_style *style);
+/* `edges`: the lower and the upper one, each of n values. */
 void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
-                        const double *low, const double *high, struct wb_colour colour);
+                        const double *const edges[2], struct wb_colour colour);
 /* A horizontal line over the whole width. */
 void wb_figure_add_level(struct wb_panel *panel, const char *label, double y,
                          const struct wb_figure_style *style);

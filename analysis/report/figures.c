@@ -58,9 +58,9 @@ void wb_figures_add_range(struct wb_panel *panel, const char *label, const struc
     double *const x = wb_figures_deflections(curve);
     double *const low = wb_figures_scaled(curve->low, curve->n, WB_MN);
     double *const high = wb_figures_scaled(curve->high, curve->n, WB_MN);
+    const double *const edges[2] = {low, high};
     if (x && low && high && curve->n_samples > 1)
-        wb_figure_add_band(panel, label, (size_t)curve->n, x, low, high,
-                           wb_palette_fade(colour, 0.22));
+        wb_figure_add_band(panel, label, (size_t)curve->n, x, edges, wb_palette_fade(colour, 0.22));
     free(x);
     free(low);
     free(high);

@@ -27,13 +27,13 @@ static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_results
     const struct wb_figure_style measured = {
         .colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 3.4};
     for (int i = 1; i <= 2 && dataset; i++) {
-        double x[64], y[64], at, t, line_x[SHAPE_POINTS], line_y[SHAPE_POINTS];
-        const int n =
-            wb_figures_frame(dataset, 0.5 * i * result->curve.max_deflection, 64, x, y, &at, &t);
-        if (n == 0)
+        struct wb_figures_frame frame;
+        double line_x[SHAPE_POINTS], line_y[SHAPE_POINTS];
+        wb_figures_find_frame(dataset, 0.5 * i * result->curve.max_deflection, &frame);
+        if (frame.n == 0)
             continue;
-        const enum wb_status status =
-            wb_validate_shape(&wire->properties, &result->info, at, SHAPE_POINTS, line_x, line_y);
+        const enum wb_status status = wb_validate_shape(
+            &wire->properties, &result->info, frame.deflection, SHAPE_POINTS, line_x, line_y);
         if (status != WB_OK && status != WB_ERR_CONVERGENCE)
             return status;
         for (int k = 0; k < SHAPE_POINTS; k++) {
@@ -42,7 +42,7 @@ static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_results
         }
         if (status == WB_OK)
             wb_figure_add_line(inset, NULL, SHAPE_POINTS, line_x, line_y, &computed);
-        wb_figure_add_line(inset, NULL, (size_t)n, x, y, &measured);
+        wb_figure_add_line(inset, NULL, (size_t)frame.n, frame.x, frame.y, &measured);
     }
     return WB_OK;
 }

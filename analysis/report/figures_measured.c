@@ -26,29 +26,27 @@ double wb_figures_turn(const struct wb_dataset *dataset, double *t)
     return largest;
 }
 
-int wb_figures_frame(const struct wb_dataset *dataset, double deflection, int most, double *x,
-                     double *y, double *at, double *t)
+void wb_figures_find_frame(const struct wb_dataset *dataset, double deflection,
+                           struct wb_figures_frame *frame)
 {
-    double end;
+    double end, nearest = (double)INFINITY;
     wb_figures_turn(dataset, &end);
-    double nearest = (double)INFINITY;
+    frame->n = 0;
     for (size_t i = 0; i < dataset->n_shape_rows; i++) {
         const struct wb_shape_row *const row = &dataset->shape_rows[i];
         if (row->t <= end + 0.2 && fabs(row->deflection - deflection) < nearest) {
             nearest = fabs(row->deflection - deflection);
-            *at = row->deflection;
-            *t = row->t;
+            frame->deflection = row->deflection;
+            frame->t = row->t;
         }
     }
-    int n = 0;
-    for (size_t i = 0; isfinite(nearest) && i < dataset->n_shape_rows && n < most; i++) {
+    for (size_t i = 0; isfinite(nearest) && i < dataset->n_shape_rows; i++) {
         const struct wb_shape_row *const row = &dataset->shape_rows[i];
-        if (row->t != *t)
+        if (row->t != frame->t || frame->n == WB_FIGURES_MARKERS)
             continue;
-        x[n] = row->x / WB_MM;
-        y[n++] = row->y / WB_MM;
+        frame->x[frame->n] = row->x / WB_MM;
+        frame->y[frame->n++] = row->y / WB_MM;
     }
-    return n;
 }
 
 static int n_cycles(const struct wb_dataset *dataset)
@@ -185,19 +183,19 @@ enum wb_status wb_figures_draw_shapes(struct wb_figures_wire *figures,
     double end, last_shown = (double)NAN;
     const double largest = wb_figures_turn(&test->dataset, &end);
     for (int i = 0; i < 5; i++) {
-        double x[64], y[64], at, t;
-        const int n = wb_figures_frame(&test->dataset, 0.25 * i * largest, 64, x, y, &at, &t);
-        if (n < 2 || t == last_shown)
+        struct wb_figures_frame frame;
+        wb_figures_find_frame(&test->dataset, 0.25 * i * largest, &frame);
+        if (frame.n < 2 || frame.t == last_shown)
             continue;
-        last_shown = t;
+        last_shown = frame.t;
         char label[96];
-        snprintf(label, sizeof label, "<i>t</i> = %.1f s, <i>\xce\xb4</i> = %.1f mm", t,
-                 at / WB_MM);
+        snprintf(label, sizeof label, "<i>t</i> = %.1f s, <i>\xce\xb4</i> = %.1f mm", frame.t,
+                 frame.deflection / WB_MM);
         const struct wb_figure_style style = {.colour = wb_palette_sequence(i, 6),
                                               .width = 0.9,
                                               .marker = markers[i],
                                               .marker_size = 4.4};
-        wb_figure_add_line(panel, label, (size_t)n, x, y, &style);
+        wb_figure_add_line(panel, label, (size_t)frame.n, frame.x, frame.y, &style);
     }
     return WB_OK;
 }
@@ -278,10 +276,10 @@ enum wb_status wb_figures_draw_bench(struct wb_figure **figure, const struct wb_
     const struct wb_results_test *const test = any_test(results);
     if (!test)
         return WB_OK;
-    double x[64], y[64], at, t, end;
-    const double largest = wb_figures_turn(&test->dataset, &end);
-    const int n = wb_figures_frame(&test->dataset, largest, 64, x, y, &at, &t);
-    if (n < 2)
+    struct wb_figures_frame frame;
+    double end;
+    wb_figures_find_frame(&test->dataset, wb_figures_turn(&test->dataset, &end), &frame);
+    if (frame.n < 2)
         return WB_OK;
     WB_TRY(wb_figures_start(figure, results, NULL, "bench", WB_REPORT_WIDTH, 190.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
@@ -294,11 +292,11 @@ enum wb_status wb_figures_draw_bench(struct wb_figure **figure, const struct wb_
     wb_figure_add_line(panel, NULL, 2, straight_x, straight_y, &straight);
     const struct wb_figure_style wire = {
         .colour = wb_palette_wire(0), .width = 1.8, .marker = WB_MARKER_RING, .marker_size = 5.0};
-    wb_figure_add_line(panel, NULL, (size_t)n, x, y, &wire);
+    wb_figure_add_line(panel, NULL, (size_t)frame.n, frame.x, frame.y, &wire);
     wb_figure_add_text(panel, length + 4.0, 0.0, -1, "straight wire");
     char text[96];
     snprintf(text, sizeof text, "wire with %d markers", test->specimen.n_markers);
-    wb_figure_add_text(panel, 0.4 * length, 0.45 * y[n - 1], 1, text);
-    add_bench(panel, test, x[n - 1], y[n - 1]);
+    wb_figure_add_text(panel, 0.4 * length, 0.45 * frame.y[frame.n - 1], 1, text);
+    add_bench(panel, test, frame.x[frame.n - 1], frame.y[frame.n - 1]);
     return WB_OK;
 }

@@ -61,9 +61,16 @@ WB_MUST_CHECK enum wb_status wb_figures_draw_optimiser(struct wb_figure **figure
                                                        const struct wb_results_wire *wire,
                                                        struct wb_colour colour);
 
-/* Markers of the first loading's frame nearest to a deflection: up to `most` into x and y (mm);
- * *at and *t receive the frame's deflection (m) and time (s). Returns how many, 0 for none. */
-int wb_figures_frame(const struct wb_dataset *dataset, double deflection, int most, double *x,
-                     double *y, double *at, double *t);
+/* Markers of one frame, in the order of the dataset. */
+#define WB_FIGURES_MARKERS 64
+struct wb_figures_frame {
+    int n;                                               /* 0: there is none */
+    double x[WB_FIGURES_MARKERS], y[WB_FIGURES_MARKERS]; /* mm */
+    double deflection, t;                                /* m, s */
+};
+
+/* The frame of the first loading that is nearest to a deflection (m). */
+void wb_figures_find_frame(const struct wb_dataset *dataset, double deflection,
+                           struct wb_figures_frame *frame);
 
 #endif

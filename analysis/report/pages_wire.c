@@ -111,15 +111,20 @@ static void put_compared(struct wb_document *document, const struct wb_results *
     }
 }
 
-static void put_number(struct wb_document *document, struct wb_document_table *table,
-                       const char *name, const char *unit, double calibration, double validation,
-                       int decimals)
+struct merit {
+    const char *name, *unit;
+    double calibration, validation; /* in the unit; NaN unknown */
+    int decimals;
+};
+
+static void put_merit(struct wb_document *document, struct wb_document_table *table,
+                      const struct merit *merit)
 {
     struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", name);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", unit);
-    wb_pages_cell_number(&row, calibration, decimals);
-    wb_pages_cell_number(&row, validation, decimals);
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", merit->name);
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", merit->unit);
+    wb_pages_cell_number(&row, merit->calibration, merit->decimals);
+    wb_pages_cell_number(&row, merit->validation, merit->decimals);
     wb_pages_put_row(document, table, false, &row);
 }
 
@@ -133,8 +138,38 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
     };
     const double none = (double)NAN;
     const bool v = wire->validation_state == WB_RESULTS_DONE;
+    const struct wb_calibrate_result *const c = &wire->calibration;
     const struct wb_validate_result *const fit = &wire->fit, *const val = &wire->validation;
+    const bool scatters = fit->curve.n_samples > 1, v_scatters = v && val->curve.n_samples > 1;
     const char *const part = "of <i>F</i><sub>max</sub>";
+    const struct merit merits[] = {
+        {"RMS (eq. 19)", part, fit->elastoplastic.rms, v ? val->elastoplastic.rms : none, 4},
+        {"RMS beyond 5 mm", part, fit->elastoplastic.rms_from_5mm,
+         v ? val->elastoplastic.rms_from_5mm : none, 4},
+        {"Largest error (eq. 18)", part, fit->elastoplastic.max_error,
+         v ? val->elastoplastic.max_error : none, 4},
+        {"RMS of the linear elastic beam", part, fit->elastic.rms, v ? val->elastic.rms : none, 4},
+        {"Scatter between samples <i>s</i>", part, scatters ? c->scatter_rms : none,
+         v_scatters ? val->scatter_rms : none, 4},
+        {"Scatter beyond the natural shapes <i>r</i>", part,
+         scatters ? c->residual_scatter_rms : none, v_scatters ? val->residual_scatter_rms : none,
+         4},
+        {"RMS expected from that scatter", part,
+         scatters ? c->residual_scatter_rms / sqrt(fit->curve.n_samples) : none,
+         v ? val->expected_rms : none, 4},
+        {"Share that the scatter explains", "1", wb_results_calibration_share(wire),
+         wb_results_validation_share(wire), 2},
+        {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? val->shape_rms / WB_MM : none,
+         2},
+        {"Shapes, largest distance", "mm", fit->shape_max / WB_MM,
+         v ? val->shape_max / WB_MM : none, 2},
+        {"<i>F</i><sub>max</sub>", "mN", fit->curve.max_force / WB_MN,
+         v ? val->curve.max_force / WB_MN : none, 1},
+        {"Largest deflection of all samples", "mm", fit->curve.max_deflection / WB_MM,
+         v ? val->curve.max_deflection / WB_MM : none, 1},
+        {"Mean bow of the samples", "mm", wb_dataset_bow(&fit->info) / WB_MM,
+         v ? wb_dataset_bow(&val->info) / WB_MM : none, 2},
+    };
     wb_document_heading(document, 2, "", "Numbers");
     struct wb_document_table *const table = wb_document_table(
         document,
@@ -147,37 +182,8 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
         "and the calibration's samples, for the calibration its own term alone. Share: its square "
         "over RMS<sup>2</sup>, at most 1.",
         4, columns);
-    put_number(document, table, "RMS (eq. 19)", part, fit->elastoplastic.rms,
-               v ? val->elastoplastic.rms : none, 4);
-    put_number(document, table, "RMS beyond 5 mm", part, fit->elastoplastic.rms_from_5mm,
-               v ? val->elastoplastic.rms_from_5mm : none, 4);
-    put_number(document, table, "Largest error (eq. 18)", part, fit->elastoplastic.max_error,
-               v ? val->elastoplastic.max_error : none, 4);
-    put_number(document, table, "RMS of the linear elastic beam", part, fit->elastic.rms,
-               v ? val->elastic.rms : none, 4);
-    put_number(document, table, "Scatter between samples <i>s</i>", part,
-               fit->curve.n_samples > 1 ? wire->calibration.scatter_rms : none,
-               v && val->curve.n_samples > 1 ? val->scatter_rms : none, 4);
-    put_number(document, table, "Scatter beyond the natural shapes <i>r</i>", part,
-               fit->curve.n_samples > 1 ? wire->calibration.residual_scatter_rms : none,
-               v && val->curve.n_samples > 1 ? val->residual_scatter_rms : none, 4);
-    put_number(document, table, "RMS expected from that scatter", part,
-               fit->curve.n_samples > 1
-                   ? wire->calibration.residual_scatter_rms / sqrt(fit->curve.n_samples)
-                   : none,
-               v ? val->expected_rms : none, 4);
-    put_number(document, table, "Share that the scatter explains", "1",
-               wb_results_calibration_share(wire), wb_results_validation_share(wire), 2);
-    put_number(document, table, "Shapes, RMS distance", "mm", fit->shape_rms / WB_MM,
-               v ? val->shape_rms / WB_MM : none, 2);
-    put_number(document, table, "Shapes, largest distance", "mm", fit->shape_max / WB_MM,
-               v ? val->shape_max / WB_MM : none, 2);
-    put_number(document, table, "<i>F</i><sub>max</sub>", "mN", fit->curve.max_force / WB_MN,
-               v ? val->curve.max_force / WB_MN : none, 1);
-    put_number(document, table, "Largest deflection of all samples", "mm",
-               fit->curve.max_deflection / WB_MM, v ? val->curve.max_deflection / WB_MM : none, 1);
-    put_number(document, table, "Mean bow of the samples", "mm", wb_dataset_bow(&fit->info) / WB_MM,
-               v ? wb_dataset_bow(&val->info) / WB_MM : none, 2);
+    for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
+        put_merit(document, table, &merits[i]);
 }
 
 static void put_search(struct wb_document *document, const struct wb_results_wire *wire,

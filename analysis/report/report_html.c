@@ -109,7 +109,9 @@ static enum wb_status put_svg(struct wb_text *html, const struct wb_figure *figu
     const enum wb_status status = wb_figure_svg(figure, &svg);
     if (status == WB_OK) {
         const char *const start = strstr(wb_text_string(&svg), "<svg");
-        wb_text_append(html, "%s", start ? start : "");
+        if (start)
+            wb_text_append(html, "<svg role=\"img\" aria-label=\"%s\"%s", wb_figure_name(figure),
+                           start + strlen("<svg"));
     }
     wb_text_release(&svg);
     return status;

@@ -176,7 +176,8 @@ static struct wb_figure *make_figure(const char *name, int shape)
     const struct wb_figure_style style = {.colour = wb_palette_wire(0), .width = 1.2};
     const struct wb_figure_style dots = {
         .colour = wb_palette_wire(1), .marker = WB_MARKER_CIRCLE, .marker_size = 3.0};
-    wb_figure_add_band(panel, "range of the samples", POINTS, x, low, high,
+    const double *const edges[2] = {low, high};
+    wb_figure_add_band(panel, "range of the samples", POINTS, x, edges,
                        wb_palette_fade(wb_palette_wire(0), 0.2));
     wb_figure_add_line(panel, "mean of the samples", POINTS, x, y, &style);
     wb_figure_add_line(panel, "points", POINTS, x, y, &dots);
@@ -383,7 +384,8 @@ static void an_empty_figure_and_one_of_nothing_but_nan_can_be_drawn(void **state
     const struct wb_figure_style style = {
         .colour = wb_palette_ink(), .width = 1.0, .marker = WB_MARKER_SQUARE};
     wb_figure_add_line(panel, "nothing & <b>", 2, nan, nan, &style);
-    wb_figure_add_band(panel, NULL, 2, nan, nan, nan, wb_palette_ink());
+    const double *const edges[2] = {nan, nan};
+    wb_figure_add_band(panel, NULL, 2, nan, edges, wb_palette_ink());
     wb_figure_set_logarithmic_y(panel);
     assert_int_equal(wb_figure_svg(figure, &svg), WB_OK);
     wb_text_release(&svg);
