@@ -4,7 +4,7 @@
 # Usage: calibrate.sh WIREBENCH
 set -u
 
-wirebench=$1
+wirebench=$(realpath "$1")
 folder=$(mktemp -d /tmp/wb-calibrate-XXXXXX)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
