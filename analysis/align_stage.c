@@ -260,11 +260,11 @@ static void describe_stage(struct wb_align *align, const struct stage_fit *fit, 
     wb_json_set_boolean(object, "lost_steps", lost);
     if (lost)
         wb_align_warn(align,
-                      "the stage seems to have lost steps: measured and commanded travel differ by "
-                      "up to %.2f mm from their line, and by %.2f mm after the test from before; "
-                      "it began near %.1f mm of travel. The deflection is measured at the markers "
-                      "and not affected",
-                      fit->largest / WB_MM, fit->returned / WB_MM, fit->lost_at / WB_MM);
+                      "the stage seems to have lost steps near %.1f mm of travel: measured and "
+                      "commanded travel differ by up to %.2f mm from their line, and after the "
+                      "test the clamp stands %.2f mm off its start. The deflection is measured at "
+                      "the markers and not affected",
+                      fit->lost_at / WB_MM, fit->largest / WB_MM, fit->returned / WB_MM);
     else if (fabs(fit->slope - 1.0) > 0.01)
         wb_align_warn(align,
                       "the clamp moves %.4f mm for each millimetre commanded: check the stage's "
