@@ -15,6 +15,8 @@
 #define DEFAULT_PERIOD (1.0 / 120.0)
 /* Among so many frames the cheapest complete chain is where following starts. */
 #define START_FRAMES 240
+/* A long recording is looked through for the start in so many frames, evenly. */
+#define LOOKED_AT 4000
 /* How much a frame counts in which a marker is not seen, but carried along by seen neighbours on
  * both sides, or on one. */
 #define CARRIED_BY_TWO 0.02
@@ -302,7 +304,8 @@ static bool find_start(const struct tracker *tracker, int least, size_t *start, 
     const struct wb_point_cloud *const cloud = tracker->cloud;
     double best = HUGE_VAL;
     int n_found = 0;
-    for (size_t frame = 0; frame < cloud->n_frames && n_found < START_FRAMES; frame++) {
+    const size_t stride = 1 + cloud->n_frames / LOOKED_AT;
+    for (size_t frame = 0; frame < cloud->n_frames && n_found < START_FRAMES; frame += stride) {
         int found[WB_SPECIMEN_MAX_MARKERS];
         double cost;
         if (cloud->frames[frame].n < least ||

@@ -11,7 +11,7 @@
 /* Two links in a row turn by less than this (60 degrees). */
 #define LEAST_COSINE 0.5
 /* A hostile cloud must not take forever. */
-#define MOST_VISITS 200000
+#define MOST_VISITS 20000
 /* Markers sit on the wire to this, m, whatever the cameras resolve. */
 #define PLACEMENT (0.3 * WB_MM)
 /* A bent wire's chord is shorter than its arc, by at most this part (and by what the marker's
