@@ -37,7 +37,14 @@ inside() {
 }
 inside sh -c 'cd / && /home/newcomer/wirebench/bootstrap demo'
 inside sh -c 'cd /tmp && ../home/newcomer/wirebench/bootstrap demo'
-inside sh -c 'test -s /home/newcomer/wirebench/demo/report.pdf'
+inside sh -c 'cd /home/newcomer/wirebench/demo && test -s report.pdf && test -s report.html &&
+    test -s report.json && ls figures/*.svg figures/*.png >/dev/null'
 inside sh -c 'cd /home/newcomer/wirebench && ./bootstrap test'
 inside sh -c 'cd / && /home/newcomer/wirebench/bootstrap test'
+# Installed, with the source gone, the tool finds what it ships with.
+inside sh -c 'cd /home/newcomer/wirebench && meson install -C build >/dev/null &&
+    mv /home/newcomer/wirebench /home/newcomer/away && cd / && wirebench --version &&
+    wirebench solve cantilever --wire type3 --length-mm 85 --deflection-mm 53 --points 2 &&
+    (wirebench report fixtures/campaigns/single-wires.yaml -o /tmp/report || [ $? -eq 4 ]) &&
+    test -s /tmp/report/report.pdf && test -s /usr/local/share/man/man1/wirebench.1'
 echo "bare Debian: demo and test both work, twice"
