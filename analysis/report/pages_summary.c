@@ -6,7 +6,7 @@
 #include "analysis/report/pages_private.h"
 #include "base/units.h"
 
-#define MOST_WARNINGS 6
+#define MOST_WARNINGS 4
 
 static void put_origin(struct wb_document *document, const struct wb_results *results)
 {
