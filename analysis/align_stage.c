@@ -15,6 +15,8 @@
 #define LEAST_TURN (1.0 * WB_MM)
 /* The clamp's speed is taken over +- so many seconds of bench time. */
 #define SPEED_WINDOW 0.05
+/* Reports that the host read later than this, s of bench time, are left out. */
+#define MOST_LATENESS 0.1
 /* So many reports at either end of the test tell where the stage stands. */
 #define STANDING 5
 
@@ -123,6 +125,29 @@ static bool clamp_at(const struct wb_align *align, double t, double *height)
     return isfinite(*height);
 }
 
+/* How late the host was when it read what arrived at t_ns: lateness of the camera frames around, s
+ * of bench time. A host that was busy stamps all streams late, and a stage that moves then seems to
+ * be elsewhere. */
+static double host_lateness(const struct wb_align *align, int64_t t_ns)
+{
+    const struct wb_point_frame *const frames = align->cloud.frames;
+    size_t low = 0, high = align->cloud.n_frames;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (frames[middle].t_ns < t_ns)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    double late = 0.0;
+    for (size_t i = low > 0 ? low - 1 : 0; i <= low && i < align->cloud.n_frames; i++) {
+        const double arrival =
+            wb_seconds_from_ns(frames[i].t_ns - align->zero_ns) * align->rig.time_scale;
+        late = fmax(late, arrival - align->frame_t[i]);
+    }
+    return late;
+}
+
 /* Reports of the test with the clamp's measured height at the time they arrived. Travel downwards,
  * both from their first. */
 static size_t make_pairs(const struct wb_align *align, struct pair *pairs)
@@ -133,6 +158,7 @@ static size_t make_pairs(const struct wb_align *align, struct pair *pairs)
     for (size_t i = 0; i < align->reports.n; i++) {
         double before, at, after;
         if (reports[i].t < fmax(begin, -1.0) || reports[i].t > end ||
+            host_lateness(align, reports[i].t_ns) > MOST_LATENESS ||
             !clamp_at(align, reports[i].t, &at) ||
             !clamp_at(align, reports[i].t - SPEED_WINDOW, &before) ||
             !clamp_at(align, reports[i].t + SPEED_WINDOW, &after))
@@ -171,9 +197,9 @@ static bool goes_both_ways(const struct pair *pairs, size_t n)
 }
 
 /* Robust least squares (Tukey's bisquare): steps that were lost must not bend the line. */
-static bool fit_pairs(const struct pair *pairs, size_t n, struct stage_fit *fit)
+static bool fit_pairs(const struct pair *pairs, size_t n, bool with_lag, struct stage_fit *fit)
 {
-    const size_t p = goes_both_ways(pairs, n) ? 3 : 2;
+    const size_t p = with_lag && goes_both_ways(pairs, n) ? 3 : 2;
     gsl_matrix *const x = gsl_matrix_alloc(n, p);
     gsl_vector *const y = gsl_vector_alloc(n);
     gsl_vector *const c = gsl_vector_alloc(p);
@@ -244,11 +270,31 @@ static void measure_residuals(const struct pair *pairs, size_t n, struct stage_f
     }
 }
 
+static bool lost_steps(const struct wb_align *align, const struct stage_fit *fit)
+{
+    const double limit = align->settings.lost_steps;
+    return fit->largest > limit || fabs(fit->returned) > limit;
+}
+
+/* Lost steps look like a lag on the way down or up: then none is sought. */
+static bool fit_stage(const struct wb_align *align, const struct pair *pairs, size_t n,
+                      struct stage_fit *fit)
+{
+    if (n < 4 * STANDING || !fit_pairs(pairs, n, true, fit))
+        return false;
+    measure_residuals(pairs, n, fit);
+    if (!lost_steps(align, fit))
+        return true;
+    if (!fit_pairs(pairs, n, false, fit))
+        return false;
+    measure_residuals(pairs, n, fit);
+    return true;
+}
+
 static void describe_stage(struct wb_align *align, const struct stage_fit *fit, size_t n)
 {
     struct wb_json *const object = wb_json_set_object(align->checks, "stage");
-    const double limit = align->settings.lost_steps;
-    const bool lost = fit->largest > limit || fabs(fit->returned) > limit;
+    const bool lost = lost_steps(align, fit);
     wb_json_set_integer(object, "reports", (int64_t)n);
     wb_align_set(object, "slope", fit->slope);
     wb_align_set(object, "slope_uncertainty", fit->slope_deviation);
@@ -312,9 +358,8 @@ enum wb_status wb_align_stage(struct wb_align *align)
     if (!pairs)
         return wb_fail(WB_ERR_MEMORY, "out of memory for %zu reports", align->reports.n);
     const size_t n = make_pairs(align, pairs);
-    const bool fitted = n >= 4 * STANDING && fit_pairs(pairs, n, &fit);
+    const bool fitted = fit_stage(align, pairs, n, &fit);
     if (fitted) {
-        measure_residuals(pairs, n, &fit);
         describe_stage(align, &fit, n);
     } else {
         wb_align_warn(align,

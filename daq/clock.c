@@ -11,7 +11,7 @@
 #define BURST_NS WB_NS_PER_S
 #define LEAST_PROBE_SPAN 2.0 /* s */
 /* Within this time of the host a delay has passed and stamps are on time again. */
-#define SETTLING_NS (2 * WB_NS_PER_S)
+#define SETTLING_NS (5 * WB_NS_PER_S)
 
 int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device)
 {
@@ -325,30 +325,58 @@ static double lateness(const int64_t *host_ns, size_t i, size_t zero, double per
     return wb_seconds_from_ns(host_ns[i] - host_ns[zero]) - ((double)i - (double)zero) * period;
 }
 
-static double least_lateness(const int64_t *host_ns, size_t first, size_t last, size_t zero,
-                             double period)
+/* The least lateness of readings first, first + step, ... up to `end` (exclusive), as long as they
+ * arrived within SETTLING_NS of the first of them. */
+static double least_lateness(const int64_t *host_ns, size_t first, size_t end, int step,
+                             size_t zero, double period)
 {
     double least = HUGE_VAL;
-    for (size_t i = first; i < last; i++)
+    for (size_t i = first; i != end; i += (size_t)step) {
+        if (llabs(host_ns[i] - host_ns[first]) > SETTLING_NS)
+            break;
         least = fmin(least, lateness(host_ns, i, zero, period));
+    }
     return least;
+}
+
+/* Period of the readings: the median of what windows of them took, which neither a few losses nor
+ * a few delays move. */
+static double typical_period(const int64_t *host_ns, size_t n)
+{
+    enum {
+        MOST = 512,
+        LONG = 200
+    };
+    double periods[MOST];
+    size_t n_periods = 0;
+    if (n < 2)
+        return 0.0;
+    const size_t window = n > 2 * LONG ? LONG : n - 1;
+    const size_t stride = 1 + (n - window) / MOST;
+    for (size_t i = 0; i + window < n && n_periods < MOST; i += stride)
+        periods[n_periods++] =
+            wb_seconds_from_ns(host_ns[i + window] - host_ns[i]) / (double)window;
+    return median(periods, n_periods);
 }
 
 /* How much arrivals usually scatter: the median, over windows, of the largest lateness over the
  * least. */
-static double usual_jitter(const int64_t *host_ns, size_t n, size_t window, double period)
+static double usual_jitter(const int64_t *host_ns, size_t n, double period)
 {
     enum {
-        MOST = 256
+        MOST = 256,
+        WINDOW = 32
     };
     double spreads[MOST];
     size_t n_spreads = 0;
-    const size_t stride = n / window > MOST ? n / MOST : window;
-    for (size_t first = 0; first + window <= n && n_spreads < MOST; first += stride) {
-        double most = -HUGE_VAL;
-        for (size_t i = first; i < first + window; i++)
+    const size_t stride = n / WINDOW > MOST ? n / MOST : WINDOW;
+    for (size_t first = 0; first + WINDOW <= n && n_spreads < MOST; first += stride) {
+        double most = -HUGE_VAL, least = HUGE_VAL;
+        for (size_t i = first; i < first + WINDOW; i++) {
             most = fmax(most, lateness(host_ns, i, first, period));
-        spreads[n_spreads++] = most - least_lateness(host_ns, first, first + window, first, period);
+            least = fmin(least, lateness(host_ns, i, first, period));
+        }
+        spreads[n_spreads++] = most - least;
     }
     return n_spreads > 0 ? median(spreads, n_spreads) : 0.0;
 }
@@ -357,23 +385,19 @@ size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts,
 {
     if (n == 0 || most == 0)
         return 0;
-    const double period =
-        n > 1 ? wb_seconds_from_ns(host_ns[n - 1] - host_ns[0]) / (double)(n - 1) : 0.0;
-    /* A fifth of a second, for the host to catch up: 32 to 1024 readings. */
-    const size_t window = (size_t)fmax(32.0, fmin(1024.0, period > 0.0 ? 0.2 / period : 32.0));
-    const double jitter = usual_jitter(host_ns, n, window, period);
+    const double period = typical_period(host_ns, n);
+    const double jitter = usual_jitter(host_ns, n, period);
+    const double least_shift_s = fmax(fmax(0.8 * period, 3e-3), 1.5 * jitter);
     size_t n_segments = 0;
     starts[n_segments++] = 0;
     for (size_t i = 1; i < n && n_segments < most; i++) {
-        /* A busy host is late by milliseconds now and then; lost readings are so for good. */
+        /* A busy host is late now and then and catches up; lost readings are so for good. */
         if (wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]) < fmax(2.5 * period, 5e-3))
             continue;
-        const size_t start = starts[n_segments - 1];
-        const size_t before = i - start > window ? i - window : start;
-        const size_t after = n - i > window ? i + window : n;
-        const double shift = least_lateness(host_ns, i, after, i, period) -
-                             least_lateness(host_ns, before, i, i, period);
-        if (shift > fmax(fmax(0.8 * period, 3e-3), 1.5 * jitter))
+        const double before =
+            least_lateness(host_ns, i - 1, starts[n_segments - 1] - 1, -1, i, period);
+        const double after = least_lateness(host_ns, i, n, 1, i, period);
+        if (after - before > least_shift_s)
             starts[n_segments++] = i;
     }
     return n_segments;

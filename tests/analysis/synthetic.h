@@ -48,10 +48,11 @@ struct syn {
     double hidden_from, hidden_until;
     bool model_filled; /* the hidden marker is sent, flagged, at a wrong place */
     bool stray, ids_change;
-    double gap_from, gap_until; /* load cell silent */
-    double corrupt;             /* part of the chunks that get wrong bytes */
-    double restart_at;          /* s: the server's clock starts anew; 0: never */
-    double sign;                /* of the load cell; 0 means 1 */
+    double gap_from, gap_until;   /* load cell silent */
+    double busy_from, busy_until; /* the host takes nothing; then all that waited at once */
+    double corrupt;               /* part of the chunks that get wrong bytes */
+    double restart_at;            /* s: the server's clock starts anew; 0: never */
+    double sign;                  /* of the load cell; 0 means 1 */
     /* The bench. */
     double time_scale; /* 0 means 1 */
     int version_major, version_minor;
@@ -209,7 +210,10 @@ static inline void syn_chunk(struct syn *syn, struct wb_recording *recording, in
         for (int i = 0; i < 3; i++)
             copy[(size_t)(syn_uniform(syn) * (double)n)] = (uint8_t)(256.0 * syn_uniform(syn));
     }
-    if (wb_recording_append_chunk(recording, stream, (*seq)++, t_ns, copy, n) != WB_OK)
+    const bool waits =
+        t_ns > syn_host(syn, syn->busy_from) && t_ns < syn_host(syn, syn->busy_until);
+    const int64_t taken_ns = waits ? syn_host(syn, syn->busy_until) : t_ns;
+    if (wb_recording_append_chunk(recording, stream, (*seq)++, taken_ns, copy, n) != WB_OK)
         abort();
 }
 
@@ -465,6 +469,7 @@ static inline void syn_default(struct syn *syn)
     syn->force_noise = 98e-6;
     syn->hidden_marker = -1;
     syn->gap_from = syn->gap_until = -1e9;
+    syn->busy_from = syn->busy_until = -1e3;
     syn->version_major = 3;
     syn->plane_angle = 2.1;
 }

@@ -452,6 +452,20 @@ static void cameras_may_stand_anyhow(void **state)
     }
 }
 
+static void a_busy_host_does_no_harm(void **state)
+{
+    (void)state;
+    struct syn syn;
+    struct wb_dataset dataset;
+    syn_default(&syn);
+    syn.busy_from = 9.0;
+    syn.busy_until = 11.2;
+    align(&syn, &dataset);
+    assert_true_to(&syn, &dataset);
+    assert_false(warns(&dataset, NULL));
+    wb_dataset_release(&dataset);
+}
+
 static void polled_readings_keep_their_arrival(void **state)
 {
     (void)state;
@@ -565,6 +579,7 @@ int main(void)
         cmocka_unit_test(the_clock_is_mapped_by_the_probes),
         cmocka_unit_test(a_scaled_bench_keeps_its_own_time),
         cmocka_unit_test(cameras_may_stand_anyhow),
+        cmocka_unit_test(a_busy_host_does_no_harm),
         cmocka_unit_test(polled_readings_keep_their_arrival),
         cmocka_unit_test(what_cannot_serve_is_refused_with_the_reason),
         cmocka_unit_test(wrong_bytes_never_crash_it),

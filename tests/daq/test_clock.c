@@ -219,22 +219,26 @@ static void lost_readings_begin_a_segment_and_late_ones_do_not(void **state)
 {
     (void)state;
     enum {
-        N = 4000
+        COUNT = 4000
     };
-    static int64_t host_ns[N];
+    static int64_t host_ns[COUNT];
     uint64_t seed = 9;
     double lost = 0.0;
-    for (int i = 0; i < N; i++) {
+    for (int i = 0; i < COUNT; i++) {
         if (i == 2500)
             lost = 5 * 12.5e-3;
         double arrival = 100.0 + i * 12.5e-3 + lost + 2e-3 * uniform(&seed);
-        /* The host was busy for 100 ms: readings wait and come together. */
-        if (i >= 1000 && i < 1008)
-            arrival = fmax(arrival, 100.0 + 1000 * 12.5e-3 + 0.1);
+        /* The host was busy for 0.1, 2.7 and again 1.5 s: readings wait and come together. */
+        if (i >= 1000)
+            arrival = fmax(arrival, 100.0 + 1000 * 12.5e-3 + (i < 1300 ? 0.1 : 0.0));
+        if (i >= 1500)
+            arrival = fmax(arrival, 100.0 + 1500 * 12.5e-3 + 2.7);
+        if (i >= 1730)
+            arrival = fmax(arrival, 100.0 + 1730 * 12.5e-3 + 1.5);
         host_ns[i] = (int64_t)(arrival * 1e9);
     }
     size_t starts[8];
-    assert_int_equal(wb_clock_split_readings(host_ns, N, starts, 8), 2);
+    assert_int_equal(wb_clock_split_readings(host_ns, COUNT, starts, 8), 2);
     assert_int_equal(starts[1], 2500);
     assert_int_equal(wb_clock_split_readings(host_ns, 1, starts, 8), 1);
     assert_int_equal(wb_clock_split_readings(host_ns, 0, starts, 8), 0);
