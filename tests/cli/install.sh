@@ -5,10 +5,11 @@ set -eu
 tool=$1 build=$2 prefix=$3
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
-"$tool" --version | grep -qE '^wirebench [0-9]+\.[0-9]+\.[0-9]+ \([0-9a-f.a-z-]+\)$'
+version=$("$tool" --version)
+echo "$version" | grep -qE '^wirebench [0-9]+\.[0-9]+\.[0-9]+ \([0-9a-f.a-z-]+\)$'
 DESTDIR=$place meson install -C "$build" --no-rebuild --quiet
 cd "$place$prefix"
-[ "$(bin/wirebench --version)" = "$("$tool" --version)" ]
+[ "$(bin/wirebench --version)" = "$version" ]
 for file in fixtures/wires/type1.yaml fixtures/specimens/type1-L85-1.yaml fixtures/rigs/paper.yaml \
     fixtures/campaigns/single-wires.yaml fixtures/virtual/wires.yaml recordings/index.yaml; do
     [ -s "share/wirebench/$file" ] || { echo "$file is not installed"; exit 1; }
