@@ -251,8 +251,8 @@ static void note_rates(struct wb_acquisition *a, int64_t now_ns)
     }
 }
 
-/* What no sample shows: silence, devices that went away, a full disk, Ctrl-C. */
-static void check_rest(struct wb_acquisition *a, int64_t now_ns)
+/* What no sample shows but silence: devices that went away, a full disk, Ctrl-C. */
+static void check_rest(struct wb_acquisition *a)
 {
     if (!a->interlock.armed || a->interlock.reason != WB_INTERLOCK_NONE)
         return;
@@ -270,22 +270,31 @@ static void check_rest(struct wb_acquisition *a, int64_t now_ns)
         wb_acquisition_stop(a, WB_INTERLOCK_STREAM_LOST, text);
         return;
     }
-    if (wb_interlock_tick(&a->interlock, now_ns)) {
-        wb_acquisition_hold_now(a);
-        return;
-    }
     if (a->writer && wb_writer_status(a->writer) != WB_OK)
         wb_acquisition_stop(a, WB_INTERLOCK_DISK, "the recording cannot be written any more");
 }
 
-/* Time in which this process was kept from running says nothing about the instruments: those that
- * are asked for each sample could not be asked. It does not count as their silence. */
+/* Silence up to `heard_ns`, which is a time before the streams were read: what comes later may wait
+ * to be read. And before a stream is called lost, it is read once more: a process can be kept from
+ * running just between waking up and looking at the clock. */
+static void judge_silence(struct wb_acquisition *a, int64_t heard_ns)
+{
+    for (int i = 0; i < a->n_lines; i++) {
+        struct wb_acquisition_line *const line = &a->lines[i];
+        if (wb_interlock_expires(&a->interlock, line->role, heard_ns))
+            read_line(line, wb_acquisition_now_ns());
+    }
+    if (wb_interlock_tick(&a->interlock, heard_ns))
+        wb_acquisition_hold_now(a);
+}
+
+/* Time in which this process was kept from running, or from waiting for bytes, says nothing about
+ * the instruments: those that are asked for each sample could not be asked. It does not count as
+ * their silence. */
 static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
 {
-    if (stalled_ns < STALL_NS)
-        return;
-    for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
-        a->interlock.last_ns[role] += stalled_ns;
+    if (stalled_ns >= STALL_NS)
+        wb_interlock_forgive(&a->interlock, stalled_ns);
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -338,19 +347,21 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
     deadline_ns = earlier(deadline_ns, wb_stop_deadline(&a->stop));
     if (wait_for_bytes(a, deadline_ns, readable, &woken_ns) != WB_OK)
         return WB_ACQUISITION_FAILED;
-    forgive_stall(a, begun_ns - a->left_ns + (woken_ns > deadline_ns ? woken_ns - deadline_ns : 0));
+    /* From the last waking up to the beginning of this wait, and from its end to waking up. */
+    forgive_stall(a,
+                  begun_ns - a->woken_ns + (woken_ns > deadline_ns ? woken_ns - deadline_ns : 0));
+    a->woken_ns = woken_ns;
     for (int i = 0; i < a->n_lines; i++)
         if (readable[i])
             read_line(&a->lines[i], woken_ns);
+    check_rest(a);
+    judge_silence(a, woken_ns);
     const int64_t now_ns = wb_acquisition_now_ns();
-    check_rest(a, now_ns);
-    (void)wb_interlock_tick(&a->interlock, now_ns);
     wb_acquisition_follow_stop(a, now_ns);
     if (now_ns >= a->next_tick_ns)
         tick_lines(a, now_ns);
     note_losses(a, now_ns);
     note_rates(a, now_ns);
-    a->left_ns = wb_acquisition_now_ns();
     for (int i = 0; i < a->n_lines; i++)
         if (!a->latest.stream[a->lines[i].role].gone)
             return WB_ACQUISITION_CONTINUE;
@@ -417,7 +428,7 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
     a->writer = writer;
     a->started = true;
     a->next_tick_ns = now_ns + TICK_NS;
-    a->left_ns = now_ns;
+    a->woken_ns = now_ns;
     wb_interlock_init(&a->interlock, &unwatched, now_ns);
     for (int i = 0; i < a->n_lines; i++) {
         struct wb_acquisition_line *const line = &a->lines[i];

@@ -126,8 +126,11 @@ void wb_acquisition_event(struct wb_acquisition *acquisition, const char *kind, 
                           ...) __attribute__((format(printf, 3, 4)));
 
 /* Asks the system to run this thread, and those it will start, before others: on a machine busy
- * with other work a loop may be kept waiting for a second, and with it the hold byte. Not everybody
- * is allowed to; then nothing happens. */
+ * with other work a loop may be kept waiting for a second, and with it the hold byte. The kernel's
+ * worker that delivers a pseudo-terminal's bytes stays at the usual priority and does not starve:
+ * with four busy processes at 0 and three more at ours on two cores, the longest gap between bytes
+ * sent every 5 ms was 150 ms without and 53 ms with it. Not everybody is allowed to; then nothing
+ * happens. */
 void wb_acquisition_raise_priority(void);
 
 /* The monotonic clock all stamps come from, ns. */

@@ -38,7 +38,7 @@ struct wb_acquisition {
     enum wb_stop_state reported_stop;
     struct wb_acquisition_latest latest;
     int64_t next_tick_ns;
-    int64_t left_ns; /* end of the step before */
+    int64_t woken_ns; /* end of the last wait for bytes */
     struct wb_outbox outbox;
     uint8_t buffer[WB_STREAM_READ_MAX];
 };

@@ -95,6 +95,7 @@ bool wb_interlock_trip(struct wb_interlock *interlock, enum wb_interlock_reason 
 static void renew(struct wb_interlock *interlock, enum wb_role role, int64_t t_ns)
 {
     interlock->last_ns[role] = t_ns;
+    interlock->forgiven_ns[role] = 0;
     interlock->lost[role] = false;
 }
 
@@ -163,13 +164,34 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
     return false;
 }
 
+static bool expired(const struct wb_interlock *interlock, int role, int64_t now_ns)
+{
+    const int64_t allowed = interlock->settings.stream_lost_ns[role];
+    return allowed > 0 && now_ns >= interlock->last_ns[role] + allowed;
+}
+
+bool wb_interlock_expires(const struct wb_interlock *interlock, enum wb_role role, int64_t now_ns)
+{
+    return !interlock->lost[role] && expired(interlock, (int)role, now_ns);
+}
+
+void wb_interlock_forgive(struct wb_interlock *interlock, int64_t stalled_ns)
+{
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
+        const int64_t left_ns = WB_INTERLOCK_FORGIVEN_NS - interlock->forgiven_ns[role];
+        const int64_t forgiven_ns = stalled_ns < left_ns ? stalled_ns : left_ns;
+        interlock->forgiven_ns[role] += forgiven_ns;
+        interlock->last_ns[role] += forgiven_ns;
+    }
+}
+
 bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns)
 {
     static const char *const names[WB_INTERLOCK_ROLES] = {"load cell", "motion capture", "stage"};
     bool tripped = false;
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
         const int64_t allowed = interlock->settings.stream_lost_ns[role];
-        if (allowed <= 0 || now_ns < interlock->last_ns[role] + allowed)
+        if (!expired(interlock, role, now_ns))
             continue;
         interlock->lost[role] = true;
         if (!interlock->armed)

@@ -73,6 +73,7 @@ struct wb_interlock {
     double start_position;               /* m, machine position; NaN: travel is not watched yet */
     int64_t last_ns[WB_INTERLOCK_ROLES]; /* last valid sample of each stream */
     bool lost[WB_INTERLOCK_ROLES];       /* silent for longer than allowed */
+    int64_t forgiven_ns[WB_INTERLOCK_ROLES]; /* of the silence so far: time nobody listened */
     bool armed; /* false: silence is still noted in `lost`, but nothing trips */
     enum wb_interlock_reason reason;
     int64_t t_ns;      /* arrival of the sample, or expiry of the silence, that tripped it */
@@ -90,8 +91,16 @@ void wb_interlock_init(struct wb_interlock *interlock, const struct wb_interlock
 bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_sample *sample);
 bool wb_interlock_mocap(struct wb_interlock *interlock, int64_t t_ns);
 bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_report *report);
-/* Looks at the silences. */
+/* Looks at the silences: all that arrived before now_ns has been handed over. */
 bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns);
+/* True when the next tick at now_ns would call this stream lost, which it is not yet: the moment to
+ * look once more at what waits to be read. */
+bool wb_interlock_expires(const struct wb_interlock *interlock, enum wb_role role, int64_t now_ns);
+/* Nobody listened or asked for so long: it does not count as silence of any stream. At most
+ * WB_INTERLOCK_FORGIVEN_NS are forgiven between two samples of a stream, so that a stream that is
+ * really lost is found on the worst of machines. */
+void wb_interlock_forgive(struct wb_interlock *interlock, int64_t stalled_ns);
+#define WB_INTERLOCK_FORGIVEN_NS INT64_C(5000000000)
 /* Trips it for a reason of the caller's, armed or not. */
 bool wb_interlock_trip(struct wb_interlock *interlock, enum wb_interlock_reason reason,
                        int64_t t_ns, const char *text);

@@ -337,6 +337,42 @@ static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
         fail_msg("ended early: %s", result.text);
 }
 
+struct sleeper {
+    struct fake_bench *bench;
+    bool slept;
+};
+
+/* Once, in mid-motion: whatever arrives meanwhile waits unread. */
+static void sleep_once(void *context, const struct wb_load_sample *sample)
+{
+    struct sleeper *const sleeper = context;
+    (void)sample;
+    if (sleeper->slept || sleeper->bench->position_mm < 5.0)
+        return;
+    sleeper->slept = true;
+    usleep(800000);
+}
+
+static void a_stall_within_a_step_is_not_taken_for_silence(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    struct sleeper sleeper = {.bench = fixture->bench};
+    fixture->bench->spring_mg_mm = 10;
+    /* T is 250 ms of the host, 600 ms for the stage. */
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
+    fixture->request.sink = (struct wb_sink){.context = &sleeper, .load = sleep_once};
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_true(sleeper.slept);
+    if (result.end != WB_BEND_TEST_DONE)
+        fail_msg("ended early: %s", result.text);
+    read_events(fixture);
+    assert_null(strstr(fixture->events, "stream_lost"));
+}
+
 static void a_stage_running_on_is_held_at_the_travel_limit(void **state)
 {
     struct fixture *const fixture = *state;
@@ -654,6 +690,7 @@ int main(void)
         TEST(overload_unit_change_and_alarm_hold_within_20_ms),
         TEST(silent_streams_hold_within_20_ms_of_their_expiry),
         TEST(a_stall_of_our_own_is_not_taken_for_silence),
+        TEST(a_stall_within_a_step_is_not_taken_for_silence),
         TEST(a_stage_running_on_is_held_at_the_travel_limit),
         TEST(a_stage_deaf_to_hold_is_reset_after_500_ms),
         TEST(a_stage_that_obeys_nothing_is_called_moving),

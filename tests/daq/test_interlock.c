@@ -154,6 +154,34 @@ static void silence_trips_at_its_expiry_and_not_before(void **state)
     assert_false(interlock.lost[WB_ROLE_MOCAP]);
 }
 
+static void time_nobody_listened_is_no_silence_up_to_5_s(void **state)
+{
+    (void)state;
+    struct wb_interlock interlock;
+    const struct wb_interlock_settings settings = {.stream_lost_ns = {S, 0, S}};
+    wb_interlock_init(&interlock, &settings, 10 * S);
+    assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 11 * S - 1));
+    assert_true(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 11 * S));
+    assert_false(wb_interlock_expires(&interlock, WB_ROLE_MOCAP, 100 * S));
+    wb_interlock_forgive(&interlock, 2 * S);
+    assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 13 * S - 1));
+    assert_int_equal(wb_interlock_deadline(&interlock), 13 * S);
+    /* No more than 5 s of one silence, */
+    wb_interlock_forgive(&interlock, 20 * S);
+    assert_int_equal(wb_interlock_deadline(&interlock), 16 * S);
+    wb_interlock_forgive(&interlock, 20 * S);
+    assert_int_equal(wb_interlock_deadline(&interlock), 16 * S);
+    wb_interlock_tick(&interlock, 16 * S);
+    assert_true(interlock.lost[WB_ROLE_LOAD] && interlock.lost[WB_ROLE_STAGE]);
+    assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 17 * S));
+    /* and of the next one again. */
+    const struct wb_load_sample sample = {.t_ns = 20 * S, .valid = true};
+    wb_interlock_load(&interlock, &sample);
+    wb_interlock_forgive(&interlock, S);
+    assert_true(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 22 * S));
+    assert_false(wb_interlock_expires(&interlock, WB_ROLE_LOAD, 22 * S - 1));
+}
+
 static void invalid_readings_are_no_sign_of_life(void **state)
 {
     (void)state;
@@ -282,6 +310,7 @@ static void a_reset_that_is_not_confirmed_is_a_failure(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(time_nobody_listened_is_no_silence_up_to_5_s),
         cmocka_unit_test(force_beyond_the_limit_trips_once),
         cmocka_unit_test(force_limit_is_on_the_tared_reading_of_either_sign),
         cmocka_unit_test(overload_is_on_the_reading_with_its_tare),
