@@ -298,6 +298,16 @@ static double least_shift(const double *device, const int64_t *host_ns, size_t n
     return least;
 }
 
+/* Whether the stamps from `first` to the last still arrive faster than they were made: a host that
+ * was busy works off what waited when the stamps end. */
+static bool is_catching_up(const double *device, const int64_t *host_ns, size_t n, double slope,
+                           size_t first)
+{
+    const double arrived = wb_seconds_from_ns(host_ns[n - 1] - host_ns[first]);
+    const double made = slope * (device[n - 1] - device[first]);
+    return host_ns[n - 1] - host_ns[first] <= SETTLING_NS && arrived <= 0.5 * made;
+}
+
 size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, double nominal_slope,
                       double jump, size_t *starts, size_t most)
 {
@@ -313,7 +323,9 @@ size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, do
          * beyond n and ends the walk backwards. */
         const double before = least_shift(device, host_ns, n, nominal_slope, i - 1, i - 1, -1);
         const double after = least_shift(device, host_ns, n, nominal_slope, i - 1, i, 1);
-        if (!(fabs(after - before) <= 0.5 * jump))
+        const bool is_late =
+            after > before && is_catching_up(device, host_ns, n, nominal_slope, i);
+        if (!is_late && !(fabs(after - before) <= 0.5 * jump))
             starts[n_segments++] = i;
     }
     return n_segments;

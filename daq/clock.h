@@ -49,8 +49,9 @@ WB_MUST_CHECK enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, c
 
 /* Finds where stamps break: host and device time since the previous one differ by more than `jump`
  * host seconds, and stay apart (a datagram that overtook another, or a host that was busy for a
- * while, is no break). Writes the first index of each segment (the first is 0)
- * into `starts`, at most `most`; returns the number of segments (the last takes what is over). */
+ * while, is no break, even if the stamps end before it caught up). Writes the first index of each
+ * segment (the first is 0) into `starts`, at most `most`; returns the number of segments (the last
+ * takes what is over). */
 size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, double nominal_slope,
                       double jump, size_t *starts, size_t most);
 

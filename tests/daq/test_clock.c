@@ -213,6 +213,15 @@ static void a_busy_host_begins_none(void **state)
     size_t starts[4];
     assert_int_equal(wb_clock_split(device, host_ns, N_FRAMES, 1.0, 0.5, starts, 4), 1);
     assert_int_equal(wb_clock_split(device, host_ns, 0, 1.0, 0.5, starts, 4), 0);
+    /* The recording ends while the host still works off what waited. */
+    assert_int_equal(wb_clock_split(device, host_ns, 6080, 1.0, 0.5, starts, 4), 1);
+    assert_int_equal(wb_clock_split(device, host_ns, 6001, 1.0, 0.5, starts, 4), 1);
+    /* A server that stood still for as long is not late: it goes on at its own pace. */
+    make_frames(device, host_ns, 1e-3);
+    for (int i = 6000; i < N_FRAMES; i++)
+        host_ns[i] += INT64_C(2700000000);
+    assert_int_equal(wb_clock_split(device, host_ns, 6080, 1.0, 0.5, starts, 4), 2);
+    assert_int_equal(starts[1], 6000);
 }
 
 static void lost_readings_begin_a_segment_and_late_ones_do_not(void **state)
