@@ -323,8 +323,7 @@ size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, do
          * beyond n and ends the walk backwards. */
         const double before = least_shift(device, host_ns, n, nominal_slope, i - 1, i - 1, -1);
         const double after = least_shift(device, host_ns, n, nominal_slope, i - 1, i, 1);
-        const bool is_late =
-            after > before && is_catching_up(device, host_ns, n, nominal_slope, i);
+        const bool is_late = after > before && is_catching_up(device, host_ns, n, nominal_slope, i);
         if (!is_late && !(fabs(after - before) <= 0.5 * jump))
             starts[n_segments++] = i;
     }
