@@ -11,13 +11,26 @@ static void note_signal(int number)
     flag = 1;
 }
 
+static void handle(const int *signals, size_t n, void (*handler)(int))
+{
+    struct sigaction action = {.sa_handler = handler};
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < n; i++)
+        sigaction(signals[i], &action, NULL);
+}
+
 void wb_interrupt_install(void)
 {
-    struct sigaction action = {.sa_handler = note_signal};
-    sigemptyset(&action.sa_mask);
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
-    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++)
-        sigaction(signals[i], &action, NULL);
+    static const int noted[] = {SIGINT, SIGTERM, SIGHUP};
+    handle(noted, sizeof noted / sizeof noted[0], note_signal);
+}
+
+void wb_interrupt_guard(void)
+{
+    static const int noted[] = {SIGQUIT};
+    static const int ignored[] = {SIGPIPE, SIGTSTP, SIGTTIN, SIGTTOU};
+    handle(noted, sizeof noted / sizeof noted[0], note_signal);
+    handle(ignored, sizeof ignored / sizeof ignored[0], SIG_IGN);
 }
 
 bool wb_interrupted(void)

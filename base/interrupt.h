@@ -8,6 +8,11 @@
  * restarted, so a poll() wakes up. */
 void wb_interrupt_install(void);
 
+/* For commands that move the stage, after wb_interrupt_install(): nothing from the terminal or a
+ * broken pipe may end or halt the process while something moves. SIGQUIT (Ctrl-\) sets the flag as
+ * SIGINT does; SIGPIPE, SIGTSTP (Ctrl-Z), SIGTTIN and SIGTTOU are ignored. */
+void wb_interrupt_guard(void);
+
 /* True once a signal came. */
 bool wb_interrupted(void);
 

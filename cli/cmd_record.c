@@ -225,13 +225,14 @@ int wb_cmd_record(int argc, char **argv)
     wb_bend_test_default_request(&options.request);
     wb_command_parse(&argp, argc, argv, &options);
     wb_interrupt_install();
+    wb_interrupt_guard();
     wb_acquisition_raise_priority();
     if (wb_bend_test_open(&test, &options.request) != WB_OK)
         return WB_EXIT_FAILED;
     wb_live_line_open();
     run(test);
-    wb_live_line_close();
     const enum wb_status status = wb_bend_test_close(test, &result);
+    wb_live_line_close();
     if (result.end != WB_BEND_TEST_DONE)
         tell_stop(&result, options.request.rig_path);
     if (result.drops > 0)

@@ -194,6 +194,7 @@ static int run_job(const struct options *options, const struct wb_rig *rig)
 {
     struct wb_stage_job *job;
     struct wb_stage_job_result result;
+    wb_interrupt_guard();
     if (wb_stage_job_open(&job, rig, &options->job) != WB_OK)
         return WB_EXIT_FAILED;
     wb_live_line_open();
@@ -201,8 +202,8 @@ static int run_job(const struct options *options, const struct wb_rig *rig)
         if (wb_live_line_due())
             show_job(job);
     }
-    wb_live_line_close();
     wb_stage_job_close(job, &result);
+    wb_live_line_close();
     tell_job(rig, &result, options->json);
     if (options->json && print_job_json(rig, &result) != WB_EXIT_OK)
         return WB_EXIT_FAILED;

@@ -1,6 +1,7 @@
 #include "cli/live_line.h"
 
 #include <poll.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,53 +13,82 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/units.h"
+#include "cli/talk.h"
 
 #define REDRAW_NS (200 * WB_NS_PER_MS)
+/* What is left to say in the end may wait so long for a terminal that hangs. */
+#define PATIENCE_MS 300
+
+#define ERASE "\r\033[K"
+
+/* The log's sink is called by any thread; the lock is never held while waiting. */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 static struct {
-    bool open, draws, has_keys, drawn;
+    bool open, draws, may_have_keys, has_keys, drawn;
     struct termios saved;
     int64_t drawn_ns;
     char text[512];
 } live;
 
-static void erase(void)
-{
-    if (live.drawn)
-        fputs("\r\033[K", stderr);
-    live.drawn = false;
-}
-
 static void log_above(void *context, enum wb_log_level level, const char *domain,
                       const char *message)
 {
     static const char *const levels[] = {"error: ", "warning: ", "", "debug: "};
+    char text[3072];
     (void)context;
-    (void)domain;
-    const bool redraw = live.drawn;
-    erase();
-    fprintf(stderr, "wirebench: %s%s\n", levels[level], message);
-    if (redraw) {
-        fputs(live.text, stderr);
-        live.drawn = true;
-    }
+    pthread_mutex_lock(&lock);
+    snprintf(text, sizeof text, "%swirebench: %s%s%s%s\n%s", live.drawn ? ERASE : "", levels[level],
+             level == WB_LOG_DEBUG ? domain : "", level == WB_LOG_DEBUG ? ": " : "", message,
+             live.drawn ? live.text : "");
+    (void)wb_talk_say(text);
+    pthread_mutex_unlock(&lock);
 }
+
+/* --- keys --- */
+
+static bool in_foreground(void)
+{
+    return tcgetpgrp(STDIN_FILENO) == getpgrp();
+}
+
+/* Single keys without Enter. A process in the background leaves the terminal to others; once it is
+ * brought to the front it takes the keys then. */
+static void take_keys(void)
+{
+    if (live.has_keys || !live.may_have_keys || !in_foreground() ||
+        tcgetattr(STDIN_FILENO, &live.saved) != 0)
+        return;
+    struct termios keys = live.saved;
+    keys.c_lflag &= ~(tcflag_t)(ICANON | ECHO); /* Ctrl-C stays a signal */
+    keys.c_iflag &= ~(tcflag_t)(IXON);          /* Ctrl-S would halt what we say */
+    keys.c_cc[VMIN] = 0;
+    keys.c_cc[VTIME] = 0;
+    live.has_keys = tcsetattr(STDIN_FILENO, TCSANOW, &keys) == 0;
+}
+
+int wb_live_line_key(void)
+{
+    unsigned char key;
+    struct pollfd polled = {.fd = STDIN_FILENO, .events = POLLIN};
+    take_keys();
+    if (!live.has_keys || !in_foreground() || poll(&polled, 1, 0) <= 0 ||
+        read(STDIN_FILENO, &key, 1) != 1)
+        return 0;
+    return key;
+}
+
+/* --- the line --- */
 
 void wb_live_line_open(void)
 {
     static bool registered;
     live.open = true;
     live.draws = isatty(STDERR_FILENO);
-    live.has_keys = live.draws && isatty(STDIN_FILENO) && tcgetattr(STDIN_FILENO, &live.saved) == 0;
-    if (live.has_keys) {
-        struct termios keys = live.saved;
-        keys.c_lflag &= ~(tcflag_t)(ICANON | ECHO); /* Ctrl-C stays a signal */
-        keys.c_cc[VMIN] = 0;
-        keys.c_cc[VTIME] = 0;
-        tcsetattr(STDIN_FILENO, TCSANOW, &keys);
-    }
-    if (live.draws)
-        wb_log_set_sink(log_above, NULL);
+    live.may_have_keys = live.draws && isatty(STDIN_FILENO);
+    wb_talk_open();
+    take_keys();
+    wb_log_set_sink(log_above, NULL);
     if (!registered)
         atexit(wb_live_line_close);
     registered = true;
@@ -73,38 +103,36 @@ void wb_live_line_show(const char *format, ...)
 {
     if (!live.draws)
         return;
+    char text[sizeof live.text + 16];
+    struct winsize window;
+    pthread_mutex_lock(&lock);
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(live.text, sizeof live.text, format, arguments);
     va_end(arguments);
-    struct winsize window;
     if (ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1 &&
         strlen(live.text) >= window.ws_col)
         live.text[window.ws_col - 1] = '\0';
-    fprintf(stderr, "\r%s\033[K", live.text);
-    fflush(stderr);
-    live.drawn = true;
+    snprintf(text, sizeof text, "\r%s\033[K", live.text);
+    /* Behind a message that waits it would be old news. */
+    if (wb_talk_flush()) {
+        (void)wb_talk_say(text);
+        live.drawn = true;
+    }
     live.drawn_ns = wb_progress_now_ns();
-}
-
-int wb_live_line_key(void)
-{
-    unsigned char key;
-    struct pollfd polled = {.fd = STDIN_FILENO, .events = POLLIN};
-    if (!live.has_keys || poll(&polled, 1, 0) <= 0 || read(STDIN_FILENO, &key, 1) != 1)
-        return 0;
-    return key;
+    pthread_mutex_unlock(&lock);
 }
 
 void wb_live_line_close(void)
 {
     if (!live.open)
         return;
-    erase();
-    if (live.has_keys)
+    wb_log_set_sink(NULL, NULL);
+    if (live.drawn)
+        (void)wb_talk_say(ERASE);
+    wb_talk_close(PATIENCE_MS);
+    if (live.has_keys && in_foreground())
         tcsetattr(STDIN_FILENO, TCSANOW, &live.saved);
-    if (live.draws)
-        wb_log_set_sink(NULL, NULL);
     live.open = false;
-    live.draws = live.has_keys = false;
+    live.draws = live.may_have_keys = live.has_keys = live.drawn = false;
 }

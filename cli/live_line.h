@@ -1,5 +1,8 @@
 /* One line on the terminal that is redrawn in place, and single keys without Enter. Messages of the
- * log go above it. Where stderr is no terminal nothing is drawn. */
+ * log go above it. Where stderr is no terminal nothing is drawn.
+ *
+ * Nothing here ever waits for the terminal, not even messages of the log while it is open: what
+ * stderr does not take is dropped and counted (cli/talk.h). */
 #ifndef WB_CLI_LIVE_LINE_H
 #define WB_CLI_LIVE_LINE_H
 
@@ -15,10 +18,11 @@ bool wb_live_line_due(void);
 /* Draws, cut to the terminal's width. */
 void wb_live_line_show(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* The next key pressed, 0 when there is none (or stdin is no terminal). Never waits. */
+/* The next key pressed, 0 when there is none (or stdin is no terminal, or somebody else has its
+ * foreground). Never waits. */
 int wb_live_line_key(void);
 
-/* Erases the line, restores terminal and log. Harmless when not open. */
+/* Erases the line, restores terminal and log; waits 0.3 s at most. Harmless when not open. */
 void wb_live_line_close(void);
 
 #endif

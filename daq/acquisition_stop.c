@@ -139,9 +139,9 @@ void wb_acquisition_follow_stop(struct wb_acquisition *a, int64_t now_ns)
         status = send_command(stage, WB_STAGE_COMMAND_STATUS, 0.0, 0.0);
         break;
     case WB_STOP_DO_RESET:
+        status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
         wb_warn("the stage did not confirm the hold within %d ms: soft reset",
                 (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
-        status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
         wb_acquisition_push_event(a, wb_acquisition_now_ns(), "reset",
                                   status == WB_OK ? "hold not confirmed in time: soft reset sent"
                                                   : "the soft reset could not be sent");

@@ -155,6 +155,77 @@ rig_stalls() {
     end_rig "$rig"
 }
 
+# The rig falls silent while nobody takes what record says: the stage is stopped all the same.
+dead_reader() {
+    start_rig dead
+    (
+        "$wirebench" record "$folder/dead/rig.yaml" --specimen "$specimen" -o "$folder/dead.wbr" \
+            2>&1 >/dev/null </dev/null
+        echo $? >"$folder/dead.code"
+    ) | true &
+    local recorder=$!
+    wait_for_start dead
+    sleep 1
+    kill -STOP "$rig"
+    wait $recorder
+    for _ in $(seq 200); do
+        [ -s "$folder/dead.code" ] && break
+        sleep 0.05
+    done
+    kill -CONT "$rig"
+    [ "$(cat "$folder/dead.code")" = 3 ] || fail "dead: exit code $(cat "$folder/dead.code")"
+    readable dead 'soft reset'
+    end_rig "$rig"
+}
+
+hung_reader() {
+    start_rig hung
+    mkfifo "$folder/hung.fifo"
+    exec 9<>"$folder/hung.fifo"
+    dd if=/dev/zero of="$folder/hung.fifo" bs=4096 count=64 oflag=nonblock 2>/dev/null
+    "$wirebench" record "$folder/hung/rig.yaml" --specimen "$specimen" -o "$folder/hung.wbr" \
+        >"$folder/hung.out" 2>"$folder/hung.fifo" </dev/null &
+    local recorder=$!
+    wait_for_start hung
+    sleep 1
+    kill -STOP "$rig"
+    # T is 1 s of the host; 0.5 s later the soft reset is due.
+    sleep 4
+    readable hung 'soft reset'
+    cat <&9 >"$folder/hung.err" &
+    local reader=$!
+    wait $recorder
+    code=$?
+    kill -CONT "$rig"
+    kill $reader
+    wait $reader 2>/dev/null
+    exec 9>&-
+    [ $code = 3 ] || fail "hung: exit code $code: $(cat "$folder/hung.err")"
+    end_rig "$rig"
+}
+
+# Ctrl-Z must not halt what watches a moving stage; Ctrl-\ is a Ctrl-C.
+keys_of_the_terminal() {
+    start_rig keys
+    "$wirebench" record "$folder/keys/rig.yaml" --specimen "$specimen" -o "$folder/keys.wbr" \
+        >"$folder/keys.out" 2>"$folder/keys.err" </dev/null &
+    local recorder=$!
+    wait_for_start keys
+    sleep 0.8
+    kill -TSTP $recorder
+    kill -TTOU $recorder
+    kill -TTIN $recorder
+    sleep 0.4
+    grep -q '^State:.*stopped' "/proc/$recorder/status" && fail "keys: Ctrl-Z halts the recorder"
+    kill -CONT $recorder
+    kill -QUIT $recorder
+    wait $recorder
+    code=$?
+    expect keys 3 'stopped by the operator'
+    readable keys 'interrupted'
+    end_rig "$rig"
+}
+
 full_disk() {
     start_rig full
     # 1 MiB blocks of 1024 bytes: the recording grows past it within the test. No SIGXFSZ.
@@ -222,7 +293,8 @@ wrong_usage() {
 }
 
 # Side by side, as rigs may run.
-cases=(whole_test ctrl_c force_limit rig_killed rig_stalls full_disk bad_ports wrong_usage)
+cases=(whole_test ctrl_c force_limit rig_killed rig_stalls dead_reader hung_reader
+    keys_of_the_terminal full_disk bad_ports wrong_usage)
 pids=()
 for case in "${cases[@]}"; do
     (

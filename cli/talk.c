@@ -1,0 +1,138 @@
+#include "cli/talk.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/progress.h"
+#include "base/units.h"
+
+enum way {
+    WAY_WRITE, /* a file, which never makes wait for long, or our own non-blocking descriptor */
+    WAY_SEND,  /* a socket */
+    WAY_BYTE   /* a blocking terminal: one byte fits where poll() says that it is writable */
+};
+
+static struct {
+    int descriptor;
+    bool is_own; /* to be closed */
+    bool gone;   /* nobody listens any more */
+    enum way way;
+    uint64_t lost, told; /* texts; of them said to be lost */
+    size_t n;
+    char waiting[16384];
+} talk = {.descriptor = STDERR_FILENO};
+
+void wb_talk_open(void)
+{
+    struct stat status;
+    memset(&talk, 0, sizeof talk);
+    talk.descriptor = STDERR_FILENO;
+    if (fstat(STDERR_FILENO, &status) != 0)
+        return;
+    if (S_ISSOCK(status.st_mode))
+        talk.way = WAY_SEND;
+    if (!S_ISCHR(status.st_mode) && !S_ISFIFO(status.st_mode))
+        return;
+    /* Opened anew, because O_NONBLOCK on stderr itself would hold for all who share it, the shell
+     * included. */
+    const int descriptor =
+        open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_APPEND | O_CLOEXEC);
+    talk.is_own = descriptor >= 0;
+    if (talk.is_own)
+        talk.descriptor = descriptor;
+    else
+        talk.way = WAY_BYTE;
+}
+
+static ssize_t put(void)
+{
+    if (talk.way == WAY_SEND)
+        return send(talk.descriptor, talk.waiting, talk.n, MSG_DONTWAIT | MSG_NOSIGNAL);
+    struct pollfd polled = {.fd = talk.descriptor, .events = POLLOUT};
+    if (poll(&polled, 1, 0) <= 0) {
+        errno = EAGAIN;
+        return -1;
+    }
+    return write(talk.descriptor, talk.waiting, talk.way == WAY_BYTE ? 1 : talk.n);
+}
+
+bool wb_talk_flush(void)
+{
+    while (talk.n > 0 && !talk.gone) {
+        const ssize_t done = put();
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+            return false;
+        if (done < 0) {
+            talk.gone = true;
+            break;
+        }
+        talk.n -= (size_t)done;
+        memmove(talk.waiting, talk.waiting + done, talk.n);
+    }
+    return !talk.gone;
+}
+
+static bool append(const char *text)
+{
+    const size_t n = strlen(text);
+    if (talk.gone || n > sizeof talk.waiting - talk.n)
+        return false;
+    memcpy(talk.waiting + talk.n, text, n);
+    talk.n += n;
+    return true;
+}
+
+/* When there is room for the text that follows as well: else every loss would be told singly. */
+static void tell_lost(size_t n_following)
+{
+    char text[96];
+    if (talk.lost == talk.told || sizeof talk.waiting - talk.n < sizeof text + n_following)
+        return;
+    snprintf(text, sizeof text,
+             "wirebench: %" PRIu64 " messages were dropped: nobody took them in time\n",
+             talk.lost - talk.told);
+    if (append(text))
+        talk.told = talk.lost;
+}
+
+bool wb_talk_say(const char *text)
+{
+    (void)wb_talk_flush();
+    tell_lost(strlen(text));
+    const bool said = append(text);
+    talk.lost += !said;
+    (void)wb_talk_flush();
+    return said;
+}
+
+uint64_t wb_talk_lost(void)
+{
+    return talk.lost;
+}
+
+void wb_talk_close(int patience_ms)
+{
+    const int64_t deadline_ns = wb_progress_now_ns() + patience_ms * WB_NS_PER_MS;
+    (void)wb_talk_flush();
+    tell_lost(0);
+    while (!wb_talk_flush() && !talk.gone) {
+        const int64_t left_ns = deadline_ns - wb_progress_now_ns();
+        if (left_ns <= 0)
+            break;
+        struct pollfd polled = {.fd = talk.descriptor, .events = POLLOUT};
+        poll(&polled, 1, (int)(left_ns / WB_NS_PER_MS) + 1);
+    }
+    if (talk.is_own)
+        close(talk.descriptor);
+    talk.is_own = false;
+    talk.descriptor = STDERR_FILENO;
+}

@@ -1,0 +1,172 @@
+/* The live line never waits for its terminal, and leaves it to others where it should. */
+#include <fcntl.h>
+#include <pty.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "base/progress.h"
+#include "base/units.h"
+#include "cli/live_line.h"
+#include "cli/talk.h"
+#include "tests/check.h"
+
+#define WB_LOG_DOMAIN "test"
+
+static char heard[1 << 20];
+
+/* What has come out of a descriptor so far, without waiting for more than 50 ms. */
+static void listen_to(int descriptor)
+{
+    size_t n = strlen(heard);
+    for (int i = 0; i < 50; i++) {
+        const ssize_t got = read(descriptor, heard + n, sizeof heard - 1 - n);
+        if (got > 0)
+            n += (size_t)got;
+        heard[n] = '\0';
+        (void)wb_talk_flush();
+        usleep(1000);
+    }
+}
+
+/* Messages and lines far beyond what `ours` takes, which nobody reads; true when all of it took no
+ * time. */
+static bool talks_without_waiting(void)
+{
+    char message[512];
+    memset(message, 'x', sizeof message - 1);
+    message[sizeof message - 1] = '\0';
+    const int64_t before_ns = wb_progress_now_ns();
+    for (int i = 0; i < 400; i++) {
+        wb_warn("%d %s", i, message);
+        wb_live_line_show("line %d", i);
+    }
+    return wb_progress_now_ns() - before_ns < WB_NS_PER_S;
+}
+
+static void assert_never_waits(int theirs, int ours)
+{
+    const int kept = dup(STDERR_FILENO);
+    heard[0] = '\0';
+    alarm(20); /* what hangs is ended */
+    assert_true(dup2(ours, STDERR_FILENO) >= 0);
+    wb_live_line_open();
+    const bool free = talks_without_waiting();
+    const uint64_t lost = wb_talk_lost();
+    listen_to(theirs);
+    wb_warn("at last");
+    listen_to(theirs);
+    wb_live_line_close();
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    alarm(0);
+    assert_true(free);
+    assert_in_range(lost, 1, 399);
+    assert_non_null(strstr(heard, "warning: 0 xxx"));
+    char told[64];
+    snprintf(told, sizeof told, "%d messages were dropped", (int)lost);
+    assert_non_null(strstr(heard, told));
+    assert_non_null(strstr(heard, "warning: at last"));
+}
+
+static void a_terminal_that_hangs_loses_messages_and_counts_them(void **state)
+{
+    (void)state;
+    int theirs, ours;
+    assert_int_equal(openpty(&theirs, &ours, NULL, NULL, NULL), 0);
+    assert_int_equal(fcntl(theirs, F_SETFL, O_NONBLOCK), 0);
+    assert_never_waits(theirs, ours);
+    close(theirs);
+    close(ours);
+}
+
+static void a_pipe_nobody_reads_loses_messages_and_counts_them(void **state)
+{
+    (void)state;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(fcntl(ends[0], F_SETFL, O_NONBLOCK), 0);
+    assert_never_waits(ends[0], ends[1]);
+    close(ends[0]);
+    close(ends[1]);
+}
+
+static void a_pipe_without_reader_is_survived(void **state)
+{
+    (void)state;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    close(ends[0]);
+    signal(SIGPIPE, SIG_IGN);
+    const int kept = dup(STDERR_FILENO);
+    assert_true(dup2(ends[1], STDERR_FILENO) >= 0);
+    wb_live_line_open();
+    wb_warn("nobody hears this");
+    wb_warn("nor this");
+    const uint64_t lost = wb_talk_lost();
+    wb_live_line_close();
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    close(ends[1]);
+    assert_true(lost >= 1);
+}
+
+/* In a terminal of its own: 0 when all is as it should be, else the number of what is not. */
+static int in_terminal(void)
+{
+    struct termios before, during, after;
+    tcgetattr(STDIN_FILENO, &before);
+    wb_live_line_open();
+    tcgetattr(STDIN_FILENO, &during);
+    wb_live_line_close();
+    tcgetattr(STDIN_FILENO, &after);
+    if (!(before.c_iflag & IXON) || (during.c_iflag & IXON))
+        return 1; /* Ctrl-S would halt us */
+    if ((during.c_lflag & (ICANON | ECHO)) || !(during.c_lflag & ISIG))
+        return 2;
+    if (after.c_iflag != before.c_iflag || after.c_lflag != before.c_lflag)
+        return 3;
+    /* A process group of its own is in the background. */
+    signal(SIGTTOU, SIG_IGN);
+    signal(SIGTTIN, SIG_IGN);
+    const pid_t child = fork();
+    if (child == 0) {
+        setpgid(0, 0);
+        wb_live_line_open();
+        tcgetattr(STDIN_FILENO, &during);
+        const int key = wb_live_line_key();
+        wb_live_line_close();
+        _exit(during.c_lflag != before.c_lflag || key != 0);
+    }
+    int code;
+    waitpid(child, &code, 0);
+    return code == 0 ? 0 : 4;
+}
+
+static void keys_are_taken_in_the_foreground_only_and_ctrl_s_is_off(void **state)
+{
+    (void)state;
+    int theirs, code;
+    const pid_t child = forkpty(&theirs, NULL, NULL, NULL);
+    assert_true(child >= 0);
+    if (child == 0)
+        _exit(in_terminal());
+    assert_int_equal(waitpid(child, &code, 0), child);
+    close(theirs);
+    assert_true(WIFEXITED(code));
+    assert_int_equal(WEXITSTATUS(code), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_terminal_that_hangs_loses_messages_and_counts_them),
+        cmocka_unit_test(a_pipe_nobody_reads_loses_messages_and_counts_them),
+        cmocka_unit_test(a_pipe_without_reader_is_survived),
+        cmocka_unit_test(keys_are_taken_in_the_foreground_only_and_ctrl_s_is_off),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
