@@ -45,7 +45,7 @@ static void what_json_cannot_say_becomes_null_or_ascii(void **state)
 {
     (void)state;
     struct wb_json *root = wb_json_create();
-    wb_json_set_number(root, "a", NAN);
+    wb_json_set_number(root, "a", (double)NAN);
     wb_json_set_text(root, "b", NULL);
     wb_json_set_text(root, "c", "\xff!");
     char *text;

@@ -68,8 +68,8 @@ static void formatting_is_short_where_it_can_be(void **state)
     char text[WB_NUMBER_TEXT];
     assert_string_equal(wb_number_format(0.1, text), "0.1");
     assert_string_equal(wb_number_format(53.0, text), "53");
-    assert_string_equal(wb_number_format(NAN, text), "nan");
-    assert_string_equal(wb_number_format(-INFINITY, text), "-inf");
+    assert_string_equal(wb_number_format((double)NAN, text), "nan");
+    assert_string_equal(wb_number_format(-(double)INFINITY, text), "-inf");
 }
 
 int main(void)

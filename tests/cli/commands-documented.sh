@@ -2,7 +2,7 @@
 # Every command of the tool and every long option of its --help stands in docs/commands.md.
 # Usage: commands-documented.sh WIREBENCH SOURCE_ROOT
 set -eu
-tool=$1
+tool=$(realpath "$1")
 manual=$2/docs/commands.md
 bad=0
 commands=$("$tool" --help | awk '/^  [a-z]/ && NF > 2 && !/--/ { print $1 }')

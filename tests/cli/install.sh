@@ -2,7 +2,7 @@
 # What `meson install` puts into an empty place works from there: the version is told, shipped
 # fixtures are found, the manual page is there. Usage: install.sh WIREBENCH BUILD_ROOT PREFIX
 set -eu
-tool=$1 build=$2 prefix=$3
+tool=$(realpath "$1") build=$2 prefix=$3
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 version=$("$tool" --version)
@@ -16,4 +16,4 @@ for file in fixtures/wires/type1.yaml fixtures/specimens/type1-L85-1.yaml fixtur
 done
 [ -z "$(find share/wirebench -name '*.[ch]')" ] || { echo "sources are installed"; exit 1; }
 WIREBENCH_DATA=$place$prefix/share/wirebench bin/wirebench solve cantilever --wire type3 \
-    --length-mm 85 --deflection-mm 53 --points 2 | grep -q '^t_s,'
+    --length-mm 85 --deflection-mm 53 --points 2 | grep -q '^cycle,phase,deflection_mm,'

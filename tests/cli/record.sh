@@ -4,7 +4,7 @@
 # Usage: record.sh WIREBENCH SOURCE_ROOT
 set -u
 
-wirebench=$1
+wirebench=$(realpath "$1")
 root=$2
 specimen=$root/fixtures/specimens/type1-L85-1.yaml
 folder=$(mktemp -d /tmp/wb-record-XXXXXX)

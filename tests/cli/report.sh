@@ -3,7 +3,7 @@
 # Usage: report.sh WIREBENCH
 set -u
 
-wirebench=$1
+wirebench=$(realpath "$1")
 folder=$(mktemp -d /tmp/wb-report-XXXXXX)
 trap 'rm -rf "$folder"' EXIT
 failures=0

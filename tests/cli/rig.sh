@@ -3,7 +3,7 @@
 # Usage: rig.sh WIREBENCH SOURCE_ROOT
 set -u
 
-wirebench=$1
+wirebench=$(realpath "$1")
 root=$2
 rig=$root/fixtures/rigs/paper.yaml
 specimen=$root/fixtures/specimens/type1-L85-1.yaml

@@ -4,7 +4,7 @@
 # Usage: shipped-report.sh WIREBENCH SOURCE_ROOT
 set -u
 
-wirebench=$1
+wirebench=$(realpath "$1")
 campaign=$2/fixtures/campaigns/single-wires.yaml
 folder=$(mktemp -d /tmp/wb-shipped-XXXXXX)
 trap 'rm -rf "$folder"' EXIT
