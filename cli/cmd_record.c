@@ -86,17 +86,18 @@ static const struct argp argp = {
     .options = argp_options,
     .parser = parse,
     .args_doc = "RIG.yaml --specimen SPECIMEN.yaml -o REC.wbr",
-    .doc = "Runs a cantilever test and records it: connects to the instruments of the rig file, "
-           "checks the start (all markers seen, zero of the load cell sane, travel free, stage "
-           "ready), takes the tare, moves the clamp down and back, N times.\v"
-           "Mount the specimen with the strand slack: the stage's position when the test starts is "
-           "its start position. Every limit of the rig file (force, overload, travel, a silent "
-           "instrument, an alarm of the stage) stops the stage; the specimen then stays where it "
-           "is, and 'wirebench stage RIG.yaml release' frees it.\n\n"
-           "Keys while it runs: m marks the moment in the recording, q stops; Ctrl-C stops too. "
-           "The stage is stopped before the recording is closed.\n\n"
-           "Exit codes: 0 complete; 1 failed before the first cycle; 2 wrong usage; 3 stopped "
-           "early or data lost, what was recorded is usable.",
+    .doc =
+        "Runs a cantilever test and records it: connects to the instruments of the rig file, "
+        "checks the start (all markers seen, zero of the load cell sane, travel free, stage "
+        "ready), takes the tare, moves the clamp down and back, N times.\v"
+        "Mount the specimen with the strand slack: the stage's position when the test starts is "
+        "its start position. Every limit of the rig file (force, overload, travel, a silent "
+        "instrument, an alarm of the stage) stops the stage; the specimen then stays where it "
+        "is, and 'wirebench stage RIG.yaml release' frees it.\n\n"
+        "Keys while it runs: m marks the moment in the recording, q stops; Ctrl-C stops too. "
+        "The stage is stopped before the recording is closed.\n\n"
+        "Exit codes: 0 complete; 1 failed before the first cycle, or nothing was recorded; 2 wrong "
+        "usage; 3 stopped early or data lost, what was recorded is usable.",
 };
 
 static void show(const struct wb_bend_test *test)
@@ -212,7 +213,7 @@ static int exit_code(const struct wb_bend_test_result *result, enum wb_status st
 {
     if (result->end == WB_BEND_TEST_DONE && status == WB_OK && result->drops == 0)
         return WB_EXIT_OK;
-    if (result->end == WB_BEND_TEST_INTERRUPTED)
+    if (result->end == WB_BEND_TEST_INTERRUPTED && result->recorded)
         return WB_EXIT_INCOMPLETE;
     return result->started ? WB_EXIT_INCOMPLETE : WB_EXIT_FAILED;
 }

@@ -115,6 +115,23 @@ ctrl_c() {
     end_rig "$rig"
 }
 
+# Ctrl-C while an instrument is waited for: nothing was recorded, and the exit code says so.
+ctrl_c_too_early() {
+    start_rig early
+    sed -i 's|udp:127.0.0.1:[0-9]*|udp:127.0.0.1:9|' "$folder/early/rig.yaml"
+    "$wirebench" record "$folder/early/rig.yaml" --specimen "$specimen" -o "$folder/early.wbr" \
+        >"$folder/early.out" 2>"$folder/early.err" </dev/null &
+    local recorder=$!
+    wait_for_start early
+    sleep 0.5
+    kill -INT $recorder
+    wait $recorder
+    code=$?
+    expect early 1 'nothing was recorded'
+    [ ! -e "$folder/early.wbr" ] || fail "early: a recording was left behind"
+    end_rig "$rig"
+}
+
 force_limit() {
     sed 's/force_mN: 275/force_mN: 45/' "$folder/bench.yaml" >"$folder/limit.yaml"
     start_rig limit "$folder/limit.yaml"
@@ -293,7 +310,7 @@ wrong_usage() {
 }
 
 # Side by side, as rigs may run.
-cases=(whole_test ctrl_c force_limit rig_killed rig_stalls dead_reader hung_reader
+cases=(whole_test ctrl_c ctrl_c_too_early force_limit rig_killed rig_stalls dead_reader hung_reader
     keys_of_the_terminal full_disk bad_ports wrong_usage)
 pids=()
 for case in "${cases[@]}"; do
