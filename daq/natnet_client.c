@@ -25,6 +25,9 @@
 #define PROBE_PERIOD_NS (1000 * WB_NS_PER_MS)
 #define PROBE_MAX_NS (1000 * WB_NS_PER_MS) /* an older answer says nothing about the clock */
 
+/* Answers that are no unit of length before we stop asking for one. */
+#define STRAYS_MAX 3
+
 enum query {
     QUERY_UNITS,
     QUERY_FRAME_RATE,
@@ -50,6 +53,7 @@ struct natnet_state {
     struct wb_natnet_version version;
     struct wb_natnet_server server;
     int n_answers;       /* to queries */
+    int n_strays;        /* answers that cannot be to the first query */
     double units_factor; /* server's length unit in m */
     uint64_t n_frames, n_refused;
     int64_t last_receive_ns;
@@ -161,7 +165,9 @@ static void receive_server(struct natnet_state *state, int64_t t_ns,
     state->server = server;
     state->version = (struct wb_natnet_version){server.natnet_version[0], server.natnet_version[1]};
     state->connected = true;
-    state->n_answers = 0;
+    /* Its own answers are waited for; those of before may still be under way. */
+    state->n_answers = state->n_asked = 0;
+    state->n_strays = 0;
     state->units_factor = 1.0;
     state->said = 0;
     remark_version(state, t_ns, sink);
@@ -170,21 +176,31 @@ static void receive_server(struct natnet_state *state, int64_t t_ns,
 
 /* --- answers --- */
 
-static void take_units(struct natnet_state *state, float units, int64_t t_ns,
+/* Units of length in mm. Frame rates are none of them (but 1 and 10, which nobody films a wire
+ * with), so that an answer to another question is not taken for one. */
+static bool is_unit(double mm)
+{
+    static const double units[] = {1000.0, 1.0, 10.0, 25.4, 304.8, 914.4, 0.001, 1e6};
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++)
+        if (fabs(mm - units[i]) <= 1e-5 * units[i])
+            return true;
+    return false;
+}
+
+static void take_units(struct natnet_state *state, double units, int64_t t_ns,
                        const struct wb_sink *sink)
 {
-    if (!(units > 0.0F) || !isfinite(units)) {
+    if (!is_unit(units)) {
         remark(sink, WB_LOG_WARNING, t_ns, "units",
-               "the server does not tell its unit of length; metres are assumed");
+               "the server does not tell a unit of length that we know; metres are assumed");
         return;
     }
-    state->units_factor = (double)units * WB_MM;
-    if (units == 1000.0F)
-        state->units_factor = 1.0;
-    else
-        remark(sink, WB_LOG_WARNING, t_ns, "units",
-               "the server's unit of length is %g mm: positions are converted to metres",
-               (double)units);
+    state->units_factor = 1.0;
+    if (fabs(units - 1000.0) <= 1e-2)
+        return;
+    state->units_factor = units * WB_MM;
+    remark(sink, WB_LOG_WARNING, t_ns, "units",
+           "the server's unit of length is %g mm: positions are converted to metres", units);
 }
 
 static void take_frame_rate(const struct natnet_state *state, float rate, int64_t t_ns,
@@ -198,7 +214,8 @@ static void take_frame_rate(const struct natnet_state *state, float rate, int64_
                expected);
 }
 
-/* An answer does not repeat its question: they come one at a time, in the order asked. */
+/* An answer does not repeat its question: they come one at a time, in the order asked. After the
+ * server announced itself anew, answers to questions of before may come first. */
 static void receive_response(struct natnet_state *state, int64_t t_ns,
                              const struct wb_natnet_packet *packet, const struct wb_sink *sink,
                              struct wb_natnet_fault *fault)
@@ -209,11 +226,19 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
         return;
     if (!state->connected || state->n_answers == N_QUERIES)
         return;
+    if (state->n_answers == QUERY_UNITS && response.is_number && !is_unit((double)response.real) &&
+        state->n_strays < STRAYS_MAX) {
+        state->n_strays++;
+        remark(sink, WB_LOG_WARNING, t_ns, "units",
+               "the server answers %g, which is no unit of length that we know: it is asked again",
+               (double)response.real);
+        return;
+    }
     const enum query query = (enum query)state->n_answers++;
     if (unknown || !response.is_number)
         remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not answer '%s'", queries[query]);
     if (query == QUERY_UNITS)
-        take_units(state, response.real, t_ns, sink);
+        take_units(state, (double)response.real, t_ns, sink);
     else if (response.is_number)
         take_frame_rate(state, response.real, t_ns, sink);
 }

@@ -299,6 +299,67 @@ static void other_units_than_metres_are_converted(void **state)
     free(driver);
 }
 
+static double first_position(void *driver, int64_t t_ns)
+{
+    receive(driver, t_ns, frame_of(3, 0));
+    return (double)collect.mocap.markers[2].position[0];
+}
+
+static void an_answer_of_before_is_not_taken_for_the_unit(void **state)
+{
+    (void)state;
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    struct wb_outbox outbox = {0};
+    memset(&collect, 0, sizeof collect);
+    natnet_example(&frame, 7);
+    const double expected = (double)frame.mocap.markers[2].position[0];
+    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    receive(driver, 0, server_info(3, 0, false));
+    wb_driver_natnet.tick(driver, 1 * MS, &outbox);
+    receive(driver, 2 * MS, wb_natnet_encode_response_real(buffer, sizeof buffer, 1000.0F));
+    wb_driver_natnet.tick(driver, 3 * MS, &outbox);
+    /* FrameRate was asked; before its answer comes the server starts anew. */
+    receive(driver, 4 * MS, server_info(4, 1, false));
+    receive(driver, 4 * MS, server_info(3, 0, false));
+    receive(driver, 5 * MS, wb_natnet_encode_response_real(buffer, sizeof buffer, 120.0F));
+    assert_close(first_position(driver, 6 * MS), expected, 0.0);
+    /* The unit is asked for at once, and its answer counts. */
+    wb_outbox_clear(&outbox);
+    wb_driver_natnet.tick(driver, 7 * MS, &outbox);
+    bool asked = false;
+    for (size_t k = 0; k < outbox.n_entries; k++) {
+        size_t n;
+        const uint8_t *const entry = collect_entry(&outbox, k, &n);
+        asked = asked || (entry[0] == WB_NATNET_REQUEST &&
+                          strcmp((const char *)entry + 4, "UnitsToMillimeters") == 0);
+    }
+    assert_true(asked);
+    receive(driver, 8 * MS, wb_natnet_encode_response_real(buffer, sizeof buffer, 10.0F));
+    assert_close(first_position(driver, 9 * MS), 1e-2 * expected, 1e-7);
+    free(driver);
+}
+
+static void an_unknown_unit_is_told_and_metres_are_kept(void **state)
+{
+    (void)state;
+    static const float odd[] = {0.0F, -1.0F, 120.0F, 999.0F, NAN, INFINITY};
+    const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
+    natnet_example(&frame, 7);
+    for (size_t i = 0; i < sizeof odd / sizeof odd[0]; i++) {
+        memset(&collect, 0, sizeof collect);
+        void *const driver = collect_open(&wb_driver_natnet, &rig);
+        receive(driver, 0, server_info(3, 0, false));
+        for (int k = 0; k < 4; k++)
+            receive(driver, 1, wb_natnet_encode_response_real(buffer, sizeof buffer, odd[i]));
+        assert_int_equal(collect_count(&collect, "units"), 4);
+        assert_close(first_position(driver, 2), (double)frame.mocap.markers[2].position[0], 0.0);
+        /* Then it is the frame rate's turn. */
+        receive(driver, 3, wb_natnet_encode_response_real(buffer, sizeof buffer, 120.0F));
+        assert_int_equal(collect_count(&collect, "rate"), 1);
+        free(driver);
+    }
+}
+
 static void a_server_that_knows_no_queries_is_fine(void **state)
 {
     (void)state;
@@ -410,6 +471,8 @@ int main(void)
         cmocka_unit_test(echo_answers_become_probes_by_their_own_stamp),
         cmocka_unit_test(queries_are_asked_one_after_the_other),
         cmocka_unit_test(other_units_than_metres_are_converted),
+        cmocka_unit_test(an_answer_of_before_is_not_taken_for_the_unit),
+        cmocka_unit_test(an_unknown_unit_is_told_and_metres_are_kept),
         cmocka_unit_test(a_server_that_knows_no_queries_is_fine),
         cmocka_unit_test(damaged_datagrams_are_remarks),
         cmocka_unit_test(markers_without_position_count_as_occluded),
