@@ -131,7 +131,7 @@ static void describe_rows(struct wb_align *align)
                      "a row is the mean of the frames of 1/row_rate seconds in which the tip's "
                      "marker was seen, with the readings around that time; nothing is filled in");
     if (n_gaps > 0)
-        wb_align_warn(align, "%zu gap%s in the rows, the longest of %.2f s", n_gaps,
+        wb_align_warn(align, "%zu gap%s " WB_ALIGN_GAPS_TEXT " %.2f s", n_gaps,
                       n_gaps == 1 ? "" : "s", longest);
 }
 

@@ -21,6 +21,10 @@ struct wb_align_settings {
     double lost_steps;  /* m: stage residual that is flagged; default 0.3 mm */
 };
 
+/* How the warning about gaps, of which a report makes one line for all recordings, goes on after
+ * their number. */
+#define WB_ALIGN_GAPS_TEXT "in the rows, the longest of"
+
 void wb_align_default_settings(struct wb_align_settings *settings);
 
 /* Aligns one recording. The dataset's document tells everything that was done; warnings are also

@@ -146,9 +146,9 @@ static enum wb_status map_segments(struct wb_align *align, const struct stamps *
     }
     if (n_segments > 1)
         wb_align_warn(align,
-                      "the motion-capture server's clock broke %zu times (restarted, or a "
-                      "gap): each stretch was mapped by itself",
-                      n_segments - 1);
+                      "the motion-capture server's clock broke %zu time%s (set or restarted): each "
+                      "stretch was mapped by itself",
+                      n_segments - 1, n_segments == 2 ? "" : "s");
     return WB_OK;
 }
 

@@ -96,9 +96,10 @@ void wb_figure_add_level(struct wb_panel *panel, const char *label, double y,
 /* A text whose left (-1), middle (0) or right (1) end stands at a point. */
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup);
 
-/* Draws into memory. SVG: ids are made of the figure's name, so several may stand in one HTML
- * page. PNG: `scale` pixels for a point. PDF: one page of the figure's size; `date_utc` (ISO 8601)
- * becomes the file's date, NULL a fixed one. */
+/* Draws into memory. SVG: texts are outlines, but the footer is also the file's <desc>; ids are
+ * made of the figure's name, so several may stand in one HTML page. PNG: `scale` pixels for a
+ * point. PDF: one page of the figure's size; `date_utc` (ISO 8601) becomes the file's date, NULL a
+ * fixed one. */
 WB_MUST_CHECK enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg);
 WB_MUST_CHECK enum wb_status wb_figure_png(const struct wb_figure *figure, double scale,
                                            struct wb_text *png);

@@ -7,7 +7,7 @@
 #include <cairo-svg.h>
 
 #include "analysis/plot/canvas.h"
-#include "analysis/plot/figure.h"
+#include "analysis/plot/figure_private.h"
 #include "base/file.h"
 
 #define WB_LOG_DOMAIN "figure"
@@ -96,14 +96,46 @@ static enum wb_status rename_ids(const struct wb_text *raw, const char *name, st
     return WB_OK;
 }
 
+/* The footer as an element of the file: Cairo draws texts as outlines, in which nobody finds where
+ * the data come from. Tags of the markup go, its entities are XML's. */
+static void append_description(struct wb_text *svg, const char *markup)
+{
+    wb_text_append(svg, "\n<desc>");
+    for (bool within = false; *markup; markup++) {
+        if (*markup == '<')
+            within = true;
+        else if (*markup == '>')
+            within = false;
+        else if (!within)
+            wb_text_append_bytes(svg, markup, 1);
+    }
+    wb_text_append(svg, "</desc>");
+}
+
+/* Copies Cairo's file, with the description behind the opening tag. */
+static void describe(const struct wb_figure *figure, const struct wb_text *raw, struct wb_text *svg)
+{
+    const char *const all = wb_text_string(raw), *const tag = strstr(all, "<svg");
+    const char *const end = tag ? strchr(tag, '>') : NULL;
+    const char *const rest = figure->footer && end ? end + 1 : all;
+    wb_text_append_bytes(svg, all, (size_t)(rest - all));
+    if (rest != all)
+        append_description(svg, figure->footer);
+    wb_text_append_bytes(svg, rest, strlen(rest));
+}
+
 enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg)
 {
-    struct wb_text raw = {0};
+    struct wb_text raw = {0}, described = {0};
     cairo_surface_t *const surface = cairo_svg_surface_create_for_stream(
         wb_canvas_append, &raw, wb_figure_width(figure), wb_figure_height(figure));
     enum wb_status status = draw_on(surface, figure);
-    if (status == WB_OK)
-        status = rename_ids(&raw, wb_figure_name(figure), svg);
+    if (status == WB_OK) {
+        describe(figure, &raw, &described);
+        svg->failed |= described.failed;
+        status = rename_ids(&described, wb_figure_name(figure), svg);
+    }
+    wb_text_release(&described);
     wb_text_release(&raw);
     return status;
 }

@@ -100,7 +100,6 @@ enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
                                       const struct wb_results *results,
                                       const struct wb_results_wire *wire)
 {
-    static const enum wb_figure_dash dashes[] = {WB_DASH_SOLID, WB_DASH_DASHED, WB_DASH_DOTTED};
     const struct wb_results_test *best = NULL;
     int most = 0;
     const struct wb_results_tests *const both[] = {&wire->calibration_tests,
@@ -124,9 +123,11 @@ enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
     for (int cycle = 1; cycle <= most; cycle++) {
         char label[40];
         snprintf(label, sizeof label, "cycle %d", cycle);
-        const struct wb_figure_style style = {.colour = wb_palette_sequence(cycle - 1, most + 1),
-                                              .width = 1.0,
-                                              .dash = dashes[(cycle - 1) % 3]};
+        /* After the first, cycles lie on each other: each is drawn thinner and darker within the
+         * one before, so that all are seen. */
+        const struct wb_figure_style style = {
+            .colour = wb_palette_sequence(most - cycle, most + 1),
+            .width = most > 1 ? 2.4 - 1.8 * (cycle - 1) / (most - 1) : 1.0};
         WB_TRY(add_rows(panel, label, &best->dataset, cycle, false, &style));
     }
     return WB_OK;
@@ -256,7 +257,7 @@ static void add_bench(struct wb_panel *panel, const struct wb_results_test *test
     wb_figure_add_line(panel, NULL, 2, strand_x, strand_y, &strand);
     add_box(panel, top_x - 7.0, top, top_x + 7.0, top + 8.0, &solid);
     snprintf(text, sizeof text, "load cell, %.3g g, stands still",
-             test->rig.load_cell.capacity / (WB_STANDARD_GRAVITY * WB_G));
+             wb_results_capacity(&test->rig) / WB_G);
     wb_figure_add_text(panel, top_x + 10.0, top + 4.0, -1, text);
     if (strand_mm > 0.0) {
         snprintf(text, sizeof text, "strand of %.4g mm, drawn shortened", strand_mm);

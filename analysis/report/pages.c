@@ -117,7 +117,6 @@ static void add_overview(struct wb_document *document, const struct wb_results *
     const struct wb_campaign *const campaign = results->campaign;
     const char *const measured = wb_figures_measured(results);
     char caption[600];
-    wb_document_new_page(document);
     wb_document_heading(document, 1, "overview", "All wires");
     if (figures->calibration) {
         snprintf(caption, sizeof caption,

@@ -178,7 +178,7 @@ static void put_rig(struct wb_document *document, const struct wb_results *resul
     put_pair(document, table, "Load cell",
              "%.4g g, reads on to %.4g %%, serial number %s, "
              "calibrated %s",
-             cell->capacity / (WB_STANDARD_GRAVITY * WB_G),
+             wb_results_capacity(rig) / WB_G,
              cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
              cell->serial_number[0] ? cell->serial_number : "not given",
              cell->calibration_date[0] ? cell->calibration_date : "not given");
@@ -301,6 +301,6 @@ void wb_pages_bench(struct wb_document *document, const struct wb_results *resul
     if (!first)
         return;
     put_rig(document, results, first);
-    put_specimens(document, results);
     put_corrections(document, results, first);
+    put_specimens(document, results);
 }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/align.h"
 #include "analysis/report/pages_private.h"
 #include "base/units.h"
 
@@ -215,7 +216,9 @@ static void put_merits(struct wb_document *document, const struct wb_results *re
     int length = snprintf(caption, sizeof caption,
                           "Errors are parts of <i>F</i><sub>max</sub>, the largest force of the "
                           "mean measured curve (eqs. 18 and 19); that of the validation is given. "
-                          "Scatter explains: share of the validation's mean square error.");
+                          "Scatter explains: the part of the validation's RMS<sup>2</sup> that a "
+                          "perfect model would show too, because means of a few unlike samples "
+                          "differ by chance; the rest is the model's own error.");
     if (campaign->calibration_limit > 0.0)
         length += snprintf(caption + length, sizeof caption - (size_t)length,
                            " Limit of the calibration: %.4g.", campaign->calibration_limit);
@@ -250,6 +253,47 @@ static void put_merits(struct wb_document *document, const struct wb_results *re
     }
 }
 
+static bool is_about_gaps(const char *warning)
+{
+    return strstr(warning, WB_ALIGN_GAPS_TEXT);
+}
+
+static void count_gaps(const struct wb_results_tests *tests, int *n, double *longest)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_results_test *const test = &tests->items[i];
+        const struct wb_json *const rows =
+            test->usable ? wb_json_get(wb_json_get(test->dataset.document, "checks"), "rows")
+                         : NULL;
+        double gaps = 0.0, one = 0.0;
+        if (!wb_json_get_number(rows, "gaps", &gaps) || !(gaps > 0.0))
+            continue;
+        ++*n;
+        if (wb_json_get_number(rows, "longest_gap_s", &one))
+            *longest = fmax(*longest, one);
+    }
+}
+
+/* Recordings with gaps, in one line: their curves stay usable, a gap is left out of them. */
+static int put_gaps(struct wb_document *document, const struct wb_results *results)
+{
+    char item[300];
+    double longest = 0.0;
+    int n = 0;
+    for (int i = 0; i < results->n_wires; i++) {
+        count_gaps(&results->wires[i].calibration_tests, &n, &longest);
+        count_gaps(&results->wires[i].validation_tests, &n, &longest);
+    }
+    if (n == 0)
+        return 0;
+    snprintf(item, sizeof item,
+             "%d of %d recordings %s gaps in the rows, the longest of %.2f s; the pages of the "
+             "wires name them.",
+             n, results->n_usable, wb_pages_plural(n, "has", "have"), longest);
+    wb_document_item(document, WB_TONE_PLAIN, item);
+    return 1;
+}
+
 /* Warnings of alignments, at most a few here; each wire's pages list its own. */
 static int put_alignment_warnings(struct wb_document *document,
                                   const struct wb_results_tests *tests, int shown)
@@ -258,9 +302,10 @@ static int put_alignment_warnings(struct wb_document *document,
         const struct wb_results_test *const test = &tests->items[i];
         const struct wb_json *const warnings =
             test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
-        for (size_t k = 0; k < wb_json_length(warnings); k++, shown++) {
+        for (size_t k = 0; k < wb_json_length(warnings); k++) {
             const char *warning;
-            if (shown >= MOST_WARNINGS || !wb_json_text(wb_json_item(warnings, k), &warning))
+            if (!wb_json_text(wb_json_item(warnings, k), &warning) || is_about_gaps(warning) ||
+                ++shown > MOST_WARNINGS)
                 continue;
             char name[400], text[1000], item[1500];
             snprintf(item, sizeof item, "%s: %s",
@@ -308,6 +353,7 @@ static void put_warnings(struct wb_document *document, const struct wb_results *
 {
     wb_document_heading(document, 2, "warnings", "Warnings");
     int shown = 0, of_searches = 0;
+    const int of_gaps = put_gaps(document, results);
     for (int i = 0; i < results->n_wires; i++)
         of_searches += put_search_warnings(document, &results->wires[i]);
     for (int i = 0; i < results->n_wires; i++) {
@@ -315,7 +361,7 @@ static void put_warnings(struct wb_document *document, const struct wb_results *
         shown = put_alignment_warnings(document, &wire->calibration_tests, shown);
         shown = put_alignment_warnings(document, &wire->validation_tests, shown);
     }
-    if (shown + of_searches == 0)
+    if (shown + of_searches + of_gaps == 0)
         wb_document_item(document, WB_TONE_QUIET, "None.");
     if (shown > MOST_WARNINGS) {
         char text[120];

@@ -173,14 +173,14 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
     wb_document_heading(document, 2, "", "Numbers");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Scatter: RMS over deflection of the samples' standard deviation, <i>s</i>, and what "
-        "remains "
-        "of it when each sample is computed with its own natural shape, <i>r</i>. Expected from "
-        "it: "
-        "(<i>r</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
-        "<i>r</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>)<sup>1/2</sup> of the validation's "
-        "and the calibration's samples, for the calibration its own term alone. Share: its square "
-        "over RMS<sup>2</sup>, at most 1.",
+        "Scatter <i>s</i>: standard deviation between the samples at the same deflection, RMS over "
+        "all deflections; <i>r</i>: what remains of it when each sample is computed with its own "
+        "natural shape. The mean of <i>n</i> samples is off by about "
+        "<i>r</i>/<i>n</i><sup>1/2</sup> by chance, so that even a perfect model would show the "
+        "expected RMS, in a validation (<i>r</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
+        "<i>r</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>)<sup>1/2</sup> of its own samples "
+        "(v) and those calibrated on (c). Share: its square over RMS<sup>2</sup>, at most 1; near "
+        "1 the model is as good as the samples can tell, near 0 the error is the model's.",
         4, columns);
     for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
         put_merit(document, table, &merits[i]);

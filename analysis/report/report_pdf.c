@@ -262,6 +262,9 @@ static void put_code(struct pen *pen, const struct wb_document_block *block)
 
 /* --- tables --- */
 
+/* Tables up to this part of a page are not split. */
+#define LARGEST_WHOLE_TABLE 0.6
+
 static const double cell_gap = 10.0, cell_above = 2.6;
 
 static struct wb_typeset_style cell_style(const struct wb_document_column *column, bool heading)
@@ -273,6 +276,21 @@ static struct wb_typeset_style cell_style(const struct wb_document_column *colum
                                      .align = column->right ? WB_ALIGN_RIGHT : WB_ALIGN_LEFT};
 }
 
+/* Width of the widest word: below it a heading would break within a word. Tags hold no spaces. */
+static double widest_word(struct pen *pen, const char *markup, const struct wb_typeset_style *style)
+{
+    double widest = 0.0;
+    while (*markup) {
+        char word[80];
+        const size_t length = strcspn(markup, " ");
+        snprintf(word, sizeof word, "%.*s", (int)length, markup);
+        if (length < sizeof word)
+            widest = fmax(widest, wb_typeset_measure(pen->cairo, word, style).width);
+        markup += length + strspn(markup + length, " ");
+    }
+    return widest;
+}
+
 static void find_widths(struct pen *pen, const struct wb_document_table *table, double *widths)
 {
     double total = (table->n_columns - 1) * cell_gap, giving = 0.0;
@@ -280,8 +298,8 @@ static void find_widths(struct pen *pen, const struct wb_document_table *table, 
         const struct wb_document_column *const column = &table->columns[i];
         const struct wb_typeset_style heading = cell_style(column, true);
         const struct wb_typeset_style style = cell_style(column, false);
-        widths[i] =
-            column->wraps ? 30.0 : wb_typeset_measure(pen->cairo, column->heading, &heading).width;
+        widths[i] = column->wraps ? fmax(30.0, widest_word(pen, column->heading, &heading))
+                                  : wb_typeset_measure(pen->cairo, column->heading, &heading).width;
         for (int row = 0; row < table->n_rows; row++)
             widths[i] = fmax(
                 widths[i], wb_typeset_measure(pen->cairo,
@@ -367,6 +385,27 @@ static void put_table_head(struct pen *pen, const struct wb_document_table *tabl
     pen->page_used = true;
 }
 
+static double caption_height(struct pen *pen, const struct wb_document_table *table)
+{
+    const struct wb_typeset_style caption = {.size = 8.0, .width = WB_REPORT_WIDTH};
+    return table->caption ? text_height(pen, table->caption, &caption) + 2.0 : 0.0;
+}
+
+/* What must fit on the page for a table to begin on it: all of it, or the head and two rows of one
+ * that would take more than half a page or so. */
+static double needed_height(struct pen *pen, const struct wb_document_table *table,
+                            const double *widths)
+{
+    const double head = row_height(pen, table, -1, widths);
+    double rows = 0.0;
+    for (int row = 0; row < table->n_rows; row++)
+        rows += row_height(pen, table, row, widths);
+    const double whole = head + rows + caption_height(pen, table) + 5.0;
+    if (whole <= LARGEST_WHOLE_TABLE * (page_height - margin_top - margin_bottom))
+        return whole;
+    return head + 2.0 * row_height(pen, table, 0, widths);
+}
+
 static void put_table(struct pen *pen, const struct wb_document_table *table)
 {
     if (!table)
@@ -375,9 +414,8 @@ static void put_table(struct pen *pen, const struct wb_document_table *table)
     find_widths(pen, table, widths);
     const struct wb_typeset_style caption = {
         .size = 8.0, .colour = wb_palette_grey(), .width = WB_REPORT_WIDTH};
-    const double above = table->caption ? text_height(pen, table->caption, &caption) + 2.0 : 0.0;
-    const double first = table->n_rows > 0 ? row_height(pen, table, 0, widths) : 0.0;
-    need(pen, above + row_height(pen, table, -1, widths) + 2.0 * first);
+    const double above = caption_height(pen, table);
+    need(pen, needed_height(pen, table, widths));
     put_table_head(pen, table, widths);
     for (int row = 0; row < table->n_rows; row++) {
         if (row_height(pen, table, row, widths) > room(pen)) {
@@ -443,7 +481,12 @@ static double height_of_next(struct pen *pen, int index)
         return figures_height(pen, block);
     if (block->kind == WB_BLOCK_HEADING)
         return 30.0 + height_of_next(pen, index + 1);
-    return block->kind == WB_BLOCK_TABLE ? 60.0 : 30.0;
+    if (block->kind == WB_BLOCK_TABLE && block->table) {
+        double widths[WB_DOCUMENT_COLUMNS];
+        find_widths(pen, block->table, widths);
+        return needed_height(pen, block->table, widths);
+    }
+    return 30.0;
 }
 
 static void walk(struct pen *pen)

@@ -479,6 +479,11 @@ void wb_results_release(struct wb_results *results)
     memset(results, 0, sizeof *results);
 }
 
+double wb_results_capacity(const struct wb_rig *rig)
+{
+    return rig->gravity > 0.0 ? rig->load_cell.capacity / rig->gravity : (double)NAN;
+}
+
 double wb_results_calibration_share(const struct wb_results_wire *wire)
 {
     const struct wb_calibrate_result *const c = &wire->calibration;

@@ -87,6 +87,10 @@ WB_MUST_CHECK enum wb_status wb_results_init(struct wb_results *results,
                                              const struct wb_campaign *campaign);
 void wb_results_judge(struct wb_results *results);
 
+/* Capacity of a rig's load cell as its maker states it: the mass, kg, that weighs so much under the
+ * rig's gravity; NaN when that is not known. */
+double wb_results_capacity(const struct wb_rig *rig);
+
 /* How much of the mean square error of a step the scatter between samples explains, 0 to 1; NaN
  * where it is not known. Both means scatter: that of the curve it is compared with and, for a
  * validation, that of the curves the model was calibrated on. With r the RMS over deflection of the

@@ -94,6 +94,9 @@ static void fill_tests(struct wb_results_tests *tests, double length, double fac
         snprintf(test->tool_revision, sizeof test->tool_revision, "abc<%d>", i);
         snprintf(test->sha256, sizeof test->sha256, "%064d", i);
         snprintf(test->rig.name, sizeof test->rig.name, "a bench");
+        /* 20 g on a bench whose gravity is not the standard one. */
+        test->rig.gravity = 9.780;
+        test->rig.load_cell.capacity = 20e-3 * 9.780;
         test->specimen.n_markers = 7;
     }
 }
@@ -191,6 +194,21 @@ static void every_output_says_virtual_rig_and_none_says_experiment(void **state)
     assert_true(says("once/report.html", "measured (virtual rig)"));
     assert_true(says("once/report.json", "\"virtual_rig\": true"));
     assert_true(says("once/report.json", "\"data\": \"measured (virtual rig)\""));
+    /* Every figure as well, each in a file of its own. */
+    int n_figures = 0;
+    DIR *const figures = opendir(in_folder("once/figures"));
+    assert_non_null(figures);
+    for (const struct dirent *entry; (entry = readdir(figures));) {
+        char name[300];
+        if (!strstr(entry->d_name, ".svg"))
+            continue;
+        snprintf(name, sizeof name, "once/figures/%s", entry->d_name);
+        if (!says(name, "virtual rig"))
+            fail_msg("%s does not say 'virtual rig'", name);
+        n_figures++;
+    }
+    closedir(figures);
+    assert_true(n_figures >= 8);
     assert_false(says("once/report.html", "xperiment"));
     assert_false(says("once/report.json", "xperiment"));
 }
