@@ -22,6 +22,9 @@
 #define POSITION_TOLERANCE (0.05 * WB_MM)
 #define LEAST_READINGS 10 /* of a tare */
 #define CHECK_TIMEOUT_NS (5 * WB_NS_PER_S)
+/* An earlier line that is not answered keeps a motion waiting; the driver stops waiting after 2 s.
+ */
+#define SEND_NS (4 * WB_NS_PER_S)
 
 enum phase {
     PHASE_CONNECT,
@@ -50,6 +53,7 @@ struct wb_bend_test {
     int cycle;                    /* from 1 */
     double start_position;        /* m, machine */
     double target;                /* m travel of the motion under way */
+    bool unsent;                  /* the stage has not taken its command yet */
     double turn_travel;           /* largest reached in this cycle */
     uint64_t reports_seen;        /* stage reports looked at */
     uint64_t stands_since;        /* reports in a row that show it standing elsewhere */
@@ -436,22 +440,39 @@ static void step_check(struct wb_bend_test *test, int64_t now_ns)
 
 /* --- motion --- */
 
-/* Starts a motion to `target` (m travel from the start). */
-static void move_to(struct wb_bend_test *test, double target, enum phase phase)
+/* Offers the motion to the stage; it counts from when it is taken. */
+static void try_to_move(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->acquisition);
     const double speed = test->rig.stage.speed * test->rig.time_scale;
-    const double distance = target - travel_of(test, latest->stage.position);
-    test->target = target;
-    test->stands_since = 0;
-    test->reports_seen = latest->stage_reports;
-    enter(test, phase);
-    test->deadline_ns =
-        test->phase_ns + wb_ns_from_seconds(1.5 * fabs(distance) / speed) + 5 * WB_NS_PER_S;
+    const double distance = test->target - travel_of(test, latest->stage.position);
     const enum wb_status status =
         wb_acquisition_command(test->acquisition, WB_STAGE_COMMAND_JOG, distance, speed);
-    if (status != WB_OK)
-        give_up(test, WB_INTERLOCK_STAGE, "the stage does not take the command to move");
+    test->unsent = status == WB_ERR_BUSY;
+    if (status == WB_OK) {
+        enter(test, test->phase);
+        test->stands_since = 0;
+        test->reports_seen = latest->stage_reports;
+        test->deadline_ns =
+            test->phase_ns + wb_ns_from_seconds(1.5 * fabs(distance) / speed) + 5 * WB_NS_PER_S;
+    } else if (!test->unsent) {
+        give_up(test, WB_INTERLOCK_STAGE,
+                "the motion could not be sent to the stage at %s: check its cable and power",
+                test->rig.stage.address);
+    } else if (wb_acquisition_now_ns() - test->phase_ns > SEND_NS) {
+        test->unsent = false;
+        give_up(test, WB_INTERLOCK_STAGE,
+                "the stage at %s does not answer an earlier command: check its cable",
+                test->rig.stage.address);
+    }
+}
+
+/* Starts a motion to `target` (m travel from the start). */
+static void move_to(struct wb_bend_test *test, double target, enum phase phase)
+{
+    test->target = target;
+    enter(test, phase);
+    try_to_move(test);
 }
 
 /* True when the motion under way has ended at its target; stops the test when it cannot. */
@@ -547,6 +568,10 @@ enum wb_bend_test_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeo
         test->phase < PHASE_STOP)
         give_up(test, WB_INTERLOCK_STREAM_LOST, "the instruments cannot be waited for");
     note_trip(test);
+    if (test->unsent && test->phase < PHASE_STOP) {
+        try_to_move(test);
+        return WB_BEND_TEST_RUNNING;
+    }
     const int64_t now_ns = wb_acquisition_now_ns();
     switch (test->phase) {
     case PHASE_CONNECT:

@@ -77,8 +77,8 @@ struct wb_driver {
                     const struct wb_sink *sink);
     /* Called at least every 20 ms: polls, keepalives, clock probes, retries of the handshake. */
     void (*tick)(void *state, int64_t now_ns, struct wb_outbox *outbox);
-    /* Stage only. WB_ERR_BUSY when a previous line was not answered yet (real-time bytes are
-     * always accepted). */
+    /* Stage only. WB_ERR_BUSY, without a message, while a previous line is not answered yet
+     * (real-time bytes are always accepted). */
     enum wb_status (*command)(void *state, enum wb_stage_command command, double distance,
                               double speed, struct wb_outbox *outbox);
     /* True once the instrument answered and delivers samples. */

@@ -241,19 +241,20 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 static enum wb_status send_byte(struct wb_outbox *outbox, uint8_t byte)
 {
     if (!wb_outbox_add(outbox, &byte, 1))
-        return wb_fail(WB_ERR_BUSY, "the stage's outbox is full");
+        return wb_fail(WB_ERR_MEMORY, "the stage's outbox is full");
     return WB_OK;
 }
 
-/* Sends a line (with its newline) whose reply is then awaited. */
+/* Sends a line (with its newline) whose reply is then awaited. While an earlier one is not answered
+ * it is refused silently: the caller tries again. */
 static enum wb_status send_line(struct grbl_state *state, const char *text,
                                 struct wb_outbox *outbox)
 {
     const size_t length = strcspn(text, "\n");
     if (state->waits)
-        return wb_fail(WB_ERR_BUSY, "the stage has not answered '%s' yet", state->pending);
+        return WB_ERR_BUSY;
     if (length >= sizeof state->pending || !wb_outbox_add_text(outbox, text))
-        return wb_fail(WB_ERR_BUSY, "the stage's outbox is full");
+        return wb_fail(WB_ERR_MEMORY, "the stage's outbox is full");
     memcpy(state->pending, text, length);
     state->pending[length] = '\0';
     state->waits = true;

@@ -16,6 +16,9 @@
 /* A report that comes sooner after a command may be the answer to an earlier question. */
 #define STALE_NS (300 * WB_NS_PER_MS)
 #define RESET_NS (4 * WB_NS_PER_S)
+/* An earlier line that is not answered keeps a command waiting; the driver stops waiting after 2 s.
+ */
+#define SEND_NS (4 * WB_NS_PER_S)
 #define HOMING_NS (180 * WB_NS_PER_S)
 
 /* Release: it goes in steps, so that the end of the machine's travel is met with a small one. */
@@ -55,6 +58,9 @@ struct wb_stage_job {
     struct wb_acquisition *acquisition;
     enum phase phase;
     int64_t phase_ns, deadline_ns;
+    bool unsent; /* the command of this phase is not taken yet */
+    enum wb_stage_command command;
+    double distance;               /* m, of the command */
     double start_position, target; /* m, machine; m travel from the start, down positive */
     double step, reach;            /* m, release: of one step, and of all of them */
     double first_force;            /* N; NaN before the first reading */
@@ -210,17 +216,38 @@ enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig 
 
 /* --- sequence --- */
 
-static void send(struct wb_stage_job *job, enum wb_stage_command command, double distance,
-                 enum phase next)
+/* Offers the command of this phase to the stage; the phase counts from when it is taken. */
+static void try_to_send(struct wb_stage_job *job)
 {
     const double speed = job->request.speed * job->rig.time_scale;
     const enum wb_status status =
-        wb_acquisition_command(job->acquisition, command, distance, speed);
-    if (status != WB_OK) {
-        give_up(job, WB_INTERLOCK_STAGE, "the stage does not take the command");
-        return;
+        wb_acquisition_command(job->acquisition, job->command, job->distance, speed);
+    job->unsent = status == WB_ERR_BUSY;
+    if (status == WB_OK) {
+        enter(job, job->phase);
+        job->deadline_ns =
+            job->phase_ns + 5 * WB_NS_PER_S + wb_ns_from_seconds(1.5 * fabs(job->distance) / speed);
+    } else if (!job->unsent) {
+        give_up(job, WB_INTERLOCK_STAGE,
+                "the command could not be sent to the stage at %s: check its cable and power, then "
+                "run 'unlock'",
+                job->rig.stage.address);
+    } else if (wb_acquisition_now_ns() - job->phase_ns > SEND_NS) {
+        job->unsent = false;
+        give_up(job, WB_INTERLOCK_STAGE,
+                "the stage at %s does not answer an earlier command: check its cable, then run "
+                "'unlock'",
+                job->rig.stage.address);
     }
+}
+
+static void send(struct wb_stage_job *job, enum wb_stage_command command, double distance,
+                 enum phase next)
+{
+    job->command = command;
+    job->distance = distance;
     enter(job, next);
+    try_to_send(job);
 }
 
 static void arm(struct wb_stage_job *job)
@@ -254,9 +281,6 @@ static void jog_to(struct wb_stage_job *job, double target)
     const double distance = target - travel_of(job, latest->stage.position);
     job->target = target;
     send(job, WB_STAGE_COMMAND_JOG, distance, PHASE_MOVE);
-    job->deadline_ns =
-        job->phase_ns + 5 * WB_NS_PER_S +
-        wb_ns_from_seconds(1.5 * fabs(distance) / (job->request.speed * job->rig.time_scale));
 }
 
 /* Release: the next step up, or the end of them. */
@@ -497,6 +521,10 @@ enum wb_stage_job_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeou
     /* Before the interlock is armed nothing moves. */
     if (wb_interrupted() && job->phase < PHASE_STOP)
         give_up(job, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
+    if (job->unsent && job->phase < PHASE_STOP) {
+        try_to_send(job);
+        return WB_STAGE_JOB_RUNNING;
+    }
     const int64_t now_ns = wb_acquisition_now_ns();
     switch (job->phase) {
     case PHASE_CONNECT:

@@ -40,6 +40,7 @@ struct fake_bench {
     atomic_bool stage_deaf;       /* ignores the hold byte */
     atomic_bool stage_wild;       /* ignores the soft reset too, and answers nothing then */
     atomic_bool stage_refuses;    /* answers jogs with error:15 */
+    atomic_bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
     atomic_bool stage_overshoots; /* goes on beyond the target */
     atomic_bool overload, other_unit, garbage;
     atomic_bool raise_alarm;
@@ -133,7 +134,8 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
             bench->target_mm = jog.relative ? bench->position_mm + jog.target_mm : jog.target_mm;
             bench->feed_mm_s = jog.feed_mm_min / 60.0;
             bench->state = "Jog";
-            fake_say(bench, "ok\r\n");
+            if (!atomic_exchange(&bench->stage_forgets_ok, false))
+                fake_say(bench, "ok\r\n");
         }
     } else if (strcmp(line, "$X") == 0 || strcmp(line, "$H") == 0) {
         bench->state = "Idle";

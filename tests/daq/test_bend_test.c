@@ -529,6 +529,23 @@ static void a_stage_that_refuses_to_move_is_told(void **state)
     assert_int_equal(fixture->bench->holds, 0); /* it stands, and is not left on hold */
 }
 
+static void a_lost_answer_of_the_stage_only_delays_the_next_motion(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    fixture->request.travel = 8.0 * WB_MM;
+    fixture->bench->stage_forgets_ok = true;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    if (result.end != WB_BEND_TEST_DONE)
+        fail_msg("ended early: %s", result.text);
+    assert_false(fixture->bench->stage_forgets_ok);
+    assert_string_equal(fixture->errors, "");
+    assert_close(fixture->bench->position_mm, 0.0, 1e-9);
+}
+
 /* --- what keeps it from starting --- */
 
 static void assert_refused(struct fixture *fixture, const char *words, bool recorded)
@@ -700,6 +717,7 @@ int main(void)
         TEST(an_unplugged_bench_ends_the_test_and_keeps_the_recording),
         TEST(a_full_disk_stops_the_stage_and_what_was_written_stays),
         TEST(a_stage_that_refuses_to_move_is_told),
+        TEST(a_lost_answer_of_the_stage_only_delays_the_next_motion),
         TEST(no_natnet_answer_is_told_and_leaves_nothing),
         TEST(a_silent_load_cell_is_told),
         TEST(a_load_cell_of_another_protocol_is_told),

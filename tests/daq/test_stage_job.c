@@ -175,6 +175,20 @@ static void release_goes_up_until_the_strand_is_slack(void **state)
     assert_true(result.change < -0.05);
 }
 
+static void release_waits_for_a_lost_answer(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->slack_mm = 12;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    bench->stage_forgets_ok = true;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    if (result.end != WB_STAGE_JOB_DONE)
+        fail_msg("not released: %s", result.text);
+    assert_false(bench->stage_forgets_ok);
+    assert_true(bench->position_mm < 10.5);
+}
+
 static void release_may_begin_beyond_the_limits(void **state)
 {
     struct fixture *const fixture = *state;
@@ -262,6 +276,7 @@ int main(void)
         TEST(home_waits_for_the_end_of_homing),
         TEST(unlock_brings_the_stage_out_of_hold_and_alarm),
         TEST(release_goes_up_until_the_strand_is_slack),
+        TEST(release_waits_for_a_lost_answer),
         TEST(release_may_begin_beyond_the_limits),
         TEST(release_stops_when_up_loads),
         TEST(release_says_when_it_saw_no_slack),
