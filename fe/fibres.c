@@ -367,10 +367,16 @@ static ALWAYS_INLINE double add_lanes(lanes v)
     return (v[0] + v[2]) + (v[1] + v[3]);
 }
 
-static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, double eps,
-                                       double kappa, const double *rows, double *rows_after,
+/* Axial strain and curvature of the section. */
+struct strains {
+    double eps, kappa;
+};
+
+static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, struct strains strains,
+                                       const double *rows, double *rows_after,
                                        struct wb_fibres_response *response)
 {
+    const double eps = strains.eps, kappa = strains.kappa;
     lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
 
     for (int b = 0; b < f->n_materials; b++) {
@@ -407,14 +413,14 @@ static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, dou
 static void respond_slowly(const struct wb_fibres *f, double eps, double kappa, const double *rows,
                            double *rows_after, struct wb_fibres_response *response)
 {
-    respond_rows(f, true, eps, kappa, rows, rows_after, response);
+    respond_rows(f, true, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
 static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
                              const double *rows, double *rows_after,
                              struct wb_fibres_response *response)
 {
-    respond_rows(f, false, eps, kappa, rows, rows_after, response);
+    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
 #ifdef HAVE_X86_VARIANTS
@@ -423,14 +429,14 @@ __attribute__((target("avx2"))) static void respond_avx2(const struct wb_fibres 
                                                          double *rows_after,
                                                          struct wb_fibres_response *response)
 {
-    respond_rows(f, false, eps, kappa, rows, rows_after, response);
+    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
 __attribute__((target("avx2,avx512f,avx512dq,avx512vl"))) static void
 respond_avx512(const struct wb_fibres *f, double eps, double kappa, const double *rows,
                double *rows_after, struct wb_fibres_response *response)
 {
-    respond_rows(f, false, eps, kappa, rows, rows_after, response);
+    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 #endif
 
