@@ -223,9 +223,9 @@ static void record(const struct plan *plan, char path[WB_PATH])
     session.time_scale = plan->time_scale;
     setup_bench(&session.setup, plan->specimen, plan->seed);
     struct setup *const s = &session.setup;
-    assert_int_equal(wb_live_wire_create(&session.wire, &s->truth, &s->composite, &s->wire, &s->rig,
-                                         &s->specimen, NULL),
-                     WB_OK);
+    const struct wb_live_wire_parts parts = {&s->truth, &s->composite, &s->wire, &s->rig,
+                                             &s->specimen};
+    assert_int_equal(wb_live_wire_create(&session.wire, &parts, NULL), WB_OK);
     assert_int_equal(wb_sim_cell_init(&session.cell, &s->truth, &s->rig), WB_OK);
     wb_sim_mocap_init(&session.mocap, &s->truth, s->rig.mocap.up, s->specimen.n_markers,
                       session.version);

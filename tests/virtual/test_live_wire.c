@@ -7,9 +7,9 @@ static struct wb_live_wire *make(const struct setup *setup,
                                  const struct wb_live_wire_settings *settings)
 {
     struct wb_live_wire *wire;
-    assert_int_equal(wb_live_wire_create(&wire, &setup->truth, &setup->composite, &setup->wire,
-                                         &setup->rig, &setup->specimen, settings),
-                     WB_OK);
+    const struct wb_live_wire_parts parts = {&setup->truth, &setup->composite, &setup->wire,
+                                             &setup->rig, &setup->specimen};
+    assert_int_equal(wb_live_wire_create(&wire, &parts, settings), WB_OK);
     return wire;
 }
 

@@ -7,7 +7,7 @@ static void a_long_way_is_a_trapezoid(void **state)
     (void)state;
     struct wb_motion motion;
     double x, v;
-    wb_motion_plan(&motion, 10.0, -0.06, 0.0, -0.007, 1e-3, 0.05);
+    wb_motion_plan(&motion, 10.0, -0.06, 0.0, -0.007, &(struct wb_motion_limits){1e-3, 0.05});
     /* 53 mm at 1 mm/s and two ramps of 20 ms, each of which costs 10 ms. */
     assert_close(wb_motion_finish(&motion), 10.0 + 53.0 + 0.02, 1e-9);
     wb_motion_at(&motion, 10.0, &x, &v);
@@ -29,7 +29,7 @@ static void a_short_way_is_a_triangle(void **state)
     (void)state;
     struct wb_motion motion;
     double x, v;
-    wb_motion_plan(&motion, 0.0, 0.01, 0.0, 0.0099, 1.0, 0.1);
+    wb_motion_plan(&motion, 0.0, 0.01, 0.0, 0.0099, &(struct wb_motion_limits){1.0, 0.1});
     const double half = sqrt(1e-4 / 0.1);
     assert_close(wb_motion_finish(&motion), 2.0 * half, 1e-12);
     wb_motion_at(&motion, half, &x, &v);
@@ -42,7 +42,7 @@ static void position_and_speed_are_continuous(void **state)
     (void)state;
     struct wb_motion motion;
     double x, v, before, speed;
-    wb_motion_plan(&motion, 0.0, 0.0, 0.004, 0.02, 0.01, 0.05);
+    wb_motion_plan(&motion, 0.0, 0.0, 0.004, 0.02, &(struct wb_motion_limits){0.01, 0.05});
     wb_motion_at(&motion, 0.0, &before, &speed);
     assert_close(speed, 0.004, 1e-15);
     const double dt = 1e-4;
@@ -61,7 +61,7 @@ static void braking_takes_the_way_of_the_speed(void **state)
     (void)state;
     struct wb_motion motion;
     double x, v, at, speed;
-    wb_motion_plan(&motion, 0.0, 0.0, 0.0, -0.05, 0.01, 0.05);
+    wb_motion_plan(&motion, 0.0, 0.0, 0.0, -0.05, &(struct wb_motion_limits){0.01, 0.05});
     wb_motion_at(&motion, 1.0, &at, &speed);
     wb_motion_brake(&motion, 1.0, 0.05);
     assert_close(wb_motion_finish(&motion), 1.0 + 0.2, 1e-9);
@@ -77,7 +77,7 @@ static void braking_at_rest_stays(void **state)
     (void)state;
     struct wb_motion motion;
     double x, v;
-    wb_motion_plan(&motion, 0.0, 0.0, 0.0, 0.05, 0.01, 0.05);
+    wb_motion_plan(&motion, 0.0, 0.0, 0.0, 0.05, &(struct wb_motion_limits){0.01, 0.05});
     wb_motion_brake(&motion, 0.0, 0.05);
     wb_motion_at(&motion, 1.0, &x, &v);
     assert_close(x, 0.0, 0.0);
