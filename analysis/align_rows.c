@@ -189,8 +189,9 @@ static bool fit_axis(const struct wb_align *align, const struct means *means, in
         x[n] = means->x[k];
         y[n++] = means->y[k];
     }
-    return wb_shape_fit(fit, align->specimen.length, align->specimen.marker_offset, n, s, x, y) ==
-           WB_OK;
+    const struct wb_shape_markers markers = {
+        .n = n, .s = s, .x = x, .y = y, .offset = align->specimen.marker_offset};
+    return wb_shape_fit(fit, align->specimen.length, &markers) == WB_OK;
 }
 
 /* The axis of a row. A marker that alone spoils the fit is dropped; a bad tip drops the row. */

@@ -205,6 +205,19 @@ static void reverse(int *chosen, int n)
     }
 }
 
+static struct wb_markers_search search_in(const struct tracker *tracker, size_t frame, int least,
+                                          bool need_ends)
+{
+    return (struct wb_markers_search){
+        .points = points_of(tracker->cloud, frame),
+        .n = tracker->cloud->frames[frame].n,
+        .specimen = tracker->specimen,
+        .noise = tracker->settings.noise,
+        .least = least,
+        .need_ends = need_ends,
+    };
+}
+
 /* After most markers were lost: the chain anew, in the order nearer to the last one known. */
 static void search_again(struct tracker *tracker, size_t frame, int *chosen)
 {
@@ -217,8 +230,8 @@ static void search_again(struct tracker *tracker, size_t frame, int *chosen)
     if (n < least || seen >= least)
         return;
     tracker->tracks->n_searches++;
-    if (wb_markers_find_chain(points_of(tracker->cloud, frame), n, tracker->specimen,
-                              tracker->settings.noise, least, false, found, &cost) <= seen)
+    const struct wb_markers_search wanted = search_in(tracker, frame, least, false);
+    if (wb_markers_find_chain(&wanted, found, &cost) <= seen)
         return;
     if (tracker->tracks->symmetric &&
         chain_distance(tracker, frame, found, true) < chain_distance(tracker, frame, found, false))
@@ -308,10 +321,8 @@ static bool find_start(const struct tracker *tracker, int least, size_t *start, 
     for (size_t frame = 0; frame < cloud->n_frames && n_found < START_FRAMES; frame += stride) {
         int found[WB_SPECIMEN_MAX_MARKERS];
         double cost;
-        if (cloud->frames[frame].n < least ||
-            wb_markers_find_chain(points_of(cloud, frame), cloud->frames[frame].n,
-                                  tracker->specimen, tracker->settings.noise, least, true, found,
-                                  &cost) == 0)
+        const struct wb_markers_search wanted = search_in(tracker, frame, least, true);
+        if (wanted.n < least || wb_markers_find_chain(&wanted, found, &cost) == 0)
             continue;
         n_found++;
         if (cost < best) {

@@ -128,22 +128,21 @@ static void extend(struct search *search, int marker, int length, double cost)
     extend(search, marker + 1, length, cost + MISSING_COST);
 }
 
-int wb_markers_find_chain(const double (*points)[3], int n, const struct wb_specimen *specimen,
-                          double noise, int least, bool need_ends, int *chosen, double *cost)
+int wb_markers_find_chain(const struct wb_markers_search *wanted, int *chosen, double *cost)
 {
     struct search search = {
-        .points = points,
-        .n = n,
-        .specimen = specimen,
-        .noise = noise,
-        .least = least > 2 ? least : 2,
-        .need_ends = need_ends,
+        .points = wanted->points,
+        .n = wanted->n,
+        .specimen = wanted->specimen,
+        .noise = wanted->noise,
+        .least = wanted->least > 2 ? wanted->least : 2,
+        .need_ends = wanted->need_ends,
         .best_cost = HUGE_VAL,
     };
-    if (n >= search.least)
+    if (search.n >= search.least)
         extend(&search, 0, 0, 0.0);
     if (search.best_length > 0) {
-        memcpy(chosen, search.best, (size_t)specimen->n_markers * sizeof *chosen);
+        memcpy(chosen, search.best, (size_t)search.specimen->n_markers * sizeof *chosen);
         *cost = search.best_cost;
     }
     return search.best_length;
@@ -152,6 +151,7 @@ int wb_markers_find_chain(const double (*points)[3], int n, const struct wb_spec
 int wb_markers_chain(const double (*points)[3], int n, const struct wb_specimen *specimen,
                      double noise, int least, int *chosen)
 {
+    const struct wb_markers_search wanted = {points, n, specimen, noise, least, false};
     double cost;
-    return wb_markers_find_chain(points, n, specimen, noise, least, false, chosen, &cost);
+    return wb_markers_find_chain(&wanted, chosen, &cost);
 }

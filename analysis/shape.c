@@ -108,13 +108,7 @@ static bool solve(struct normal_equations *equations, int n, double *step)
     return true;
 }
 
-struct markers {
-    int n;
-    const double *s, *x, *y;
-    double offset;
-};
-
-static void assemble(const struct wb_shape_fit *fit, const struct markers *markers,
+static void assemble(const struct wb_shape_fit *fit, const struct wb_shape_markers *markers,
                      struct normal_equations *equations)
 {
     memset(equations, 0, sizeof *equations);
@@ -134,21 +128,22 @@ static void assemble(const struct wb_shape_fit *fit, const struct markers *marke
     }
 }
 
-enum wb_status wb_shape_fit(struct wb_shape_fit *fit, double length, double offset, int n,
-                            const double *s, const double *x, const double *y)
+enum wb_status wb_shape_fit(struct wb_shape_fit *fit, double length,
+                            const struct wb_shape_markers *markers)
 {
+    const int n = markers->n;
     if (n < 1)
         return WB_ERR_DATA;
     struct wb_shape_fit current = {.length = length};
-    const struct markers markers = {.n = n, .s = s, .x = x, .y = y, .offset = offset};
     /* Both coordinates of a marker count, but x hardly tells anything of a straight wire. */
     current.n_terms = n < WB_SHAPE_TERMS ? n : WB_SHAPE_TERMS;
     /* Start from the chord to the last marker: the angle of a uniformly bent wire is twice its. */
-    current.terms[0] = 2.0 * atan2(y[n - 1] - offset, x[n - 1]) * length / s[n - 1];
+    current.terms[0] = 2.0 * atan2(markers->y[n - 1] - markers->offset, markers->x[n - 1]) *
+                       length / markers->s[n - 1];
     for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
         struct normal_equations equations;
         double step[WB_SHAPE_TERMS] = {0.0}, largest = 0.0;
-        assemble(&current, &markers, &equations);
+        assemble(&current, markers, &equations);
         current.residual = sqrt(equations.squares / (2.0 * n));
         if (!isfinite(current.residual) || !solve(&equations, current.n_terms, step))
             return WB_ERR_DATA;

@@ -20,11 +20,18 @@ struct wb_shape_fit {
     double residual;              /* m, RMS of the markers' coordinates about the fit */
 };
 
-/* Markers at arc lengths s (m, ascending, within 0..length, not 0 itself), at x and y (m, in the
- * clamp's frame, offset not removed). WB_ERR_DATA, silent, when there is none or the fit does not
- * settle. */
-WB_MUST_CHECK enum wb_status wb_shape_fit(struct wb_shape_fit *fit, double length, double offset,
-                                          int n, const double *s, const double *x, const double *y);
+/* Markers on a wire. */
+struct wb_shape_markers {
+    int n;
+    const double *s;     /* (n) m, arc lengths: ascending, within 0..length, not 0 itself */
+    const double *x, *y; /* (n) m, in the clamp's frame, offset not removed */
+    double offset;       /* m, from the axis along the local normal */
+};
+
+/* Fits the axis of a wire of `length` (m). WB_ERR_DATA, silent, when there is no marker or the fit
+ * does not settle. */
+WB_MUST_CHECK enum wb_status wb_shape_fit(struct wb_shape_fit *fit, double length,
+                                          const struct wb_shape_markers *markers);
 
 /* Angle of the fitted axis, rad. */
 double wb_shape_angle(const struct wb_shape_fit *fit, double s);

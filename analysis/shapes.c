@@ -126,9 +126,10 @@ static void compare(struct wb_shapes_distance *distance, const struct gallery *g
 
 enum wb_status wb_shapes_compare(struct wb_shapes_distance *distance, struct wb_computed *computed,
                                  const struct wb_material *material,
-                                 const struct wb_dataset *const *datasets, int n, double step,
-                                 double last)
+                                 const struct wb_dataset *const *datasets, int n,
+                                 const struct wb_shapes_range *range)
 {
+    const double step = range->step, last = range->last;
     struct wb_shapes_distance result = {(double)NAN, (double)NAN, 0};
     struct gallery gallery = {.step = step};
     WB_TRY(collect_positions(&gallery, datasets, n, last));

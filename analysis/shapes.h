@@ -11,14 +11,19 @@ struct wb_shapes_distance {
     int n_points;
 };
 
-/* Runs the model to each deflection at which shapes were measured while the wire was first loaded
- * (frames are joined within `step`), and compares each marker with the computed point at its own
- * arc length. The marker on the clamp (arc length 0) is the origin and left out, and so are frames
- * outside 0..`last` (m). What the model does not reach is left out too. */
+/* Which frames are compared. */
+struct wb_shapes_range {
+    double step; /* m of deflection between the model's shapes; frames between are interpolated */
+    double last; /* m: frames at deflections 0..last count */
+};
+
+/* Runs the model through the range while the wire is first loaded, and compares each marker that
+ * was measured there with the computed point at its own arc length. The marker on the clamp (arc
+ * length 0) is the origin and left out, and so is what the model does not reach. */
 WB_MUST_CHECK enum wb_status wb_shapes_compare(struct wb_shapes_distance *distance,
                                                struct wb_computed *computed,
                                                const struct wb_material *material,
                                                const struct wb_dataset *const *datasets, int n,
-                                               double step, double last);
+                                               const struct wb_shapes_range *range);
 
 #endif

@@ -92,12 +92,12 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     WB_TRY(wb_computed_create(&computed, &result->info, &properties->material, &how));
     const struct wb_curve *const curve = &result->curve;
+    const struct wb_shapes_range range = {curve->step, curve->max_deflection};
     enum wb_status status = predict(&result->elastoplastic, computed, &properties->material, curve);
     if (status == WB_OK)
         status = predict(&result->elastic, computed, &elastic, curve);
     if (status == WB_OK)
-        status = wb_shapes_compare(&distance, computed, &properties->material, datasets, n,
-                                   curve->step, curve->max_deflection);
+        status = wb_shapes_compare(&distance, computed, &properties->material, datasets, n, &range);
     if (status == WB_OK)
         status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
                                      &properties->material, &how);

@@ -126,8 +126,8 @@ enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
         /* After the first, cycles lie on each other: each is drawn thinner and darker within the
          * one before, so that all are seen. */
         const struct wb_figure_style style = {
-            .colour = wb_palette_sequence(most - cycle, most + 1),
-            .width = most > 1 ? 2.4 - 1.8 * (cycle - 1) / (most - 1) : 1.0};
+            .colour = wb_palette_sequence(most - cycle, most),
+            .width = most > 1 ? 2.8 - 2.2 * (cycle - 1) / (most - 1) : 1.0};
         WB_TRY(add_rows(panel, label, &best->dataset, cycle, false, &style));
     }
     return WB_OK;

@@ -30,6 +30,13 @@ static void place(double bend, double offset, double s, double *x, double *y)
     *y += offset * cos(angle_at(bend, s));
 }
 
+static enum wb_status fit_markers(struct wb_shape_fit *fit, double offset, int n, const double *s,
+                                  const double *x, const double *y)
+{
+    const struct wb_shape_markers markers = {.n = n, .s = s, .x = x, .y = y, .offset = offset};
+    return wb_shape_fit(fit, LENGTH, &markers);
+}
+
 static void offset_is_taken_off_along_the_normal(void **state)
 {
     (void)state;
@@ -38,7 +45,7 @@ static void offset_is_taken_off_along_the_normal(void **state)
         double x[N], y[N];
         for (int i = 0; i < N; i++)
             place(bend, 1e-3, arcs[i], &x[i], &y[i]);
-        assert_int_equal(wb_shape_fit(&fit, LENGTH, 1e-3, N, arcs, x, y), WB_OK);
+        assert_int_equal(fit_markers(&fit, 1e-3, N, arcs, x, y), WB_OK);
         assert_close(fit.residual, 0.0, 1e-7);
         for (int i = 0; i < N; i++) {
             double axis_x, axis_y;
@@ -65,7 +72,7 @@ static void missing_markers_are_done_without(void **state)
             place(1.1, 1e-3, arcs[i], &x[n], &y[n]);
             n++;
         }
-        assert_int_equal(wb_shape_fit(&fit, LENGTH, 1e-3, n, s, x, y), WB_OK);
+        assert_int_equal(fit_markers(&fit, 1e-3, n, s, x, y), WB_OK);
         place(1.1, 0.0, LENGTH, &tip_x, &tip_y);
         wb_shape_to_axis(&fit, 1e-3, LENGTH, &x[n - 1], &y[n - 1]);
         assert_close(y[n - 1], tip_y, 2e-6);
@@ -78,7 +85,7 @@ static void a_single_marker_gives_an_arc(void **state)
     struct wb_shape_fit fit;
     const double s = LENGTH, radius = 0.1;
     const double x = radius * sin(s / radius), y = radius * (1.0 - cos(s / radius));
-    assert_int_equal(wb_shape_fit(&fit, LENGTH, 0.0, 1, &s, &x, &y), WB_OK);
+    assert_int_equal(fit_markers(&fit, 0.0, 1, &s, &x, &y), WB_OK);
     assert_int_equal(fit.n_terms, 1);
     assert_close(wb_shape_angle(&fit, s), s / radius, 1e-5);
 }
@@ -88,8 +95,8 @@ static void nothing_and_nonsense_are_no_data(void **state)
     (void)state;
     struct wb_shape_fit fit;
     const double s[2] = {0.04, 0.085}, x[2] = {(double)NAN, 0.08}, y[2] = {0.0, 0.0};
-    assert_int_equal(wb_shape_fit(&fit, LENGTH, 0.0, 0, s, x, y), WB_ERR_DATA);
-    assert_int_equal(wb_shape_fit(&fit, LENGTH, 0.0, 2, s, x, y), WB_ERR_DATA);
+    assert_int_equal(fit_markers(&fit, 0.0, 0, s, x, y), WB_ERR_DATA);
+    assert_int_equal(fit_markers(&fit, 0.0, 2, s, x, y), WB_ERR_DATA);
 }
 
 int main(void)

@@ -12,8 +12,8 @@ static struct wb_shapes_distance compare(const struct wb_dataset *dataset,
     struct wb_computed *computed;
     struct wb_shapes_distance distance;
     assert_int_equal(wb_computed_create(&computed, &dataset->info, material, &settings), WB_OK);
-    assert_int_equal(
-        wb_shapes_compare(&distance, computed, material, &dataset, 1, 1.0 * mm, 50 * mm), WB_OK);
+    const struct wb_shapes_range range = {1.0 * mm, 50 * mm};
+    assert_int_equal(wb_shapes_compare(&distance, computed, material, &dataset, 1, &range), WB_OK);
     wb_computed_destroy(computed);
     return distance;
 }
