@@ -13,7 +13,7 @@
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/start_check.h"
-#include "daq/test_recording.h"
+#include "daq/bend_recording.h"
 #include "daq/tip_watch.h"
 
 #define WB_LOG_DOMAIN "record"
@@ -169,7 +169,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
     const struct wb_sink sink = {test, on_load, on_mocap, on_stage, on_probe, on_remark};
     WB_TRY(wb_acquisition_open(&test->acquisition, &test->rig, WB_ACQUISITION_ALL, &sink));
     test->started_ns = wb_acquisition_now_ns();
-    const struct wb_test_recording description = {
+    const struct wb_bend_recording description = {
         .path = request->output_path,
         .rig_path = request->rig_path,
         .specimen_path = request->specimen_path,
@@ -182,7 +182,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
         .monotonic_start_ns = test->started_ns,
     };
     struct wb_recording *recording;
-    WB_TRY(wb_test_recording_create(&recording, &description));
+    WB_TRY(wb_bend_recording_create(&recording, &description));
     const enum wb_status status = wb_writer_start(&test->writer, recording, NULL);
     if (status != WB_OK) {
         if (wb_recording_close(recording) != WB_OK)

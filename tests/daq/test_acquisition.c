@@ -6,7 +6,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "daq/stream.h"
-#include "daq/test_recording.h"
+#include "daq/bend_recording.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
 

@@ -10,7 +10,7 @@
 #include "base/log.h"
 #include "daq/bend_test.h"
 #include "daq/stream.h"
-#include "daq/test_recording.h"
+#include "daq/bend_recording.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
 
@@ -226,13 +226,13 @@ static void a_part_of_a_yaml_text_ends_at_the_next_key(void **state)
 {
     (void)state;
     static const char yaml[] = "a: 1\ntruth:\n  b: 2\n\n  c: 3\n# note\nd: 4\n";
-    char *part = wb_test_recording_yaml_part(yaml, "truth");
+    char *part = wb_bend_recording_yaml_part(yaml, "truth");
     assert_string_equal(part, "truth:\n  b: 2\n\n  c: 3\n# note\n");
     free(part);
-    part = wb_test_recording_yaml_part(yaml, "d");
+    part = wb_bend_recording_yaml_part(yaml, "d");
     assert_string_equal(part, "d: 4\n");
     free(part);
-    part = wb_test_recording_yaml_part(yaml, "b");
+    part = wb_bend_recording_yaml_part(yaml, "b");
     assert_string_equal(part, "");
     free(part);
 }

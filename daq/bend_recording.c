@@ -1,4 +1,4 @@
-#include "daq/test_recording.h"
+#include "daq/bend_recording.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@
 
 #define WB_LOG_DOMAIN "record"
 
-char *wb_test_recording_yaml_part(const char *yaml, const char *key)
+char *wb_bend_recording_yaml_part(const char *yaml, const char *key)
 {
     const size_t n_key = strlen(key);
     const char *begin = yaml;
@@ -45,7 +45,7 @@ static enum wb_status set_text_file(struct wb_recording *recording, const char *
 }
 
 static enum wb_status set_wire(struct wb_recording *recording,
-                               const struct wb_test_recording *description)
+                               const struct wb_bend_recording *description)
 {
     char folder[WB_PATH], path[WB_PATH];
     wb_file_folder(folder, description->specimen_path);
@@ -54,14 +54,14 @@ static enum wb_status set_wire(struct wb_recording *recording,
 }
 
 static enum wb_status set_truth(struct wb_recording *recording,
-                                const struct wb_test_recording *description)
+                                const struct wb_bend_recording *description)
 {
     if (!description->rig->is_virtual)
         return WB_OK;
     char *text;
     WB_TRY(wb_recording_set_meta(recording, "virtual", "true"));
     WB_TRY(wb_file_read(description->rig_path, &text, NULL));
-    char *const truth = wb_test_recording_yaml_part(text, "truth");
+    char *const truth = wb_bend_recording_yaml_part(text, "truth");
     free(text);
     if (!truth)
         return wb_fail(WB_ERR_MEMORY, "out of memory for the rig's truth");
@@ -77,7 +77,7 @@ static enum wb_status set_number(struct wb_recording *recording, const char *key
 }
 
 static enum wb_status set_circumstances(struct wb_recording *recording,
-                                        const struct wb_test_recording *description)
+                                        const struct wb_bend_recording *description)
 {
     char text[256];
     const time_t now = time(NULL);
@@ -94,9 +94,9 @@ static enum wb_status set_circumstances(struct wb_recording *recording,
 }
 
 static enum wb_status set_meta(struct wb_recording *recording,
-                               const struct wb_test_recording *description)
+                               const struct wb_bend_recording *description)
 {
-    const struct wb_test_recording *const d = description;
+    const struct wb_bend_recording *const d = description;
     char text[32];
     snprintf(text, sizeof text, "%d", WB_RECORDING_SCHEMA);
     WB_TRY(wb_recording_set_meta(recording, "schema", text));
@@ -126,8 +126,8 @@ static enum wb_status add_streams(struct wb_recording *recording, const struct w
                                    rig->stage.protocol, "", &id);
 }
 
-enum wb_status wb_test_recording_create(struct wb_recording **out,
-                                        const struct wb_test_recording *description)
+enum wb_status wb_bend_recording_create(struct wb_recording **out,
+                                        const struct wb_bend_recording *description)
 {
     struct wb_recording *recording;
     WB_TRY(wb_recording_create(&recording, description->path));

@@ -1,13 +1,13 @@
 /* Creates the recording of a test: its meta values and its streams. */
-#ifndef WB_DAQ_TEST_RECORDING_H
-#define WB_DAQ_TEST_RECORDING_H
+#ifndef WB_DAQ_BEND_RECORDING_H
+#define WB_DAQ_BEND_RECORDING_H
 
 #include "base/status.h"
 #include "daq/recording.h"
 #include "daq/rig.h"
 #include "daq/specimen.h"
 
-struct wb_test_recording {
+struct wb_bend_recording {
     const char *path;                     /* must not exist */
     const char *rig_path, *specimen_path; /* stored whole */
     const struct wb_rig *rig;
@@ -21,12 +21,12 @@ struct wb_test_recording {
 /* Creates the file with streams load, mocap and stage (numbers 0 to 2) and the meta values of
  * docs/file-formats.md; of a virtual rig also `virtual` and its truth. The wire file is found from
  * the specimen's `wire`. When this fails no file is left behind. */
-WB_MUST_CHECK enum wb_status wb_test_recording_create(struct wb_recording **out,
-                                                      const struct wb_test_recording *description);
+WB_MUST_CHECK enum wb_status wb_bend_recording_create(struct wb_recording **out,
+                                                      const struct wb_bend_recording *description);
 
 /* The text of a top-level key of a YAML block map, the key's own line included, or "" when it is
  * not there; allocated, NULL when out of memory. (For the truth of a virtual rig, which is stored
  * but never read.) */
-char *wb_test_recording_yaml_part(const char *yaml, const char *key);
+char *wb_bend_recording_yaml_part(const char *yaml, const char *key);
 
 #endif
