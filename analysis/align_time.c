@@ -127,9 +127,11 @@ static void describe_segment(struct wb_align *align, struct wb_json *list, size_
 static enum wb_status map_segments(struct wb_align *align, const struct stamps *stamps)
 {
     size_t starts[WB_ALIGN_MAX_SEGMENTS];
-    const size_t n_segments =
-        wb_clock_split(stamps->device, stamps->host_ns, stamps->n, 1.0 / align->rig.time_scale,
-                       JUMP, starts, WB_ALIGN_MAX_SEGMENTS);
+    const struct wb_clock_stamps arrivals = {.device = stamps->device,
+                                             .host_ns = stamps->host_ns,
+                                             .n = stamps->n,
+                                             .nominal_slope = 1.0 / align->rig.time_scale};
+    const size_t n_segments = wb_clock_split(&arrivals, JUMP, starts, WB_ALIGN_MAX_SEGMENTS);
     struct wb_json *const list = wb_json_set_array(align->checks, "camera_clock");
     align->camera_uncertainty = 0.0;
     align->method = stamps->on_probe_clock ? "echo probes" : "lower envelope";

@@ -193,6 +193,14 @@ static void read_line(struct wb_acquisition_line *line, int64_t woken_ns)
 
 /* --- the loop --- */
 
+/* Questions and greetings: what became of them shows in what comes back. A failed write was told,
+ * and a device that went away is noted. */
+static void send_or_note(struct wb_acquisition_line *line)
+{
+    if (wb_acquisition_send(line, false) != WB_OK)
+        wb_debug("the %s took no bytes", wb_role_name(line->role));
+}
+
 static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
@@ -201,7 +209,7 @@ static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
             continue;
         wb_outbox_clear(&a->outbox);
         line->driver->tick(line->state, now_ns, &a->outbox);
-        (void)wb_acquisition_send(line, false);
+        send_or_note(line);
     }
     /* A late tick is not made up for, or a stall would end in a burst. */
     a->next_tick_ns += TICK_NS;
@@ -437,7 +445,7 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
             continue;
         wb_outbox_clear(&a->outbox);
         line->driver->start(line->state, now_ns, &a->outbox);
-        (void)wb_acquisition_send(line, false);
+        send_or_note(line);
     }
 }
 
@@ -450,7 +458,7 @@ void wb_acquisition_close(struct wb_acquisition *a)
         if (a->started && line->driver->stop && !a->latest.stream[line->role].gone) {
             wb_outbox_clear(&a->outbox);
             line->driver->stop(line->state, &a->outbox);
-            (void)wb_acquisition_send(line, false);
+            send_or_note(line);
         }
         wb_stream_close(line->stream);
         free(line->state);

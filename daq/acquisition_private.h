@@ -53,7 +53,7 @@ void wb_acquisition_lose_device(struct wb_acquisition_line *line);
 /* Writes what a driver put into the outbox, and empties it. A port that takes no bytes is left
  * alone for a second, so that waiting for it cannot hold up the others; urgent bytes are always
  * tried. */
-enum wb_status wb_acquisition_send(struct wb_acquisition_line *line, bool urgent);
+WB_MUST_CHECK enum wb_status wb_acquisition_send(struct wb_acquisition_line *line, bool urgent);
 
 /* The interlock has just tripped: the hold byte goes out before anything else. */
 void wb_acquisition_hold_now(struct wb_acquisition *a);

@@ -95,6 +95,7 @@ struct wb_bend_test_result {
  * moving. A recording in which no instrument but the failing one could have said anything is
  * removed again (result.recorded is false). Returns the recording's first error, already logged.
  * Accepts NULL. */
-enum wb_status wb_bend_test_close(struct wb_bend_test *test, struct wb_bend_test_result *result);
+WB_MUST_CHECK enum wb_status wb_bend_test_close(struct wb_bend_test *test,
+                                                struct wb_bend_test_result *result);
 
 #endif

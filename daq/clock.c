@@ -136,9 +136,18 @@ static size_t keep_best(struct wb_clock_probe *probes, size_t n)
     return n_kept;
 }
 
-static void fit_kept(struct wb_clock_line *line, const struct wb_clock_probe *kept, size_t n,
-                     double nominal_slope, struct point *points, double *weights, double *work)
+/* Room for n probes and what is computed from them. */
+struct probe_fit {
+    struct wb_clock_probe *kept;
+    struct point *points;
+    double *weights, *work;
+};
+
+static void fit_kept(struct wb_clock_line *line, const struct probe_fit *room, size_t n,
+                     double nominal_slope)
 {
+    const struct wb_clock_probe *const kept = room->kept;
+    struct point *const points = room->points;
     const int64_t zero_ns = kept[0].t_sent_ns;
     for (size_t i = 0; i < n; i++) {
         points[i].x = kept[i].t_device - kept[0].t_device;
@@ -148,42 +157,44 @@ static void fit_kept(struct wb_clock_line *line, const struct wb_clock_probe *ke
     const bool fixed =
         n < 3 || wb_seconds_from_ns(kept[n - 1].t_sent_ns - zero_ns) < LEAST_PROBE_SPAN;
     struct fit fit = {.slope = nominal_slope};
-    line->scatter = fit_robust(points, n, fixed, &fit, weights, work);
+    line->scatter = fit_robust(points, n, fixed, &fit, room->weights, room->work);
     for (size_t i = 0; i < n; i++)
-        work[i] = points[i].width;
+        room->work[i] = points[i].width;
     const double own_error = line->scatter / sqrt((double)n);
     line->device_zero = kept[0].t_device + fit.mean_x;
     line->host_zero_ns = zero_ns + wb_ns_from_seconds(fit.mean_y);
     line->slope = fit.slope;
     line->slope_uncertainty = fixed ? (double)NAN : line->scatter / sqrt(fit.sum_xx);
-    line->uncertainty = 0.5 * median(work, n) + own_error;
+    line->uncertainty = 0.5 * median(room->work, n) + own_error;
     line->n_used = n;
 }
 
 enum wb_status wb_clock_fit_probes(struct wb_clock_line *line, const struct wb_clock_probe *probes,
                                    size_t n, double nominal_slope)
 {
-    struct wb_clock_probe *const kept = malloc((n + 1) * sizeof *kept);
-    struct point *const points = malloc((n + 1) * sizeof *points);
     double *const scratch = malloc((2 * n + 1) * sizeof *scratch);
+    const struct probe_fit room = {.kept = malloc((n + 1) * sizeof *room.kept),
+                                   .points = malloc((n + 1) * sizeof *room.points),
+                                   .weights = scratch,
+                                   .work = scratch ? scratch + n : NULL};
     enum wb_status status = WB_OK;
-    if (!kept || !points || !scratch) {
+    if (!room.kept || !room.points || !scratch) {
         status = wb_fail(WB_ERR_MEMORY, "out of memory for %zu clock probes", n);
     } else {
         size_t n_usable = 0;
         for (size_t i = 0; i < n; i++) {
             if (isfinite(probes[i].t_device) && round_trip(&probes[i]) >= 0)
-                kept[n_usable++] = probes[i];
+                room.kept[n_usable++] = probes[i];
         }
         *line = (struct wb_clock_line){.n_points = n};
-        const size_t n_kept = keep_best(kept, n_usable);
+        const size_t n_kept = keep_best(room.kept, n_usable);
         if (n_kept > 0)
-            fit_kept(line, kept, n_kept, nominal_slope, points, scratch, scratch + n);
+            fit_kept(line, &room, n_kept, nominal_slope);
         else
             status = WB_ERR_DATA;
     }
-    free(kept);
-    free(points);
+    free(room.kept);
+    free(room.points);
     free(scratch);
     return status;
 }
@@ -283,47 +294,50 @@ enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *d
 
 /* --- segments --- */
 
+/* How much later stamp i arrived than stamp `zero` says it should have, s. */
+static double shift_of(const struct wb_clock_stamps *stamps, size_t i, size_t zero)
+{
+    return wb_seconds_from_ns(stamps->host_ns[i] - stamps->host_ns[zero]) -
+           stamps->nominal_slope * (stamps->device[i] - stamps->device[zero]);
+}
+
 /* Least lateness, over that of stamp `zero`, of stamps first, first + step, ... that arrived within
  * SETTLING_NS of the first of them. */
-static double least_shift(const double *device, const int64_t *host_ns, size_t n, double slope,
-                          size_t zero, size_t first, int step)
+static double least_shift(const struct wb_clock_stamps *stamps, size_t zero, size_t first, int step)
 {
     double least = HUGE_VAL;
-    for (size_t i = first; i < n; i += (size_t)step) {
-        if (llabs(host_ns[i] - host_ns[first]) > SETTLING_NS)
+    for (size_t i = first; i < stamps->n; i += (size_t)step) {
+        if (llabs(stamps->host_ns[i] - stamps->host_ns[first]) > SETTLING_NS)
             break;
-        least = fmin(least, wb_seconds_from_ns(host_ns[i] - host_ns[zero]) -
-                                slope * (device[i] - device[zero]));
+        least = fmin(least, shift_of(stamps, i, zero));
     }
     return least;
 }
 
 /* Whether the stamps from `first` to the last still arrive faster than they were made: a host that
  * was busy works off what waited when the stamps end. */
-static bool is_catching_up(const double *device, const int64_t *host_ns, size_t n, double slope,
-                           size_t first)
+static bool is_catching_up(const struct wb_clock_stamps *stamps, size_t first)
 {
-    const double arrived = wb_seconds_from_ns(host_ns[n - 1] - host_ns[first]);
-    const double made = slope * (device[n - 1] - device[first]);
-    return host_ns[n - 1] - host_ns[first] <= SETTLING_NS && arrived <= 0.5 * made;
+    const size_t last = stamps->n - 1;
+    const int64_t arrived_ns = stamps->host_ns[last] - stamps->host_ns[first];
+    const double made = stamps->nominal_slope * (stamps->device[last] - stamps->device[first]);
+    return arrived_ns <= SETTLING_NS && wb_seconds_from_ns(arrived_ns) <= 0.5 * made;
 }
 
-size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, double nominal_slope,
-                      double jump, size_t *starts, size_t most)
+size_t wb_clock_split(const struct wb_clock_stamps *stamps, double jump, size_t *starts,
+                      size_t most)
 {
     size_t n_segments = 0;
-    if (n > 0 && most > 0)
+    if (stamps->n > 0 && most > 0)
         starts[n_segments++] = 0;
-    for (size_t i = 1; i < n && n_segments < most; i++) {
-        const double device_step = nominal_slope * (device[i] - device[i - 1]);
-        const double host_step = wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]);
-        if (fabs(host_step - device_step) <= jump)
+    for (size_t i = 1; i < stamps->n && n_segments < most; i++) {
+        if (fabs(shift_of(stamps, i, i - 1)) <= jump)
             continue;
         /* A busy host is late once and catches up; a clock that was set stays so. Index 0 - 1 wraps
          * beyond n and ends the walk backwards. */
-        const double before = least_shift(device, host_ns, n, nominal_slope, i - 1, i - 1, -1);
-        const double after = least_shift(device, host_ns, n, nominal_slope, i - 1, i, 1);
-        const bool is_late = after > before && is_catching_up(device, host_ns, n, nominal_slope, i);
+        const double before = least_shift(stamps, i - 1, i - 1, -1);
+        const double after = least_shift(stamps, i - 1, i, 1);
+        const bool is_late = after > before && is_catching_up(stamps, i);
         if (!is_late && !(fabs(after - before) <= 0.5 * jump))
             starts[n_segments++] = i;
     }

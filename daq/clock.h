@@ -47,13 +47,21 @@ WB_MUST_CHECK enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, c
                                                    const int64_t *host_ns, size_t n,
                                                    double nominal_slope, double least_span);
 
+/* A device's stamps and when they arrived. */
+struct wb_clock_stamps {
+    const double *device;   /* s, n of them */
+    const int64_t *host_ns; /* n of them */
+    size_t n;
+    double nominal_slope; /* host seconds per device second: 1; 1/X for a rig that runs X times */
+};
+
 /* Finds where stamps break: host and device time since the previous one differ by more than `jump`
  * host seconds, and stay apart (a datagram that overtook another, or a host that was busy for a
  * while, is no break, even if the stamps end before it caught up). Writes the first index of each
  * segment (the first is 0) into `starts`, at most `most`; returns the number of segments (the last
  * takes what is over). */
-size_t wb_clock_split(const double *device, const int64_t *host_ns, size_t n, double nominal_slope,
-                      double jump, size_t *starts, size_t most);
+size_t wb_clock_split(const struct wb_clock_stamps *stamps, double jump, size_t *starts,
+                      size_t most);
 
 /* The same for numbered readings that come at a constant rate: a segment begins where readings
  * were lost, which is where arrivals stay later than before, not where they were only late. */

@@ -31,18 +31,24 @@ static double distance(const double a[3], const double b[3])
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-/* Which markers fit a straight wire that has marker i at point p and marker j at point q; the sum
- * of their distances breaks ties. */
-static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, const int markers[2],
-                const int points[2], double tolerance, struct wb_marker_places *places,
-                double *misfit)
+/* A straight wire laid through two points of the cloud, and the markers that fit it. */
+struct lay {
+    int markers[2], points[2]; /* marker i is at point i */
+    struct wb_marker_places places;
+    double misfit; /* m, sum of distances: breaks ties */
+};
+
+static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, double tolerance,
+                struct lay *lay)
 {
     const double *const s = specimen->markers;
-    const double *const p = cloud->at[points[0]], *const q = cloud->at[points[1]];
+    const double *const p = cloud->at[lay->points[0]], *const q = cloud->at[lay->points[1]];
+    const double begin = s[lay->markers[0]], length = s[lay->markers[1]] - begin;
+    struct wb_marker_places *const places = &lay->places;
     places->n_seen = 0;
-    *misfit = 0.0;
+    lay->misfit = 0.0;
     for (int m = 0; m < specimen->n_markers; m++) {
-        const double along = (s[m] - s[markers[0]]) / (s[markers[1]] - s[markers[0]]);
+        const double along = (s[m] - begin) / length;
         const double expected[3] = {p[0] + along * (q[0] - p[0]), p[1] + along * (q[1] - p[1]),
                                     p[2] + along * (q[2] - p[2])};
         double nearest = (double)INFINITY;
@@ -55,7 +61,7 @@ static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, c
         }
         if (places->index[m] >= 0) {
             places->n_seen++;
-            *misfit += nearest;
+            lay->misfit += nearest;
         }
     }
 }
@@ -63,22 +69,20 @@ static void fit(const struct cloud *cloud, const struct wb_specimen *specimen, c
 /* Tries marker i at every point and marker j at every other one that is as far away as it should
  * be. */
 static void try_pair(const struct cloud *cloud, const struct wb_specimen *specimen,
-                     const int markers[2], double tolerance, struct wb_marker_places *best,
-                     double *best_misfit)
+                     const int markers[2], double tolerance, struct lay *best)
 {
     const double apart = specimen->markers[markers[1]] - specimen->markers[markers[0]];
+    struct lay lay = {.markers = {markers[0], markers[1]}};
     for (int p = 0; p < cloud->n; p++) {
         for (int q = 0; q < cloud->n; q++) {
             if (q == p || !(fabs(distance(cloud->at[p], cloud->at[q]) - apart) <= tolerance))
                 continue;
-            struct wb_marker_places places;
-            double misfit;
-            fit(cloud, specimen, markers, (const int[]){p, q}, tolerance, &places, &misfit);
-            if (places.n_seen > best->n_seen ||
-                (places.n_seen == best->n_seen && misfit < *best_misfit)) {
-                *best = places;
-                *best_misfit = misfit;
-            }
+            lay.points[0] = p;
+            lay.points[1] = q;
+            fit(cloud, specimen, tolerance, &lay);
+            if (lay.places.n_seen > best->places.n_seen ||
+                (lay.places.n_seen == best->places.n_seen && lay.misfit < best->misfit))
+                *best = lay;
         }
     }
 }
@@ -93,14 +97,14 @@ void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_s
     for (int m = 1; m < n; m++)
         spacing = fmin(spacing, specimen->markers[m] - specimen->markers[m - 1]);
     const double tolerance = 0.4 * spacing;
-    double misfit = (double)INFINITY;
-    places->n_seen = 0;
+    struct lay best = {.misfit = (double)INFINITY};
     for (int m = 0; m < WB_SPECIMEN_MAX_MARKERS; m++)
-        places->index[m] = -1;
+        best.places.index[m] = -1;
     /* Pairs far apart fix the line well; when one end is hidden, the next one serves. */
     for (int i = 0; i < n; i++)
-        for (int j = n - 1; j > i && j - i >= n / 2 && places->n_seen < n; j--)
-            try_pair(&cloud, specimen, (const int[]){i, j}, tolerance, places, &misfit);
+        for (int j = n - 1; j > i && j - i >= n / 2 && best.places.n_seen < n; j--)
+            try_pair(&cloud, specimen, (const int[]){i, j}, tolerance, &best);
+    *places = best.places;
     /* One marker alone fixes no line, but it is seen. */
     if (places->n_seen == 0 && cloud.n > 0) {
         places->index[0] = cloud.index[0];

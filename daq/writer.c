@@ -391,10 +391,12 @@ bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_n
     return taken;
 }
 
-/* Two texts in one entry, beyond the limits: there are few of them and each one matters. */
+/* Two texts in one entry, the second cut to `most`, beyond the limits: there are few of them and
+ * each one matters. */
 static void push_texts(struct wb_writer *writer, enum entry_kind kind, int64_t t_ns,
-                       const char *first, size_t n_first, const char *second, size_t n_second)
+                       const char *first, const char *second, size_t most)
 {
+    const size_t n_first = strlen(first), n_second = strnlen(second, most);
     struct entry *entry = malloc(sizeof *entry + n_first + n_second + 2);
     if (!entry) {
         wb_error("out of memory: '%s' is not recorded: %s", first, second);
@@ -414,14 +416,14 @@ static void push_texts(struct wb_writer *writer, enum entry_kind kind, int64_t t
 void wb_writer_push_event(struct wb_writer *writer, int64_t t_ns, const char *kind,
                           const char *text)
 {
-    push_texts(writer, ENTRY_EVENT, t_ns, kind,
-               strnlen(kind, sizeof(((struct wb_event *)0)->kind) - 1), text,
-               strnlen(text, sizeof(((struct wb_event *)0)->text) - 1));
+    char word[sizeof((struct wb_event *)0)->kind];
+    snprintf(word, sizeof word, "%s", kind);
+    push_texts(writer, ENTRY_EVENT, t_ns, word, text, sizeof((struct wb_event *)0)->text - 1);
 }
 
 void wb_writer_push_meta(struct wb_writer *writer, const char *key, const char *value)
 {
-    push_texts(writer, ENTRY_META, 0, key, strlen(key), value, strlen(value));
+    push_texts(writer, ENTRY_META, 0, key, value, SIZE_MAX);
 }
 
 /* --- asking --- */

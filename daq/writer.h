@@ -70,7 +70,7 @@ void wb_writer_push_meta(struct wb_writer *writer, const char *key, const char *
 uint64_t wb_writer_drops(const struct wb_writer *writer, int stream);
 
 /* WB_OK, or the first error of the thread (logged once, by the thread). */
-enum wb_status wb_writer_status(const struct wb_writer *writer);
+WB_MUST_CHECK enum wb_status wb_writer_status(const struct wb_writer *writer);
 
 void wb_writer_counts(const struct wb_writer *writer, struct wb_writer_counts *counts);
 

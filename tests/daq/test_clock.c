@@ -182,6 +182,13 @@ static void short_or_repeated_stamps_take_the_nominal_slope(void **state)
     assert_int_equal(wb_clock_line_host_ns(&line, (double)NAN), 300);
 }
 
+static size_t split(const double *device, const int64_t *host_ns, size_t n, size_t *starts,
+                    size_t most)
+{
+    const struct wb_clock_stamps stamps = {device, host_ns, n, 1.0};
+    return wb_clock_split(&stamps, 0.5, starts, most);
+}
+
 static void a_restarted_server_begins_a_segment(void **state)
 {
     (void)state;
@@ -193,11 +200,11 @@ static void a_restarted_server_begins_a_segment(void **state)
     for (int i = 9000; i < N_FRAMES; i++)
         device[i] += 3.0;
     size_t starts[4];
-    assert_int_equal(wb_clock_split(device, host_ns, N_FRAMES, 1.0, 0.5, starts, 4), 3);
+    assert_int_equal(split(device, host_ns, N_FRAMES, starts, 4), 3);
     assert_int_equal(starts[0], 0);
     assert_int_equal(starts[1], 5000);
     assert_int_equal(starts[2], 9000);
-    assert_int_equal(wb_clock_split(device, host_ns, N_FRAMES, 1.0, 0.5, starts, 2), 2);
+    assert_int_equal(split(device, host_ns, N_FRAMES, starts, 2), 2);
 }
 
 static void a_busy_host_begins_none(void **state)
@@ -211,16 +218,16 @@ static void a_busy_host_begins_none(void **state)
     for (int i = 6000; i < N_FRAMES && host_ns[i] < until; i++)
         host_ns[i] = until;
     size_t starts[4];
-    assert_int_equal(wb_clock_split(device, host_ns, N_FRAMES, 1.0, 0.5, starts, 4), 1);
-    assert_int_equal(wb_clock_split(device, host_ns, 0, 1.0, 0.5, starts, 4), 0);
+    assert_int_equal(split(device, host_ns, N_FRAMES, starts, 4), 1);
+    assert_int_equal(split(device, host_ns, 0, starts, 4), 0);
     /* The recording ends while the host still works off what waited. */
-    assert_int_equal(wb_clock_split(device, host_ns, 6080, 1.0, 0.5, starts, 4), 1);
-    assert_int_equal(wb_clock_split(device, host_ns, 6001, 1.0, 0.5, starts, 4), 1);
+    assert_int_equal(split(device, host_ns, 6080, starts, 4), 1);
+    assert_int_equal(split(device, host_ns, 6001, starts, 4), 1);
     /* A server that stood still for as long is not late: it goes on at its own pace. */
     make_frames(device, host_ns, 1e-3);
     for (int i = 6000; i < N_FRAMES; i++)
         host_ns[i] += INT64_C(2700000000);
-    assert_int_equal(wb_clock_split(device, host_ns, 6080, 1.0, 0.5, starts, 4), 2);
+    assert_int_equal(split(device, host_ns, 6080, starts, 4), 2);
     assert_int_equal(starts[1], 6000);
 }
 
