@@ -14,6 +14,10 @@
 #define LEAST_MOTION (5.0 * WB_MM)
 /* Markers that leave the vertical, or their own line, by less than this tell no plane. */
 #define LEAST_SPREAD (5.0 * WB_MM)
+/* A position of the clamp's path is not taken when its variance is above this part of one frame's,
+ * or, where there are too few frames for a line, when their mean lies so far away, s. */
+#define LARGEST_VARIANCE 0.5
+#define FARTHEST_MEAN 0.01
 
 static double dot(const double *a, const double *b)
 {
@@ -166,10 +170,14 @@ static bool local_line(const struct path *path, size_t first, size_t last, doubl
     if (n < 1.0)
         return false;
     const double determinant = n * sum_tt - sum_t * sum_t;
+    const bool is_line = n > 2.0 && determinant > 1e-12 * n * sum_tt;
+    /* Beside a loss the line would be extrapolated: its value at t has the variance of one position
+     * times sum_tt / determinant. A mean is taken right there only. */
+    if (is_line ? sum_tt > LARGEST_VARIANCE * determinant : fabs(sum_t) > FARTHEST_MEAN * n)
+        return false;
     for (int k = 0; k < 3; k++)
-        position[k] = n > 2.0 && determinant > 1e-12 * n * sum_tt
-                          ? (sum_tt * sum_p[k] - sum_t * sum_tp[k]) / determinant
-                          : sum_p[k] / n;
+        position[k] =
+            is_line ? (sum_tt * sum_p[k] - sum_t * sum_tp[k]) / determinant : sum_p[k] / n;
     return true;
 }
 

@@ -368,6 +368,35 @@ static void occlusions_strays_and_new_ids_leave_gaps_only(void **state)
     wb_dataset_release(&dataset);
 }
 
+static void rows_beside_a_loss_of_the_clamp_are_right(void **state)
+{
+    (void)state;
+    struct syn syn;
+    struct wb_dataset dataset;
+    for (int k = 0; k < 8; k++) {
+        syn_default(&syn);
+        syn.hidden_marker = 0;
+        syn.hidden_from = 8.0 + 0.0117 * k;
+        syn.hidden_until = 12.0 + 0.0083 * k;
+        align(&syn, &dataset);
+        syn.largest_y = SYN_REST;
+        double worst = 0.0;
+        int beside = 0;
+        for (size_t i = 0; i < dataset.n_rows; i++) {
+            const struct wb_row *const row = &dataset.rows[i];
+            const double y = syn_move(&syn, row->t).y;
+            assert_false(row->t > syn.hidden_from + 0.05 && row->t < syn.hidden_until - 0.05);
+            if (row->t < 7.5 || row->t > 12.6)
+                continue;
+            worst = fmax(worst, fabs(row->deflection - y));
+            beside++;
+        }
+        assert_true(beside > 10);
+        assert_close(worst, 0.0, 0.15e-3);
+        wb_dataset_release(&dataset);
+    }
+}
+
 static void a_silent_load_cell_leaves_a_gap(void **state)
 {
     (void)state;
@@ -574,6 +603,7 @@ int main(void)
         cmocka_unit_test(slack_rows_are_those_without_tension),
         cmocka_unit_test(lost_steps_are_flagged_and_do_no_harm),
         cmocka_unit_test(occlusions_strays_and_new_ids_leave_gaps_only),
+        cmocka_unit_test(rows_beside_a_loss_of_the_clamp_are_right),
         cmocka_unit_test(a_silent_load_cell_leaves_a_gap),
         cmocka_unit_test(servers_without_echo_and_restarted_ones_serve),
         cmocka_unit_test(the_clock_is_mapped_by_the_probes),

@@ -136,6 +136,33 @@ static void coordinates_count_from_the_clamp(void **state)
     wb_point_cloud_release(&cloud);
 }
 
+static void the_clamp_is_not_extrapolated_into_a_loss(void **state)
+{
+    (void)state;
+    struct wb_bench_frame frame;
+    const struct scene scene = tilted();
+    film(&scene);
+    /* Losses of the clamp's marker, the first with three frames left in the middle of it. */
+    size_t n_none = 0;
+    for (int f = 500; f < 560; f++)
+        indices[f * N] = f >= 529 && f < 532 ? f * N : -1;
+    for (int f = 900; f < 912; f++)
+        indices[f * N] = -1;
+    assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
+    for (size_t f = 0; f < N_FRAMES; f++) {
+        const double height = wb_frame_clamp_height(&frame, f);
+        n_none += !isfinite(height);
+        if (isfinite(height))
+            assert_close(height - wb_frame_clamp_height(&frame, 0),
+                         -scene.motion * (double)f / N_FRAMES, 4.0 * scene.noise);
+    }
+    assert_true(n_none > 40 && n_none < 72);
+    assert_true(isfinite(wb_frame_clamp_height(&frame, 499)));
+    assert_true(isfinite(wb_frame_clamp_height(&frame, 560)));
+    wb_frame_release(&frame);
+    wb_point_cloud_release(&cloud);
+}
+
 static void a_clamp_that_stands_still_leaves_the_servers_axis(void **state)
 {
     (void)state;
@@ -177,7 +204,8 @@ static void a_clamp_that_is_hidden_leaves_frames_out(void **state)
         indices[f * N] = -1;
     assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
     assert_true(isnan(wb_frame_clamp_height(&frame, 600)));
-    assert_true(isfinite(wb_frame_clamp_height(&frame, 505)));
+    assert_true(isfinite(wb_frame_clamp_height(&frame, 499)));
+    assert_true(isnan(wb_frame_clamp_height(&frame, 505)));
     assert_true(isfinite(wb_frame_clamp_height(&frame, 750)));
     assert_close(dot(frame.along, scene.along), 1.0, 1e-6);
     wb_frame_release(&frame);
@@ -211,6 +239,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(vertical_and_plane_are_found),
         cmocka_unit_test(coordinates_count_from_the_clamp),
+        cmocka_unit_test(the_clamp_is_not_extrapolated_into_a_loss),
         cmocka_unit_test(a_clamp_that_stands_still_leaves_the_servers_axis),
         cmocka_unit_test(the_end_that_moves_is_the_clamps),
         cmocka_unit_test(a_clamp_that_is_hidden_leaves_frames_out),
