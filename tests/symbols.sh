@@ -1,14 +1,60 @@
 #!/bin/sh
-# Every symbol that an archive of ours exports begins with wb_, and base, daq, fe, the virtual rig
-# and analysis export under their own files' names. Usage: symbols.sh ARCHIVE...
+# Every symbol that an archive of ours exports begins with wb_ and the name of the file that defines
+# it, or of the module the file is a part of: recording_read.c exports wb_recording_... or
+# wb_recording_read_..., report/figures_measured.c exports wb_figures_.... The few other nouns that
+# a file owns are listed below. Usage: symbols.sh ARCHIVE...
 set -eu
 bad=0
 for archive in "$@"; do
     [ -f "$archive" ] || { echo "no archive $archive"; exit 1; }
-    foreign=$(nm --extern-only --defined-only "$archive" 2>/dev/null |
-        awk 'NF == 3 && $3 !~ /^wb_/ { print $3 }' | sort -u)
+    # Lines "OBJECT.c.o SYMBOL"; an archive without any would mean that nm was not understood.
+    names=$(nm -A --extern-only --defined-only "$archive" 2>/dev/null |
+        sed -n -E 's/^[^ ]*[:\/]([^:\/ ]+\.c\.o):[^ ]* [A-Za-z] (.*)$/\1 \2/p')
+    [ -n "$names" ] || { echo "$archive exports nothing"; exit 1; }
+    foreign=$(echo "$names" | awk '
+        BEGIN {
+            # Files that own another noun as well: its symbols are the noun or begin with it.
+            others["dataset"] = "phase"
+            others["driver"] = "drivers n_drivers outbox role"
+            others["grbl_decode"] = "grbl"
+            others["interlock"] = "stop"
+            others["interrupt"] = "interrupted"
+            others["loadcell_generic"] = "driver_generic"
+            others["loadcell_line"] = "line"
+            others["loadcell_mtsics"] = "driver_mtsics"
+            others["markers"] = "marker point_cloud"
+            others["natnet_client"] = "driver_natnet"
+            others["output"] = "figure"
+            others["stage_grbl"] = "driver_grbl"
+        }
+        function begins(symbol, noun) {
+            return symbol == "wb_" noun || index(symbol, "wb_" noun "_") == 1
+        }
+        function belongs(stem, symbol,    n, i, part, words, nouns) {
+            n = split(stem, words, "_")
+            part = ""
+            for (i = 1; i <= n; i++) {
+                part = part (i > 1 ? "_" : "") words[i]
+                if (begins(symbol, part))
+                    return 1
+            }
+            n = split(others[stem], nouns, " ")
+            for (i = 1; i <= n; i++)
+                if (begins(symbol, nouns[i]))
+                    return 1
+            return 0
+        }
+        {
+            stem = $1
+            sub(/\.c\.o$/, "", stem)
+            inner = stem
+            # Meson writes the folder before the name.
+            sub(/^(plot|report)_/, "", inner)
+            if (!belongs(stem, $2) && !(inner != stem && belongs(inner, $2)))
+                print $1 " " $2
+        }' | sort -u)
     if [ -n "$foreign" ]; then
-        echo "$archive exports names without the prefix wb_:"
+        echo "$archive exports names that do not begin with wb_ and their file's or module's name:"
         echo "$foreign" | sed 's/^/    /'
         bad=1
     fi
