@@ -82,11 +82,12 @@ static double yield_point(const struct wb_calibrate_settings *settings)
 static enum wb_status check_settings(const struct wb_calibrate_settings *settings)
 {
     const double zone = settings->elastic_zone, point = yield_point(settings);
-    if (!(zone > 0.0 && zone <= 0.3) || !(point > 0.0 && point <= 0.3))
+    if (!(fmin(zone, point) >= WB_CALIBRATE_LEAST_ZONE &&
+          fmax(zone, point) <= WB_CALIBRATE_LARGEST_ZONE))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "elastic zone and yield point must be above 0 and at most 0.3 of the "
-                       "length, not %g and %g",
-                       zone, point);
+                       "elastic zone and yield point must be from %g to %g of the length, not %g "
+                       "and %g",
+                       WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE, zone, point);
     if (!(settings->step > 0.0) || !(settings->size_tolerance > 0.0) ||
         !(settings->error_tolerance >= 0.0) || settings->max_iterations < 1)
         return wb_fail(WB_ERR_ARGUMENT, "step, tolerances and iterations must be positive");

@@ -16,6 +16,10 @@
 #include "base/status.h"
 #include "fe/material.h"
 
+/* Range of elastic zone and yield point: beyond it the closed forms do not hold by far. */
+#define WB_CALIBRATE_LEAST_ZONE 1e-3
+#define WB_CALIBRATE_LARGEST_ZONE 0.3
+
 struct wb_calibrate_settings {
     double elastic_zone;    /* deflection over length for eq. 10; default 0.05 */
     double yield_point;     /* the same for eq. 11; 0 (default): as elastic_zone */

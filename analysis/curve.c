@@ -12,8 +12,9 @@
 #define SAME_LENGTH (0.1 * WB_MM)
 /* Fewer points than this are no curve. */
 #define FEWEST_POINTS 10
-/* A bin without rows is interpolated between rows this many steps apart at most. */
-#define LONGEST_GAP_STEPS 3.0
+/* A bin without rows is interpolated between rows this many steps apart at most: a marker hidden
+ * for 1.5 s leaves 1.5 mm and a row at either end. */
+#define LONGEST_GAP_STEPS 4.0
 
 struct point {
     double deflection, force;

@@ -23,8 +23,8 @@ struct wb_curve {
 /* Averages the first loading of `n` datasets of one kind (same length and wire; refused
  * otherwise). `step` 0 takes 0.5 mm. Each sample's rows within a bin are averaged by a local
  * straight-line fit, so that noise is reduced and a slope makes no bias. Rows marked slack and gaps
- * are left out; a bin without rows is interpolated if its neighbours are within 3 steps, else the
- * dataset is refused. */
+ * are left out; a bin without rows is interpolated if the rows around it are within 4 steps, else
+ * the dataset is refused. */
 WB_MUST_CHECK enum wb_status wb_curve_average(struct wb_curve *curve,
                                               const struct wb_dataset *const *datasets, int n,
                                               double step);

@@ -157,6 +157,10 @@ static enum wb_status append_table(struct wb_text *text, const struct column *co
 enum wb_status wb_dataset_csv_format(const struct wb_dataset *dataset, struct wb_text *rows,
                                      struct wb_text *shapes)
 {
+    if (dataset->info.is_virtual) {
+        wb_text_append(rows, "# virtual rig\n");
+        wb_text_append(shapes, "# virtual rig\n");
+    }
     WB_TRY(append_table(rows, row_columns, dataset->rows, dataset->n_rows, sizeof *dataset->rows));
     return append_table(shapes, shape_columns, dataset->shape_rows, dataset->n_shape_rows,
                         sizeof *dataset->shape_rows);
@@ -216,10 +220,11 @@ static enum wb_status check_columns(const struct reader *reader, const struct co
         for (int i = 0; i < reader->n_fields; i++)
             count += reader->fields[i] == column;
         if (count == 0 && column->kind != KIND_OPTIONAL)
-            return wb_fail(WB_ERR_FORMAT, "%s:1: no column '%s'", reader->path, column->name);
-        if (count > 1)
-            return wb_fail(WB_ERR_FORMAT, "%s:1: column '%s' stands there twice", reader->path,
+            return wb_fail(WB_ERR_FORMAT, "%s:%d: no column '%s'", reader->path, reader->line,
                            column->name);
+        if (count > 1)
+            return wb_fail(WB_ERR_FORMAT, "%s:%d: column '%s' stands there twice", reader->path,
+                           reader->line, column->name);
     }
     return WB_OK;
 }
@@ -227,13 +232,16 @@ static enum wb_status check_columns(const struct reader *reader, const struct co
 static enum wb_status read_header(struct reader *reader, const struct column *columns)
 {
     char *rest = next_line(reader);
+    while (rest && *rest == '#')
+        rest = next_line(reader);
     if (!rest)
-        return wb_fail(WB_ERR_FORMAT, "%s:1: empty file, expected a line of column names",
-                       reader->path);
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: empty file, expected a line of column names",
+                       reader->path, reader->line + 1);
     while (rest) {
         const char *const name = next_field(&rest);
         if (reader->n_fields == MAX_COLUMNS)
-            return wb_fail(WB_ERR_FORMAT, "%s:1: more than %d columns", reader->path, MAX_COLUMNS);
+            return wb_fail(WB_ERR_FORMAT, "%s:%d: more than %d columns", reader->path, reader->line,
+                           MAX_COLUMNS);
         reader->fields[reader->n_fields++] = find_column(columns, name);
     }
     return check_columns(reader, columns);

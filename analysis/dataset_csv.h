@@ -1,6 +1,7 @@
 /* The two tables of a dataset as CSV text. Used by dataset.c only.
  *
- * Strict: comma-separated, no quotes, a header line with the columns' names, every line with as
+ * Strict: comma-separated, no quotes, comment lines ('#') only at the begin ("# virtual rig" where
+ * the data come from it), a header line with the columns' names, every line with as
  * many fields as the header, numbers as plain decimals. Errors name file, line and column. Lengths
  * stand in millimetres; the decimal point is moved in the text, not in binary, so that every
  * double comes back bit for bit.

@@ -7,6 +7,7 @@
 #include "analysis/computed.h"
 #include "analysis/errors.h"
 #include "analysis/first_guess.h"
+#include "base/log.h"
 
 #define WB_LOG_DOMAIN "jackknife"
 
@@ -232,7 +233,13 @@ enum wb_status wb_jackknife_run(double deviation[4], const struct wb_dataset *co
         deviation[k] = (double)NAN;
     if (n < 2)
         return WB_OK;
+    /* What is refused here is refused of a part of the samples: the calibration stands. */
+    const enum wb_log_level before = wb_log_set_gravest(WB_LOG_WARNING);
     enum wb_status status = leave_each_out(deviation, datasets, n, settings, optimum, evaluations);
+    wb_log_set_gravest(before);
+    if (status != WB_OK && status != WB_ERR_DATA)
+        return wb_fail(status, "wire '%s': the uncertainties could not be computed: %s",
+                       datasets[0]->info.wire, wb_status_text(status));
     if (status == WB_ERR_DATA) {
         wb_warn("wire '%s': no uncertainties, because a sample left out makes the rest unusable",
                 datasets[0]->info.wire);

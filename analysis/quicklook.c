@@ -32,27 +32,48 @@ static const char *source_of(const struct wb_dataset *dataset)
     return dataset->info.is_virtual ? "measured on a virtual rig" : "measured";
 }
 
-static void append_range(const struct wb_dataset *dataset, struct wb_text *text)
+/* What the rows span. */
+struct range {
+    double deflection, force, tension; /* m, N, N: the largest */
+    double duration;                   /* s */
+    int cycles;
+    size_t n_slack;
+};
+
+static struct range find_range(const struct wb_dataset *dataset)
 {
-    double largest = -HUGE_VAL, force = -HUGE_VAL, tension = -HUGE_VAL;
-    int cycles = 0;
-    size_t n_slack = 0;
+    struct range range = {.deflection = -HUGE_VAL, .force = -HUGE_VAL, .tension = -HUGE_VAL};
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        largest = fmax(largest, row->deflection);
-        force = fmax(force, row->force);
-        tension = fmax(tension, row->tension);
-        cycles = row->cycle > cycles ? row->cycle : cycles;
-        n_slack += row->phase == WB_PHASE_SLACK;
+        range.deflection = fmax(range.deflection, row->deflection);
+        range.force = fmax(range.force, row->force);
+        range.tension = fmax(range.tension, row->tension);
+        range.duration = row->t;
+        range.cycles = row->cycle > range.cycles ? row->cycle : range.cycles;
+        range.n_slack += row->phase == WB_PHASE_SLACK;
     }
+    return range;
+}
+
+static void append_range(const struct wb_dataset *dataset, struct wb_text *text)
+{
+    const struct range range = find_range(dataset);
     if (dataset->n_rows == 0)
         return;
-    wb_text_append(text, "cycles              %d\n", cycles);
+    wb_text_append(text, "cycles              %d\n", range.cycles);
     wb_text_append(text, "rows                %zu over %.1f s, %zu of them slack\n",
-                   dataset->n_rows, dataset->rows[dataset->n_rows - 1].t, n_slack);
-    wb_text_append(text, "largest deflection  %.2f mm\n", largest / WB_MM);
-    wb_text_append(text, "largest force       %.2f mN (tension %.2f mN)\n", force / WB_MN,
-                   tension / WB_MN);
+                   dataset->n_rows, range.duration, range.n_slack);
+    wb_text_append(text, "largest deflection  %.2f mm\n", range.deflection / WB_MM);
+    wb_text_append(text, "largest force       %.2f mN (tension %.2f mN)\n", range.force / WB_MN,
+                   range.tension / WB_MN);
+}
+
+static bool find_bow(const struct wb_json *document, double *bow_mm, double *uncertainty_mm)
+{
+    const struct wb_json *const natural =
+        wb_json_get(wb_json_get(document, "checks"), "natural_shape");
+    return wb_json_get_number(natural, "bow_mm", bow_mm) &&
+           wb_json_get_number(natural, "bow_uncertainty_mm", uncertainty_mm);
 }
 
 static void append_corrections(const struct wb_json *document, struct wb_text *text)
@@ -99,17 +120,44 @@ enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_
     wb_text_append(text, "wire                %s, sample %d, %g mm free length\n", info->wire,
                    info->sample, info->length / WB_MM);
     append_range(dataset, text);
-    const struct wb_json *const natural =
-        wb_json_get(wb_json_get(document, "checks"), "natural_shape");
     double bow, bow_uncertainty;
-    if (wb_json_get_number(natural, "bow_mm", &bow) &&
-        wb_json_get_number(natural, "bow_uncertainty_mm", &bow_uncertainty))
+    if (find_bow(document, &bow, &bow_uncertainty))
         wb_text_append(text, "bow                 %.2f +- %.2f mm\n", bow, bow_uncertainty);
     append_corrections(document, text);
     append_warnings(document, text);
     if (text->failed)
         return wb_fail(WB_ERR_MEMORY, "out of memory for a summary");
     return WB_OK;
+}
+
+void wb_quicklook_describe(const struct wb_dataset *dataset, struct wb_json *object)
+{
+    static const char *const copied[] = {"recordings", "complete", "corrections", "warnings"};
+    const struct wb_test_info *const info = &dataset->info;
+    const struct range range = find_range(dataset);
+    double bow, bow_uncertainty;
+    wb_json_set_text(object, "name", text_or(dataset->document, "name", "dataset"));
+    wb_json_set_text(object, "data", source_of(dataset));
+    wb_json_set_boolean(object, "virtual_rig", info->is_virtual);
+    wb_json_set_text(object, "wire", info->wire);
+    wb_json_set_integer(object, "sample", info->sample);
+    wb_json_set_number(object, "length_mm", info->length / WB_MM);
+    wb_json_set_integer(object, "cycles", range.cycles);
+    wb_json_set_integer(object, "rows", (int64_t)dataset->n_rows);
+    wb_json_set_integer(object, "slack_rows", (int64_t)range.n_slack);
+    wb_json_set_number(object, "duration_s", range.duration);
+    wb_json_set_number(object, "largest_deflection_mm", range.deflection / WB_MM);
+    wb_json_set_number(object, "largest_force_N", range.force);
+    wb_json_set_number(object, "largest_tension_N", range.tension);
+    if (find_bow(dataset->document, &bow, &bow_uncertainty)) {
+        wb_json_set_number(object, "bow_mm", bow);
+        wb_json_set_number(object, "bow_uncertainty_mm", bow_uncertainty);
+    }
+    for (size_t i = 0; i < sizeof copied / sizeof copied[0]; i++) {
+        const struct wb_json *const value = wb_json_get(dataset->document, copied[i]);
+        if (value)
+            wb_json_set_copy(object, copied[i], value);
+    }
 }
 
 /* --- the curve --- */

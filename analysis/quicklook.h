@@ -4,12 +4,16 @@
 #define WB_ANALYSIS_QUICKLOOK_H
 
 #include "analysis/dataset.h"
+#include "base/json.h"
 #include "base/status.h"
 #include "base/text.h"
 
 /* Appends the summary: what was tested, how far, stiffness, corrections and warnings. */
 WB_MUST_CHECK enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset,
                                                   struct wb_text *text);
+
+/* Sets the same in an object, with units in the keys. */
+void wb_quicklook_describe(const struct wb_dataset *dataset, struct wb_json *object);
 
 /* Writes the dataset's files and beside them force_deflection.svg, .png and .pdf, shapes.svg and
  * .png (where there are shapes), and summary.txt. WB_ERR_EXISTS when the folder already holds

@@ -1,6 +1,7 @@
 #include "analysis/validate.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -13,6 +14,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "base/version.h"
 
 #define WB_LOG_DOMAIN "validate"
 
@@ -166,6 +168,19 @@ enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, co
 {
     const struct wb_curve *const curve = &result->curve;
     struct wb_text text = {0};
+    char wire[sizeof result->info.wire];
+    snprintf(wire, sizeof wire, "%s", result->info.wire);
+    for (char *c = wire; *c; c++) {
+        if ((unsigned char)*c < 0x20)
+            *c = ' ';
+    }
+    wb_text_append(&text, "# %swire %s, L = %g mm, %d %s, wirebench %s (%s)\n",
+                   result->info.is_virtual      ? "virtual rig, "
+                   : result->info.is_simulation ? "simulation, "
+                                                : "",
+                   wire, result->info.length / WB_MM, curve->n_samples,
+                   curve->n_samples == 1 ? "sample" : "samples", wb_version(),
+                   wb_version_revision());
     wb_text_append(&text, "deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,"
                           "elastoplastic_error,elastic_N,elastic_error\n");
     for (int i = 0; i < curve->n; i++) {

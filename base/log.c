@@ -11,6 +11,7 @@ static void *sink_context;
 static enum wb_log_level threshold = WB_LOG_INFO;
 static _Thread_local wb_log_sink *thread_tap;
 static _Thread_local void *tap_context;
+static _Thread_local enum wb_log_level gravest = WB_LOG_ERROR;
 
 static void write_to_stderr(enum wb_log_level level, const char *domain, const char *message)
 {
@@ -30,6 +31,8 @@ void wb_log(enum wb_log_level level, const char *domain, const char *format, ...
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
 
+    if (level < gravest)
+        level = gravest;
     if (thread_tap && level <= WB_LOG_WARNING)
         thread_tap(tap_context, level, domain, message);
     pthread_mutex_lock(&lock);
@@ -55,6 +58,13 @@ void wb_log_set_tap(wb_log_sink *tap, void *context)
 {
     thread_tap = tap;
     tap_context = context;
+}
+
+enum wb_log_level wb_log_set_gravest(enum wb_log_level level)
+{
+    const enum wb_log_level before = gravest;
+    gravest = level;
+    return before;
 }
 
 void wb_log_set_threshold(enum wb_log_level level)

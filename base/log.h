@@ -34,6 +34,10 @@ void wb_log_set_sink(wb_log_sink *sink, void *context);
  * those who report why something failed; NULL ends it. Called before the sink, without a lock. */
 void wb_log_set_tap(wb_log_sink *tap, void *context);
 
+/* From now on graver messages of the calling thread are delivered, and seen by its tap, as `level`:
+ * for those who try what may well fail. WB_LOG_ERROR ends it. Returns what was set before. */
+enum wb_log_level wb_log_set_gravest(enum wb_log_level level);
+
 /* Sets the highest level that is delivered; WB_LOG_INFO at start. */
 void wb_log_set_threshold(enum wb_log_level level);
 

@@ -70,10 +70,12 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         o->output = argument;
         return 0;
     case KEY_ZONE:
-        s->elastic_zone = wb_command_number(state, "--elastic-zone", argument, 1e-3, 0.3);
+        s->elastic_zone = wb_command_number(state, "--elastic-zone", argument,
+                                            WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE);
         return 0;
     case KEY_YIELD:
-        s->yield_point = wb_command_number(state, "--yield-point", argument, 1e-3, 0.3);
+        s->yield_point = wb_command_number(state, "--yield-point", argument,
+                                           WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE);
         return 0;
     case KEY_STRAIGHT:
         s->straight = true;

@@ -10,16 +10,18 @@
 
 struct options {
     const char *recording, *output;
-    bool force;
+    bool force, json;
 };
 
 enum {
-    KEY_FORCE = 1000
+    KEY_FORCE = 1000,
+    KEY_JSON
 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
     {"force", KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
@@ -33,6 +35,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_FORCE:
         o->force = true;
+        return 0;
+    case KEY_JSON:
+        o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         if (o->recording)
@@ -60,16 +65,33 @@ static const struct argp argp = {
            "short).",
 };
 
-static int print_summary(const struct wb_dataset *dataset, const char *output)
+static int print_text(const struct wb_dataset *dataset, const char *output)
 {
     struct wb_text text = {0};
-    bool complete = false;
     const enum wb_status status = wb_quicklook_summary(dataset, &text);
     if (status == WB_OK)
         printf("%s\nwritten to %s\n", wb_text_string(&text), output);
     wb_text_release(&text);
-    if (status != WB_OK)
+    return wb_command_exit(status);
+}
+
+static int print_json(const struct wb_dataset *dataset, const char *output)
+{
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "folder", output);
+    wb_quicklook_describe(dataset, root);
+    return wb_command_print_json(root);
+}
+
+static int deliver(const struct wb_dataset *dataset, const struct options *options)
+{
+    bool complete = false;
+    if (wb_quicklook_write(dataset, options->output, options->force) != WB_OK)
         return WB_EXIT_FAILED;
+    const int code =
+        options->json ? print_json(dataset, options->output) : print_text(dataset, options->output);
+    if (code != WB_EXIT_OK)
+        return code;
     return wb_json_get_boolean(dataset->document, "complete", &complete) && complete
                ? WB_EXIT_OK
                : WB_EXIT_INCOMPLETE;
@@ -85,8 +107,7 @@ int wb_cmd_quicklook(int argc, char **argv)
     wb_align_default_settings(&settings);
     if (wb_align_run(&dataset, options.recording, &settings) != WB_OK)
         return WB_EXIT_FAILED;
-    const enum wb_status status = wb_quicklook_write(&dataset, options.output, options.force);
-    const int code = status == WB_OK ? print_summary(&dataset, options.output) : WB_EXIT_FAILED;
+    const int code = deliver(&dataset, &options);
     wb_dataset_release(&dataset);
     return code;
 }

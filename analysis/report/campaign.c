@@ -29,8 +29,10 @@ static enum wb_status read_settings(const struct wb_config_node *node, struct wb
 {
     struct wb_calibrate_settings *const settings = &campaign->calibrate;
     const struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("elastic_zone", &settings->elastic_zone, 1.0, 1e-3, 0.5),
-        WB_CONFIG_OPTIONAL_NUMBER("yield_point", &settings->yield_point, 1.0, 1e-3, 0.5),
+        WB_CONFIG_OPTIONAL_NUMBER("elastic_zone", &settings->elastic_zone, 1.0,
+                                  WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
+        WB_CONFIG_OPTIONAL_NUMBER("yield_point", &settings->yield_point, 1.0,
+                                  WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
         WB_CONFIG_OPTIONAL_NUMBER("step_mm", &settings->step, WB_MM, 0.05, 10.0),
         WB_CONFIG_OPTIONAL_BOOLEAN("straight", &settings->straight),
         WB_CONFIG_OPTIONAL_BOOLEAN("restart", &settings->restart),

@@ -185,6 +185,8 @@ static void errors_name_file_line_and_key(void **state)
         {"wires:\n  - wire: type1\n    calibration: [[1]]\n", "name or path"},
         {"limits:\n  calibration_rms_max: -1\nwires:\n  - wire: type1\n", "calibration_rms_max"},
         {"settings:\n  yield_point: 0.04 mm\nwires:\n  - wire: type1\n", "yield_point"},
+        {"settings:\n  elastic_zone: 0.31\nwires:\n  - wire: type1\n", "elastic_zone"},
+        {"settings:\n  yield_point: 0.31\nwires:\n  - wire: type1\n", ":7: yield_point: 0.31"},
         {"reference:\n  source: s\n  validation_rms: [1]\nwires:\n  - wire: type1\n",
          "validation_rms"},
         {"samples: 2\nwires:\n  - wire: type1\n", "samples"},

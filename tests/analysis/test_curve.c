@@ -188,12 +188,12 @@ static void a_short_gap_is_bridged_and_a_long_one_refused(void **state)
     struct wb_curve curve;
     plain_dataset(&dataset, line, 0.05 * mm, 50 * mm);
     const struct wb_dataset *const datasets[] = {&dataset};
-    cut(&dataset, 20.01 * mm, 21.39 * mm);
+    cut(&dataset, 20.01 * mm, 21.89 * mm);
     assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
     for (int i = 0; i < curve.n; i++)
         assert_close(curve.force[i], line(i * curve.step), 1e-12);
     wb_curve_release(&curve);
-    cut(&dataset, 20.01 * mm, 21.99 * mm);
+    cut(&dataset, 20.01 * mm, 22.14 * mm);
     assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_ERR_DATA);
     assert_said("no rows of the first loading around 2");
     wb_dataset_release(&dataset);

@@ -2,6 +2,8 @@
 
 #include "analysis/jackknife.h"
 
+#define WB_LOG_DOMAIN "test"
+
 static const double mm = WB_MM;
 
 enum {
@@ -84,12 +86,54 @@ static void one_sample_tells_nothing(void **state)
         assert_true(isnan(deviation[k]));
 }
 
+static int n_errors, n_warnings;
+
+static void count(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)context;
+    (void)domain;
+    (void)message;
+    n_errors += level == WB_LOG_ERROR;
+    n_warnings += level == WB_LOG_WARNING;
+}
+
+static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
+{
+    (void)state;
+    const struct wb_test_info info = beam_info(2, 0.085, 0.0);
+    const struct wb_material truth = beam_material(2);
+    const struct wb_calibrate_settings settings = quick_settings();
+    struct wb_dataset dataset[2];
+    const struct wb_dataset *const datasets[] = {&dataset[0], &dataset[1]};
+    double deviation[4];
+    int evaluations = 0;
+    for (int i = 0; i < 2; i++)
+        beam_dataset(&dataset[i], &info, &truth, 1.0 * mm, 53 * mm, 1.0);
+    /* Alone the second one pulls the wrong way. */
+    for (size_t i = 0; i < dataset[1].n_rows; i++)
+        dataset[1].rows[i].force *= -0.2;
+    wb_log_set_sink(count, NULL);
+    assert_int_equal(wb_jackknife_run(deviation, datasets, 2, &settings, &truth, &evaluations),
+                     WB_OK);
+    assert_int_equal(n_errors, 0);
+    assert_int_equal(n_warnings, 2);
+    for (int k = 0; k < 4; k++)
+        assert_true(isnan(deviation[k]));
+    /* Afterwards errors are errors again. */
+    wb_error("a test");
+    assert_int_equal(n_errors, 1);
+    last_message_install();
+    for (int i = 0; i < 2; i++)
+        wb_dataset_release(&dataset[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scatter_of_k_alone_is_found_in_k),
         cmocka_unit_test(equal_samples_have_no_deviation),
         cmocka_unit_test(one_sample_tells_nothing),
+        cmocka_unit_test(a_refusal_of_the_rest_is_a_warning_and_no_error),
     };
     return cmocka_run_group_tests(tests, silence, NULL);
 }

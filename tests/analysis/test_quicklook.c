@@ -125,6 +125,8 @@ static void all_files_are_written_and_say_virtual_rig(void **state)
     char *const pdf = read_whole(path, "force_deflection.pdf", &size);
     assert_memory_equal(pdf, "%PDF", 4);
     free(pdf);
+    assert_says(path, "force_deflection.csv", "# virtual rig\n");
+    assert_says(path, "shape.csv", "# virtual rig\n");
     assert_says(path, "force_deflection.svg", "<svg");
     assert_says(path, "force_deflection.svg", "a&amp;b.wbr, measured on a virtual rig");
     assert_says(path, "shapes.svg", "measured on a virtual rig");

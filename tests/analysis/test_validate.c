@@ -185,13 +185,20 @@ static void the_csv_has_a_line_for_each_deflection(void **state)
     assert_true(descriptor >= 0);
     close(descriptor);
     validate(&result, &properties, 0.1, 0.0, 1.0, &settings);
+    result.info.is_virtual = result.info.is_simulation = false;
+    assert_int_equal(wb_validate_write_csv(&result, path), WB_OK);
+    assert_int_equal(wb_file_read(path, &text, NULL), WB_OK);
+    assert_memory_equal(text, "# wire ", 7);
+    free(text);
+    result.info.is_virtual = true;
     assert_int_equal(wb_validate_write_csv(&result, path), WB_OK);
     assert_int_equal(wb_file_read(path, &text, NULL), WB_OK);
     int lines = 0;
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
-    assert_int_equal(lines, 1 + 54);
-    assert_memory_equal(text, "deflection_mm,measured_N,", 25);
+    assert_int_equal(lines, 2 + 54);
+    assert_memory_equal(text, "# virtual rig, wire ", 20);
+    assert_non_null(strstr(text, "\ndeflection_mm,measured_N,"));
     double deflection, measured;
     const char *const last = strstr(text, "\n53,");
     assert_non_null(last);

@@ -164,6 +164,9 @@ static void quicklook_draws_one_recording(void **state)
                 exists("look/force_deflection.pdf") && exists("look/shapes.svg") &&
                 exists("look/summary.txt") && exists("look/force_deflection.csv"));
     expect("quicklook $DIR/whole.wbr -o $DIR/look", 1, "", "--force");
+    expect("quicklook $DIR/whole.wbr -o $DIR/look --force --json", 0,
+           "\"largest_deflection_mm\": ", "");
+    expect("quicklook $DIR/whole.wbr -o $DIR/look --force --json", 0, "\"largest_force_N\": ", "");
     expect("quicklook $DIR/gap.wbr -o $DIR/look --force", 3, "in the rows", "");
 }
 
