@@ -14,6 +14,7 @@
  *       noise_mg: 10                   # optional, expected standard deviation
  *       check_mass_g: 10               # optional, known mass for the check of the cell
  *       check_tolerance_percent: 1     # optional
+ *       tare: unloaded                 # or counterweight: what hangs on the cell at the start
  *       sign: +1                       # +1: tension reads positive
  *       poll_period_ms: 100            # optional, absent: the instrument streams by itself
  *       ...generic line protocol: delimiter, column, unit, scale, offset, terminator,
@@ -54,6 +55,12 @@
 #define WB_RIG_TEXT 160
 #define WB_RIG_TOKENS 8
 
+/* What the strand carries at the start position, while the tare is taken. */
+enum wb_rig_tare {
+    WB_RIG_TARE_UNLOADED,     /* nothing: the strand is slack, the tare is the cell's zero */
+    WB_RIG_TARE_COUNTERWEIGHT /* the counterweight: tension = reading - tare + counterweight g */
+};
+
 struct wb_rig_load_cell {
     char address[WB_RIG_TEXT];
     char protocol[32];
@@ -66,6 +73,7 @@ struct wb_rig_load_cell {
     double noise;                    /* N, expected standard deviation; 0 unknown */
     double check_mass;               /* kg, known mass to check the cell with; 0 none */
     double check_tolerance;          /* fraction of the check mass */
+    enum wb_rig_tare tare;           /* see wb_rig_tare_load() */
     /* Generic line protocol. */
     char delimiter;        /* 0: whole line is one value */
     int column;            /* from 1, with a delimiter */
@@ -123,6 +131,10 @@ struct wb_rig {
     bool is_virtual;
     double time_scale; /* 1 on a real bench: the rig's clocks run so many times faster */
 };
+
+/* Tension of the strand while the tare is taken, N: 0, or the weight of the counterweight. The
+ * tension at any other time is the reading less the tare plus this. */
+double wb_rig_tare_load(const struct wb_rig *rig);
 
 /* Reads a rig file; errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_rig_read(const char *path, struct wb_rig *rig);

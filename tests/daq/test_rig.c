@@ -167,6 +167,32 @@ static void virtual_rigs_are_marked_and_their_truth_is_ignored(void **state)
     assert_close(rig.gravity, WB_STANDARD_GRAVITY, 0.0); /* the default */
 }
 
+static void tare_is_unloaded_unless_it_is_with_the_counterweight(void **state)
+{
+    (void)state;
+    struct wb_rig rig = parse(good);
+    assert_int_equal(rig.load_cell.tare, WB_RIG_TARE_UNLOADED);
+    assert_close(wb_rig_tare_load(&rig), 0.0, 0.0);
+    rig = parse(edited("  sign: +1\n", "  tare: unloaded\n"));
+    assert_int_equal(rig.load_cell.tare, WB_RIG_TARE_UNLOADED);
+    rig = parse(edited("  sign: +1\n", "  tare: counterweight\n"));
+    assert_int_equal(rig.load_cell.tare, WB_RIG_TARE_COUNTERWEIGHT);
+    assert_close_relative(wb_rig_tare_load(&rig), 2.7e-3 * 9.81, 1e-12);
+}
+
+static void a_tare_with_a_counterweight_needs_one(void **state)
+{
+    (void)state;
+    struct wb_rig rig;
+    char text[4096];
+    snprintf(text, sizeof text, "%s", edited("  sign: +1\n", "  tare: counterweight\n"));
+    char *const at = strstr(text, "counterweight_g: 2.7");
+    memcpy(at, "counterweight_g: 0.0", strlen("counterweight_g: 0.0"));
+    assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig), WB_ERR_FORMAT);
+    assert_non_null(strstr(last_message, "tare"));
+    assert_non_null(strstr(last_message, "strand.counterweight_g"));
+}
+
 static void strand_and_limits_may_be_left_out(void **state)
 {
     (void)state;
@@ -268,6 +294,10 @@ int main(void)
                                         release_messages),
         cmocka_unit_test_setup_teardown(virtual_rigs_are_marked_and_their_truth_is_ignored,
                                         catch_messages, release_messages),
+        cmocka_unit_test_setup_teardown(tare_is_unloaded_unless_it_is_with_the_counterweight,
+                                        catch_messages, release_messages),
+        cmocka_unit_test_setup_teardown(a_tare_with_a_counterweight_needs_one, catch_messages,
+                                        release_messages),
         cmocka_unit_test_setup_teardown(strand_and_limits_may_be_left_out, catch_messages,
                                         release_messages),
         cmocka_unit_test_setup_teardown(bad_files_are_refused_with_file_line_and_key,
