@@ -12,8 +12,8 @@
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "base/version.h"
-#include "daq/start_check.h"
 #include "daq/bend_recording.h"
+#include "daq/start_check.h"
 #include "daq/tip_watch.h"
 
 #define WB_LOG_DOMAIN "record"
@@ -42,7 +42,7 @@ static const char *const phase_names[] = {"connecting", "check", "tare",     "do
 
 struct wb_bend_test {
     struct wb_bend_test_request request; /* its paths are not kept beyond open */
-    char output_path[WB_PATH];
+    char output_path[WB_PATH], rig_path[WB_PATH];
     struct wb_rig rig;
     struct wb_specimen specimen;
     struct wb_acquisition *acquisition;
@@ -61,7 +61,8 @@ struct wb_bend_test {
     struct wb_average zero; /* N, of the tare */
     struct wb_tip_watch tip;
     bool has_tare;
-    double tare;
+    double tare;     /* N, mean reading of the tare */
+    double unloaded; /* N, reading without tension: the tare less what hung on the cell then */
     int64_t duration_ns;
     double hold_latency, confirm_latency; /* s; NaN without a hold */
     struct wb_bend_test_result result;
@@ -99,7 +100,7 @@ static void on_load(void *context, const struct wb_load_sample *sample)
     if (sample->valid && test->phase == PHASE_TARE)
         wb_average_add(&test->zero, sample->force);
     if (sample->valid && test->result.started && test->phase < PHASE_STOP)
-        test->result.peak_tension = fmax(test->result.peak_tension, sample->force - test->tare);
+        test->result.peak_tension = fmax(test->result.peak_tension, sample->force - test->unloaded);
     if (test->request.sink.load)
         test->request.sink.load(test->request.sink.context, sample);
 }
@@ -191,6 +192,7 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
         return status;
     }
     snprintf(test->output_path, sizeof test->output_path, "%s", request->output_path);
+    snprintf(test->rig_path, sizeof test->rig_path, "%s", request->rig_path);
     wb_acquisition_start(test->acquisition, test->writer);
     wb_acquisition_event(test->acquisition, "start", "%s", wb_version_revision());
     return WB_OK;
@@ -375,7 +377,7 @@ static void arm(struct wb_bend_test *test)
     if (!test->has_tare)
         settings.force = 0.0;
     wb_acquisition_arm(test->acquisition, &settings, test->start_position);
-    wb_acquisition_set_tare(test->acquisition, test->tare);
+    wb_acquisition_set_tare(test->acquisition, test->unloaded);
 }
 
 static void step_connect(struct wb_bend_test *test, int64_t now_ns)
@@ -399,7 +401,7 @@ static void step_connect(struct wb_bend_test *test, int64_t now_ns)
         test->result.recorded = true;
         /* Before the interlock, whose message would be the poorer one. */
         char text[WB_START_CHECK_TEXT];
-        if (!wb_start_check_stage(&latest->stage, text)) {
+        if (!wb_start_check_stage(&latest->stage, test->rig_path, text)) {
             refuse(test, text);
             return;
         }
@@ -423,9 +425,9 @@ static void step_check(struct wb_bend_test *test, int64_t now_ns)
     if (!enough)
         snprintf(text, sizeof text, "only %" PRId64 " readings and %d frames came in %.1f s",
                  check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
-    if (!enough || !wb_start_check_stage(&latest->stage, text) ||
+    if (!enough || !wb_start_check_stage(&latest->stage, test->rig_path, text) ||
         !wb_start_check_markers(check, &test->specimen, text) ||
-        !wb_start_check_zero(check, &test->rig.load_cell, text)) {
+        !wb_start_check_zero(check, &test->rig, test->rig_path, text)) {
         refuse(test, text);
         return;
     }
@@ -529,6 +531,7 @@ static void step_tare(struct wb_bend_test *test, int64_t now_ns)
         test->zero.n < LEAST_READINGS)
         return;
     test->tare = test->zero.mean;
+    test->unloaded = test->tare - wb_rig_tare_load(&test->rig);
     test->has_tare = true;
     wb_acquisition_event(test->acquisition, "tare",
                          "{\"force_N\": %.17g, \"samples\": %" PRId64 ", \"sd_N\": %.17g}",
@@ -622,7 +625,7 @@ void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_st
     status->cycle = test->cycle;
     status->cycles = test->request.cycles;
     status->has_tension = latest->has_load;
-    status->tension = latest->load.force - test->tare;
+    status->tension = latest->load.force - test->unloaded;
     status->has_travel =
         latest->has_stage && isfinite(test->start_position) && isfinite(latest->stage.position);
     if (status->has_travel)

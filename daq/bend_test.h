@@ -62,7 +62,7 @@ struct wb_bend_test_status {
     const char *phase; /* "connecting", "check", "tare", "down", "up", "rest", "stopping", "end" */
     int cycle, cycles; /* cycle from 1; 0 before the first */
     bool has_tension, has_travel, has_deflection;
-    double tension;    /* N, reading less tare (0 before the tare is known) */
+    double tension;    /* N, of the strand; the bare reading before the tare is known */
     double travel;     /* m, as commanded, down positive */
     double deflection; /* m, of the tip against the clamp as the cameras see it, roughly */
     double elapsed;    /* s of host time since the start */
@@ -82,8 +82,8 @@ struct wb_bend_test_result {
     bool standing;  /* false: the stop was not confirmed, the stage may be moving */
     bool displaced; /* the stage is not back at the start: the specimen may be loaded */
     int cycles_done;
-    double tare;         /* N */
-    double peak_tension; /* N, largest reading less tare of the cycles */
+    double tare;         /* N, mean reading while it was taken */
+    double peak_tension; /* N, largest of the cycles */
     double travel;       /* m, where the stage stands */
     double duration;     /* s of host time */
     uint64_t samples[WB_INTERLOCK_ROLES], bytes, drops;

@@ -21,7 +21,7 @@
 #include "daq/sample.h"
 
 #define WB_INTERLOCK_ROLES 3
-#define WB_INTERLOCK_TEXT 240
+#define WB_INTERLOCK_TEXT 512
 
 /* The hold byte leaves this soon after the sample that shows the limit. */
 #define WB_STOP_HOLD_NS INT64_C(20000000)

@@ -336,7 +336,11 @@ static void step_connect(struct wb_stage_job *job, int64_t now_ns)
         const enum wb_stage_state state = latest->stage.state;
         const bool frees =
             job->request.kind == WB_STAGE_JOB_UNLOCK || job->request.kind == WB_STAGE_JOB_RELEASE;
-        if (frees && (state == WB_STAGE_HOLD || state == WB_STAGE_ALARM))
+        const bool locked =
+            state == WB_STAGE_HOLD || state == WB_STAGE_ALARM || state == WB_STAGE_OTHER;
+        const bool moving =
+            state == WB_STAGE_RUN || state == WB_STAGE_JOG || state == WB_STAGE_HOME;
+        if ((frees && locked) || (job->request.kind == WB_STAGE_JOB_UNLOCK && moving))
             send(job, WB_STAGE_COMMAND_SOFT_RESET, 0.0, PHASE_RESET);
         else if (state == WB_STAGE_IDLE ||
                  (job->request.kind == WB_STAGE_JOB_HOME && state == WB_STAGE_ALARM))
@@ -348,8 +352,13 @@ static void step_connect(struct wb_stage_job *job, int64_t now_ns)
         else if (state == WB_STAGE_HOLD)
             give_up(job, WB_INTERLOCK_STAGE,
                     "the stage is on hold: run 'release' to free the specimen, or 'unlock'");
+        else if (state == WB_STAGE_OTHER)
+            give_up(job, WB_INTERLOCK_STAGE,
+                    "the stage is not idle (door open, check or sleep mode): run 'unlock'");
         else
-            give_up(job, WB_INTERLOCK_STAGE, "the stage is not idle: somebody else moves it");
+            give_up(job, WB_INTERLOCK_STAGE,
+                    "the stage is moving at somebody else's command: wait until it stands, or stop "
+                    "it with 'unlock'");
         return;
     }
     const int64_t allowed_ns =

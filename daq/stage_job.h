@@ -19,7 +19,8 @@ struct wb_stage_job; /* opaque */
 enum wb_stage_job_kind {
     WB_STAGE_JOB_HOME,   /* the controller's own homing cycle */
     WB_STAGE_JOB_JOG,    /* by `distance` */
-    WB_STAGE_JOB_UNLOCK, /* out of hold or alarm, without a motion */
+    WB_STAGE_JOB_UNLOCK, /* to idle without a motion, whatever it does: a reset, which also stops a
+                            motion of somebody else's, then $X */
     /* Out of hold or alarm, then slowly up (half the rig's speed) until the strand is slack: the
      * reading stays level over 0.75 mm near zero. */
     WB_STAGE_JOB_RELEASE

@@ -8,6 +8,7 @@
 #include "daq/marker_check.h"
 
 #define ZERO_SHARE 0.1
+#define COUNTERWEIGHT_SHARE 0.5
 #define NOISE_TIMES 5.0
 #define NOISE_SHARE 0.01
 #define SEEN_SHARE 0.5
@@ -29,30 +30,47 @@ bool wb_start_check_enough(const struct wb_start_check *check)
     return check->load.n >= LEAST_READINGS && check->n_frames >= LEAST_FRAMES;
 }
 
-bool wb_start_check_stage(const struct wb_stage_report *report, char text[WB_START_CHECK_TEXT])
+bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_path,
+                          char text[WB_START_CHECK_TEXT])
 {
+    const size_t size = WB_START_CHECK_TEXT;
     switch (report->state) {
     case WB_STAGE_IDLE:
-        break;
+        if (isfinite(report->position))
+            return true;
+        snprintf(text, size,
+                 "the stage does not tell its position: set $10=1 in its firmware, then "
+                 "run 'wirebench stage %s home'",
+                 rig_path);
+        return false;
     case WB_STAGE_ALARM:
         snprintf(
-            text, WB_START_CHECK_TEXT,
-            "the stage is in alarm (%d): mend the cause, then run 'wirebench stage RIG unlock' "
-            "or 'home'",
-            report->alarm);
+            text, size,
+            "the stage is in alarm (%d): mend the cause, then run 'wirebench stage %s unlock', "
+            "or 'home' in its place",
+            report->alarm, rig_path);
         return false;
     case WB_STAGE_HOLD:
-        snprintf(text, WB_START_CHECK_TEXT,
-                 "the stage is on hold from before: run 'wirebench stage RIG release'");
+        snprintf(text, size,
+                 "the stage is on hold from before: run 'wirebench stage %s release', or 'unlock' "
+                 "if nothing is loaded",
+                 rig_path);
+        return false;
+    case WB_STAGE_RUN:
+    case WB_STAGE_JOG:
+    case WB_STAGE_HOME:
+        snprintf(text, size,
+                 "the stage is moving, at somebody else's command: wait until it stands, "
+                 "or stop it with 'wirebench stage %s unlock'",
+                 rig_path);
         return false;
     default:
-        snprintf(text, WB_START_CHECK_TEXT, "the stage is not idle: wait for it, or reset it");
+        snprintf(text, size,
+                 "the stage is not idle (door open, check or sleep mode): close the door, then run "
+                 "'wirebench stage %s unlock'",
+                 rig_path);
         return false;
     }
-    if (isfinite(report->position))
-        return true;
-    snprintf(text, WB_START_CHECK_TEXT, "the stage does not tell its position");
-    return false;
 }
 
 bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_specimen *specimen,
@@ -79,26 +97,38 @@ bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_
     return n_missing == 0;
 }
 
-bool wb_start_check_zero(const struct wb_start_check *check, const struct wb_rig_load_cell *cell,
-                         char text[WB_START_CHECK_TEXT])
+bool wb_start_check_zero(const struct wb_start_check *check, const struct wb_rig *rig,
+                         const char *rig_path, char text[WB_START_CHECK_TEXT])
 {
-    const double zero = check->load.mean;
+    const struct wb_rig_load_cell *const cell = &rig->load_cell;
+    const double zero = check->load.mean, expected = wb_rig_tare_load(rig);
     const double noise = wb_average_deviation(&check->load);
-    const double allowed =
+    const double noise_allowed =
         cell->noise > 0.0 ? NOISE_TIMES * cell->noise : NOISE_SHARE * cell->capacity;
-    if (!(fabs(zero) <= ZERO_SHARE * cell->capacity)) {
+    double allowed = ZERO_SHARE * cell->capacity;
+    if (expected > 0.0)
+        allowed = fmin(allowed, COUNTERWEIGHT_SHARE * expected);
+    if (!(fabs(zero - expected) <= allowed) && expected > 0.0) {
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the unloaded load cell reads %.2f mN, more than %g %% of its capacity of %.1f "
-                 "mN: is the strand slack (after a stop: 'wirebench stage RIG release'), the cell "
-                 "zeroed, its unit right?",
-                 zero / WB_MN, ZERO_SHARE / WB_PERCENT, cell->capacity / WB_MN);
+                 "the load cell reads %.2f mN, not the counterweight's %.2f mN within %.2f mN "
+                 "(load_cell.tare is counterweight): does it hang free, is the cell zeroed "
+                 "without it, its unit right? After a stop: 'wirebench stage %s release'",
+                 zero / WB_MN, expected / WB_MN, allowed / WB_MN, rig_path);
         return false;
     }
-    if (!(noise <= allowed)) {
+    if (!(fabs(zero - expected) <= allowed)) {
         snprintf(text, WB_START_CHECK_TEXT,
-                 "the unloaded load cell's noise is %.3f mN, more than %.3f mN: is something "
-                 "touching it?",
-                 noise / WB_MN, allowed / WB_MN);
+                 "the unloaded load cell reads %.2f mN, more than %g %% of its capacity of %.1f "
+                 "mN: is the strand slack (after a stop: 'wirebench stage %s release'), the cell "
+                 "zeroed, its unit right?",
+                 zero / WB_MN, ZERO_SHARE / WB_PERCENT, cell->capacity / WB_MN, rig_path);
+        return false;
+    }
+    if (!(noise <= noise_allowed)) {
+        snprintf(text, WB_START_CHECK_TEXT,
+                 "the %s load cell's noise is %.3f mN, more than %.3f mN: is something "
+                 "touching it, or the counterweight swinging?",
+                 expected > 0.0 ? "resting" : "unloaded", noise / WB_MN, noise_allowed / WB_MN);
         return false;
     }
     return true;

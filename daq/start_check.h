@@ -8,11 +8,12 @@
 #include <stddef.h>
 
 #include "daq/average.h"
+#include "daq/interlock.h"
 #include "daq/rig.h"
 #include "daq/sample.h"
 #include "daq/specimen.h"
 
-#define WB_START_CHECK_TEXT 240
+#define WB_START_CHECK_TEXT WB_INTERLOCK_TEXT
 
 /* Frames and readings of the unloaded bench. All zero is empty. */
 struct wb_start_check {
@@ -27,14 +28,17 @@ void wb_start_check_frame(struct wb_start_check *check, const struct wb_mocap_fr
 /* Enough was gathered to judge. */
 bool wb_start_check_enough(const struct wb_start_check *check);
 
-/* Each returns true when all is well, or writes the reason of the refusal.
+/* Each returns true when all is well, or writes the reason of the refusal, with the command that
+ * mends it for the rig file at `rig_path`.
  * A marker counts as seen when it is there in half of the frames: cameras lose one now and then. A
- * zero is one within a tenth of the capacity, with noise up to 5 times the rig's own (up to 1 % of
- * the capacity where the rig file does not tell it). */
-bool wb_start_check_stage(const struct wb_stage_report *report, char text[WB_START_CHECK_TEXT]);
+ * zero is within a tenth of the capacity, with noise up to 5 times the rig's own (up to 1 % of the
+ * capacity where the rig file does not tell it). Where the tare is taken with the counterweight
+ * (rig.h), its weight is expected instead of zero, and to half of it. */
+bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_path,
+                          char text[WB_START_CHECK_TEXT]);
 bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_specimen *specimen,
                             char text[WB_START_CHECK_TEXT]);
-bool wb_start_check_zero(const struct wb_start_check *check, const struct wb_rig_load_cell *cell,
-                         char text[WB_START_CHECK_TEXT]);
+bool wb_start_check_zero(const struct wb_start_check *check, const struct wb_rig *rig,
+                         const char *rig_path, char text[WB_START_CHECK_TEXT]);
 
 #endif

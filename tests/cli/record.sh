@@ -102,7 +102,7 @@ ctrl_c() {
     # The stage stands on hold: a test is refused, a release frees it, and then all is well again.
     mv "$folder/ctrlc.wbr" "$folder/ctrlc-first.wbr"
     record ctrlc --travel-mm 5
-    expect ctrlc 1 "stage RIG release'"
+    expect ctrlc 1 "stage $folder/ctrlc/rig.yaml release'"
     rm -f "$folder/ctrlc.wbr"
     "$wirebench" stage "$folder/ctrlc/rig.yaml" release >"$folder/release.out" 2>&1 ||
         fail "release: $(cat "$folder/release.out")"

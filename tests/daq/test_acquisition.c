@@ -5,8 +5,8 @@
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "daq/stream.h"
 #include "daq/bend_recording.h"
+#include "daq/stream.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
 

@@ -8,9 +8,9 @@
 
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "daq/bend_recording.h"
 #include "daq/bend_test.h"
 #include "daq/stream.h"
-#include "daq/bend_recording.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
 
@@ -623,11 +623,40 @@ static void a_loaded_zero_is_refused(void **state)
 static void a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out(void **state)
 {
     struct fixture *const fixture = *state;
+    char words[160];
     fixture->bench->state = "Alarm";
-    assert_refused(fixture, "'wirebench stage RIG unlock'", true);
+    snprintf(words, sizeof words, "'wirebench stage %s unlock'", fixture->rig);
+    assert_refused(fixture, words, true);
     unlink(fixture->output);
     fixture->bench->state = "Hold:0";
-    assert_refused(fixture, "'wirebench stage RIG release'", true);
+    snprintf(words, sizeof words, "'wirebench stage %s release'", fixture->rig);
+    assert_refused(fixture, words, true);
+}
+
+static void a_tare_with_the_counterweight_adds_its_weight(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    FILE *const file = fopen(fixture->rig, "a");
+    assert_non_null(file);
+    fputs("strand:\n  length_mm: 760\n  counterweight_g: 2.7\n", file);
+    fclose(file);
+    char command[256];
+    snprintf(command, sizeof command,
+             "sed -i 's/noise_mg: 10/noise_mg: 10\\n  tare: counterweight/' %s", fixture->rig);
+    assert_int_equal(system(command), 0);
+    fixture->request.travel = 8.0 * WB_MM;
+    assert_refused(fixture, "not the counterweight's 26.48 mN", true); /* nothing hangs there */
+    unlink(fixture->output);
+    bench->force_mg = 2800;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_DONE);
+    assert_close(result.tare, 2.8e-3 * WB_STANDARD_GRAVITY, 0.01e-3 * WB_STANDARD_GRAVITY);
+    assert_close(result.peak_tension, 6.7e-3 * WB_STANDARD_GRAVITY, 0.05e-3 * WB_STANDARD_GRAVITY);
 }
 
 /* --- what cannot be opened --- */
@@ -726,6 +755,7 @@ int main(void)
         TEST(a_stray_reflection_does_not_hurt),
         TEST(a_loaded_zero_is_refused),
         TEST(a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out),
+        TEST(a_tare_with_the_counterweight_adds_its_weight),
         TEST(a_missing_port_is_one_message),
         TEST(a_busy_port_is_one_message),
         TEST(an_existing_recording_is_never_overwritten),

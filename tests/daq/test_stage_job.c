@@ -147,11 +147,12 @@ static void home_waits_for_the_end_of_homing(void **state)
     assert_close(fixture->bench->position_mm, 0.0, 0.0);
 }
 
-static void unlock_brings_the_stage_out_of_hold_and_alarm(void **state)
+static void unlock_brings_the_stage_to_idle_from_anything(void **state)
 {
     struct fixture *const fixture = *state;
-    static const char *const states[] = {"Hold:0", "Alarm", "Idle"};
-    for (int i = 0; i < 3; i++) {
+    static const char *const states[] = {"Hold:0", "Alarm", "Idle", "Door:0", "Sleep", "Jog"};
+    for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
+        fixture->bench->target_mm = 50.0; /* of somebody's jog, at no speed */
         fixture->bench->state = states[i];
         assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_STAGE_JOB_DONE);
         assert_string_equal(fixture->bench->state, "Idle");
@@ -274,7 +275,7 @@ int main(void)
         TEST(jog_without_a_reading_is_refused),
         TEST(ctrl_c_stops_a_jog),
         TEST(home_waits_for_the_end_of_homing),
-        TEST(unlock_brings_the_stage_out_of_hold_and_alarm),
+        TEST(unlock_brings_the_stage_to_idle_from_anything),
         TEST(release_goes_up_until_the_strand_is_slack),
         TEST(release_waits_for_a_lost_answer),
         TEST(release_may_begin_beyond_the_limits),

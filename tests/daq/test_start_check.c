@@ -139,33 +139,75 @@ static struct wb_start_check readings(double mean, double deviation)
 static void zero_is_judged_by_capacity_and_noise(void **state)
 {
     (void)state;
-    struct wb_rig_load_cell cell = {.capacity = 0.2, .noise = 1e-4};
+    struct wb_rig rig = {.gravity = 9.81, .load_cell = {.capacity = 0.2, .noise = 1e-4}};
     char text[WB_START_CHECK_TEXT];
     struct wb_start_check check = readings(0.019, 1e-4);
-    assert_true(wb_start_check_zero(&check, &cell, text));
+    assert_true(wb_start_check_zero(&check, &rig, "my/rig.yaml", text));
     check = readings(0.021, 1e-4);
-    assert_false(wb_start_check_zero(&check, &cell, text));
+    assert_false(wb_start_check_zero(&check, &rig, "my/rig.yaml", text));
+    assert_non_null(strstr(text, "'wirebench stage my/rig.yaml release'"));
     check = readings(-0.021, 1e-4);
-    assert_false(wb_start_check_zero(&check, &cell, text));
+    assert_false(wb_start_check_zero(&check, &rig, "my/rig.yaml", text));
     check = readings(0.0, 6e-4);
-    assert_false(wb_start_check_zero(&check, &cell, text));
+    assert_false(wb_start_check_zero(&check, &rig, "my/rig.yaml", text));
     assert_non_null(strstr(text, "noise"));
-    cell.noise = 0.0; /* not known: 1 % of the capacity */
-    assert_true(wb_start_check_zero(&check, &cell, text));
+    rig.load_cell.noise = 0.0; /* not known: 1 % of the capacity */
+    assert_true(wb_start_check_zero(&check, &rig, "my/rig.yaml", text));
     check = readings(0.0, 2.1e-3);
-    assert_false(wb_start_check_zero(&check, &cell, text));
+    assert_false(wb_start_check_zero(&check, &rig, "my/rig.yaml", text));
+}
+
+static void a_tare_with_the_counterweight_expects_its_weight(void **state)
+{
+    (void)state;
+    struct wb_rig rig = {.gravity = 10.0,
+                         .load_cell = {.capacity = 0.2, .noise = 1e-4},
+                         .strand = {.length = 0.76, .counterweight = 2.7e-3}};
+    char text[WB_START_CHECK_TEXT];
+    struct wb_start_check check = readings(0.027, 1e-4);
+    assert_false(wb_start_check_zero(&check, &rig, "rig.yaml", text));
+    assert_close(wb_rig_tare_load(&rig), 0.0, 0.0);
+    rig.load_cell.tare = WB_RIG_TARE_COUNTERWEIGHT;
+    assert_close(wb_rig_tare_load(&rig), 0.027, 1e-15);
+    assert_true(wb_start_check_zero(&check, &rig, "rig.yaml", text));
+    check = readings(0.040, 1e-4);
+    assert_true(wb_start_check_zero(&check, &rig, "rig.yaml", text));
+    check = readings(0.041, 1e-4);
+    assert_false(wb_start_check_zero(&check, &rig, "rig.yaml", text));
+    /* An unloaded cell within a tenth of its capacity of it all the same is not right, */
+    check = readings(0.0, 1e-4);
+    assert_false(wb_start_check_zero(&check, &rig, "rig.yaml", text));
+    assert_non_null(strstr(text, "load_cell.tare is counterweight"));
+    /* nor a heavy counterweight that is off by more than that. */
+    rig.strand.counterweight = 10e-3;
+    check = readings(0.121, 1e-4);
+    assert_false(wb_start_check_zero(&check, &rig, "rig.yaml", text));
+    check = readings(0.119, 1e-4);
+    assert_true(wb_start_check_zero(&check, &rig, "rig.yaml", text));
 }
 
 static void stage_must_be_idle_at_a_known_position(void **state)
 {
     (void)state;
+    static const struct {
+        enum wb_stage_state state;
+        const char *words;
+    } refused[] = {{WB_STAGE_JOG, "'wirebench stage my/rig.yaml unlock'"},
+                   {WB_STAGE_HOLD, "'wirebench stage my/rig.yaml release'"},
+                   {WB_STAGE_ALARM, "'wirebench stage my/rig.yaml unlock'"},
+                   {WB_STAGE_OTHER, "'wirebench stage my/rig.yaml unlock'"},
+                   {WB_STAGE_UNKNOWN, "'wirebench stage my/rig.yaml unlock'"}};
     char text[WB_START_CHECK_TEXT];
     struct wb_stage_report report = {.state = WB_STAGE_IDLE, .position = 0.1};
-    assert_true(wb_start_check_stage(&report, text));
+    assert_true(wb_start_check_stage(&report, "my/rig.yaml", text));
     report.position = (double)NAN;
-    assert_false(wb_start_check_stage(&report, text));
-    report = (struct wb_stage_report){.state = WB_STAGE_JOG, .position = 0.1};
-    assert_false(wb_start_check_stage(&report, text));
+    assert_false(wb_start_check_stage(&report, "my/rig.yaml", text));
+    for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+        report = (struct wb_stage_report){.state = refused[i].state, .position = 0.1};
+        assert_false(wb_start_check_stage(&report, "my/rig.yaml", text));
+        if (!strstr(text, refused[i].words))
+            fail_msg("'%s' does not say %s", text, refused[i].words);
+    }
 }
 
 static void average_is_the_textbook_one(void **state)
@@ -222,6 +264,7 @@ int main(void)
         cmocka_unit_test(no_and_one_and_far_too_many_markers_are_survived),
         cmocka_unit_test(a_marker_may_be_lost_in_less_than_half_of_the_frames),
         cmocka_unit_test(zero_is_judged_by_capacity_and_noise),
+        cmocka_unit_test(a_tare_with_the_counterweight_expects_its_weight),
         cmocka_unit_test(stage_must_be_idle_at_a_known_position),
         cmocka_unit_test(average_is_the_textbook_one),
         cmocka_unit_test(gate_stores_20_a_second_and_counts_the_rest),
