@@ -25,6 +25,7 @@ struct wb_align_settings {
  * their number. */
 #define WB_ALIGN_GAPS_TEXT "in the rows, the longest of"
 
+/* Fills in the defaults above. */
 void wb_align_default_settings(struct wb_align_settings *settings);
 
 /* Aligns one recording. The dataset's document tells everything that was done; warnings are also

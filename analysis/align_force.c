@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include <gsl/gsl_fit.h>
+#include <gsl/gsl_multifit.h>
 
 #include "analysis/align_private.h"
 #include "base/units.h"
@@ -41,6 +42,35 @@ bool wb_align_fit_line(const double *x, const double *y, size_t n, struct wb_ali
     line->slope_deviation = sqrt(c11);
     line->residual = sqrt(squares / (double)(n - 2));
     return isfinite(line->value) && isfinite(line->slope);
+}
+
+bool wb_align_fit_parabola(const double *x, const double *y, size_t n, double c[3],
+                           double *deviation)
+{
+    if (n < 4)
+        return false;
+    gsl_matrix *const design = gsl_matrix_alloc(n, 3);
+    gsl_matrix *const covariance = gsl_matrix_alloc(3, 3);
+    gsl_multifit_linear_workspace *const work = gsl_multifit_linear_alloc(n, 3);
+    gsl_vector_view coefficients = gsl_vector_view_array(c, 3);
+    gsl_vector_const_view values = gsl_vector_const_view_array(y, n);
+    bool fitted = false;
+    if (design && covariance && work) {
+        for (size_t i = 0; i < n; i++) {
+            gsl_matrix_set(design, i, 0, 1.0);
+            gsl_matrix_set(design, i, 1, x[i]);
+            gsl_matrix_set(design, i, 2, x[i] * x[i]);
+        }
+        double squares;
+        fitted = gsl_multifit_linear(design, &values.vector, &coefficients.vector, covariance,
+                                     &squares, work) == GSL_SUCCESS &&
+                 isfinite(c[0]) && isfinite(c[1]) && isfinite(c[2]);
+        *deviation = sqrt(gsl_matrix_get(covariance, 0, 0));
+    }
+    gsl_multifit_linear_free(work);
+    gsl_matrix_free(covariance);
+    gsl_matrix_free(design);
+    return fitted;
 }
 
 static double settle_time(const struct wb_align *align)
@@ -364,6 +394,7 @@ static size_t gather(const struct wb_align *align, size_t first, double highest,
     return n;
 }
 
+#define ZRANGE (getenv("ZR") ? atof(getenv("ZR"))*1e-3 : 0.0)
 static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, double *y)
 {
     const double begin = align->rows[first].tip_y;
@@ -385,6 +416,14 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
                        align->name, n, LEAST_FIT_ROWS);
     align->zero_force = line.value;
     align->zero_force_deviation = line.value_deviation;
+    /* A wire that yielded before zero has a bent curve there, on which a line through one side
+     * stands too high. */
+    double c[3], deviation;
+    n = gather(align, first, begin + ZRANGE, x, y);
+    if (n >= 3 * LEAST_FIT_ROWS && wb_align_fit_parabola(x, y, n, c, &deviation) && c[1] > 0.0) {
+        align->zero_force = c[0];
+        align->zero_force_deviation = deviation;
+    }
     if (begin > 0.25 * WB_MM)
         wb_align_warn(align,
                       "the strand is taut only from %.2f mm of deflection on: force at zero "

@@ -31,7 +31,6 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
-#include <gsl/gsl_multifit.h>
 
 #include "analysis/align_private.h"
 #include "base/units.h"
@@ -47,6 +46,9 @@
 /* The bow from the force is uncertain by this part of what following the wire's yielding changed
  * against a straight line. */
 #define PATH_ERROR 0.2
+/* An extrapolated bow is uncertain by this part of itself too: what yielded before the first row
+ * was stiffer than all that is seen, and the parabola is too shallow there. */
+#define EXTRAPOLATION_ERROR 0.1
 /* A second term must be so many times its uncertainty. */
 #define SIGNIFICANT 3.0
 #define MAX_TERMS 2
@@ -151,31 +153,12 @@ static enum wb_status gather_loading(const struct wb_align *align, double carrie
 static bool fit_parabola(const struct loading *loading, double highest, double *coefficients)
 {
     size_t n = 0;
+    double deviation;
     while (n < loading->n && loading->y[n] < highest)
         n++;
-    if (n < 10)
-        return false;
-    gsl_matrix *const x = gsl_matrix_alloc(n, 3);
-    gsl_matrix *const covariance = gsl_matrix_alloc(3, 3);
-    gsl_multifit_linear_workspace *const work = gsl_multifit_linear_alloc(n, 3);
-    gsl_vector_view c = gsl_vector_view_array(coefficients, 3);
-    gsl_vector_view f = gsl_vector_view_array(loading->force, n);
-    bool fitted = false;
-    if (x && covariance && work) {
-        for (size_t i = 0; i < n; i++) {
-            gsl_matrix_set(x, i, 0, 1.0);
-            gsl_matrix_set(x, i, 1, loading->y[i]);
-            gsl_matrix_set(x, i, 2, loading->y[i] * loading->y[i]);
-        }
-        double squares;
-        fitted = gsl_multifit_linear(x, &f.vector, &c.vector, covariance, &squares, work) ==
-                     GSL_SUCCESS &&
-                 coefficients[1] > 0.0;
-    }
-    gsl_multifit_linear_free(work);
-    gsl_matrix_free(covariance);
-    gsl_matrix_free(x);
-    return fitted;
+    return n >= 10 &&
+           wb_align_fit_parabola(loading->y, loading->force, n, coefficients, &deviation) &&
+           coefficients[1] > 0.0;
 }
 
 /* The root of c0 + c1 y + c2 y^2 next to zero on the rising branch; its top when there is none. */
@@ -227,13 +210,12 @@ static double bow_from_loading(const struct wb_align *align, const struct loadin
         return straight;
     const double rest = align->dataset->info.rest_level;
     const double at_rest = isfinite(rest) ? c[0] + rest * (c[1] + rest * c[2]) : 1.0;
-    double bow = root_near_zero(c);
-    if (at_rest < 0.0) {
-        const double mirrored = crossing(loading, -at_rest);
-        if (isfinite(mirrored))
-            bow = 0.5 * (rest + mirrored);
-    }
+    const double extrapolated = root_near_zero(c);
+    const double mirrored = at_rest < 0.0 ? crossing(loading, -at_rest) : (double)NAN;
+    const double bow = isfinite(mirrored) ? 0.5 * (rest + mirrored) : extrapolated;
     *path = PATH_ERROR * fabs(bow - straight);
+    if (!isfinite(mirrored))
+        *path = hypot(*path, EXTRAPOLATION_ERROR * fabs(bow));
     return bow;
 }
 

@@ -131,6 +131,7 @@ struct wb_align {
     double speed; /* m/s of bench time: typical deflection rate of the loadings */
 };
 
+/* The items of `readings` and `reports`; they belong to the lists. */
 struct wb_align_reading *wb_align_readings(const struct wb_align *align);
 struct wb_align_report_point *wb_align_reports(const struct wb_align *align);
 
@@ -160,6 +161,11 @@ struct wb_align_line {
     double value, slope, value_deviation, slope_deviation, residual;
 };
 bool wb_align_fit_line(const double *x, const double *y, size_t n, struct wb_align_line *line);
+
+/* Least squares of c[0] + c[1] x + c[2] x^2 through n points; `deviation` is the standard error of
+ * c[0]. */
+bool wb_align_fit_parabola(const double *x, const double *y, size_t n, double c[3],
+                           double *deviation);
 
 /* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
  * vertical over the wire's length. */

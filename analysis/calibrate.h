@@ -39,6 +39,7 @@ struct wb_calibrate_settings {
     void *progress_context;
 };
 
+/* Fills in the defaults above; no progress. */
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings);
 
 enum wb_calibrate_end {

@@ -21,6 +21,7 @@ int wb_markers_find_chain(const struct wb_markers_search *wanted, int *chosen, d
 double wb_markers_link_cost(const struct wb_specimen *specimen, double noise, int i, int j,
                             const double *a, const double *b);
 
+/* Between two points of space, m. */
 double wb_markers_distance(const double *a, const double *b);
 
 #endif

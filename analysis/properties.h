@@ -33,12 +33,14 @@ struct wb_properties {
     bool is_virtual;
 };
 
+/* Reads a properties file; errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_properties_read(const char *path, struct wb_properties *properties);
 /* `names` are the datasets' folders as given. WB_ERR_EXISTS unless `force`. */
 WB_MUST_CHECK enum wb_status wb_properties_write(const char *path,
                                                  const struct wb_calibrate_result *result,
                                                  const struct wb_calibrate_settings *settings,
                                                  const char *const *names, int n_names, bool force);
+/* The same properties without a file in between. */
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
 

@@ -45,6 +45,10 @@ struct wb_validate_settings {
     int n_elements, n_fibres; /* 0: defaults */
 };
 
+/* Predicts the average first loading of n datasets of one kind. `settings` NULL: defaults.
+ * WB_ERR_DATA when the properties are another wire's or the datasets cannot serve,
+ * WB_ERR_CONVERGENCE when the beam does not get anywhere; stopping on the way is a result, see
+ * n_reached. */
 WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
                                              const struct wb_properties *properties,
                                              const struct wb_dataset *const *datasets, int n,
@@ -55,6 +59,7 @@ WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
 WB_MUST_CHECK enum wb_status wb_validate_write_csv(const struct wb_validate_result *result,
                                                    const char *path);
 
+/* Frees and zeroes; accepts a zeroed one. */
 void wb_validate_result_release(struct wb_validate_result *result);
 
 /* Computed shape of the model at a deflection, for drawing: n points at equal arc length into x

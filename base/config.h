@@ -139,9 +139,14 @@ int wb_config_entries(const struct wb_config_node *map);
 const struct wb_config_node *wb_config_entry(const struct wb_config_node *map, int index,
                                              const char **name);
 
-/* Logs "FILE:LINE: KEY: message" and evaluates to WB_ERR_FORMAT; `key` may be NULL. For checks
- * that a table cannot express. */
-enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *key,
-                                const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The value of the first entry `key` of a map; NULL when there is none or the node is not a map. */
+const struct wb_config_node *wb_config_find(const struct wb_config_node *map, const char *key);
+
+/* Logs "FILE:LINE: KEY: message" and evaluates to WB_ERR_FORMAT; `key` may be NULL. The line is
+ * that of the key where `node` is the map that holds it, else the node's. For checks that a table
+ * cannot express. */
+WB_MUST_CHECK enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *key,
+                                              const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -18,6 +18,7 @@ WB_MUST_CHECK enum wb_status wb_file_read(const char *path, char **bytes, size_t
  * reader sees the old or the new file and nothing half-written stays behind. */
 WB_MUST_CHECK enum wb_status wb_file_write(const char *path, const void *bytes, size_t size);
 
+/* Whether something is there, and whether it is a folder; links are followed. */
 bool wb_file_exists(const char *path);
 bool wb_file_is_folder(const char *path);
 
@@ -49,5 +50,25 @@ WB_MUST_CHECK enum wb_status wb_file_find_data(char path[WB_PATH], const char *n
  * WB_ERR_NOT_FOUND with a message that says where it looked. */
 WB_MUST_CHECK enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind,
                                                   const char *name, const char *beside);
+
+/* The same, for a name that stands in a file: a failure's message begins with `named_in`, its file,
+ * line and key ("specimen.yaml:1: wire"). */
+WB_MUST_CHECK enum wb_status wb_file_find_named(char path[WB_PATH], const char *kind,
+                                                const char *name, const char *beside,
+                                                const char *named_in);
+
+/* A lock file that one process holds at a time. The kernel lets go of it when the process ends,
+ * however that happens, so a lock file left behind locks nothing. */
+struct wb_file_lock {
+    int descriptor;
+    char path[WB_PATH];
+};
+
+/* Takes the lock and writes this process's number into the file. WB_ERR_BUSY when another process
+ * holds it: without a message, and *holder receives its number, 0 when it cannot be told. */
+WB_MUST_CHECK enum wb_status wb_file_lock(struct wb_file_lock *lock, const char *path,
+                                          long *holder);
+/* Lets go of the lock and removes its file. */
+void wb_file_unlock(struct wb_file_lock *lock);
 
 #endif

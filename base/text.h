@@ -13,6 +13,7 @@ struct wb_text {
     bool failed;
 };
 
+/* Appends by printf, or bytes as they are. */
 void wb_text_append(struct wb_text *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void wb_text_append_bytes(struct wb_text *text, const void *bytes, size_t n);

@@ -34,6 +34,8 @@ struct wb_beam_balance {
 
 struct wb_beam; /* opaque */
 
+/* Takes all memory and stands at the reference, virgin. WB_ERR_ARGUMENT for a model that makes no
+ * beam. */
 WB_MUST_CHECK enum wb_status wb_beam_create(struct wb_beam **out,
                                             const struct wb_beam_model *model);
 void wb_beam_destroy(struct wb_beam *beam);

@@ -45,6 +45,7 @@ struct wb_beam_element_stiffness {
     double K11[9], K12[9], K13[9], K22[9], K23[9], K33[9];
 };
 
+/* Fills in the shape functions of an element of length h, m. */
 void wb_beam_element_shape_init(struct wb_beam_element_shape *shape, double h);
 
 /* Rotation at Gauss point g: fills cosine, sine, k. */

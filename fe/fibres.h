@@ -23,6 +23,7 @@ struct wb_fibres_response {
 
 struct wb_fibres; /* opaque */
 
+/* Sorts the section's fibres by material and tabulates its laws; the section is not kept. */
 WB_MUST_CHECK enum wb_status wb_fibres_create(struct wb_fibres **out,
                                               const struct wb_section *section);
 void wb_fibres_destroy(struct wb_fibres *fibres);

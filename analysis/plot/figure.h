@@ -59,6 +59,7 @@ WB_MUST_CHECK enum wb_status wb_figure_create(struct wb_figure **out, const char
                                               double width, double height);
 void wb_figure_destroy(struct wb_figure *figure); /* accepts NULL */
 
+/* As given at creation; the size in points. */
 const char *wb_figure_name(const struct wb_figure *figure);
 double wb_figure_width(const struct wb_figure *figure);
 double wb_figure_height(const struct wb_figure *figure);
@@ -71,6 +72,7 @@ struct wb_panel *wb_figure_add_panel(struct wb_figure *figure);
 /* A small panel within another; one at most. */
 struct wb_panel *wb_figure_add_inset(struct wb_panel *panel);
 
+/* Labels of the axes with their units, and a title above the panel; markup, copied. */
 void wb_figure_set_axes(struct wb_panel *panel, const char *x_label, const char *y_label);
 void wb_figure_set_title(struct wb_panel *panel, const char *markup);
 /* Ranges of the axes; NaN chooses that bound from the data. */

@@ -16,6 +16,7 @@ struct wb_place_box {
     double x, y, width, height;
 };
 
+/* An empty plot of that size, pt. */
 WB_MUST_CHECK enum wb_status wb_place_create(struct wb_place **out, double width, double height);
 void wb_place_destroy(struct wb_place *place); /* accepts NULL */
 
@@ -23,6 +24,7 @@ void wb_place_destroy(struct wb_place *place); /* accepts NULL */
  * the plot are ignored, as are NaN. */
 void wb_place_mark_segment(struct wb_place *place, double x0, double y0, double x1, double y1,
                            double half_width);
+/* The same for a box. */
 void wb_place_mark_box(struct wb_place *place, const struct wb_place_box *box);
 
 /* Finds room for a box of the given size with `gap` around it: the corner with the most room, else

@@ -32,6 +32,7 @@ struct wb_typeset_size {
     double baseline;      /* pt from the top to the first baseline */
 };
 
+/* The size that a text would take; draws nothing. */
 struct wb_typeset_size wb_typeset_measure(cairo_t *cairo, const char *markup,
                                           const struct wb_typeset_style *style);
 

@@ -232,8 +232,10 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
         WB_CONFIG_OPTIONAL_NODE("validation", &validation),
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-    char path[WB_PATH];
-    WB_TRY(wb_file_find_fixture(path, "wires", name, reading->folder));
+    char path[WB_PATH], named_in[WB_PATH + 32];
+    snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
+             wb_config_line(wb_config_find(node, "wire")));
+    WB_TRY(wb_file_find_named(path, "wires", name, reading->folder, named_in));
     WB_TRY(wb_wire_read(path, &wire->product));
     if (!wire->label[0])
         snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);

@@ -73,9 +73,11 @@ struct wb_document {
     bool failed;
 };
 
+/* Starts an empty document. Release it also after a failure; a zeroed one may be released. */
 void wb_document_init(struct wb_document *document, const char *title, const char *subtitle,
                       const char *footer, const char *date_utc);
 void wb_document_release(struct wb_document *document);
+/* Whether memory ran out while it was built: then it must not be rendered. */
 bool wb_document_failed(const struct wb_document *document);
 
 /* `anchor`: letters, digits and '-'; unique, or "" for none. */

@@ -26,6 +26,7 @@ struct wb_figures {
     struct wb_figures_wire *wires; /* (n_wires), owned */
 };
 
+/* Draws all figures that the results give; on a failure nothing needs a release. */
 WB_MUST_CHECK enum wb_status wb_figures_create(struct wb_figures *figures,
                                                const struct wb_results *results);
 void wb_figures_release(struct wb_figures *figures); /* accepts a zeroed one */

@@ -27,6 +27,7 @@ WB_MUST_CHECK enum wb_status wb_figures_start(struct wb_figure **figure,
 void wb_figures_state_max_force(struct wb_figure *figure, const struct wb_results *results,
                                 double max_force);
 
+/* The test to scale, with the first usable recording's rig and shape; NULL without one. */
 WB_MUST_CHECK enum wb_status wb_figures_draw_bench(struct wb_figure **figure,
                                                    const struct wb_results *results);
 

@@ -39,6 +39,7 @@ struct wb_pages_property {
 extern const struct wb_pages_property wb_pages_properties[4];
 double wb_pages_value(const struct wb_material *material, int property);
 
+/* The parts of the report, in order; each adds its headings. */
 void wb_pages_summary(struct wb_document *document, const struct wb_results *results);
 void wb_pages_bench(struct wb_document *document, const struct wb_results *results,
                     const struct wb_figures *figures);
