@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "analysis/align.h"
+#include "analysis/report/figures.h"
 #include "analysis/report/report.h"
 #include "base/file.h"
 #include "base/interrupt.h"
@@ -79,6 +81,17 @@ struct good {
     struct wb_results results;
 };
 
+/* As the alignment tells of a gap. */
+static void add_gap(struct wb_results_test *test, double longest_gap)
+{
+    struct wb_json *const checks = wb_json_set_object(test->dataset.document, "checks");
+    struct wb_json *const rows = wb_json_set_object(checks, "rows");
+    struct wb_json *const warnings = wb_json_set_array(test->dataset.document, "warnings");
+    wb_json_set_integer(rows, "gaps", 1);
+    wb_json_set_number(rows, "longest_gap_s", 10.0 * longest_gap);
+    wb_json_append_text(warnings, "1 gap " WB_ALIGN_GAPS_TEXT " 0.85 s");
+}
+
 static void fill_tests(struct wb_results_tests *tests, double length, double factor)
 {
     const struct wb_material truth = beam_material(0);
@@ -98,6 +111,8 @@ static void fill_tests(struct wb_results_tests *tests, double length, double fac
         test->rig.gravity = 9.780;
         test->rig.load_cell.capacity = 20e-3 * 9.780;
         test->specimen.n_markers = 7;
+        if (i == 0)
+            add_gap(test, length);
     }
 }
 
@@ -235,6 +250,62 @@ static void the_html_page_needs_no_other_file_and_escapes_what_comes_from_files(
     assert_non_null(strstr(html, "id=\"type1-samples-0\""));
     assert_null(strstr(html, "id=\"glyph"));
     free(html);
+}
+
+static int count_of(const char *text, const char *part)
+{
+    int n = 0;
+    for (; (text = strstr(text, part)); text += strlen(part))
+        n++;
+    return n;
+}
+
+static void recordings_with_gaps_are_counted_in_one_line(void **state)
+{
+    (void)state;
+    char *html;
+    assert_int_equal(wb_file_read(in_folder("once/report.html"), &html, NULL), WB_OK);
+    assert_int_equal(
+        count_of(html, "2 of 4 recordings have gaps in the rows, the longest of 1.00 s"), 1);
+    /* Each stands on its wire's page, and not on the first one as well. */
+    assert_int_equal(count_of(html, "1 gap " WB_ALIGN_GAPS_TEXT), 2);
+    free(html);
+}
+
+static void the_capacity_is_what_weighs_so_much_on_that_bench(void **state)
+{
+    (void)state;
+    assert_true(says("once/report.html", "20 g, reads on to"));
+    const struct wb_rig unknown = {.gravity = 0.0};
+    assert_true(isnan(wb_results_capacity(&unknown)));
+}
+
+/* How often the lines of the figure of all cycles are begun. */
+static int begun_lines(const struct wb_results *results)
+{
+    struct wb_figures figures;
+    struct wb_text svg = {0};
+    assert_int_equal(wb_figures_create(&figures, results), WB_OK);
+    assert_non_null(figures.wires[0].cycles);
+    assert_int_equal(wb_figure_svg(figures.wires[0].cycles, &svg), WB_OK);
+    const int n = count_of(wb_text_string(&svg), "M ");
+    wb_text_release(&svg);
+    wb_figures_release(&figures);
+    return n;
+}
+
+static void a_slack_strand_in_the_middle_breaks_the_line(void **state)
+{
+    (void)state;
+    struct good good;
+    make_good(&good, 1.0);
+    struct wb_dataset *const dataset = &good.results.wires[0].calibration_tests.items[0].dataset;
+    const int whole = begun_lines(&good.results);
+    assert_true(dataset->n_rows > 40);
+    for (size_t i = 20; i < 25; i++)
+        dataset->rows[i].phase = WB_PHASE_SLACK;
+    assert_int_equal(begun_lines(&good.results), whole + 1);
+    release_good(&good);
 }
 
 static void the_json_file_holds_the_computed_numbers(void **state)
@@ -466,6 +537,9 @@ int main(void)
         cmocka_unit_test(the_same_results_give_the_same_bytes_in_all_files),
         cmocka_unit_test(every_output_says_virtual_rig_and_none_says_experiment),
         cmocka_unit_test(the_html_page_needs_no_other_file_and_escapes_what_comes_from_files),
+        cmocka_unit_test(recordings_with_gaps_are_counted_in_one_line),
+        cmocka_unit_test(the_capacity_is_what_weighs_so_much_on_that_bench),
+        cmocka_unit_test(a_slack_strand_in_the_middle_breaks_the_line),
         cmocka_unit_test(the_json_file_holds_the_computed_numbers),
         cmocka_unit_test(the_pdf_text_can_be_searched),
         cmocka_unit_test(a_full_folder_is_refused_and_force_replaces_only_the_reports_own_files),

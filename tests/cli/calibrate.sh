@@ -80,7 +80,7 @@ expect 2 'properties and at least one dataset' "$wirebench" validate type3.yaml
 
 expect 0 'elastoplastic' "$wirebench" validate type3.yaml L85 L100 -o curves
 for length in 85 100; do
-    [ "$(wc -l <"curves/type3-L$length.csv")" -eq 108 ] || fail "curves/type3-L$length.csv"
+    [ "$(wc -l <"curves/type3-L$length.csv")" -eq 109 ] || fail "curves/type3-L$length.csv"
 done
 expect 1 '--force' "$wirebench" validate type3.yaml L100 -o curves
 "$wirebench" validate type3.yaml L100 --json >validate.json || fail 'validate --json'
