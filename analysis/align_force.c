@@ -26,6 +26,8 @@
  * part of the length. */
 #define ZERO_WINDOW (1.6 * WB_MM)
 #define SLOPE_PART 0.03
+/* The zero of force, of the second degree, over so much deflection from the first taut row on. */
+#define ZERO_RANGE (3.0 * WB_MM)
 #define LEAST_FIT_ROWS 8
 /* Zero drift of a load cell of this kind a minute, over its capacity. */
 #define TYPICAL_DRIFT 2e-4
@@ -394,7 +396,6 @@ static size_t gather(const struct wb_align *align, size_t first, double highest,
     return n;
 }
 
-#define ZRANGE (getenv("ZR") ? atof(getenv("ZR"))*1e-3 : 0.0)
 static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, double *y)
 {
     const double begin = align->rows[first].tip_y;
@@ -419,7 +420,7 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
     /* A wire that yielded before zero has a bent curve there, on which a line through one side
      * stands too high. */
     double c[3], deviation;
-    n = gather(align, first, begin + ZRANGE, x, y);
+    n = gather(align, first, begin + ZERO_RANGE, x, y);
     if (n >= 3 * LEAST_FIT_ROWS && wb_align_fit_parabola(x, y, n, c, &deviation) && c[1] > 0.0) {
         align->zero_force = c[0];
         align->zero_force_deviation = deviation;
@@ -472,7 +473,7 @@ static void describe_zero(struct wb_align *align)
     };
     wb_align_correct(align, &zero,
                      "vertical part of the tension where the tip is level with the clamp on the "
-                     "first loading (straight line through the taut part near it), subtracted "
+                     "first loading (second-degree fit to the taut part near it), subtracted "
                      "from all; initial slope %.4g N/m; that the level itself is uncertain by "
                      "%.3g mm is in the uncertainty",
                      align->stiffness, level / WB_MM);

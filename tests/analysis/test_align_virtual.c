@@ -355,12 +355,82 @@ static void a_server_without_echo_serves(void **state)
     assert_aligned(&(struct plan){"type2-L85-2", 3, 2, 7, 0.02, 1.0});
 }
 
+/* Tension of the truth where the tip passes a deflection on the first loading; the strand is
+ * upright there. */
+static double true_tension(double deflection)
+{
+    for (int i = 1; i < session.n_truth; i++) {
+        const struct truth_row *const a = &session.truth[i - 1], *const b = &session.truth[i];
+        if (a->t > 0.0 && a->deflection < deflection && b->deflection >= deflection)
+            return a->tension + (b->tension - a->tension) * (deflection - a->deflection) /
+                                    (b->deflection - a->deflection);
+    }
+    fail_msg("the tip never passes %g mm", deflection / WB_MM);
+    return 0.0;
+}
+
+static double zero_force_of(const struct wb_dataset *dataset)
+{
+    const struct wb_json *const list = wb_json_get(dataset->document, "corrections");
+    double value = (double)NAN;
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const char *name;
+        const struct wb_json *const entry = wb_json_item(list, i);
+        if (wb_json_get_text(entry, "name", &name) && strcmp(name, "force at zero deflection") == 0)
+            (void)wb_json_get_number(entry, "value_mN", &value);
+    }
+    return value * WB_MN;
+}
+
+/* Wires that bow down have yielded before the first row that counts: what is said of their bow and
+ * of the force at zero must hold over many of them. */
+static void what_is_stated_of_downward_bows_holds(void **state)
+{
+    (void)state;
+    static const char *const specimens[] = {"type1-L85-1",  "type2-L85-1",  "type3-L85-1",
+                                            "type1-L100-1", "type2-L100-1", "type3-L100-1"};
+    double n = 0.0, pulls = 0.0, error = 0.0, zero = 0.0, zero_squares = 0.0;
+    for (int seed = 1; seed <= 48; seed++) {
+        const struct plan plan = {specimens[seed % 6], (uint64_t)seed, 3, 0, 0.01, 1.0};
+        char path[WB_PATH];
+        struct wb_dataset dataset;
+        struct wb_align_settings settings;
+        wb_align_default_settings(&settings);
+        setup_bench(&session.setup, plan.specimen, plan.seed);
+        if (session.setup.truth.bow > 0.0)
+            continue;
+        record(&plan, path);
+        if (wb_align_run(&dataset, path, &settings) != WB_OK)
+            fail_msg("%s, seed %d not aligned: %s", plan.specimen, seed, last_message);
+        const double off = wb_dataset_bow(&dataset.info) - session.setup.truth.bow;
+        const double pull =
+            off / (WB_MM * number_in(&dataset, "natural_shape", "bow_uncertainty_mm"));
+        const double zero_off = zero_force_of(&dataset) - true_tension(-unknown_level());
+        n += 1.0;
+        error += off;
+        pulls += pull * pull;
+        zero += zero_off;
+        zero_squares += zero_off * zero_off;
+        wb_dataset_release(&dataset);
+    }
+    pulls = sqrt(pulls / n);
+    print_message("           %g wires bowed down: bow off by %.3f mm on average, RMS pull %.2f; "
+                  "force at zero off by %+.1f uN on average, RMS %.1f uN\n",
+                  n, error / n / WB_MM, pulls, 1e6 * zero / n, 1e6 * sqrt(zero_squares / n));
+    assert_true(n >= 15.0);
+    assert_true(pulls > 0.3 && pulls < 1.3);
+    assert_close(error / n, 0.0, 0.4 * WB_MM);
+    /* The same seeds with a straight line instead: 15.5 uN. */
+    assert_close(zero / n, 0.0, 12e-6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(type_1_is_aligned),
         cmocka_unit_test(type_3_is_aligned_at_twenty_times_the_speed),
         cmocka_unit_test(a_server_without_echo_serves),
+        cmocka_unit_test(what_is_stated_of_downward_bows_holds),
     };
     return cmocka_run_group_tests(tests, start, finish);
 }
