@@ -39,9 +39,13 @@ static enum wb_status load(struct wb_config *config, const char *text)
     enum wb_status status = WB_OK;
     if (!yaml_parser_load(&parser, &config->document)) {
         const char *const what = parser.problem ? parser.problem : "not YAML";
+        /* libyaml's words for the commonest slip, a line without its colon. */
+        const bool colon = strstr(what, "mapping values are not allowed") ||
+                           strstr(what, "could not find expected ':'");
         status =
-            wb_fail(WB_ERR_FORMAT, "%s:%zu: %s%s%s", config->origin, parser.problem_mark.line + 1,
-                    what, parser.context ? " " : "", parser.context ? parser.context : "");
+            wb_fail(WB_ERR_FORMAT, "%s:%zu: %s%s%s%s", config->origin, parser.problem_mark.line + 1,
+                    what, parser.context ? " " : "", parser.context ? parser.context : "",
+                    colon ? ": is a colon missing in the line before?" : "");
     } else {
         config->loaded = true;
         if (!yaml_document_get_root_node(&config->document))
@@ -117,6 +121,17 @@ int wb_config_line(const struct wb_config_node *node)
     return (int)node->yaml->start_mark.line + 1;
 }
 
+const struct wb_config_node *wb_config_find(const struct wb_config_node *map, const char *key)
+{
+    for (int i = 0; i < wb_config_entries(map); i++) {
+        const char *name;
+        const struct wb_config_node *const value = wb_config_entry(map, i, &name);
+        if (strcmp(name, key) == 0)
+            return value;
+    }
+    return NULL;
+}
+
 enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *key,
                                 const char *format, ...)
 {
@@ -125,8 +140,9 @@ enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *k
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s%s%s", wb_config_origin(node), wb_config_line(node),
-                   key ? key : "", key ? ": " : "", message);
+    const struct wb_config_node *const named = key ? wb_config_find(node, key) : NULL;
+    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s%s%s", wb_config_origin(node),
+                   wb_config_line(named ? named : node), key ? key : "", key ? ": " : "", message);
 }
 
 const char *wb_config_scalar(const struct wb_config_node *node)
@@ -167,6 +183,19 @@ const struct wb_config_node *wb_config_item(const struct wb_config_node *sequenc
     return node_of(sequence->config, sequence->yaml->data.sequence.items.start[index]);
 }
 
+/* "85,5": a number but for its comma; then `with_point` is "85.5". */
+static bool is_decimal_comma(const char *text, char *with_point, size_t size)
+{
+    double number;
+    if (snprintf(with_point, size, "%s", text) >= (int)size)
+        return false;
+    char *const comma = strchr(with_point, ',');
+    if (!comma)
+        return false;
+    *comma = '.';
+    return wb_number_parse(with_point, &number);
+}
+
 static enum wb_status read_number(const struct wb_config_node *node,
                                   const struct wb_config_key *key, double *value)
 {
@@ -174,6 +203,10 @@ static enum wb_status read_number(const struct wb_config_node *node,
     double number;
     if (!text)
         return wb_config_refuse(node, key->name, "expected a number");
+    char with_point[64];
+    if (!wb_number_parse(text, &number) && is_decimal_comma(text, with_point, sizeof with_point))
+        return wb_config_refuse(node, key->name, "expected a decimal point, not a comma: write %s",
+                                with_point);
     if (!wb_number_parse(text, &number))
         return wb_config_refuse(node, key->name,
                                 "expected a plain number (the unit stands in the key's name), "

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -214,6 +215,15 @@ static bool is_path(const char *name)
 enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind, const char *name,
                                     const char *beside)
 {
+    return wb_file_find_named(path, kind, name, beside, NULL);
+}
+
+enum wb_status wb_file_find_named(char path[WB_PATH], const char *kind, const char *name,
+                                  const char *beside, const char *named_in)
+{
+    const char *const colon = named_in ? ": " : "";
+    if (!named_in)
+        named_in = "";
     char candidate[WB_PATH];
     if (is_path(name)) {
         if (beside) {
@@ -224,8 +234,10 @@ enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind, const 
         WB_TRY(wb_file_join(path, "", name));
         if (wb_file_exists(path) || wb_file_find_data(path, name) == WB_OK)
             return WB_OK;
-        return wb_fail(WB_ERR_NOT_FOUND, "no file '%s'%s%s", name, beside ? ", here or in " : "",
-                       beside ? beside : "");
+        const bool elsewhere = beside && strcmp(beside, ".") != 0;
+        return wb_fail(WB_ERR_NOT_FOUND, "%s%sno file '%s'%s%s%s", named_in, colon, name,
+                       elsewhere ? ", here or in '" : "", elsewhere ? beside : "",
+                       elsewhere ? "'" : "");
     }
     if (snprintf(candidate, sizeof candidate, "fixtures/%s/%s.yaml", kind, name) >=
         (int)sizeof candidate)
@@ -233,6 +245,58 @@ enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind, const 
     if (wb_file_find_data(path, candidate) == WB_OK)
         return WB_OK;
     return wb_fail(WB_ERR_NOT_FOUND,
-                   "no '%s' among the shipped %s (no %s); give a path to your own file", name, kind,
-                   candidate);
+                   "%s%sno '%s' among the shipped %s (no %s); give a path to your own file",
+                   named_in, colon, name, kind, candidate);
+}
+
+static long read_holder(int descriptor)
+{
+    char text[32];
+    const ssize_t n = pread(descriptor, text, sizeof text - 1, 0);
+    text[n > 0 ? n : 0] = '\0';
+    return strtol(text, NULL, 10);
+}
+
+/* Whoever held the lock before may have removed its file after we opened it. */
+static bool is_still_there(int descriptor, const char *path)
+{
+    struct stat held, named;
+    return fstat(descriptor, &held) == 0 && stat(path, &named) == 0 &&
+           held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+}
+
+enum wb_status wb_file_lock(struct wb_file_lock *lock, const char *path, long *holder)
+{
+    *holder = 0;
+    if (snprintf(lock->path, sizeof lock->path, "%s", path) >= (int)sizeof lock->path)
+        return wb_fail(WB_ERR_ARGUMENT, "path too long: '%s'", path);
+    for (;;) {
+        const int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (descriptor < 0)
+            return fail_errno("open the lock", path);
+        if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+            const bool busy = errno == EWOULDBLOCK;
+            const enum wb_status status = busy ? WB_ERR_BUSY : fail_errno("lock", path);
+            *holder = read_holder(descriptor);
+            close(descriptor);
+            return status;
+        }
+        if (is_still_there(descriptor, path)) {
+            char text[32];
+            const int n = snprintf(text, sizeof text, "%ld\n", (long)getpid());
+            lock->descriptor = descriptor;
+            /* The number serves the message only; the lock holds without it. */
+            if (ftruncate(descriptor, 0) == 0 && pwrite(descriptor, text, (size_t)n, 0) < n)
+                wb_warn("'%s': %s", path, strerror(errno));
+            return WB_OK;
+        }
+        close(descriptor);
+    }
+}
+
+void wb_file_unlock(struct wb_file_lock *lock)
+{
+    unlink(lock->path);
+    close(lock->descriptor);
+    lock->descriptor = -1;
 }

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/file.h"
 #include "base/interrupt.h"
@@ -121,30 +122,63 @@ static const struct argp argp = {
            "not used. The same seed and specimen give the same wire and the same noise.",
 };
 
+/* One rig to a folder: a second one would replace the first one's rig file and later remove it. */
+static enum wb_status lock_folder(struct wb_file_lock *lock, const char *folder)
+{
+    char path[WB_PATH], who[64] = "";
+    long holder;
+    WB_TRY(wb_file_join(path, folder, "rig.lock"));
+    const enum wb_status status = wb_file_lock(lock, path, &holder);
+    if (status != WB_ERR_BUSY)
+        return status;
+    if (holder > 0)
+        snprintf(who, sizeof who, " (process %ld)", holder);
+    return wb_fail(status,
+                   "a rig runs in '%s' already%s: end it, or give this one another folder (--run)",
+                   folder, who);
+}
+
+/* Somebody may have put another file in its place, or changed it. */
+static bool is_same_file(const char *path, const struct stat *before)
+{
+    struct stat now;
+    return stat(path, &now) == 0 && now.st_dev == before->st_dev && now.st_ino == before->st_ino &&
+           now.st_mtim.tv_sec == before->st_mtim.tv_sec &&
+           now.st_mtim.tv_nsec == before->st_mtim.tv_nsec;
+}
+
 int wb_cmd_rig(int argc, char **argv)
 {
     struct options options = {.bench = {.seed = 1}};
     struct wb_bench *bench;
     char path[WB_PATH];
+    struct wb_file_lock lock;
     static const volatile bool never = false;
     wb_command_parse(&argp, argc, argv, &options);
     wb_interrupt_install();
     wb_acquisition_raise_priority();
     if (wb_file_make_folder(options.run) != WB_OK ||
-        wb_file_join(path, options.run, "rig.yaml") != WB_OK)
+        wb_file_join(path, options.run, "rig.yaml") != WB_OK ||
+        lock_folder(&lock, options.run) != WB_OK)
         return WB_EXIT_FAILED;
-    if (wb_bench_open(&bench, &options.bench) != WB_OK)
+    if (wb_bench_open(&bench, &options.bench) != WB_OK) {
+        wb_file_unlock(&lock);
         return WB_EXIT_FAILED;
+    }
+    struct stat written;
     enum wb_status status = wb_bench_write_rig(bench, path);
     if (status == WB_OK) {
         wb_info("virtual rig: load cell %s, motion capture %s, stage %s; rig file '%s'",
                 wb_bench_load_cell_address(bench), wb_bench_mocap_address(bench),
                 wb_bench_stage_address(bench), path);
+        const bool known = stat(path, &written) == 0;
         fprintf(stderr, "ready\n");
         wb_bench_run(bench, &never);
         /* The addresses end with the rig: nobody may take them for a bench's. */
-        remove(path);
+        if (known && is_same_file(path, &written))
+            remove(path);
     }
     wb_bench_close(bench);
+    wb_file_unlock(&lock);
     return wb_command_exit(status);
 }

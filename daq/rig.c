@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/file.h"
 #include "base/units.h"
 #include "daq/loadcell_line.h"
 
@@ -42,8 +43,8 @@ static enum wb_status check_address(const struct wb_config_node *map, const char
 
 static enum wb_status check_sign(const struct wb_config_node *map, const char *key, int sign)
 {
-    if (sign == 0)
-        return wb_config_refuse(map, key, "expected +1 or -1");
+    if (sign != 1 && sign != -1)
+        return wb_config_refuse(map, key, "expected +1 or -1, not %d", sign);
     return WB_OK;
 }
 
@@ -230,7 +231,7 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
         WB_CONFIG_OPTIONAL_NUMBER("check_tolerance_percent", &cell->check_tolerance, WB_PERCENT,
                                   0.001, 50.0),
         WB_CONFIG_OPTIONAL_CHOICE("tare", &tare, tares),
-        WB_CONFIG_OPTIONAL_INTEGER("sign", &cell->sign, -1, 1),
+        WB_CONFIG_OPTIONAL_INTEGER("sign", &cell->sign, -1000, 1000),
         WB_CONFIG_OPTIONAL_NUMBER("poll_period_ms", &keys.poll_period, 1e-3, 1.0, 10000.0),
         WB_CONFIG_OPTIONAL_TEXT("delimiter", keys.delimiter),
         {"column", WB_CONFIG_TYPE_INTEGER, true, &cell->column, 0, 0.0, 1.0, 64.0, NULL,
@@ -292,7 +293,7 @@ static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig
         WB_CONFIG_TEXT("address", stage->address),
         WB_CONFIG_CHOICE("protocol", &protocol, stage_protocols),
         WB_CONFIG_CHOICE("axis", &axis, axes),
-        WB_CONFIG_INTEGER("down", &stage->down, -1, 1),
+        WB_CONFIG_INTEGER("down", &stage->down, -1000, 1000),
         WB_CONFIG_NUMBER("travel_mm", &stage->travel, WB_MM, 0.1, 5000.0),
         WB_CONFIG_NUMBER("speed_mm_s", &stage->speed, WB_MM, 0.001, 1000.0),
     };
@@ -388,11 +389,38 @@ double wb_rig_tare_load(const struct wb_rig *rig)
     return 0.0;
 }
 
+/* A virtual rig that was killed leaves its file behind, and its ports are gone. */
+static enum wb_status check_virtual_ports(const char *path, const struct wb_rig *rig)
+{
+    const char *const addresses[] = {rig->load_cell.address, rig->stage.address};
+    for (size_t i = 0; rig->is_virtual && i < WB_COUNT(addresses); i++) {
+        char port[WB_RIG_TEXT];
+        if (strncmp(addresses[i], "pty:", 4) != 0)
+            continue;
+        snprintf(port, sizeof port, "%.*s", (int)strcspn(addresses[i] + 4, ",?"), addresses[i] + 4);
+        if (!wb_file_exists(port))
+            return wb_fail(WB_ERR_NOT_FOUND,
+                           "%s: there is no port '%s': the virtual rig that wrote this file no "
+                           "longer runs; start it again",
+                           path, port);
+    }
+    return WB_OK;
+}
+
 enum wb_status wb_rig_read(const char *path, struct wb_rig *rig)
 {
     struct wb_config *config;
+    /* The name that the virtual rig gives to its file, which lasts as long as the rig. */
+    if (strcmp(wb_file_name(path), "rig.yaml") == 0 && !wb_file_exists(path))
+        return wb_fail(WB_ERR_NOT_FOUND,
+                       "no rig file '%s'; is `wirebench rig` running, and has it said ready?",
+                       path);
+    struct wb_rig read;
     WB_TRY(wb_config_read(&config, path));
-    return take(config, rig);
+    WB_TRY(take(config, &read));
+    WB_TRY(check_virtual_ports(path, &read));
+    *rig = read;
+    return WB_OK;
 }
 
 enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig)

@@ -46,6 +46,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_spe
     if (specimen->wire[0] == '\0')
         return wb_config_refuse(root, "wire",
                                 "expected the name of a wire, such as type1, or a path");
+    specimen->wire_line = wb_config_line(wb_config_find(root, "wire"));
     const struct wb_config_key marker = WB_CONFIG_NUMBER("markers_mm", NULL, WB_MM, 0.0, 10000.0);
     WB_TRY(wb_config_numbers(markers, &marker, 2, WB_SPECIMEN_MAX_MARKERS, specimen->markers,
                              &specimen->n_markers));

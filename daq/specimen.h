@@ -17,6 +17,7 @@
 
 struct wb_specimen {
     char wire[160];
+    int wire_line; /* of the key `wire` in its file, for messages */
     double length; /* m */
     int sample;
     int n_markers;                           /* 2..WB_SPECIMEN_MAX_MARKERS */

@@ -147,6 +147,36 @@ static void lists_of_numbers_are_checked(void **state)
     wb_config_destroy(config);
 }
 
+static void checks_after_the_table_name_the_line_of_the_key(void **state)
+{
+    (void)state;
+    struct wb_config *config;
+    assert_int_equal(wb_config_parse(&config, "a: 1\nb:\n  c: 2\n  d: 3\n", "test.yaml"), WB_OK);
+    const struct wb_config_node *const root = wb_config_root(config);
+    const struct wb_config_node *const b = wb_config_find(root, "b");
+    assert_non_null(b);
+    assert_null(wb_config_find(root, "d"));
+    assert_null(wb_config_find(wb_config_find(root, "a"), "a"));
+    assert_string_equal(wb_config_scalar(wb_config_find(b, "d")), "3");
+    assert_int_equal(wb_config_refuse(b, "d", "wrong"), WB_ERR_FORMAT);
+    assert_string_equal(last_message, "test.yaml:4: d: wrong");
+    assert_int_equal(wb_config_refuse(b, "absent", "missing"), WB_ERR_FORMAT);
+    assert_string_equal(last_message, "test.yaml:3: absent: missing");
+    wb_config_destroy(config);
+}
+
+static void common_slips_are_told_how_to_be_mended(void **state)
+{
+    (void)state;
+    struct sample sample;
+    assert_int_equal(read_sample("length_mm: 85,5\n", &sample), WB_ERR_FORMAT);
+    assert_non_null(strstr(last_message, "write 85.5"));
+    assert_int_equal(read_sample("length_mm: 1,2,3\n", &sample), WB_ERR_FORMAT);
+    assert_null(strstr(last_message, "write"));
+    assert_int_equal(read_sample("length_mm 85\ncount: 1\n", &sample), WB_ERR_FORMAT);
+    assert_non_null(strstr(last_message, "is a colon missing in the line before?"));
+}
+
 static void a_missing_file_is_named(void **state)
 {
     (void)state;
@@ -185,6 +215,8 @@ int main(void)
         fact(absent_optional_keys_leave_their_target),
         fact(errors_name_file_line_and_key),
         fact(lists_of_numbers_are_checked),
+        fact(checks_after_the_table_name_the_line_of_the_key),
+        fact(common_slips_are_told_how_to_be_mended),
         fact(a_missing_file_is_named),
         fact(mangled_texts_never_crash),
     };

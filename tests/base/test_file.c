@@ -132,6 +132,48 @@ static void fixtures_are_found_by_name_and_by_path(void **state)
     assert_string_equal(path, shipped);
 }
 
+static char last_message[2048];
+
+static void remember(void *context, enum wb_log_level level, const char *domain,
+                     const char *message)
+{
+    (void)context, (void)level, (void)domain;
+    snprintf(last_message, sizeof last_message, "%s", message);
+}
+
+static void a_name_that_means_nothing_is_told_with_its_place(void **state)
+{
+    (void)state;
+    char path[WB_PATH];
+    wb_log_set_sink(remember, NULL);
+    assert_int_equal(wb_file_find_named(path, "wires", "type9", NULL, "s.yaml:3: wire"),
+                     WB_ERR_NOT_FOUND);
+    assert_ptr_equal(strstr(last_message, "s.yaml:3: wire: no 'type9'"), last_message);
+    assert_int_equal(wb_file_find_named(path, "wires", "my.yaml", "/no", "s.yaml:3: wire"),
+                     WB_ERR_NOT_FOUND);
+    assert_string_equal(last_message, "s.yaml:3: wire: no file 'my.yaml', here or in '/no'");
+    wb_log_set_sink(discard_message, NULL);
+}
+
+static void a_lock_is_held_once_and_ends_with_its_holder(void **state)
+{
+    (void)state;
+    char path[WB_PATH];
+    struct wb_file_lock lock, second;
+    long holder = -1;
+    assert_int_equal(wb_file_join(path, folder, "test.lock"), WB_OK);
+    /* One left behind, with a number in it. */
+    assert_int_equal(wb_file_write(path, "123456789\n", 10), WB_OK);
+    assert_int_equal(wb_file_lock(&lock, path, &holder), WB_OK);
+    assert_int_equal(wb_file_lock(&second, path, &holder), WB_ERR_BUSY);
+    assert_int_equal(holder, getpid());
+    wb_file_unlock(&lock);
+    assert_false(wb_file_exists(path));
+    assert_int_equal(wb_file_lock(&lock, path, &holder), WB_OK);
+    wb_file_unlock(&lock);
+    assert_int_equal(wb_file_lock(&lock, "/no/such/folder/lock", &holder), WB_ERR_NOT_FOUND);
+}
+
 static void sha256_matches_the_standard_vector(void **state)
 {
     (void)state;
@@ -157,6 +199,8 @@ int main(void)
         fact(an_output_folder_with_files_needs_force),
         fact(paths_come_apart),
         fact(fixtures_are_found_by_name_and_by_path),
+        fact(a_name_that_means_nothing_is_told_with_its_place),
+        fact(a_lock_is_held_once_and_ends_with_its_holder),
         fact(sha256_matches_the_standard_vector),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

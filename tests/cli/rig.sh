@@ -68,6 +68,25 @@ grep -q 'lost_steps_mm: 0.8$' "$folder/two/deep/rig.yaml" || fail "two: no lost 
 [ "$(cat "$folder"/*/deep/rig.yaml | grep 'bow_mm' | sort -u | wc -l)" = 2 ] ||
     fail "both seeds gave the same wire"
 
+# A second one in the same folder is refused with the first one's number, and takes nothing away.
+timeout 10 "$wirebench" rig "$rig" --specimen "$specimen" --run "$folder/one/deep" 2>"$folder/err"
+[ $? = 1 ] || fail "a second rig in one folder was not refused"
+grep -q "process $one)" "$folder/err" || fail "second rig: $(cat "$folder/err")"
+[ -e "$folder/one/deep/rig.yaml" ] || fail "the second rig took the first one's file away"
+
+# A lock that a killed rig left behind locks nothing, and another's rig.yaml stays.
+start three
+kill -KILL "$process"
+wait "$process" 2>/dev/null
+start three
+echo 'name: mine' >"$folder/mine"
+mv "$folder/mine" "$folder/three/deep/rig.yaml"
+kill -INT "$process"
+wait "$process"
+grep -q '^name: mine' "$folder/three/deep/rig.yaml" || fail "removed a file that was not its own"
+[ ! -e "$folder/three/deep/rig.lock" ] || fail "left its lock"
+rm -r "$folder/three"
+
 # It ends with Ctrl-C, and its file with it.
 kill -INT "$one"
 wait "$one"

@@ -1,5 +1,9 @@
 #include "daq/rig.h"
 
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "base/file.h"
 #include "base/units.h"
 #include "tests/check.h"
 
@@ -285,6 +289,42 @@ static void missing_file_is_named(void **state)
     assert_non_null(strstr(last_message, "/nowhere/bench.yaml"));
 }
 
+static void a_virtual_rig_that_is_gone_is_told(void **state)
+{
+    (void)state;
+    struct wb_rig rig;
+    char folder[] = "/tmp/wb-rig-XXXXXX", path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/rig.yaml", folder);
+    assert_int_equal(wb_rig_read(path, &rig), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(last_message, "has it said ready?"));
+    char text[4096];
+    snprintf(text, sizeof text, "virtual: true\n%s", good);
+    char *const port = strstr(text, "serial:");
+    assert_non_null(port);
+    memcpy(port, "pty:/dv", 7); /* whatever follows: there is no such port */
+    assert_int_equal(wb_file_write(path, text, strlen(text)), WB_OK);
+    assert_int_equal(wb_rig_read(path, &rig), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(last_message, "no longer runs; start it again"));
+    assert_int_equal(n_messages, 2);
+    unlink(path);
+    rmdir(folder);
+}
+
+static void checks_after_the_table_tell_the_line_of_their_key(void **state)
+{
+    (void)state;
+    struct wb_rig rig;
+    char place[64];
+    const char *const text = edited("  sign: +1\n", "  sign: 2\n");
+    int line = 1;
+    for (const char *at = text; at < strstr(text, "sign: 2"); at++)
+        line += *at == '\n';
+    snprintf(place, sizeof place, "bench.yaml:%d: sign: expected +1 or -1", line);
+    assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig), WB_ERR_FORMAT);
+    assert_non_null(strstr(last_message, place));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -304,6 +344,10 @@ int main(void)
                                         catch_messages, release_messages),
         cmocka_unit_test_setup_teardown(balances_take_no_generic_keys, catch_messages,
                                         release_messages),
+        cmocka_unit_test_setup_teardown(a_virtual_rig_that_is_gone_is_told, catch_messages,
+                                        release_messages),
+        cmocka_unit_test_setup_teardown(checks_after_the_table_tell_the_line_of_their_key,
+                                        catch_messages, release_messages),
         cmocka_unit_test_setup_teardown(missing_file_is_named, catch_messages, release_messages),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
