@@ -108,11 +108,14 @@ static enum wb_status export_rows(struct wb_align *align)
 static void describe_rows(struct wb_align *align)
 {
     struct wb_json *const document = align->dataset->document;
+    /* A row stands at the mean time of its frames, of which half may be lost: a marker hidden for
+     * just the longest gap keeps its rows up to one and a half of their intervals farther apart. */
+    const double most = align->settings.longest_gap + 1.5 / align->settings.row_rate;
     size_t n_gaps = 0;
     double longest = 0.0, largest = 0.0;
     for (size_t i = 0; i < align->n_rows; i++) {
         const double gap = i > 0 ? align->rows[i].t - align->rows[i - 1].t : 0.0;
-        n_gaps += gap > align->settings.longest_gap + 1.0 / align->settings.row_rate;
+        n_gaps += gap > most;
         longest = fmax(longest, gap);
         largest = fmax(largest, align->rows[i].tip_y);
     }

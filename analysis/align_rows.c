@@ -230,7 +230,8 @@ static bool make_row(const struct wb_align *align, size_t first, size_t last, do
     average_frames(align, first, last, &means);
     memset(row, 0, sizeof *row);
     /* Beside a loss of tip or clamp a mean of the few frames left would stand at the bin's edge. */
-    if (2 * (size_t)means.n_tip < last - first || !wb_align_reading_at(align, means.t, half, &row->reading) ||
+    if (2 * (size_t)means.n_tip < last - first ||
+        !wb_align_reading_at(align, means.t, half, &row->reading) ||
         !find_axis(align, &means, &fit))
         return false;
     row->t = means.t;

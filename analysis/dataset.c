@@ -300,3 +300,11 @@ enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder)
     *dataset = read;
     return WB_OK;
 }
+
+double wb_dataset_gap(const struct wb_dataset *dataset)
+{
+    const size_t n = dataset->n_rows;
+    if (n < 2)
+        return HUGE_VAL;
+    return 5.0 * (dataset->rows[n - 1].t - dataset->rows[0].t) / (double)(n - 1);
+}

@@ -103,4 +103,8 @@ WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, 
                                               bool force);
 WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder);
 
+/* Rows farther apart than this, s, have a gap between them, which a drawn line leaves open: several
+ * times their mean interval; infinite with fewer than two rows. */
+double wb_dataset_gap(const struct wb_dataset *dataset);
+
 #endif

@@ -185,11 +185,16 @@ static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, 
         .dash = phase == WB_PHASE_LOAD ? WB_DASH_SOLID : WB_DASH_DASHED,
     };
     char label[64];
+    const double longest = wb_dataset_gap(dataset);
+    double last = (double)NAN;
     size_t n_shown = 0;
     line->n = 0;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        const bool shown = row->cycle == cycle && row->phase == phase;
+        /* A gap in time is a gap in the line. */
+        const bool gap = row->t - last > longest;
+        const bool shown = row->cycle == cycle && row->phase == phase && !gap;
+        last = row->t;
         if (!shown && (line->n == 0 || isnan(line->x[line->n - 1])))
             continue;
         line->x[line->n] = shown ? row->deflection / WB_MM : (double)NAN;

@@ -72,6 +72,7 @@ static enum wb_status add_rows(struct wb_panel *panel, const char *label,
         free(y);
         return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
     }
+    const double longest = wb_dataset_gap(dataset);
     size_t n = 0;
     double last = (double)NAN;
     for (size_t i = 0; i < dataset->n_rows; i++) {
@@ -82,7 +83,7 @@ static enum wb_status add_rows(struct wb_panel *panel, const char *label,
             row->deflection >= 0.0 &&
             (row->phase == WB_PHASE_LOAD || (!loading_only && row->phase == WB_PHASE_UNLOAD));
         /* A gap in time is a gap in the line. */
-        const bool gap = isfinite(last) && row->t - last > 1.0;
+        const bool gap = isfinite(last) && row->t - last > longest;
         x[n] = row->deflection / WB_MM;
         y[n++] = shown && !gap ? row->force / WB_MN : (double)NAN;
         last = row->t;

@@ -294,7 +294,7 @@ static int begun_lines(const struct wb_results *results)
     return n;
 }
 
-static void a_slack_strand_in_the_middle_breaks_the_line(void **state)
+static void a_slack_strand_or_a_gap_breaks_the_line(void **state)
 {
     (void)state;
     struct good good;
@@ -305,6 +305,10 @@ static void a_slack_strand_in_the_middle_breaks_the_line(void **state)
     for (size_t i = 20; i < 25; i++)
         dataset->rows[i].phase = WB_PHASE_SLACK;
     assert_int_equal(begun_lines(&good.results), whole + 1);
+    /* And so does a gap in time. */
+    for (size_t i = 30; i < dataset->n_rows; i++)
+        dataset->rows[i].t += 20.0;
+    assert_int_equal(begun_lines(&good.results), whole + 2);
     release_good(&good);
 }
 
@@ -539,7 +543,7 @@ int main(void)
         cmocka_unit_test(the_html_page_needs_no_other_file_and_escapes_what_comes_from_files),
         cmocka_unit_test(recordings_with_gaps_are_counted_in_one_line),
         cmocka_unit_test(the_capacity_is_what_weighs_so_much_on_that_bench),
-        cmocka_unit_test(a_slack_strand_in_the_middle_breaks_the_line),
+        cmocka_unit_test(a_slack_strand_or_a_gap_breaks_the_line),
         cmocka_unit_test(the_json_file_holds_the_computed_numbers),
         cmocka_unit_test(the_pdf_text_can_be_searched),
         cmocka_unit_test(a_full_folder_is_refused_and_force_replaces_only_the_reports_own_files),
