@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "cli/command.h"
+#include "daq/check_log.h"
 #include "daq/replay.h"
 #include "daq/specimen.h"
 #include "daq/survey.h"
@@ -103,6 +104,18 @@ static void print_meta(struct facts *facts, const char *label, const char *key)
     free(value);
 }
 
+/* The load cell's last check before the test. */
+static void print_check(struct facts *facts)
+{
+    struct wb_check_log_entry check;
+    char text[WB_CHECK_LOG_LINE], *const line = meta(facts, "load_cell_check");
+    if (line && wb_check_log_parse(line, &check)) {
+        wb_check_log_describe(&check, text);
+        printf("  %-10s %s\n", "cell check", text);
+    }
+    free(line);
+}
+
 static enum wb_status print_event(void *context, const struct wb_event *event)
 {
     const struct facts *facts = context;
@@ -145,6 +158,7 @@ static enum wb_status print_text(struct facts *facts, const char *path)
         printf("  %-10s %s%s\n", "rig", facts->rig.name,
                survey->is_virtual && !strstr(facts->rig.name, "virtual rig") ? " (virtual rig)"
                                                                              : "");
+    print_check(facts);
     print_meta(facts, "cycles", "cycles");
     print_meta(facts, "tool", "tool_version");
     print_meta(facts, "revision", "tool_revision");
@@ -178,6 +192,25 @@ static void add_meta(struct facts *facts, struct wb_json *root, const char *key)
     char *value = meta(facts, key);
     wb_json_set_text(root, key, value && value[0] ? value : NULL);
     free(value);
+}
+
+static void add_check(struct facts *facts, struct wb_json *root)
+{
+    struct wb_check_log_entry check;
+    char *const line = meta(facts, "load_cell_check");
+    if (line && wb_check_log_parse(line, &check)) {
+        struct wb_json *const item = wb_json_set_object(root, "load_cell_check");
+        wb_json_set_text(item, "utc", check.utc);
+        wb_json_set_number(item, "known_mass_g", check.known / WB_G);
+        wb_json_set_number(item, "read_mass_g", check.read / WB_G);
+        wb_json_set_number(item, "deviation_mg", (check.read - check.known) / WB_MG);
+        wb_json_set_number(item, "tolerance_percent", check.tolerance / WB_PERCENT);
+        wb_json_set_boolean(item, "passed", check.passed);
+        wb_json_set_text(item, "serial_number", check.serial_number);
+    } else {
+        wb_json_set_text(root, "load_cell_check", NULL);
+    }
+    free(line);
 }
 
 static void add_streams(const struct facts *facts, struct wb_json *root)
@@ -221,6 +254,7 @@ static int print_json(struct facts *facts, const char *path)
         wb_json_set_integer(specimen, "sample", facts->specimen.sample);
         wb_json_set_integer(specimen, "markers", facts->specimen.n_markers);
     }
+    add_check(facts, root);
     wb_json_set_number(root, "duration_s", wb_survey_duration(survey));
     add_streams(facts, root);
     wb_json_set_integer(root, "clock_probes", (int64_t)survey->clock_rows);

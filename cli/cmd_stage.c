@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/interrupt.h"
@@ -12,6 +13,7 @@
 #include "cli/command.h"
 #include "cli/live_line.h"
 #include "daq/acquisition.h"
+#include "daq/check_log.h"
 #include "daq/mass_check.h"
 #include "daq/rig.h"
 #include "daq/stage_job.h"
@@ -130,7 +132,7 @@ static const struct argp argp = {
         "slowly up until the strand is slack (the reading stays level over 0.75 mm), at most by "
         "MM (default: the stage's travel).\n"
         "check    compares the load cell with a known mass (default: the rig's "
-        "check_mass_g).\v"
+        "check_mass_g), and adds the outcome to the log beside the rig file (RIG.checks.csv).\v"
         "While the stage moves the load cell is watched: force limit, overload, a change of "
         "unit, silence and alarms stop it, and so does Ctrl-C. Its reading is not tared here. "
         "A release may begin beyond the limits, because that is what it mends; it stops when "
@@ -287,6 +289,24 @@ static int print_check(const struct options *options, const struct wb_rig *rig, 
     return WB_EXIT_OK;
 }
 
+/* Adds the outcome to the log beside the rig file; a log that cannot be written is told, and does
+ * not change the outcome. */
+static void log_check(const struct options *options, const struct wb_rig *rig, double known,
+                      double tolerance, const struct wb_mass_check_result *result)
+{
+    struct wb_check_log_entry entry = {
+        .known = known, .read = result->mass, .tolerance = tolerance, .passed = result->passed};
+    const time_t now = time(NULL);
+    struct tm utc;
+    char path[WB_PATH];
+    gmtime_r(&now, &utc);
+    strftime(entry.utc, sizeof entry.utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    snprintf(entry.serial_number, sizeof entry.serial_number, "%s", rig->load_cell.serial_number);
+    if (wb_check_log_append(options->rig_path, &entry) == WB_OK &&
+        wb_check_log_path(path, options->rig_path) == WB_OK)
+        wb_info("added to '%s'", path);
+}
+
 static int run_check(const struct options *options, const struct wb_rig *rig)
 {
     const struct wb_rig_load_cell *const cell = &rig->load_cell;
@@ -317,6 +337,8 @@ static int run_check(const struct options *options, const struct wb_rig *rig)
     if (measured)
         wb_mass_check_result(check, known, tolerance, &result);
     wb_mass_check_close(check);
+    if (measured)
+        log_check(options, rig, known, tolerance, &result);
     if (!measured || print_check(options, rig, known, tolerance, &result) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     return result.passed ? WB_EXIT_OK : WB_EXIT_FAILED;

@@ -11,6 +11,7 @@
 #include "base/number.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "daq/check_log.h"
 
 #define WB_LOG_DOMAIN "record"
 
@@ -47,9 +48,11 @@ static enum wb_status set_text_file(struct wb_recording *recording, const char *
 static enum wb_status set_wire(struct wb_recording *recording,
                                const struct wb_bend_recording *description)
 {
-    char folder[WB_PATH], path[WB_PATH];
+    char folder[WB_PATH], path[WB_PATH], named_in[WB_PATH + 32];
     wb_file_folder(folder, description->specimen_path);
-    WB_TRY(wb_file_find_fixture(path, "wires", description->specimen->wire, folder));
+    snprintf(named_in, sizeof named_in, "%s:%d: wire", description->specimen_path,
+             description->specimen->wire_line);
+    WB_TRY(wb_file_find_named(path, "wires", description->specimen->wire, folder, named_in));
     return set_text_file(recording, "wire", path);
 }
 
@@ -93,6 +96,24 @@ static enum wb_status set_circumstances(struct wb_recording *recording,
     return wb_recording_set_meta(recording, "host", text);
 }
 
+/* The last check of the load cell, if there is one beside the rig file. */
+static enum wb_status set_check(struct wb_recording *recording,
+                                const struct wb_bend_recording *description)
+{
+    char line[WB_CHECK_LOG_LINE];
+    struct wb_check_log_entry check;
+    const char *const serial = description->rig->load_cell.serial_number;
+    wb_check_log_last(description->rig_path, line);
+    if (!wb_check_log_parse(line, &check))
+        return WB_OK;
+    if (!check.passed)
+        wb_warn("the last check of the load cell, on %s, did not pass", check.utc);
+    if (strcmp(check.serial_number, serial) != 0)
+        wb_warn("the last check was of the load cell '%s', the rig file now has '%s': check again",
+                check.serial_number, serial);
+    return wb_recording_set_meta(recording, "load_cell_check", line);
+}
+
 static enum wb_status set_meta(struct wb_recording *recording,
                                const struct wb_bend_recording *description)
 {
@@ -109,6 +130,7 @@ static enum wb_status set_meta(struct wb_recording *recording,
     WB_TRY(set_text_file(recording, "specimen", d->specimen_path));
     WB_TRY(set_wire(recording, d));
     WB_TRY(set_truth(recording, d));
+    WB_TRY(set_check(recording, d));
     WB_TRY(set_number(recording, "g", d->rig->gravity));
     WB_TRY(set_number(recording, "travel_mm", d->travel / WB_MM));
     snprintf(text, sizeof text, "%d", d->cycles);

@@ -19,8 +19,9 @@ struct wb_bend_recording {
 };
 
 /* Creates the file with streams load, mocap and stage (numbers 0 to 2) and the meta values of
- * docs/file-formats.md; of a virtual rig also `virtual` and its truth. The wire file is found from
- * the specimen's `wire`. When this fails no file is left behind. */
+ * docs/file-formats.md; with a log of checks beside the rig file (daq/check_log.h) also its last
+ * line as `load_cell_check`; of a virtual rig also `virtual` and its truth. The wire file is found
+ * from the specimen's `wire`. When this fails no file is left behind. */
 WB_MUST_CHECK enum wb_status wb_bend_recording_create(struct wb_recording **out,
                                                       const struct wb_bend_recording *description);
 

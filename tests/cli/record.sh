@@ -300,6 +300,25 @@ bad_ports() {
     end_rig "$rig"
 }
 
+# A check of the load cell (nothing hangs: it does not pass) is kept beside the rig file, and the
+# next recording tells of it.
+cell_check() {
+    start_rig checked
+    local name=$folder/checked/rig
+    echo | "$wirebench" stage "$name.yaml" check 10 --seconds 0.3 >"$folder/check.out" 2>&1
+    code=$?
+    [ $code = 1 ] || fail "check: exit code $code: $(cat "$folder/check.out")"
+    [ "$(wc -l <"$name.checks.csv")" = 2 ] || fail "check: $(cat "$name.checks.csv")"
+    record checked --travel-mm 2
+    expect checked 0 'did not pass'
+    "$wirebench" info "$folder/checked.wbr" >"$folder/checked.info" 2>&1
+    grep -q 'cell check .* 10 g read .*NOT PASSED' "$folder/checked.info" ||
+        fail "checked: no check in: $(head -20 "$folder/checked.info")"
+    "$wirebench" info --json "$folder/checked.wbr" | grep -q '"known_mass_g": 10' ||
+        fail "checked: no check in the JSON"
+    end_rig "$rig"
+}
+
 wrong_usage() {
     "$wirebench" record >/dev/null 2>&1
     [ $? = 2 ] || fail "record without a rig is not a usage error"
@@ -311,7 +330,7 @@ wrong_usage() {
 
 # Side by side, as rigs may run.
 cases=(whole_test ctrl_c ctrl_c_too_early force_limit rig_killed rig_stalls dead_reader hung_reader
-    keys_of_the_terminal full_disk bad_ports wrong_usage)
+    keys_of_the_terminal full_disk bad_ports cell_check wrong_usage)
 pids=()
 for case in "${cases[@]}"; do
     (
