@@ -75,11 +75,9 @@ struct wb_calibrate_result {
     int start_of_restart; /* index in path where the restart begins; n_path when there was none */
     double rms;           /* eq. 19 of the final model on the same curve, over its F_max */
     double max_error;     /* largest of eq. 18 */
-    double scatter_rms;   /* RMS over deflection of the samples' standard deviation over F_max: what
-                             the scatter between samples explains */
-    /* The same of what is left when each sample is predicted with its own natural shape: the
-     * scatter of stiffness, yield and measurement without that of the bows, which the model knows.
-     */
+    double scatter_rms;   /* RMS over deflection of the samples' standard deviation over F_max */
+    /* The same of what is left when each sample is predicted with its own natural shape: scatter of
+     * stiffness, yield and measurement, and what the model does not follow of the bows. */
     double residual_scatter_rms;
     double cpu_s;
 };

@@ -28,6 +28,7 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
     memcpy(properties->deviation, result->deviation, sizeof properties->deviation);
     properties->calibration_length = result->info.length;
     properties->rms = result->rms;
+    properties->scatter_rms = result->n_samples > 1 ? result->scatter_rms : (double)NAN;
     properties->residual_scatter_rms =
         result->n_samples > 1 ? result->residual_scatter_rms : (double)NAN;
     properties->n_samples = result->n_samples;
@@ -169,6 +170,7 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_NUMBER("length_mm", &properties->calibration_length, WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_NUMBER("rms", &properties->rms, 1.0, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("scatter_rms", &properties->scatter_rms, 1.0, 0.0, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("residual_scatter_rms", &properties->residual_scatter_rms, 1.0,
                                   0.0, 1e6),
         WB_CONFIG_OPTIONAL_INTEGER("samples", &properties->n_samples, 0, 100000),
@@ -185,7 +187,6 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
         WB_CONFIG_IGNORED("max_force_N"),
         WB_CONFIG_IGNORED("max_deflection_mm"),
         WB_CONFIG_IGNORED("max_error"),
-        WB_CONFIG_IGNORED("scatter_rms"),
         WB_CONFIG_IGNORED("simulation"),
         WB_CONFIG_IGNORED("tool"),
         WB_CONFIG_IGNORED("datasets"),
@@ -226,7 +227,8 @@ enum wb_status wb_properties_read(const char *path, struct wb_properties *proper
     struct wb_properties read = {0};
     for (int k = 0; k < 4; k++)
         read.deviation[k] = (double)NAN;
-    read.calibration_length = read.rms = read.residual_scatter_rms = (double)NAN;
+    read.calibration_length = read.rms = (double)NAN;
+    read.scatter_rms = read.residual_scatter_rms = (double)NAN;
     WB_TRY(wb_config_read(&config, path));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);

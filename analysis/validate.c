@@ -63,7 +63,15 @@ static enum wb_status predict(struct wb_prediction *prediction, struct wb_comput
     return WB_OK;
 }
 
-/* What scatter between samples alone makes of two averages. */
+/* Square of the standard error of an average. The residual scatter holds what the model does not
+ * follow of the bows, the scatter the bows themselves: the smaller bounds what remains. */
+static double average_variance(double scatter, double residual, int n)
+{
+    const double least = fmin(scatter, residual);
+    return n > 1 && isfinite(least) ? least * least / n : 0.0;
+}
+
+/* What scatter between samples alone makes of two averages, at most. */
 static void judge_scatter(struct wb_validate_result *result, const struct wb_properties *properties)
 {
     const int n = result->curve.n_samples;
@@ -71,10 +79,9 @@ static void judge_scatter(struct wb_validate_result *result, const struct wb_pro
     result->expected_rms = result->scatter_share = (double)NAN;
     if (n < 2)
         return;
-    double square = result->residual_scatter_rms * result->residual_scatter_rms / n;
-    if (properties->n_samples > 1 && isfinite(properties->residual_scatter_rms))
-        square += properties->residual_scatter_rms * properties->residual_scatter_rms /
-                  properties->n_samples;
+    const double square = average_variance(result->scatter_rms, result->residual_scatter_rms, n) +
+                          average_variance(properties->scatter_rms,
+                                           properties->residual_scatter_rms, properties->n_samples);
     result->expected_rms = sqrt(square);
     const double rms = result->elastoplastic.rms;
     if (rms > 0.0)

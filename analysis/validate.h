@@ -28,12 +28,13 @@ struct wb_validate_result {
     double shape_max; /* m */
     int n_shape_points;
     double scatter_rms, residual_scatter_rms; /* as in calibrate */
-    /* RMS error that the scatter between samples alone lets expect: standard errors of this
-     * average and of the one calibrated on (as far as known), from their residual scatter, added in
-     * squares. */
+    /* RMS error that the scatter between samples alone lets expect, at most: standard errors of
+     * this average and of the one calibrated on (as far as known), from the smaller of their
+     * scatter and their residual scatter, added in squares. An upper bound: the residual scatter
+     * holds the model's own error with the samples' bows too. */
     double expected_rms;
-    /* expected_rms squared over the elastoplastic RMS squared, at most 1: the share of the mean
-     * square error that scatter explains; NaN with one sample. */
+    /* expected_rms squared over the elastoplastic RMS squared, at most 1: the scatter explains at
+     * most this share of the mean square error; NaN with one sample. */
     double scatter_share;
     struct wb_test_info info;
     double cpu_s;

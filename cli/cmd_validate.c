@@ -187,8 +187,8 @@ static int print_json(const struct options *o, const struct wb_properties *prope
         wb_json_set_integer(item, "shape_points", r->n_shape_points);
         wb_json_set_number(item, "scatter_rms", r->scatter_rms);
         wb_json_set_number(item, "residual_scatter_rms", r->residual_scatter_rms);
-        wb_json_set_number(item, "expected_rms", r->expected_rms);
-        wb_json_set_number(item, "scatter_share", r->scatter_share);
+        wb_json_set_number(item, "expected_rms_at_most", r->expected_rms);
+        wb_json_set_number(item, "scatter_share_at_most", r->scatter_share);
         wb_json_set_number(item, "cpu_s", r->cpu_s);
     }
     return wb_command_print_json(root);
@@ -209,9 +209,11 @@ static void print_group(const struct wb_validate_result *r)
         printf("  shapes         RMS %.2f mm, largest %.2f mm, %d markers\n", r->shape_rms / WB_MM,
                r->shape_max / WB_MM, r->n_shape_points);
     if (isfinite(r->expected_rms))
-        printf("  scatter        between samples %.3g, of it not due to their natural shapes %.3g; "
-               "alone it lets expect an RMS of %.2g (%.0f %% of the mean square error)\n",
-               r->scatter_rms, r->residual_scatter_rms, r->expected_rms, 100.0 * r->scatter_share);
+        printf("  scatter        between samples %.3g, with each one's own natural shape %.3g\n"
+               "                 RMS that the scatter between samples alone lets expect: at most "
+               "%.2g; found: %.2g (at most %.0f %% of the mean square error)\n",
+               r->scatter_rms, r->residual_scatter_rms, r->expected_rms, r->elastoplastic.rms,
+               100.0 * r->scatter_share);
 }
 
 static int deliver(const struct options *o, const struct wb_properties *properties,

@@ -23,27 +23,33 @@ static void put_origin(struct wb_document *document, const struct wb_results *re
               "simulated bench with a simulated wire; the list of recordings says which.");
 }
 
-static void append_share(struct wb_text *text, double share, const char *of)
+/* What the scatter between samples may have to do with a validation's error. */
+static void append_share(struct wb_text *text, const struct wb_validate_result *validation)
 {
-    if (isfinite(share))
+    if (isfinite(validation->scatter_share))
         wb_text_append(text,
-                       " The scatter between samples explains %.0f %% of its mean square "
-                       "error.",
-                       100.0 * share);
+                       " RMS that the scatter between samples alone lets expect: at most %.4f; "
+                       "found: %.4f. So it explains at most %.0f %% of the mean square error.",
+                       validation->expected_rms, validation->elastoplastic.rms,
+                       100.0 * validation->scatter_share);
     else
-        wb_text_append(text, " What the scatter between samples explains is not known: %s.", of);
+        wb_text_append(text, " What the scatter between samples explains is not known: there are "
+                             "fewer than two samples.");
 }
 
-static void put_miss(struct wb_document *document, const char *label, const char *step, double rms,
-                     double limit, double share)
+/* `validation` NULL: of the calibration. */
+static void put_miss(struct wb_document *document, const char *label, double rms, double limit,
+                     const struct wb_validate_result *validation)
 {
     char escaped[300];
     struct wb_text text = {0};
     wb_text_append(&text,
                    "<b>Limit exceeded.</b> %s, %s: RMS %.4f of <i>F</i><sub>max</sub>, "
                    "limit %.4g.",
-                   wb_pages_escape(escaped, sizeof escaped, label), step, rms, limit);
-    append_share(&text, share, "there are fewer than two samples");
+                   wb_pages_escape(escaped, sizeof escaped, label),
+                   validation ? "validation" : "calibration", rms, limit);
+    if (validation)
+        append_share(&text, validation);
     wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
     document->failed |= text.failed;
     wb_text_release(&text);
@@ -59,14 +65,13 @@ static void put_limits(struct wb_document *document, const struct wb_results *re
         if (wire->calibration_state == WB_RESULTS_DONE && campaign->calibration_limit > 0.0) {
             judged++;
             if (!(wire->calibration.rms <= campaign->calibration_limit))
-                put_miss(document, label, "calibration", wire->calibration.rms,
-                         campaign->calibration_limit, wb_results_calibration_share(wire));
+                put_miss(document, label, wire->calibration.rms, campaign->calibration_limit, NULL);
         }
         if (wire->validation_state == WB_RESULTS_DONE && campaign->validation_limit > 0.0) {
             judged++;
             if (!(wire->validation.elastoplastic.rms <= campaign->validation_limit))
-                put_miss(document, label, "validation", wire->validation.elastoplastic.rms,
-                         campaign->validation_limit, wb_results_validation_share(wire));
+                put_miss(document, label, wire->validation.elastoplastic.rms,
+                         campaign->validation_limit, &wire->validation);
         }
     }
     if (judged == 0 || results->exceeds_limit)
@@ -208,7 +213,7 @@ static void put_merits(struct wb_document *document, const struct wb_results *re
         {.heading = "Validation RMS", .right = true, .wraps = true},
         {.heading = "Validation, largest", .right = true, .wraps = true},
         {.heading = "Linear elastic RMS", .right = true, .wraps = true},
-        {.heading = "Scatter explains", .right = true, .wraps = true},
+        {.heading = "Scatter explains, at most", .right = true, .wraps = true},
         {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
     };
@@ -216,9 +221,10 @@ static void put_merits(struct wb_document *document, const struct wb_results *re
     int length = snprintf(caption, sizeof caption,
                           "Errors are parts of <i>F</i><sub>max</sub>, the largest force of the "
                           "mean measured curve (eqs. 18 and 19); that of the validation is given. "
-                          "Scatter explains: the part of the validation's RMS<sup>2</sup> that a "
-                          "perfect model would show too, because means of a few unlike samples "
-                          "differ by chance; the rest is the model's own error.");
+                          "Scatter explains, at most: bound of the part of the validation's "
+                          "RMS<sup>2</sup> that a perfect model would show too, because means of a "
+                          "few unlike samples differ by chance; the scatter it comes from holds "
+                          "the model's error with the samples' bows too.");
     if (campaign->calibration_limit > 0.0)
         length += snprintf(caption + length, sizeof caption - (size_t)length,
                            " Limit of the calibration: %.4g.", campaign->calibration_limit);

@@ -154,11 +154,9 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
         {"Scatter beyond the natural shapes <i>r</i>", part,
          scatters ? c->residual_scatter_rms : none, v_scatters ? val->residual_scatter_rms : none,
          4},
-        {"RMS expected from that scatter", part,
-         scatters ? c->residual_scatter_rms / sqrt(fit->curve.n_samples) : none,
-         v ? val->expected_rms : none, 4},
-        {"Share that the scatter explains", "1", wb_results_calibration_share(wire),
-         wb_results_validation_share(wire), 2},
+        {"RMS expected from scatter, at most", part, none, v ? val->expected_rms : none, 4},
+        {"Share that the scatter explains, at most", "1", none, wb_results_validation_share(wire),
+         2},
         {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? val->shape_rms / WB_MM : none,
          2},
         {"Shapes, largest distance", "mm", fit->shape_max / WB_MM,
@@ -175,12 +173,14 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
         document,
         "Scatter <i>s</i>: standard deviation between the samples at the same deflection, RMS over "
         "all deflections; <i>r</i>: what remains of it when each sample is computed with its own "
-        "natural shape. The mean of <i>n</i> samples is off by about "
-        "<i>r</i>/<i>n</i><sup>1/2</sup> by chance, so that even a perfect model would show the "
-        "expected RMS, in a validation (<i>r</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
-        "<i>r</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>)<sup>1/2</sup> of its own samples "
-        "(v) and those calibrated on (c). Share: its square over RMS<sup>2</sup>, at most 1; near "
-        "1 the model is as good as the samples can tell, near 0 the error is the model's.",
+        "natural shape, the model's error with the bow included. With <i>m</i> the smaller of "
+        "both, "
+        "the mean of <i>n</i> samples is off by <i>m</i>/<i>n</i><sup>1/2</sup> at most by chance, "
+        "so that even a perfect model would show an RMS of up to "
+        "(<i>m</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
+        "<i>m</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>)<sup>1/2</sup>, of the validation's "
+        "samples (v) and those calibrated on (c). Share: its square over RMS<sup>2</sup>, at most "
+        "1; an upper bound, near 0 the error is the model's.",
         4, columns);
     for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
         put_merit(document, table, &merits[i]);

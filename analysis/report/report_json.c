@@ -93,7 +93,7 @@ static void put_prediction(struct wb_json *object, const char *key,
 }
 
 static void put_comparison(struct wb_json *object, const struct wb_validate_result *result,
-                           double scatter, double residual, double share)
+                           double scatter, double residual)
 {
     const struct wb_curve *const curve = &result->curve;
     wb_json_set_integer(object, "samples", curve->n_samples);
@@ -104,7 +104,6 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
                        curve->n_samples > 1 ? scatter : (double)NAN);
     wb_json_set_number(object, "residual_scatter_rms_over_F_max",
                        curve->n_samples > 1 ? residual : (double)NAN);
-    wb_json_set_number(object, "share_explained_by_scatter", share);
     wb_json_set_number(object, "shape_rms_mm", result->shape_rms / WB_MM);
     wb_json_set_number(object, "shape_largest_mm", result->shape_max / WB_MM);
     wb_json_set_integer(object, "shape_points", result->n_shape_points);
@@ -124,9 +123,11 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
 static void put_validation(struct wb_json *object, const struct wb_results_wire *wire)
 {
     put_comparison(object, &wire->validation, wire->validation.scatter_rms,
-                   wire->validation.residual_scatter_rms, wb_results_validation_share(wire));
-    wb_json_set_number(object, "rms_expected_from_scatter_over_F_max",
+                   wire->validation.residual_scatter_rms);
+    wb_json_set_number(object, "rms_expected_from_scatter_at_most_over_F_max",
                        wire->validation.expected_rms);
+    wb_json_set_number(object, "share_explained_by_scatter_at_most",
+                       wb_results_validation_share(wire));
 }
 
 static void put_values(struct wb_json *object, const char *name, const double values[4])
@@ -185,7 +186,7 @@ static void put_wire(struct wb_json *list, const struct wb_results_wire *wire)
         wb_json_set_number(calibration, "rms_over_F_max", wire->calibration.rms);
         wb_json_set_number(calibration, "largest_error_over_F_max", wire->calibration.max_error);
         put_comparison(calibration, &wire->fit, wire->calibration.scatter_rms,
-                       wire->calibration.residual_scatter_rms, wb_results_calibration_share(wire));
+                       wire->calibration.residual_scatter_rms);
         put_search(calibration, &wire->calibration);
     } else {
         wb_json_set_text(calibration, "problem", wb_text_string(&wire->calibration_problem));

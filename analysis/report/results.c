@@ -90,7 +90,8 @@ static void read_meta(struct wb_recording *recording, const char *key, char *tex
 static enum wb_status read_bench(struct wb_results_test *test)
 {
     struct wb_recording *recording;
-    WB_TRY(wb_recording_open(&recording, test->wanted->path));
+    /* Aligning opens it again and tells what is wrong with the file. */
+    WB_TRY(wb_recording_open_quietly(&recording, test->wanted->path));
     char is_virtual[16] = "";
     read_meta(recording, "start_utc", test->start_utc, sizeof test->start_utc);
     read_meta(recording, "tool_revision", test->tool_revision, sizeof test->tool_revision);
@@ -482,16 +483,6 @@ void wb_results_release(struct wb_results *results)
 double wb_results_capacity(const struct wb_rig *rig)
 {
     return rig->gravity > 0.0 ? rig->load_cell.capacity / rig->gravity : (double)NAN;
-}
-
-double wb_results_calibration_share(const struct wb_results_wire *wire)
-{
-    const struct wb_calibrate_result *const c = &wire->calibration;
-    if (wire->calibration_state != WB_RESULTS_DONE || c->n_samples < 2 || !(c->rms > 0.0) ||
-        !isfinite(c->residual_scatter_rms))
-        return (double)NAN;
-    const double expected = c->residual_scatter_rms / sqrt((double)c->n_samples);
-    return fmin(1.0, expected * expected / (c->rms * c->rms));
 }
 
 double wb_results_validation_share(const struct wb_results_wire *wire)

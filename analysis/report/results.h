@@ -91,13 +91,13 @@ void wb_results_judge(struct wb_results *results);
  * rig's gravity; NaN when that is not known. */
 double wb_results_capacity(const struct wb_rig *rig);
 
-/* How much of the mean square error of a step the scatter between samples explains, 0 to 1; NaN
- * where it is not known. Both means scatter: that of the curve it is compared with and, for a
- * validation, that of the curves the model was calibrated on. With r the RMS over deflection of the
- * standard deviation that remains between the samples when each is predicted with its own natural
- * shape, over F_max, and n samples, the share is (r_v^2/n_v + r_c^2/n_c) / RMS^2 for a validation
- * and r_c^2/n_c / RMS^2 for a calibration, at most 1. */
-double wb_results_calibration_share(const struct wb_results_wire *wire);
+/* How much of a validation's mean square error the scatter between samples explains at most, 0 to
+ * 1; NaN where it is not known. Both means scatter: that of the curve it is compared with and that
+ * of the curves the model was calibrated on. With r the smaller of the RMS over deflection of the
+ * samples' standard deviation and of what remains of it when each is predicted with its own natural
+ * shape, over F_max, and n samples, it is (r_v^2/n_v + r_c^2/n_c) / RMS^2, at most 1. What remains
+ * holds the model's own error with the bow, hence the bound. A calibration has none: its curve is
+ * fitted, whatever its scatter. */
 double wb_results_validation_share(const struct wb_results_wire *wire);
 
 #endif

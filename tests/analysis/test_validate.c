@@ -120,10 +120,43 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
     wb_validate_result_release(&result);
     /* The calibration's own scatter adds to it. */
     properties.n_samples = 4;
+    properties.scatter_rms = 0.07;
     properties.residual_scatter_rms = 0.06;
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings), WB_OK);
     assert_close_relative(result.expected_rms, hypot(result.residual_scatter_rms / sqrt(3.0), 0.03),
                           1e-9);
+    wb_validate_result_release(&result);
+    /* Less scatter than residual scatter: the model makes the rest. */
+    properties.scatter_rms = 0.01;
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings), WB_OK);
+    assert_close_relative(result.expected_rms,
+                          hypot(result.residual_scatter_rms / sqrt(3.0), 0.005), 1e-9);
+    wb_validate_result_release(&result);
+    for (int i = 0; i < 3; i++)
+        wb_dataset_release(&dataset[i]);
+}
+
+/* Straight samples all alike, computed with bows that they do not have: all residual scatter is the
+ * model's, and none of its error is explained. */
+static void an_error_with_the_bow_is_not_taken_for_scatter(void **state)
+{
+    (void)state;
+    const struct wb_properties properties = true_properties(2);
+    struct wb_test_info info = beam_info(2, 0.1, 0.0);
+    const struct wb_material material = beam_material(2);
+    struct wb_dataset dataset[3];
+    const struct wb_dataset *datasets[3];
+    struct wb_validate_result result;
+    for (int i = 0; i < 3; i++) {
+        beam_dataset(&dataset[i], &info, &material, 1.0 * mm, 53 * mm, 1.0);
+        dataset[i].info.n_natural_shape = 1;
+        dataset[i].info.natural_shape[0] = 0.04 * (i + 1);
+        datasets[i] = &dataset[i];
+    }
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings), WB_OK);
+    assert_true(result.residual_scatter_rms > 0.01 && result.elastoplastic.rms > 0.01);
+    assert_true(result.scatter_rms < 1e-6);
+    assert_true(result.scatter_share < 1e-6);
     wb_validate_result_release(&result);
     for (int i = 0; i < 3; i++)
         wb_dataset_release(&dataset[i]);
@@ -232,6 +265,7 @@ int main(void)
         cmocka_unit_test(errors_are_over_the_largest_measured_force),
         cmocka_unit_test(a_bow_that_is_ignored_shows),
         cmocka_unit_test(scatter_explains_what_the_average_of_few_cannot),
+        cmocka_unit_test(an_error_with_the_bow_is_not_taken_for_scatter),
         cmocka_unit_test(another_wire_is_refused_and_another_name_warned_about),
         cmocka_unit_test(a_prediction_that_does_not_converge_is_an_error),
         cmocka_unit_test(the_csv_has_a_line_for_each_deflection),
