@@ -164,12 +164,11 @@ static void note_kernel_drops(struct wb_acquisition_line *line, int64_t t_ns)
     wb_warn("%s", text);
 }
 
-static void read_line(struct wb_acquisition_line *line, int64_t woken_ns)
+static void read_line(struct wb_acquisition_line *line)
 {
     struct wb_acquisition *const a = line->owner;
     struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
     const struct wb_sink sink = {line, on_load, on_mocap, on_stage, on_probe, on_remark};
-    int64_t t_ns = woken_ns;
     for (int i = 0; i < READS_A_STEP && !state->gone; i++) {
         size_t n = 0;
         const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);
@@ -180,14 +179,15 @@ static void read_line(struct wb_acquisition_line *line, int64_t woken_ns)
         }
         if (n == 0)
             return;
+        /* Not the wake-up's time: where this process stalls between the two, the read also takes
+         * what came meanwhile, and a stamp before the arrival is one that no clock fit can bear. */
+        const int64_t t_ns = wb_acquisition_now_ns();
         note_kernel_drops(line, t_ns);
         state->chunks++;
         state->bytes += n;
         if (a->writer)
             (void)wb_writer_push_chunk(a->writer, line->id, t_ns, a->buffer, n);
         line->driver->receive(line->state, t_ns, a->buffer, n, &sink);
-        /* What comes after the first read may have arrived since the wake-up. */
-        t_ns = wb_acquisition_now_ns();
     }
 }
 
@@ -290,7 +290,7 @@ static void judge_silence(struct wb_acquisition *a, int64_t heard_ns)
     for (int i = 0; i < a->n_lines; i++) {
         struct wb_acquisition_line *const line = &a->lines[i];
         if (wb_interlock_expires(&a->interlock, line->role, heard_ns))
-            read_line(line, wb_acquisition_now_ns());
+            read_line(line);
     }
     if (wb_interlock_tick(&a->interlock, heard_ns))
         wb_acquisition_hold_now(a);
@@ -361,7 +361,7 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
     a->woken_ns = woken_ns;
     for (int i = 0; i < a->n_lines; i++)
         if (readable[i])
-            read_line(&a->lines[i], woken_ns);
+            read_line(&a->lines[i]);
     check_rest(a);
     judge_silence(a, woken_ns);
     const int64_t now_ns = wb_acquisition_now_ns();
