@@ -369,12 +369,57 @@ static inline struct fake_bench *fake_start(void)
     return bench;
 }
 
-/* How late the hold byte may be seen: 20 ms, and more on a machine so busy that it keeps even this
- * thread from running, for which no program of ours is to blame. */
+/* --- measuring latencies on a machine that others use too --- */
+
+#define FAKE_ATTEMPTS 3
+/* What is excused by a machine that keeps even this thread from running ends here. */
+#define FAKE_PATIENCE_MAX_NS (100 * WB_NS_PER_MS)
+
+/* The measurements of one test; all zero to begin with. */
+struct fake_latency {
+    int attempts, stalled_attempts;
+    bool is_late, stalled; /* in this attempt: later than is excused; the machine stood still */
+};
+
+/* How late may be: 20 ms, and more, to a bound, when this thread was kept from running as well, for
+ * which no program of ours is to blame. */
 static inline int64_t fake_patience_ns(const struct fake_bench *bench)
 {
     const int64_t stalled_ns = bench->worst_gap_ns - 5 * WB_NS_PER_MS;
-    return WB_STOP_HOLD_NS + (stalled_ns > 0 ? 3 * stalled_ns : 0);
+    const int64_t patience_ns = WB_STOP_HOLD_NS + (stalled_ns > 0 ? 3 * stalled_ns : 0);
+    return patience_ns < FAKE_PATIENCE_MAX_NS ? patience_ns : FAKE_PATIENCE_MAX_NS;
+}
+
+/* Something was seen `latency_ns` after it was due, which should be within 20 ms. */
+static inline void fake_note_latency(struct fake_latency *latency, const struct fake_bench *bench,
+                                     const char *what, int64_t latency_ns)
+{
+    const int64_t patience_ns = fake_patience_ns(bench);
+    print_message("           %s %.2f ms late (machine stood still for %.1f ms)\n", what,
+                  (double)latency_ns / 1e6, (double)bench->worst_gap_ns / 1e6);
+    assert_true(latency_ns >= 0);
+    latency->is_late = latency->is_late || latency_ns > patience_ns;
+    latency->stalled = latency->stalled || patience_ns == FAKE_PATIENCE_MAX_NS;
+}
+
+/* Ends an attempt: true when all of it was in time. False: measure again. After the third a test
+ * fails, or is skipped when the machine stood still for too long each time. */
+static inline bool fake_in_time(struct fake_latency *latency)
+{
+    if (!latency->is_late)
+        return true;
+    latency->attempts++;
+    latency->stalled_attempts += latency->stalled;
+    latency->is_late = latency->stalled = false;
+    if (latency->attempts < FAKE_ATTEMPTS)
+        return false;
+    if (latency->stalled_attempts == latency->attempts) {
+        print_message("           SKIPPED: this machine stands still for too long to measure 20 "
+                      "ms\n");
+        skip();
+    }
+    fail_msg("late in each of %d attempts", latency->attempts);
+    return false;
 }
 
 /* Ends the thread and closes everything: what an unplugged cable looks like. */

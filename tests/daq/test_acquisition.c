@@ -241,13 +241,20 @@ static void a_step_waits_20_ms_at_most(void **state)
     fixture->bench->load_silent = fixture->bench->mocap_silent = true;
     start(fixture);
     run_for(fixture, 100 * MS);
-    for (int i = 0; i < 20; i++) {
-        const int64_t before_ns = wb_acquisition_now_ns();
-        assert_int_equal(wb_acquisition_step(fixture->acquisition, WB_NS_PER_S),
-                         WB_ACQUISITION_CONTINUE);
-        assert_true(wb_acquisition_now_ns() - before_ns <
-                    20 * MS + fake_patience_ns(fixture->bench));
-    }
+    struct fake_latency latency = {0};
+    int64_t worst_ns;
+    do {
+        worst_ns = 0;
+        for (int i = 0; i < 20; i++) {
+            const int64_t before_ns = wb_acquisition_now_ns();
+            assert_int_equal(wb_acquisition_step(fixture->acquisition, WB_NS_PER_S),
+                             WB_ACQUISITION_CONTINUE);
+            const int64_t took_ns = wb_acquisition_now_ns() - before_ns;
+            worst_ns = took_ns > worst_ns ? took_ns : worst_ns;
+        }
+        fake_note_latency(&latency, fixture->bench, "the worst step",
+                          worst_ns > 20 * MS ? worst_ns - 20 * MS : 0);
+    } while (!fake_in_time(&latency));
 }
 
 static void unplugging_everything_is_done_and_not_a_busy_loop(void **state)
