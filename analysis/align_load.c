@@ -90,7 +90,8 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
         return wb_fail(WB_ERR_MEMORY, "%s: out of memory", align->name);
     /* What was read before the database broke off can still serve. */
     if (status == WB_ERR_DATA) {
-        wb_align_warn(align, "the recording breaks off; what is readable is used");
+        if (wb_recording_is_complete(recording))
+            wb_align_warn(align, "the recording breaks off; what is readable is used");
         align->is_cut_short = true;
     } else if (status != WB_OK) {
         return status;
@@ -99,10 +100,13 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
         return wb_fail(WB_ERR_DATA, "%s: no reading of a load cell in it", align->name);
     if (align->cloud.n_frames == 0)
         return wb_fail(WB_ERR_DATA, "%s: no frame of motion capture in it", align->name);
-    if (align->counts.damaged_chunks > 0)
-        wb_align_warn(align, "%llu of %llu chunks are damaged and left out",
+    if (align->counts.damaged_chunks > 0) {
+        align->is_cut_short = true;
+        wb_align_warn(align, "%llu of %llu chunks %s damaged and left out",
                       (unsigned long long)align->counts.damaged_chunks,
-                      (unsigned long long)align->counts.chunks);
+                      (unsigned long long)align->counts.chunks,
+                      align->counts.damaged_chunks == 1 ? "is" : "are");
+    }
     return WB_OK;
 }
 
@@ -283,6 +287,11 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
     copy_meta(recording, entry, "tool_version", "recorded_with_version");
     copy_meta(recording, entry, "tool_revision", "recorded_with_revision");
     WB_TRY(load_events(align, recording));
+    if (!wb_recording_is_complete(recording) && !align->is_cut_short) {
+        align->is_cut_short = true;
+        wb_align_warn(align, "the recording was not closed or is not all there: its end is "
+                             "missing");
+    }
     WB_TRY(decode(align, recording));
     if (align->probes.n == 0)
         WB_TRY(wb_recording_each_clock(recording, take_clock_row, align));

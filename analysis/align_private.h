@@ -96,7 +96,7 @@ struct wb_align {
     long tare_samples;
     int64_t tare_ns, start_ns;
     int n_cycle_starts;
-    bool is_cut_short;    /* the test was not done to its end */
+    bool is_cut_short;    /* not done to its end, or parts are damaged */
     char stop_reason[64]; /* text of the event `stop` */
     unsigned n_lost, n_drops;
 

@@ -114,7 +114,8 @@ int wb_cmd_export(int argc, char **argv)
     if (!written || print(&options, &counts) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     if (counts.damaged_chunks > 0)
-        wb_warn("%" PRIu64 " damaged chunks were left out", counts.damaged_chunks);
+        wb_warn("%" PRIu64 " damaged chunk%s left out", counts.damaged_chunks,
+                counts.damaged_chunks == 1 ? " was" : "s were");
     return status == WB_OK && complete && counts.damaged_chunks == 0 ? WB_EXIT_OK
                                                                      : WB_EXIT_INCOMPLETE;
 }

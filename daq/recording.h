@@ -66,6 +66,12 @@ WB_MUST_CHECK enum wb_status wb_recording_close(struct wb_recording *recording);
  * a recording, or of a newer schema, is refused with the reason. A truncated or damaged database
  * is opened as far as SQLite can read it. */
 WB_MUST_CHECK enum wb_status wb_recording_open(struct wb_recording **out, const char *path);
+/* The same without the warning that a file is cut short, for one that is opened again. */
+WB_MUST_CHECK enum wb_status wb_recording_open_quietly(struct wb_recording **out, const char *path);
+/* True when the file is shorter than its own header says. That is told once, on opening; tables of
+ * such a file break off (WB_ERR_DATA) without further messages. Of other files, each table that
+ * breaks off is told once. */
+bool wb_recording_is_cut_short(const struct wb_recording *recording);
 
 /* False when the recording was not closed properly (crash, full disk) or the file is cut short. */
 bool wb_recording_is_complete(const struct wb_recording *recording);
@@ -134,7 +140,8 @@ wb_recording_each_meta(struct wb_recording *recording,
                        void *context);
 
 /* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. Of a recording
- * that was not closed: of the file followed by its write-ahead log (`-wal`). */
+ * that was not closed: of the file followed by its write-ahead log (`-wal`); of a compressed one
+ * that is cut short: of what can be decompressed. */
 WB_MUST_CHECK enum wb_status wb_recording_sha256(const char *path, char hex[65]);
 
 /* Compresses a closed recording to `target` (.wbr.zst), written atomically; the same recording and

@@ -129,8 +129,7 @@ static enum wb_status hash_compressed(int from, const char *path, char hex[65])
     WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
     unlink(temporary);
     enum wb_status status = wb_recording_decompress(from, to, path, &whole);
-    if (status == WB_OK && !whole)
-        status = wb_fail(WB_ERR_DATA, "'%s' is damaged: its compressed data breaks off", path);
+    /* Of one cut short what is there counts, as with one that is not compressed; opening tells. */
     if (status == WB_OK)
         status = wb_hash_descriptor(to, path, hex);
     close(to);

@@ -25,9 +25,13 @@ struct wb_recording {
     bool in_transaction;
     enum wb_status failed; /* latched: the first error of a write */
     /* Reading. */
-    bool complete;      /* closed properly */
-    bool shortened;     /* the file is shorter than its own header says, or not all decompressed */
-    int64_t n_rows_max; /* no table of a file of this size can hold more rows */
+    bool compressed; /* .zst */
+    bool complete;   /* closed properly */
+    bool shortened;  /* the file is shorter than its own header says, or not all decompressed */
+    int64_t bytes_there, bytes_expected; /* decompressed; as the file's own header counts them */
+    const char *told[8];                 /* tables that were said to break off, */
+    size_t n_told;                       /* constants */
+    int64_t n_rows_max;                  /* no table of a file of this size can hold more rows */
     /* Both. */
     int n_streams;
     struct wb_recording_stream *streams;

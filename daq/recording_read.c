@@ -48,7 +48,9 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
     int64_t page = (int64_t)header[16] << 8 | header[17];
     if (page == 1)
         page = 65536;
-    if (there.st_size < page * (int64_t)big_endian(header + 28))
+    recording->bytes_there = there.st_size;
+    recording->bytes_expected = page * (int64_t)big_endian(header + 28);
+    if (there.st_size < recording->bytes_expected)
         recording->shortened = true;
     /* The smallest row takes more than four bytes. */
     recording->n_rows_max = there.st_size / 4 + 64;
@@ -165,9 +167,8 @@ static enum wb_status open_compressed(struct wb_recording *recording, int descri
     int to = -1;
     bool whole = true;
     WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
+    recording->compressed = true;
     enum wb_status status = wb_recording_decompress(descriptor, to, recording->path, &whole);
-    if (status == WB_OK && !whole)
-        wb_warn("'%s': the compressed data breaks off; what comes before is read", recording->path);
     if (status == WB_OK)
         status = check_header(recording, to);
     if (!whole)
@@ -206,8 +207,19 @@ static enum wb_status prepare(struct wb_recording *recording, const char *sql,
     return wb_recording_fail(recording, code, "read");
 }
 
+static bool is_news(struct wb_recording *recording, const char *table)
+{
+    for (size_t i = 0; i < recording->n_told; i++) {
+        if (strcmp(recording->told[i], table) == 0)
+            return false;
+    }
+    if (recording->n_told < sizeof recording->told / sizeof recording->told[0])
+        recording->told[recording->n_told++] = table;
+    return true;
+}
+
 /* The end of a walk: SQLite's last code, or a cycle in a damaged tree that would never end. */
-static enum wb_status end_walk(const struct wb_recording *recording, int code, int64_t rows,
+static enum wb_status end_walk(struct wb_recording *recording, int code, int64_t rows,
                                const char *table)
 {
     if (code == SQLITE_DONE)
@@ -216,8 +228,11 @@ static enum wb_status end_walk(const struct wb_recording *recording, int code, i
         code == SQLITE_ROW ? "more rows than the file can hold" : sqlite3_errstr(code);
     if ((code & 0xff) == SQLITE_NOMEM)
         return wb_recording_fail(recording, code, "read");
-    return wb_fail(WB_ERR_DATA, "'%s': table %s breaks off after %lld rows: %s", recording->path,
-                   table, (long long)rows, why);
+    /* That a file is cut short was said when it was opened, and every table is walked twice. */
+    if (recording->shortened || !is_news(recording, table))
+        return WB_ERR_DATA;
+    return wb_fail(WB_ERR_DATA, "'%s': table %s breaks off after %lld row%s: %s", recording->path,
+                   table, (long long)rows, rows == 1 ? "" : "s", why);
 }
 
 static const char *text_of(sqlite3_stmt *statement, int column)
@@ -268,7 +283,7 @@ static enum wb_status read_streams(struct wb_recording *recording)
     return status;
 }
 
-enum wb_status wb_recording_open(struct wb_recording **out, const char *path)
+static enum wb_status open_path(struct wb_recording **out, const char *path, bool quietly)
 {
     *out = NULL;
     int descriptor = open(path, O_RDONLY | O_CLOEXEC);
@@ -293,14 +308,31 @@ enum wb_status wb_recording_open(struct wb_recording **out, const char *path)
             wb_recording_release(recording);
         return status;
     }
-    if (recording->shortened)
-        wb_warn("'%s' is cut short; what is there is read", path);
+    if (recording->shortened && !quietly)
+        wb_warn("'%s' is cut short: %.1f of %.1f MB could be read; look for the original%s", path,
+                (double)recording->bytes_there * 1e-6, (double)recording->bytes_expected * 1e-6,
+                recording->compressed ? "" : " or its -wal");
     char *closed = NULL;
     recording->complete =
         wb_recording_meta(recording, "closed", &closed) == WB_OK && !recording->shortened;
     free(closed);
     *out = recording;
     return WB_OK;
+}
+
+enum wb_status wb_recording_open(struct wb_recording **out, const char *path)
+{
+    return open_path(out, path, false);
+}
+
+enum wb_status wb_recording_open_quietly(struct wb_recording **out, const char *path)
+{
+    return open_path(out, path, true);
+}
+
+bool wb_recording_is_cut_short(const struct wb_recording *recording)
+{
+    return recording->shortened;
 }
 
 bool wb_recording_is_complete(const struct wb_recording *recording)
@@ -499,9 +531,12 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
             qsort(keys.items, keys.n, sizeof keys.items[0], compare_keys);
         size_t n_lost = 0;
         status = visit_rows(recording, walk, &keys, &n_lost);
-        if (status == WB_OK && end == WB_OK && n_lost > 0)
-            end = wb_fail(WB_ERR_DATA, "'%s': %zu rows of table %s cannot be read", recording->path,
-                          n_lost, walk->table);
+        if (status == WB_OK && end == WB_OK && n_lost > 0) {
+            end = WB_ERR_DATA;
+            if (!recording->shortened && is_news(recording, walk->table))
+                wb_error("'%s': %zu row%s of table %s cannot be read", recording->path, n_lost,
+                         n_lost == 1 ? "" : "s", walk->table);
+        }
     }
     free(keys.items);
     return status != WB_OK ? status : end;

@@ -1,6 +1,7 @@
 #include "daq/survey.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,9 +11,15 @@
 
 #define WB_LOG_DOMAIN "survey"
 
+/* s; the stage reports a few times a second, and a computer may hesitate. */
+#define LEAST_LIMIT 0.6
+
 struct looking {
     struct wb_survey *survey;
     int64_t next_seq[WB_SURVEY_STREAMS];
+    /* Time in which no stream brought anything, up to now and up to each stream's last chunk. */
+    double quiet, quiet_before[WB_SURVEY_STREAMS]; /* s */
+    bool has_tare;
 };
 
 static int find_stream(const struct wb_survey *survey, int id)
@@ -36,6 +43,20 @@ static void check_order(struct wb_survey_stream *stream, int64_t *next, int64_t 
         stream->gaps++;
     }
     *next = seq == INT64_MAX ? seq : seq + 1;
+}
+
+/* Between two chunks of any streams, times up to this are the streams' own rhythm. */
+#define SHORTEST_QUIET_NS (100 * WB_NS_PER_MS)
+
+/* Silence of a stream while others went on, until now. */
+static void note_alone(struct looking *looking, int i, int64_t t_ns)
+{
+    struct wb_survey_stream *const stream = &looking->survey->streams[i];
+    const double all = wb_survey_seconds(stream->last_ns, t_ns);
+    const double shared = looking->quiet - looking->quiet_before[i];
+    if (stream->chunks > 0 && all < 1e9 &&
+        all - shared > wb_seconds_from_ns(stream->alone_silent_ns))
+        stream->alone_silent_ns = wb_ns_from_seconds(all - shared);
 }
 
 /* Chunks come in order of time, so only damaged stamps are too far apart for an int64_t. */
@@ -71,6 +92,11 @@ static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
     }
     struct wb_survey_stream *stream = &survey->streams[i];
     check_order(stream, &looking->next_seq[i], chunk->seq);
+    const double quiet = survey->chunks > 0 ? wb_survey_seconds(survey->last_ns, chunk->t_ns) : 0.0;
+    if (survey->n_streams > 1 && quiet > wb_seconds_from_ns(SHORTEST_QUIET_NS) && quiet < 1e6)
+        looking->quiet += quiet;
+    note_alone(looking, i, chunk->t_ns);
+    looking->quiet_before[i] = looking->quiet;
     check_time(survey, stream, chunk->t_ns);
     stream->chunks++;
     stream->bytes += chunk->n;
@@ -83,8 +109,12 @@ static enum wb_status look_at_chunk(void *context, const struct wb_chunk *chunk)
 
 static enum wb_status look_at_event(void *context, const struct wb_event *event)
 {
-    struct wb_survey *survey = context;
+    struct looking *looking = context;
+    struct wb_survey *survey = looking->survey;
     survey->events++;
+    /* Before the tare instruments may still be finding their rhythm. */
+    looking->has_tare |= strcmp(event->kind, "tare") == 0;
+    survey->refused_events += looking->has_tare && strcmp(event->kind, "refused") == 0;
     survey->drop_events += strcmp(event->kind, "drop") == 0;
     survey->lost_events += strcmp(event->kind, "stream_lost") == 0;
     return WB_OK;
@@ -144,11 +174,21 @@ static enum wb_status decode_all(struct wb_recording *recording, struct wb_surve
     return WB_OK;
 }
 
+/* What the rig file calls a lost stream. A stage that rests is asked for its state less often. */
+static void note_limit(struct wb_recording *recording, struct wb_survey *survey)
+{
+    struct wb_rig rig;
+    if (survey->has_rig && wb_replay_rig(recording, &rig) == WB_OK)
+        survey->silence_limit_ns =
+            wb_ns_from_seconds(fmax(rig.limits.stream_lost / rig.time_scale, LEAST_LIMIT));
+}
+
 enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct wb_survey *survey)
 {
     memset(survey, 0, sizeof *survey);
     survey->dropped_chunks = -1;
     survey->closed = wb_recording_is_complete(recording);
+    survey->cut_short = wb_recording_is_cut_short(recording);
     int n = wb_recording_n_streams(recording);
     for (int i = 0; i < n && i < WB_SURVEY_STREAMS; i++) {
         const struct wb_recording_stream *stream = wb_recording_stream_at(recording, i);
@@ -158,9 +198,12 @@ enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct
     struct looking looking = {.survey = survey};
     WB_TRY(note_walk(survey, wb_recording_each_meta(recording, look_at_meta, survey)));
     WB_TRY(note_walk(survey, wb_recording_each_chunk(recording, look_at_chunk, &looking)));
-    for (int i = 0; i < survey->n_streams; i++)
+    for (int i = 0; i < survey->n_streams; i++) {
         survey->missing += survey->streams[i].missing;
-    WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, survey)));
+        note_alone(&looking, i, survey->last_ns); /* to the end */
+    }
+    note_limit(recording, survey);
+    WB_TRY(note_walk(survey, wb_recording_each_event(recording, look_at_event, &looking)));
     WB_TRY(note_walk(survey, wb_recording_each_clock(recording, look_at_clock, survey)));
     return decode ? decode_all(recording, survey) : WB_OK;
 }
@@ -179,25 +222,39 @@ double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
 
 /* --- what is wrong --- */
 
-static bool stream_problem(const struct wb_survey_stream *stream, int which, char *text,
-                           size_t size)
+#define FILE_PROBLEMS 9
+#define STREAM_PROBLEMS 5
+
+static const char *plural(uint64_t n)
 {
+    return n == 1 ? "" : "s";
+}
+
+static bool stream_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+{
+    const struct wb_survey_stream *const stream = &survey->streams[which / STREAM_PROBLEMS];
     const char *role = wb_role_name(stream->role);
-    switch (which) {
+    switch (which % STREAM_PROBLEMS) {
     case 0:
         snprintf(text, size, "%s stream %d: nothing was received", role, stream->id);
-        return stream->chunks == 0;
+        return stream->chunks == 0 && !survey->cut_short;
     case 1:
-        snprintf(text, size, "%s stream %d: %" PRIu64 " chunks damaged (CRC-32)", role, stream->id,
-                 stream->damaged);
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s damaged (CRC-32)", role, stream->id,
+                 stream->damaged, plural(stream->damaged));
         return stream->damaged > 0;
     case 2:
-        snprintf(text, size, "%s stream %d: %" PRIu64 " chunks missing in %" PRIu64 " places", role,
-                 stream->id, stream->missing, stream->gaps);
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s missing in %" PRIu64 " place%s",
+                 role, stream->id, stream->missing, plural(stream->missing), stream->gaps,
+                 plural(stream->gaps));
         return stream->missing > 0;
+    case 3:
+        snprintf(text, size, "%s stream %d: silent for %.2f s, the limit is %.2f s", role,
+                 stream->id, wb_seconds_from_ns(stream->alone_silent_ns),
+                 wb_seconds_from_ns(survey->silence_limit_ns));
+        return survey->silence_limit_ns > 0 && stream->alone_silent_ns > survey->silence_limit_ns;
     default:
-        snprintf(text, size, "%s stream %d: %" PRIu64 " chunks repeated or out of order", role,
-                 stream->id, stream->repeated);
+        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s repeated or out of order", role,
+                 stream->id, stream->repeated, plural(stream->repeated));
         return stream->repeated > 0;
     }
 }
@@ -206,28 +263,35 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
 {
     switch (which) {
     case 0:
-        snprintf(text, size,
-                 "it was not closed properly: a crash, a power cut, a full disk, or "
-                 "the file is cut short, or it is still being recorded");
+        snprintf(text, size, "%s",
+                 survey->cut_short ? "the file is cut short: look for the original"
+                                   : "it was not closed properly: a crash, a power cut, a full "
+                                     "disk, or it is still being recorded");
         return !survey->closed;
     case 1:
         snprintf(text, size, "the database is damaged: not all rows can be read");
-        return survey->broken;
+        return survey->broken && !survey->cut_short;
     case 2:
         snprintf(text, size, "no stream is declared");
         return survey->n_streams == 0;
     case 3:
-        snprintf(text, size, "%" PRIu64 " chunks belong to no declared stream", survey->undeclared);
+        snprintf(text, size, "%" PRIu64 " chunk%s of no declared stream", survey->undeclared,
+                 plural(survey->undeclared));
         return survey->undeclared > 0;
     case 4:
-        snprintf(text, size, "%" PRIu64 " drops were noted while recording (%" PRId64 " chunks)",
-                 survey->drop_events, survey->dropped_chunks < 0 ? 0 : survey->dropped_chunks);
+        snprintf(text, size, "drops noted while recording: %" PRIu64 " (%" PRId64 " chunk%s)",
+                 survey->drop_events, survey->dropped_chunks < 0 ? 0 : survey->dropped_chunks,
+                 survey->dropped_chunks == 1 ? "" : "s");
         return survey->drop_events > 0 || survey->dropped_chunks > 0;
     case 5:
-        snprintf(text, size, "%" PRIu64 " times a stream fell silent while recording",
-                 survey->lost_events);
+        snprintf(text, size, "a stream fell silent %" PRIu64 " time%s while recording",
+                 survey->lost_events, plural(survey->lost_events));
         return survey->lost_events > 0;
     case 6:
+        snprintf(text, size, "lines were refused during the test, noted %" PRIu64 " time%s",
+                 survey->refused_events, plural(survey->refused_events));
+        return survey->refused_events > 0;
+    case 7:
         snprintf(text, size, "the rig's description is missing: nothing can be decoded");
         return !survey->has_rig;
     default:
@@ -235,9 +299,6 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
         return !survey->has_specimen;
     }
 }
-
-#define FILE_PROBLEMS 8
-#define STREAM_PROBLEMS 4
 
 bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size)
 {
@@ -249,8 +310,7 @@ bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size
             continue;
         }
         which -= FILE_PROBLEMS;
-        if (stream_problem(&survey->streams[which / STREAM_PROBLEMS], which % STREAM_PROBLEMS, text,
-                           size))
+        if (stream_problem(survey, which, text, size))
             return true;
     }
     return false;

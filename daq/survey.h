@@ -20,6 +20,8 @@ struct wb_survey_stream {
     uint64_t repeated; /* sequence numbers that come twice or backwards */
     int64_t first_ns, last_ns;
     int64_t longest_silence_ns; /* between two chunks */
+    int64_t alone_silent_ns;    /* the same without the times in which all streams were silent, as
+                                   when the recording computer stood still and read them later */
     uint64_t samples;           /* decoded; 0 unless decoding was asked for and worked */
     double rate;                /* samples/s between first and last chunk; 0 unknown */
 };
@@ -30,10 +32,13 @@ struct wb_survey {
     uint64_t chunks, bytes, damaged, missing;
     uint64_t undeclared; /* chunks of streams that were never declared */
     uint64_t events, drop_events, clock_rows;
+    uint64_t refused_events;    /* remarks on refused lines after the tare */
+    int64_t silence_limit_ns;   /* alone_silent_ns beyond it is a fault; of the rig; 0 unknown */
     uint64_t lost_events;       /* times a stream fell silent for too long */
     int64_t dropped_chunks;     /* what the writer counted; -1 when it was not written down */
     int64_t first_ns, last_ns;  /* of all chunks; 0 without any */
     bool closed;                /* closed properly and not cut short */
+    bool cut_short;             /* the file is shorter than its header says */
     bool broken;                /* a table breaks off or cannot be read */
     bool decoded;               /* samples were counted */
     bool has_rig, has_specimen; /* meta values that replay and alignment need */

@@ -1,5 +1,7 @@
 /* `wirebench align` and `wirebench quicklook` on made-up recordings: outputs, messages, exit codes.
  * WIREBENCH_BINARY names the tool. */
+#include <sqlite3.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include "base/file.h"
@@ -144,6 +146,41 @@ static void compressed_recordings_give_the_same(void **state)
     free(b);
 }
 
+static void damaged_or_cut_recordings_are_not_complete(void **state)
+{
+    (void)state;
+    char path[WB_PATH], *bytes;
+    size_t size;
+    assert_int_equal(wb_file_join(path, folder, "damaged.wbr"), WB_OK);
+    sqlite3 *db;
+    assert_int_equal(system("cp $DIR/whole.wbr $DIR/damaged.wbr"), 0);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, "UPDATE chunk SET crc32 = 0 WHERE stream = 1 AND seq = 50",
+                                  NULL, NULL, NULL),
+                     SQLITE_OK);
+    sqlite3_close(db);
+    expect("align $DIR/damaged.wbr -o $DIR/damaged --json", 3, "\"complete\": false",
+           "is damaged and left out");
+    expect("quicklook $DIR/damaged.wbr -o $DIR/damaged-look", 3, "", "is damaged and left out");
+
+    /* Cut short, the plain file and the compressed one are treated alike. */
+    assert_int_equal(wb_file_join(path, folder, "cut.wbr"), WB_OK);
+    assert_int_equal(wb_file_join(path, folder, "whole.wbr"), WB_OK);
+    assert_int_equal(wb_file_read(path, &bytes, &size), WB_OK);
+    assert_int_equal(wb_file_join(path, folder, "cut.wbr"), WB_OK);
+    assert_int_equal(wb_file_write(path, bytes, size * 199 / 200), WB_OK);
+    free(bytes);
+    expect("align $DIR/cut.wbr -o $DIR/cut", 3, "its end is missing", "cut short");
+    char packed[WB_PATH];
+    struct stat there;
+    assert_int_equal(wb_file_join(packed, folder, "cut.wbr.zst"), WB_OK);
+    assert_int_equal(wb_file_join(path, folder, "whole.wbr"), WB_OK);
+    assert_int_equal(wb_recording_compress(path, packed), WB_OK);
+    assert_int_equal(stat(packed, &there), 0);
+    assert_int_equal(truncate(packed, there.st_size * 199 / 200), 0);
+    expect("align $DIR/cut.wbr.zst -o $DIR/cut-packed", 3, "its end is missing", "cut short");
+}
+
 static void settings_reach_the_rows(void **state)
 {
     (void)state;
@@ -192,6 +229,7 @@ int main(void)
         cmocka_unit_test(several_become_a_folder_each),
         cmocka_unit_test(json_is_one_object_with_units),
         cmocka_unit_test(compressed_recordings_give_the_same),
+        cmocka_unit_test(damaged_or_cut_recordings_are_not_complete),
         cmocka_unit_test(settings_reach_the_rows),
         cmocka_unit_test(quicklook_draws_one_recording),
         cmocka_unit_test(what_is_wrong_is_said_once_and_clearly),

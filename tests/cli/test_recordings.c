@@ -110,8 +110,8 @@ static void verify_exits_3_when_something_is_missing_or_damaged(void **state)
     tool(bench, "verify $REC", &o);
     assert_int_equal(o.code, 3);
     assert_non_null(strstr(o.out, "NOT WHOLE"));
-    assert_non_null(strstr(o.out, "mocap stream 1: 1 chunks damaged"));
-    assert_non_null(strstr(o.out, "load stream 0: 1 chunks missing in 1 places"));
+    assert_non_null(strstr(o.out, "mocap stream 1: 1 chunk damaged"));
+    assert_non_null(strstr(o.out, "load stream 0: 1 chunk missing in 1 place"));
     tool(bench, "verify --json $REC", &o);
     assert_int_equal(o.code, 3);
     struct wb_json *root = NULL;
@@ -219,9 +219,15 @@ static void truncated_recording_gives_one_warning_and_what_is_left(void **state)
     assert_non_null(strstr(o.err, "cut short"));
     tool(bench, "verify $REC", &o);
     assert_int_equal(o.code, 3);
-    assert_non_null(strstr(o.out, "not closed properly"));
+    assert_non_null(strstr(o.out, "the file is cut short"));
+    assert_null(strstr(o.out, "not closed properly"));
     tool(bench, "info $REC", &o);
     assert_int_equal(o.code, 3);
+    /* One message, and no second one. */
+    const char *const said = strstr(o.err, "wirebench:");
+    assert_non_null(said);
+    assert_non_null(strstr(said, "MB could be read; look for the original"));
+    assert_null(strstr(said + 1, "wirebench:"));
 }
 
 static void bad_input_is_one_message_and_the_proper_exit_code(void **state)

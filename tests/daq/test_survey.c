@@ -64,19 +64,25 @@ static void each_kind_of_harm_is_found_and_named(void **state)
         const char *sql, *words;
     } harms[] = {
         {"UPDATE chunk SET crc32 = 0 WHERE stream = 0 AND seq = 4",
-         "load stream 0: 1 chunks damaged"},
+         "load stream 0: 1 chunk damaged"},
         {"DELETE FROM chunk WHERE stream = 1 AND seq IN (3, 4, 9)",
          "mocap stream 1: 3 chunks missing in 2 places"},
-        {"DELETE FROM chunk WHERE stream = 2 AND seq = 0", "stage stream 2: 1 chunks missing"},
+        {"DELETE FROM chunk WHERE stream = 2 AND seq = 0", "stage stream 2: 1 chunk missing"},
         {"UPDATE chunk SET seq = 3 WHERE stream = 2 AND seq = 19", "repeated or out of order"},
         {"DELETE FROM chunk WHERE stream = 1", "mocap stream 1: nothing was received"},
         {"DELETE FROM meta WHERE key = 'closed'", "not closed properly"},
         {"DELETE FROM meta WHERE key = 'rig'", "rig's description is missing"},
         {"DELETE FROM meta WHERE key = 'specimen'", "specimen's description is missing"},
         {"UPDATE meta SET value = '7' WHERE key = 'dropped_chunks'", "(7 chunks)"},
-        {"INSERT INTO event VALUES(1, 'drop', 'load stream 0 lost 1 chunks')", "1 drops"},
-        {"INSERT INTO event VALUES(1, 'stream_lost', 'mocap')", "1 times a stream fell silent"},
-        {"INSERT INTO chunk VALUES(9, 0, 1, x'00', 0)", "1 chunks belong to no declared stream"},
+        {"INSERT INTO event VALUES(1, 'drop', 'load stream 0 lost 1 chunks')",
+         "drops noted while recording: 1 "},
+        {"INSERT INTO event VALUES(1, 'stream_lost', 'mocap')",
+         "a stream fell silent 1 time while"},
+        {"INSERT INTO chunk VALUES(9, 0, 1, x'00', 0)", "1 chunk of no declared stream"},
+        {"INSERT INTO event VALUES(1, 'tare', '{}'), (2, 'refused', 'x')", "noted 1 time"},
+        {"UPDATE meta SET value = value || '\nlimits: {stream_lost_s: 0.6}' WHERE key = 'rig';"
+         "DELETE FROM chunk WHERE stream = 1 AND seq >= 6",
+         "mocap stream 1: silent for 0."},
         {"DROP TABLE clock", "the database is damaged"},
     };
     struct bench *bench = *state;
@@ -91,6 +97,22 @@ static void each_kind_of_harm_is_found_and_named(void **state)
         expect_only(&survey, harms[i].words);
         unlink(bench->path);
     }
+}
+
+/* The recording computer stood still, and all came later: nothing is lost. Refused lines before the
+ * tare are an instrument finding its rhythm. */
+static void what_all_streams_share_is_no_harm(void **state)
+{
+    struct bench *bench = *state;
+    small_make(bench->path, true);
+    run_sql(bench->path, "UPDATE chunk SET t_ns = t_ns + 5000000000 WHERE t_ns > "
+                         "(SELECT (min(t_ns) + max(t_ns)) / 2 FROM chunk);"
+                         "INSERT INTO event VALUES(1, 'refused', 'x'), (2, 'tare', '{}')");
+    struct wb_survey survey;
+    look(bench->path, false, &survey);
+    assert_true(survey.streams[1].longest_silence_ns > INT64_C(5000000000));
+    assert_true(survey.silence_limit_ns > 0);
+    assert_true(wb_survey_is_whole(&survey));
 }
 
 /* --- export --- */
@@ -195,6 +217,7 @@ int main(void)
     static const struct CMUnitTest tests[] = {
 #define FACT(name) cmocka_unit_test_setup_teardown(name, bench_set_up, bench_tear_down)
         FACT(whole_recording_has_no_problem),
+        FACT(what_all_streams_share_is_no_harm),
         FACT(each_kind_of_harm_is_found_and_named),
         FACT(export_writes_every_sample_with_units_and_says_virtual_rig),
         FACT(export_into_a_folder_that_is_not_there_fails_with_one_message),
