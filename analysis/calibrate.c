@@ -9,6 +9,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multimin.h>
 
+#include "analysis/bow_correction.h"
 #include "analysis/computed.h"
 #include "analysis/errors.h"
 #include "analysis/first_guess.h"
@@ -30,6 +31,13 @@
 /* A test whose largest force is above this part of the linear elastic prediction has not yielded.
  */
 #define ELASTIC_SHARE 0.95
+
+/* Bows beyond this part of the length bias eqs. 10 and 11 by more than a few percent. */
+#define LARGE_BOW 0.01
+/* So near to a bound of the search the optimum lies at it. */
+#define AT_BOUND 1e-3
+/* Passes of the correction for the bows. */
+#define BOW_PASSES 2
 
 /* What one evaluation of the error needs. */
 struct objective {
@@ -259,6 +267,16 @@ static enum wb_status check_yielded(struct objective *objective, const struct wb
     return WB_OK;
 }
 
+static void take_optimum(struct wb_calibrate_result *result, const struct objective *objective,
+                         const double at[2])
+{
+    result->material = objective->material;
+    result->material.strength_coefficient = at[0] * objective->first_strength;
+    result->material.hardening_exponent = at[1] * objective->first_exponent;
+    result->evaluations = objective->evaluations;
+    result->failed_evaluations = objective->failed;
+}
+
 /* Nelder-Mead, then once more from the optimum. */
 static enum wb_status optimise(struct wb_calibrate_result *result, struct objective *objective,
                                const struct wb_calibrate_settings *settings)
@@ -273,11 +291,35 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
         result->restarted = true;
         result->restart_moved = fmax(fabs(at[0] / before[0] - 1.0), fabs(at[1] / before[1] - 1.0));
     }
-    result->material = objective->material;
-    result->material.strength_coefficient = at[0] * objective->first_strength;
-    result->material.hardening_exponent = at[1] * objective->first_exponent;
-    result->evaluations = objective->evaluations;
-    result->failed_evaluations = objective->failed;
+    take_optimum(result, objective, at);
+    return WB_OK;
+}
+
+/* Takes what the bows make of eqs. 10 and 11 out of E and sigma_Y, by the ratio of measured to
+ * computed, and seeks K and n again from where they are. */
+static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
+                                       struct objective *objective,
+                                       const struct wb_bow_samples *samples,
+                                       const struct wb_first_guess *measured,
+                                       const struct wb_calibrate_settings *settings)
+{
+    for (int pass = 0; pass < BOW_PASSES && result->end != WB_CALIBRATE_STOPPED; pass++) {
+        struct wb_first_guess computed;
+        double at[2] = {1.0, 1.0};
+        WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material, settings,
+                                       &objective->evaluations));
+        objective->material = result->material;
+        if (settings->youngs_modulus <= 0.0)
+            objective->material.youngs_modulus *=
+                measured->youngs_modulus / computed.youngs_modulus;
+        if (settings->yield_stress <= 0.0)
+            objective->material.yield_stress *= measured->yield_stress / computed.yield_stress;
+        objective->first_strength = result->material.strength_coefficient;
+        objective->first_exponent = result->material.hardening_exponent;
+        WB_TRY(minimise(result, objective, at, settings));
+        take_optimum(result, objective, at);
+    }
+    result->bow_corrected = true;
     return WB_OK;
 }
 
@@ -299,6 +341,43 @@ static enum wb_status judge(struct wb_calibrate_result *result, struct objective
     return WB_OK;
 }
 
+static double bow_spread(const struct wb_dataset *const *datasets, int n)
+{
+    double known = 0.0, mean = 0.0, squares = 0.0;
+    for (int i = 0; i < n; i++) {
+        if (datasets[i]->info.n_natural_shape == 0)
+            continue;
+        known += 1.0;
+        mean += wb_dataset_bow(&datasets[i]->info);
+    }
+    for (int i = 0; i < n; i++) {
+        const double off = wb_dataset_bow(&datasets[i]->info) - mean / fmax(known, 1.0);
+        squares += datasets[i]->info.n_natural_shape > 0 ? off * off : 0.0;
+    }
+    return known > 1.0 ? sqrt(squares / (known - 1.0)) : 0.0;
+}
+
+int wb_calibrate_remarks(const struct wb_calibrate_result *result,
+                         const char *remarks[WB_CALIBRATE_MOST_REMARKS])
+{
+    int n = 0;
+    const struct wb_material *const m = &result->material;
+    const double ratio = m->strength_coefficient / result->first_strength_coefficient;
+    const double large = LARGE_BOW * result->info.length;
+    if (!result->bow_corrected &&
+        (fabs(wb_dataset_bow(&result->info)) > large || result->bow_spread > large))
+        remarks[n++] = "+- does not hold the bias of eqs. 10 and 11 from the samples' bows";
+    if (m->hardening_exponent > 1.0)
+        remarks[n++] = "n is above 1: the stress rises ever faster with the strain, which no metal "
+                       "does; K and n are numbers of a fit";
+    if (m->hardening_exponent < SMALLEST_EXPONENT * (1.0 + AT_BOUND) ||
+        m->hardening_exponent > LARGEST_EXPONENT * (1.0 - AT_BOUND) ||
+        ratio < SMALLEST_STRENGTH_RATIO * (1.0 + AT_BOUND) ||
+        ratio > LARGEST_STRENGTH_RATIO * (1.0 - AT_BOUND))
+        remarks[n++] = "K or n ended at a bound of the search: no optimum was found";
+    return n;
+}
+
 static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                                       const struct wb_curve *curve,
                                       const struct wb_dataset *const *datasets, int n,
@@ -306,6 +385,8 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
 {
     struct wb_first_guess guess;
     wb_curve_mean_info(datasets, n, &result->info);
+    wb_curve_warn_unknown_shapes(datasets, n);
+    result->bow_spread = bow_spread(datasets, n);
     WB_TRY(wb_first_guess_run(&guess, curve, &result->info, settings->elastic_zone,
                               yield_point(settings)));
     result->first_strength_coefficient = guess.strength_coefficient;
@@ -336,6 +417,10 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
         status = check_yielded(&objective, &result->info);
     if (status == WB_OK)
         status = optimise(result, &objective, settings);
+    if (status == WB_OK && settings->bow_corrected && !settings->straight) {
+        const struct wb_bow_samples samples = {datasets, n, curve};
+        status = correct_for_bows(result, &objective, &samples, &guess, settings);
+    }
     if (status == WB_OK)
         status = judge(result, &objective);
     if (status == WB_OK)

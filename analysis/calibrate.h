@@ -30,6 +30,8 @@ struct wb_calibrate_settings {
                                sqrt(delta_max); default 1e-4 */
     int max_iterations;     /* default 200 per start */
     bool straight;          /* ignore the natural shape */
+    bool bow_corrected;     /* take what the samples' bows make of eqs. 10 and 11 out of E and
+                               sigma_Y, two passes; default false: the equations as printed */
     bool restart;           /* restart once from the optimum; default true */
     double step;            /* m, deflection step of the comparison grid; default 0.5 mm */
     int n_elements;         /* 0: 50 */
@@ -63,8 +65,11 @@ struct wb_calibrate_result {
     double first_strength_coefficient, first_hardening_exponent; /* K0, n0 */
     int n_samples;                                               /* datasets averaged */
     double max_force, max_deflection;                            /* N, m, of the averaged curve */
-    /* Standard uncertainties of E, sigma_Y, K, n from the scatter between samples (jackknife over
-     * the samples, each recalibrated from the optimum); NaN with one sample. */
+    double bow_spread; /* m: standard deviation of the samples' bows, as far as known; 0 with one */
+    bool bow_corrected;
+    /* Standard uncertainties of E, sigma_Y, ln K, n from the scatter between samples (jackknife
+     * over the samples, each recalibrated from the optimum); NaN with one sample. K is within a
+     * factor of exp(deviation[2]). */
     double deviation[4];
     enum wb_calibrate_end end;
     bool restarted;                      /* the restart was made */
@@ -81,6 +86,13 @@ struct wb_calibrate_result {
     double residual_scatter_rms;
     double cpu_s;
 };
+
+/* What a reader of the properties should know, as sentences without an end: a bow that biases E and
+ * sigma_Y beyond their uncertainty, an exponent above 1, an end at a bound of the search. Returns
+ * how many there are. */
+#define WB_CALIBRATE_MOST_REMARKS 3
+int wb_calibrate_remarks(const struct wb_calibrate_result *result,
+                         const char *remarks[WB_CALIBRATE_MOST_REMARKS]);
 
 /* Calibrates on the average curve of `n` datasets. Unusable data (yield not reached, too few
  * points, reversed sign, ...) is WB_ERR_DATA with the reason. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/units.h"
 #include "fe/cantilever.h"
 #include "fe/section.h"
 
@@ -68,6 +69,13 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
     wb_cantilever_set_materials(computed->cantilever, material);
     WB_TRY(wb_cantilever_move(computed->cantilever, WB_CONTROL_DEFLECTION, 0.0, &point));
     *reached = point.end == WB_CANTILEVER_CONVERGED && isfinite(point.vertical_force);
+    if (*reached && point.slack)
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries "
+                       "the counterweight above zero deflection, where the strand hangs slack: "
+                       "there is no force to zero on",
+                       computed->info.wire, computed->info.sample,
+                       wb_dataset_bow(&computed->info) / WB_MM);
     computed->zero = *reached ? point.vertical_force : 0.0;
     return WB_OK;
 }

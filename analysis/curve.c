@@ -267,7 +267,16 @@ static enum wb_status average(struct wb_curve *curve, const struct loading *load
     enum wb_status status = allocate(curve, points);
     for (int k = 0; status == WB_OK && k < points; k++) {
         for (int i = 0; status == WB_OK && i < n; i++) {
-            if (!sample_force(&loadings[i], k, step, &values[i]))
+            if (sample_force(&loadings[i], k, step, &values[i]))
+                continue;
+            const double begin = loadings[i].points[0].deflection;
+            if (k * step < begin)
+                status = wb_fail(WB_ERR_DATA,
+                                 "wire '%s', sample %d: the first loading has no rows below %.2f "
+                                 "mm, expected from zero deflection on (was the tip's rest too "
+                                 "high, or the start lost?)",
+                                 datasets[i]->info.wire, datasets[i]->info.sample, begin / WB_MM);
+            else
                 status = wb_fail(WB_ERR_DATA,
                                  "wire '%s', sample %d: no rows of the first loading around "
                                  "%.2f mm (a gap of more than %g steps of %g mm)",
@@ -347,6 +356,23 @@ double wb_curve_scatter(const struct wb_curve *curve)
     return sqrt(sum / (curve->n - 1)) / curve->max_force;
 }
 
+static int known_shapes(const struct wb_dataset *const *datasets, int n)
+{
+    int known = 0;
+    for (int i = 0; i < n; i++)
+        known += datasets[i]->info.n_natural_shape > 0;
+    return known;
+}
+
+void wb_curve_warn_unknown_shapes(const struct wb_dataset *const *datasets, int n)
+{
+    const int known = known_shapes(datasets, n);
+    if (known > 0 && known < n)
+        wb_warn("wire '%s': the natural shape of %d of %d samples is not known; the mean is that "
+                "of the others",
+                datasets[0]->info.wire, n - known, n);
+}
+
 void wb_curve_mean_info(const struct wb_dataset *const *datasets, int n, struct wb_test_info *info)
 {
     struct wb_test_info mean = datasets[0]->info;
@@ -354,10 +380,11 @@ void wb_curve_mean_info(const struct wb_dataset *const *datasets, int n, struct 
     for (int k = 0; k < size; k++)
         mean.natural_shape[k] = 0.0;
     mean.n_natural_shape = 0;
+    const int known = known_shapes(datasets, n);
     for (int i = 0; i < n; i++) {
         const struct wb_test_info *const one = &datasets[i]->info;
         for (int k = 0; k < one->n_natural_shape && k < size; k++)
-            mean.natural_shape[k] += one->natural_shape[k] / n;
+            mean.natural_shape[k] += one->natural_shape[k] / known;
         if (one->n_natural_shape > mean.n_natural_shape)
             mean.n_natural_shape = one->n_natural_shape;
         mean.is_virtual = mean.is_virtual || one->is_virtual;

@@ -45,6 +45,10 @@ bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info 
 int wb_curve_group(const struct wb_dataset *const *datasets, int n, int *group);
 
 /* Mean of the samples' natural shapes, and everything else of `info` from the first. */
+/* The mean natural shape is that of the samples whose shape is known. */
 void wb_curve_mean_info(const struct wb_dataset *const *datasets, int n, struct wb_test_info *info);
+
+/* Warns when some of the samples have a natural shape and others none. */
+void wb_curve_warn_unknown_shapes(const struct wb_dataset *const *datasets, int n);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/bow_correction.h"
 #include "analysis/computed.h"
 #include "analysis/errors.h"
 #include "analysis/first_guess.h"
@@ -16,6 +17,8 @@
 /* A refit is settled when ln K and n move less than this. */
 #define SETTLED 1e-3
 #define MOST_STEPS 12
+/* So much of Levenberg's damping leaves the step as good as Gauss and Newton's. */
+#define FIRST_DAMPING 1e-3
 /* Largest change of ln K and n in one step. */
 #define LARGEST_STEP 0.5
 /* Where n may lie; K only needs to be positive, which its logarithm sees to. */
@@ -103,7 +106,7 @@ static double curve_error(const struct refit *refit, bool complete)
 /* Refits K and n of refit->material; *settled tells whether it worked. */
 static enum wb_status refit_hardening(struct refit *refit, bool *settled)
 {
-    double damping = 1e-3, step[2];
+    double damping = FIRST_DAMPING, step[2];
     bool complete;
     *settled = false;
     WB_TRY(run(refit, 0.0, 0.0, refit->force, &complete));
@@ -120,12 +123,16 @@ static enum wb_status refit_hardening(struct refit *refit, bool *settled)
         memcpy(previous, refit->force, (size_t)refit->curve.n * sizeof *previous);
         WB_TRY(run(refit, step[0], step[1], refit->force, &complete));
         const double error = curve_error(refit, complete);
-        *settled = fmax(fabs(step[0]), fabs(step[1])) < SETTLED;
+        const bool is_small = fmax(fabs(step[0]), fabs(step[1])) < SETTLED;
         if (!(error < best)) {
+            /* A step is small by damping too; only an undamped one that gains nothing has arrived.
+             */
+            *settled = is_small && damping <= FIRST_DAMPING;
             memcpy(refit->force, previous, (size_t)refit->curve.n * sizeof *previous);
             damping *= 10.0;
             continue;
         }
+        *settled = is_small && damping <= FIRST_DAMPING;
         best = error;
         damping *= 0.1;
         refit->material.strength_coefficient *= exp(step[0]);
@@ -149,10 +156,17 @@ static enum wb_status prepare(struct refit *refit, const struct wb_dataset *cons
     const size_t points = (size_t)refit->curve.n;
     wb_curve_mean_info(others, n, &info);
     WB_TRY(wb_first_guess_run(&guess, &refit->curve, &info, settings->elastic_zone, yield_point));
+    struct wb_first_guess computed = {.youngs_modulus = refit->material.youngs_modulus,
+                                      .yield_stress = refit->material.yield_stress};
+    if (settings->bow_corrected && !settings->straight) {
+        const struct wb_bow_samples samples = {others, n, &refit->curve};
+        WB_TRY(wb_bow_correction_guess(&computed, &samples, &refit->material, settings,
+                                       refit->evaluations));
+    }
     if (settings->youngs_modulus <= 0.0)
-        refit->material.youngs_modulus = guess.youngs_modulus;
+        refit->material.youngs_modulus *= guess.youngs_modulus / computed.youngs_modulus;
     if (settings->yield_stress <= 0.0)
-        refit->material.yield_stress = guess.yield_stress;
+        refit->material.yield_stress *= guess.yield_stress / computed.yield_stress;
     refit->force = calloc(4 * points, sizeof *refit->force);
     if (!refit->force)
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu points", points);
@@ -215,7 +229,7 @@ static enum wb_status leave_each_out(double deviation[4], const struct wb_datase
         all_settled = all_settled && settled;
         values[i] = material.youngs_modulus;
         values[n + i] = material.yield_stress;
-        values[2 * n + i] = material.strength_coefficient;
+        values[2 * n + i] = log(material.strength_coefficient / optimum->strength_coefficient);
         values[3 * n + i] = material.hardening_exponent;
     }
     for (int k = 0; status == WB_OK && k < 4; k++)

@@ -13,7 +13,7 @@
 #include "analysis/dataset.h"
 #include "base/status.h"
 
-/* deviation: of E, sigma_Y, K, n in SI; NaN where it cannot be told: with one sample, or when
+/* deviation: of E, sigma_Y, ln K, n in SI; NaN where it cannot be told: with one sample, or when
  * leaving one out made the data unusable, or (K and n) a refit did not settle. `optimum` is the
  * calibrated law of all. *evaluations is increased by the beam runs made. */
 WB_MUST_CHECK enum wb_status wb_jackknife_run(double deviation[4],

@@ -83,6 +83,7 @@ static void put_calibration(struct wb_text *text, const struct wb_calibrate_resu
     put_number(text, "  ", "yield_point", yield_point);
     wb_text_append(text, "  natural_shape: %s\n",
                    settings->straight || result->info.n_natural_shape == 0 ? "straight" : "mean");
+    wb_text_append(text, "  bow_corrected: %s\n", result->bow_corrected ? "true" : "false");
     put_number(text, "  ", "first_strength_coefficient_MPa",
                result->first_strength_coefficient / WB_MPA);
     put_number(text, "  ", "first_hardening_exponent", result->first_hardening_exponent);
@@ -128,7 +129,8 @@ static void format(struct wb_text *text, const struct wb_calibrate_result *resul
                              "deviations:\n");
         put_number(text, "  ", "youngs_modulus_MPa", result->deviation[0] / WB_MPA);
         put_number(text, "  ", "yield_stress_MPa", result->deviation[1] / WB_MPA);
-        put_number(text, "  ", "strength_coefficient_MPa", result->deviation[2] / WB_MPA);
+        wb_text_append(text, "  # K lies within it times and over this factor\n");
+        put_number(text, "  ", "strength_coefficient_factor", exp(result->deviation[2]));
         put_number(text, "  ", "hardening_exponent", result->deviation[3]);
     }
     put_calibration(text, result, settings);
@@ -157,11 +159,13 @@ static enum wb_status read_deviations(const struct wb_config_node *node, double 
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_NUMBER("youngs_modulus_MPa", &deviation[0], WB_MPA, 0.0, LARGEST_MPA),
         WB_CONFIG_OPTIONAL_NUMBER("yield_stress_MPa", &deviation[1], WB_MPA, 0.0, LARGEST_MPA),
-        WB_CONFIG_OPTIONAL_NUMBER("strength_coefficient_MPa", &deviation[2], WB_MPA, 0.0,
-                                  LARGEST_MPA),
+        WB_CONFIG_OPTIONAL_NUMBER("strength_coefficient_factor", &deviation[2], 1.0, 1.0, 1e300),
+        WB_CONFIG_IGNORED("strength_coefficient_MPa"), /* as older files have it */
         WB_CONFIG_OPTIONAL_NUMBER("hardening_exponent", &deviation[3], 1.0, 0.0, 100.0),
     };
-    return wb_config_map(node, keys, WB_COUNT(keys));
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    deviation[2] = log(deviation[2]);
+    return WB_OK;
 }
 
 static enum wb_status read_calibration(const struct wb_config_node *node,
@@ -178,6 +182,7 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
         WB_CONFIG_IGNORED("elastic_zone"),
         WB_CONFIG_IGNORED("yield_point"),
         WB_CONFIG_IGNORED("natural_shape"),
+        WB_CONFIG_IGNORED("bow_corrected"),
         WB_CONFIG_IGNORED("first_strength_coefficient_MPa"),
         WB_CONFIG_IGNORED("first_hardening_exponent"),
         WB_CONFIG_IGNORED("stopped"),

@@ -25,7 +25,7 @@ struct wb_properties {
     double outer_diameter;  /* m */
     double mass_per_length; /* kg/m */
     struct wb_material material;
-    double deviation[4];                      /* of E, sigma_Y, K, n in SI; NaN unknown */
+    double deviation[4];                      /* of E, sigma_Y, ln K, n in SI; NaN unknown */
     double calibration_length;                /* m; NaN when not from calibrate */
     double rms;                               /* of the calibration, 1; NaN unknown */
     double scatter_rms, residual_scatter_rms; /* of the calibration's samples, over F_max, 1; NaN

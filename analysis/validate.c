@@ -149,6 +149,7 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
         settings = &defaults;
     WB_TRY(wb_curve_average(&made.curve, datasets, n, settings->step));
     wb_curve_mean_info(datasets, n, &made.info);
+    wb_curve_warn_unknown_shapes(datasets, n);
     enum wb_status status = check_wire(properties, &made.info);
     if (status == WB_OK && !(made.curve.max_force > 0.0))
         status =

@@ -25,6 +25,7 @@ enum {
     KEY_ZONE = 1000,
     KEY_YIELD,
     KEY_STRAIGHT,
+    KEY_BOW,
     KEY_NO_RESTART,
     KEY_MODULUS,
     KEY_STRESS,
@@ -46,6 +47,8 @@ static const struct argp_option option_table[] = {
      "show 0.04)",
      0},
     {"straight", KEY_STRAIGHT, NULL, 0, "Ignore the natural shape (bow) of the samples", 0},
+    {"bow-corrected", KEY_BOW, NULL, 0,
+     "Take what the samples' bows make of eqs. 10 and 11 out of E and the yield stress", 0},
     {"youngs-modulus-mpa", KEY_MODULUS, "E", 0, "Given instead of eq. 10", 0},
     {"yield-stress-mpa", KEY_STRESS, "S", 0, "Given instead of eq. 11", 0},
     {"no-restart", KEY_NO_RESTART, NULL, 0, "Do not start once more from the optimum", 0},
@@ -79,6 +82,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_STRAIGHT:
         s->straight = true;
+        return 0;
+    case KEY_BOW:
+        s->bow_corrected = true;
         return 0;
     case KEY_MODULUS:
         s->youngs_modulus =
@@ -156,6 +162,20 @@ static void set_material(struct wb_json *object, double modulus, double yield, d
     wb_json_set_number(object, "hardening_exponent", exponent);
 }
 
+static void set_deviations(struct wb_json *root, const struct wb_calibrate_result *r)
+{
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    struct wb_json *const object = wb_json_set_object(root, "deviations");
+    wb_json_set_number(object, "youngs_modulus_MPa", r->deviation[0] / WB_MPA);
+    wb_json_set_number(object, "yield_stress_MPa", r->deviation[1] / WB_MPA);
+    wb_json_set_number(object, "strength_coefficient_factor", exp(r->deviation[2]));
+    wb_json_set_number(object, "hardening_exponent", r->deviation[3]);
+    struct wb_json *const list = wb_json_set_array(root, "remarks");
+    const int n = wb_calibrate_remarks(r, remarks);
+    for (int i = 0; i < n; i++)
+        wb_json_append_text(list, remarks[i]);
+}
+
 static void set_path(struct wb_json *root, const struct wb_calibrate_result *result)
 {
     struct wb_json *const path = wb_json_set_array(root, "path");
@@ -182,12 +202,13 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     wb_json_set_number(root, "yield_point",
                        s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
     wb_json_set_boolean(root, "straight", s->straight);
+    wb_json_set_boolean(root, "bow_corrected", r->bow_corrected);
+    wb_json_set_number(root, "bow_spread_mm", r->bow_spread / WB_MM);
     wb_json_set_number(root, "bow_mm", wb_dataset_bow(&r->info) / WB_MM);
     set_material(root, r->material.youngs_modulus, r->material.yield_stress,
                  r->material.strength_coefficient, r->material.hardening_exponent);
     wb_json_set_number(root, "poissons_ratio", r->material.poissons_ratio);
-    set_material(wb_json_set_object(root, "deviations"), r->deviation[0], r->deviation[1],
-                 r->deviation[2], r->deviation[3]);
+    set_deviations(root, r);
     wb_json_set_number(root, "first_strength_coefficient_MPa",
                        r->first_strength_coefficient / WB_MPA);
     wb_json_set_number(root, "first_hardening_exponent", r->first_hardening_exponent);
@@ -228,11 +249,20 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     if (s->straight)
         printf("natural shape ignored\n");
     else
-        printf("mean bow %.2f mm\n", wb_dataset_bow(&r->info) / WB_MM);
+        printf("mean bow %.2f mm, between samples %.2f mm%s\n", wb_dataset_bow(&r->info) / WB_MM,
+               r->bow_spread / WB_MM,
+               r->bow_corrected ? "; E and sigma_Y corrected for the bows" : "");
     print_value("E", r->material.youngs_modulus / WB_MPA, r->deviation[0] / WB_MPA, "MPa");
     print_value("sigma_Y", r->material.yield_stress / WB_MPA, r->deviation[1] / WB_MPA, "MPa");
-    print_value("K", r->material.strength_coefficient / WB_MPA, r->deviation[2] / WB_MPA, "MPa");
+    printf("%-8s %10.5g", "K", r->material.strength_coefficient / WB_MPA);
+    if (isfinite(r->deviation[2]))
+        printf(" */ %-8.3g", exp(r->deviation[2]));
+    printf(" MPa\n");
     print_value("n", r->material.hardening_exponent, r->deviation[3], "");
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    const int n_remarks = wb_calibrate_remarks(r, remarks);
+    for (int i = 0; i < n_remarks; i++)
+        printf("note: %s\n", remarks[i]);
     printf("first guess K0 = %.5g MPa, n0 = %.4g; %d beam runs, %d not converged; ended: %s\n",
            r->first_strength_coefficient / WB_MPA, r->first_hardening_exponent, r->evaluations,
            r->failed_evaluations, wb_calibrate_end_text(r->end));

@@ -35,6 +35,7 @@ static enum wb_status read_settings(const struct wb_config_node *node, struct wb
                                   WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
         WB_CONFIG_OPTIONAL_NUMBER("step_mm", &settings->step, WB_MM, 0.05, 10.0),
         WB_CONFIG_OPTIONAL_BOOLEAN("straight", &settings->straight),
+        WB_CONFIG_OPTIONAL_BOOLEAN("bow_corrected", &settings->bow_corrected),
         WB_CONFIG_OPTIONAL_BOOLEAN("restart", &settings->restart),
         WB_CONFIG_OPTIONAL_INTEGER("max_iterations", &settings->max_iterations, 1, 100000),
         WB_CONFIG_OPTIONAL_INTEGER("elements", &settings->n_elements, 2, 1000),

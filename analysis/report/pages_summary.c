@@ -138,7 +138,9 @@ static void put_property(struct wb_document *document, struct wb_document_table 
     const bool done = wire->calibration_state == WB_RESULTS_DONE;
     const double value =
         done ? wb_pages_value(&wire->calibration.material, i) / property->factor : (double)NAN;
-    const double deviation = done ? wire->calibration.deviation[i] / property->factor : (double)NAN;
+    /* K's is a factor. */
+    const double own = done ? wire->calibration.deviation[i] : (double)NAN;
+    const double deviation = i == 2 ? exp(own) : own / property->factor;
     const double reference =
         wanted->has_reference ? wanted->reference[i] / property->factor : (double)NAN;
     struct wb_pages_row row = {.n = 0};
@@ -146,7 +148,10 @@ static void put_property(struct wb_document *document, struct wb_document_table 
     wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
     wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
     wb_pages_cell_number(&row, value, property->decimals);
-    wb_pages_cell_number(&row, deviation, property->decimals);
+    if (i == 2 && isfinite(deviation))
+        wb_pages_cell(&row, WB_TONE_PLAIN, "\xc3\x97/\xc3\xb7 %.3g", deviation);
+    else
+        wb_pages_cell_number(&row, deviation, property->decimals);
     wb_pages_cell_number(&row, reference, property->decimals);
     wb_pages_cell_number(&row, value / reference, 2);
     wb_pages_put_row(document, table, i == 0, &row);
@@ -175,10 +180,14 @@ static void put_properties(struct wb_document *document, const struct wb_results
     snprintf(caption, sizeof caption,
              "<i>E</i> from eq. 10 at a deflection of %g of the length, "
              "<i>\xcf\x83</i><sub>Y</sub> from eq. 11 at %g of it. \xc2\xb1: standard "
-             "uncertainty from the scatter between samples (jackknife). Published: %s. Ratio: "
-             "calibrated over published.",
+             "uncertainty from the scatter between samples (jackknife), of <i>K</i> a factor. "
+             "%s Published: %s. Ratio: calibrated over published.",
              settings->elastic_zone,
-             settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone, source);
+             settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone,
+             settings->bow_corrected
+                 ? "<i>E</i> and <i>\xcf\x83</i><sub>Y</sub> are corrected for the samples' bows."
+                 : "Not corrected for the samples' bows (bow_corrected: false).",
+             source);
     struct wb_document_table *const table = wb_document_table(document, caption, 7, columns);
     for (int i = 0; i < results->n_wires; i++) {
         for (int k = 0; k < 4; k++)

@@ -186,6 +186,18 @@ static void put_numbers(struct wb_document *document, const struct wb_results_wi
         put_merit(document, table, &merits[i]);
 }
 
+static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
+{
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    const int n = wb_calibrate_remarks(result, remarks);
+    for (int i = 0; i < n; i++) {
+        char escaped[400], item[440];
+        snprintf(item, sizeof item, "Note: %s.",
+                 wb_pages_escape(escaped, sizeof escaped, remarks[i]));
+        wb_document_item(document, WB_TONE_PLAIN, item);
+    }
+}
+
 static void put_search(struct wb_document *document, const struct wb_results_wire *wire,
                        const struct wb_figures_wire *figures)
 {
@@ -206,6 +218,7 @@ static void put_search(struct wb_document *document, const struct wb_results_wir
     wb_document_paragraph(document, wb_text_string(&text));
     document->failed |= text.failed;
     wb_text_release(&text);
+    put_remarks(document, c);
     if (figures->optimiser)
         wb_document_figures(document, figures->optimiser,
                             "Left: error of the best corner of the simplex after each iteration. "

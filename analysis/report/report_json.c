@@ -139,6 +139,21 @@ static void put_values(struct wb_json *object, const char *name, const double va
     wb_json_set_number(entry, "hardening_exponent", values[3]);
 }
 
+static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_result *result)
+{
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    struct wb_json *const entry = wb_json_set_object(object, "standard_uncertainties");
+    wb_json_set_number(entry, "youngs_modulus_MPa", result->deviation[0] / WB_MPA);
+    wb_json_set_number(entry, "yield_stress_MPa", result->deviation[1] / WB_MPA);
+    wb_json_set_number(entry, "strength_coefficient_factor", exp(result->deviation[2]));
+    wb_json_set_number(entry, "hardening_exponent", result->deviation[3]);
+    wb_json_set_boolean(object, "bow_corrected", result->bow_corrected);
+    struct wb_json *const list = wb_json_set_array(object, "remarks");
+    const int n = wb_calibrate_remarks(result, remarks);
+    for (int i = 0; i < n; i++)
+        wb_json_append_text(list, remarks[i]);
+}
+
 static void put_search(struct wb_json *object, const struct wb_calibrate_result *c)
 {
     struct wb_json *const search = wb_json_set_object(object, "search");
@@ -182,7 +197,7 @@ static void put_wire(struct wb_json *list, const struct wb_results_wire *wire)
         const double values[] = {m->youngs_modulus, m->yield_stress, m->strength_coefficient,
                                  m->hardening_exponent};
         put_values(calibration, "properties", values);
-        put_values(calibration, "standard_uncertainties", wire->calibration.deviation);
+        put_uncertainties(calibration, &wire->calibration);
         wb_json_set_number(calibration, "rms_over_F_max", wire->calibration.rms);
         wb_json_set_number(calibration, "largest_error_over_F_max", wire->calibration.max_error);
         put_comparison(calibration, &wire->fit, wire->calibration.scatter_rms,

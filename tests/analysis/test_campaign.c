@@ -116,7 +116,8 @@ static void settings_and_limits_are_read_and_have_defaults(void **state)
     assert_close(campaign.calibration_limit, 0.0, 0.0);
     wb_campaign_release(&campaign);
     assert_int_equal(
-        read_text(&campaign, "settings:\n  yield_point: 0.04\n  step_mm: 0.25\n  straight: true\n"
+        read_text(&campaign, "settings:\n  yield_point: 0.04\n  step_mm: 0.25\n  straight: true\n  "
+                             "bow_corrected: true\n"
                              "  elements: 20\n"
                              "limits:\n  calibration_rms_max: 1e-2\n  validation_rms_max: 3.65e-2\n"
                              "reference:\n  source: Fig. 15\n  validation_rms: [0.01, 0.03]\n"
@@ -125,6 +126,7 @@ static void settings_and_limits_are_read_and_have_defaults(void **state)
     assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
     assert_close(campaign.validate.step, 0.25e-3, 1e-15);
     assert_true(campaign.validate.straight && campaign.calibrate.straight);
+    assert_true(campaign.calibrate.bow_corrected);
     assert_int_equal(campaign.validate.n_elements, 20);
     assert_close(campaign.calibration_limit, 0.01, 1e-15);
     assert_close(campaign.validation_limit, 0.0365, 1e-15);

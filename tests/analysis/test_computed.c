@@ -133,6 +133,21 @@ static void a_curve_that_does_not_converge_ends_in_nan(void **state)
     wb_computed_destroy(NULL);
 }
 
+static void a_strand_that_is_slack_at_zero_is_refused(void **state)
+{
+    (void)state;
+    const struct wb_test_info info = beam_info(2, 0.085, 12.0 * mm);
+    const struct wb_material material = beam_material(2);
+    const struct wb_computed_settings settings = {.n_elements = BEAM_ELEMENTS};
+    struct wb_computed *computed;
+    bool reached;
+    last_message_install();
+    assert_int_equal(wb_computed_create(&computed, &info, &material, &settings), WB_OK);
+    assert_int_equal(wb_computed_start(computed, &material, &reached), WB_ERR_DATA);
+    assert_non_null(strstr(last_message, "slack"));
+    wb_computed_destroy(computed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +156,7 @@ int main(void)
         cmocka_unit_test(loading_of_the_test_is_in_the_curve),
         cmocka_unit_test(a_bow_of_three_millimetres_moves_the_curve),
         cmocka_unit_test(a_curve_that_does_not_converge_ends_in_nan),
+        cmocka_unit_test(a_strand_that_is_slack_at_zero_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

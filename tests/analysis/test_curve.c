@@ -299,6 +299,39 @@ static void groups_are_by_wire_and_length(void **state)
     assert_int_equal(group[3], 2);
 }
 
+static void a_loading_that_begins_above_zero_is_told(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset;
+    struct wb_curve curve;
+    const struct wb_dataset *const datasets[] = {&dataset};
+    plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
+    for (int i = 0; i < 34; i++)
+        dataset.rows[i].phase = WB_PHASE_SLACK;
+    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
+    assert_non_null(strstr(last_message, "no rows below 1.70 mm"));
+    wb_dataset_release(&dataset);
+}
+
+static void the_mean_shape_is_of_those_that_are_known(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset[3] = {0};
+    const struct wb_dataset *const datasets[] = {&dataset[0], &dataset[1], &dataset[2]};
+    struct wb_test_info info;
+    for (int i = 0; i < 3; i++)
+        dataset[i].info = beam_info(1, 0.085, i == 1 ? 0.0 : 2.0 * mm + i * mm);
+    wb_curve_mean_info(datasets, 3, &info);
+    assert_close_relative(info.natural_shape[0], 6.0 * mm / 0.085, 1e-12);
+    last_message_install();
+    wb_curve_warn_unknown_shapes(datasets, 3);
+    assert_non_null(strstr(last_message, "1 of 3 samples is not known"));
+    message_count = 0;
+    wb_curve_warn_unknown_shapes(datasets, 1);
+    wb_curve_warn_unknown_shapes(datasets + 1, 1);
+    assert_int_equal(message_count, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -314,6 +347,8 @@ int main(void)
         cmocka_unit_test(a_loading_of_a_few_steps_is_refused),
         cmocka_unit_test(natural_shapes_are_averaged),
         cmocka_unit_test(groups_are_by_wire_and_length),
+        cmocka_unit_test(a_loading_that_begins_above_zero_is_told),
+        cmocka_unit_test(the_mean_shape_is_of_those_that_are_known),
     };
     return cmocka_run_group_tests(tests, silence, NULL);
 }

@@ -58,8 +58,7 @@ static void scatter_of_k_alone_is_found_in_k(void **state)
     double deviation[4];
     const int evaluations = run(deviation, 3, strength, 53 * mm);
     /* Standard error of three values 2 % apart: 0.02/sqrt(3); the forces are nearly linear in K. */
-    assert_close_relative(deviation[2] / beam_material(2).strength_coefficient, 0.02 / sqrt(3.0),
-                          0.03);
+    assert_close_relative(deviation[2], 0.02 / sqrt(3.0), 0.03);
     assert_true(deviation[3] < 1e-3);
     assert_close(deviation[0], 0.0, 1e-3);
     assert_true(evaluations >= 9 && evaluations < 60);
@@ -72,7 +71,7 @@ static void equal_samples_have_no_deviation(void **state)
     double deviation[4];
     run(deviation, 2, strength, 53 * mm);
     for (int k = 0; k < 3; k++)
-        assert_true(deviation[k] / beam_material(2).youngs_modulus < 1e-6);
+        assert_true(deviation[k] / (k < 2 ? beam_material(2).youngs_modulus : 1.0) < 1e-6);
     assert_true(deviation[3] < 1e-6);
 }
 
@@ -127,6 +126,17 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
         wb_dataset_release(&dataset[i]);
 }
 
+static void k_has_a_factor_and_no_negative_interval(void **state)
+{
+    (void)state;
+    /* A half and twice: in K itself the deviation would be as large as K. */
+    const double strength[MOST] = {0.3, 1.0, 3.0};
+    double deviation[4];
+    run(deviation, 3, strength, 53 * mm);
+    print_message("           K within a factor of %.3g\n", exp(deviation[2]));
+    assert_true(deviation[2] > 0.2 && deviation[2] < 2.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +144,7 @@ int main(void)
         cmocka_unit_test(equal_samples_have_no_deviation),
         cmocka_unit_test(one_sample_tells_nothing),
         cmocka_unit_test(a_refusal_of_the_rest_is_a_warning_and_no_error),
+        cmocka_unit_test(k_has_a_factor_and_no_negative_interval),
     };
     return cmocka_run_group_tests(tests, silence, NULL);
 }

@@ -34,7 +34,7 @@ static struct wb_calibrate_result some_result(void)
         .n_samples = 3,
         .max_force = 0.1278,
         .max_deflection = 0.053,
-        .deviation = {50e6, 0.06e6, 31e6, 0.011},
+        .deviation = {50e6, 0.06e6, 0.31, 0.011},
         .end = WB_CALIBRATE_SIZE,
         .restarted = true,
         .restart_moved = 1e-4,
