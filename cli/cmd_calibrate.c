@@ -228,12 +228,24 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     return wb_command_print_json(root);
 }
 
+/* Decimals that show so many significant digits of a value, without an exponent. */
+static int decimals(double value, int digits)
+{
+    const double size = fabs(value);
+    if (!(size > 1e-9) || !(size < 1e15))
+        return 0;
+    const int n = digits - 1 - (int)floor(log10(size));
+    return n < 0 ? 0 : n;
+}
+
 static void print_value(const char *name, double value, double deviation, const char *unit)
 {
-    printf("%-8s %10.5g", name, value);
-    if (isfinite(deviation))
-        printf(" +- %-8.2g", deviation);
-    printf(" %s\n", unit);
+    if (isfinite(deviation)) {
+        const int n = decimals(deviation, 2);
+        printf("%-8s %10.*f +- %-8.*f %s\n", name, n, value, n, deviation, unit);
+    } else {
+        printf("%-8s %10.*f %s\n", name, decimals(value, 5), value, unit);
+    }
 }
 
 static void print_text(const struct options *o, const struct wb_calibrate_result *r)
@@ -254,7 +266,8 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
                r->bow_corrected ? "; E and sigma_Y corrected for the bows" : "");
     print_value("E", r->material.youngs_modulus / WB_MPA, r->deviation[0] / WB_MPA, "MPa");
     print_value("sigma_Y", r->material.yield_stress / WB_MPA, r->deviation[1] / WB_MPA, "MPa");
-    printf("%-8s %10.5g", "K", r->material.strength_coefficient / WB_MPA);
+    const double strength = r->material.strength_coefficient / WB_MPA;
+    printf("%-8s %10.*f", "K", decimals(strength, 5), strength);
     if (isfinite(r->deviation[2]))
         printf(" */ %-8.3g", exp(r->deviation[2]));
     printf(" MPa\n");
@@ -266,11 +279,15 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     printf("first guess K0 = %.5g MPa, n0 = %.4g; %d beam runs, %d not converged; ended: %s\n",
            r->first_strength_coefficient / WB_MPA, r->first_hardening_exponent, r->evaluations,
            r->failed_evaluations, wb_calibrate_end_text(r->end));
-    if (r->restarted)
+    if (r->restarted && r->restart_moved == 0.0)
+        printf("the restart from the optimum did not move it\n");
+    else if (r->restarted)
         printf("the restart from the optimum moved it by %.2g\n", r->restart_moved);
     printf("RMS %.3g, largest error %.3g (over F_max = %.4g N of the measured average)\n", r->rms,
            r->max_error, r->max_force);
-    if (r->n_samples > 1)
+    if (r->n_samples == 1)
+        printf("one sample: no uncertainty\n");
+    else
         printf("scatter between samples %.3g, of it not due to their natural shapes %.3g\n",
                r->scatter_rms, r->residual_scatter_rms);
 }

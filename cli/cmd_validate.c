@@ -246,7 +246,12 @@ int wb_cmd_validate(int argc, char **argv)
     struct groups groups = {0};
     wb_command_parse(&argp, argc, argv, &options);
 
-    enum wb_status status = wb_properties_read(options.properties, &properties);
+    enum wb_status status =
+        wb_file_is_folder(options.properties)
+            ? wb_fail(WB_ERR_ARGUMENT,
+                      "'%s' is a folder: the properties file comes first, then the datasets",
+                      options.properties)
+            : wb_properties_read(options.properties, &properties);
     if (status == WB_OK)
         status = run_groups(&options, &properties, &groups);
     const int code =

@@ -38,6 +38,8 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
     snprintf(name, sizeof name, "wirebench %s", argv[0]);
     argv[0] = name;
     argp_err_exit_status = WB_EXIT_USAGE;
+    /* Every long option shows its argument; the note about short ones would only be noise. */
+    setenv("ARGP_HELP_FMT", "no-dup-args-note", 0);
     const struct argp_child children[] = {{.argp = argp}, {0}};
     const struct argp with_help = {
         .options = help_options,

@@ -1,7 +1,11 @@
 #include "cli/datasets.h"
 
+#include <dirent.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/file.h"
 
 #define WB_LOG_DOMAIN "datasets"
 
@@ -17,6 +21,73 @@ enum wb_status wb_datasets_add(struct wb_datasets *datasets, const char *name)
     return WB_OK;
 }
 
+static bool ends_in(const char *name, const char *ending)
+{
+    const size_t n = strlen(name), m = strlen(ending);
+    return n > m && strcmp(name + n - m, ending) == 0;
+}
+
+static bool is_dataset(const char *folder)
+{
+    char path[WB_PATH];
+    return wb_file_join(path, folder, "dataset.json") == WB_OK && wb_file_exists(path);
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
+/* The names of datasets in a folder, as a text for a message: "data/a, data/b"; how many. */
+static int list_datasets(const char *folder, char *text, size_t size)
+{
+    enum {
+        MOST = 6
+    };
+    char names[MOST][256];
+    int n = 0;
+    DIR *const listing = opendir(folder);
+    for (const struct dirent *entry; listing && (entry = readdir(listing));) {
+        char path[WB_PATH];
+        if (entry->d_name[0] == '.' || wb_file_join(path, folder, entry->d_name) != WB_OK ||
+            !is_dataset(path))
+            continue;
+        if (n < MOST)
+            snprintf(names[n], sizeof names[n], "%s", entry->d_name);
+        n++;
+    }
+    if (listing)
+        closedir(listing);
+    const int shown = n < MOST ? n : MOST;
+    qsort(names, (size_t)shown, sizeof names[0], by_name);
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < shown && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s/%s", i > 0 ? ", " : "", folder,
+                                 names[i]);
+    if (n > MOST && used < size)
+        snprintf(text + used, size - used, ", ...");
+    return n;
+}
+
+/* The things that are most often given where a dataset is expected. */
+static enum wb_status check_name(const char *name)
+{
+    char held[1024];
+    if (ends_in(name, ".wbr") || ends_in(name, ".wbr.zst"))
+        return wb_fail(WB_ERR_FORMAT,
+                       "'%s' is a recording: run `wirebench align` first, which makes a dataset of "
+                       "it",
+                       name);
+    if (!wb_file_is_folder(name) || is_dataset(name))
+        return WB_OK;
+    const int n = list_datasets(name, held, sizeof held);
+    if (n > 0)
+        return wb_fail(WB_ERR_FORMAT, "'%s' holds %s: %s; name those that are wanted", name,
+                       n == 1 ? "a dataset" : "several datasets", held);
+    return WB_OK;
+}
+
 enum wb_status wb_datasets_read(struct wb_datasets *datasets)
 {
     const size_t n = (size_t)datasets->n;
@@ -24,6 +95,8 @@ enum wb_status wb_datasets_read(struct wb_datasets *datasets)
     datasets->pointers = calloc(n, sizeof(struct wb_dataset *));
     if (!datasets->items || !datasets->pointers)
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu datasets", n);
+    for (int i = 0; i < datasets->n; i++)
+        WB_TRY(check_name(datasets->names[i]));
     for (int i = 0; i < datasets->n; i++) {
         WB_TRY(wb_dataset_read(&datasets->items[i], datasets->names[i]));
         datasets->pointers[i] = &datasets->items[i];

@@ -54,6 +54,49 @@ static int run(const struct command *command, int argc, char **argv)
     return code;
 }
 
+/* Letters to change, insert, leave out or swap to make one word of the other (both short). */
+static int distance(const char *a, const char *b)
+{
+    enum {
+        MOST = 16
+    };
+    int d[MOST + 1][MOST + 1];
+    const int n = (int)strlen(a), m = (int)strlen(b);
+    if (n > MOST || m > MOST)
+        return MOST;
+    for (int i = 0; i <= n; i++) {
+        for (int j = 0; j <= m; j++) {
+            if (i == 0 || j == 0) {
+                d[i][j] = i + j;
+                continue;
+            }
+            int least = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            least = d[i - 1][j] + 1 < least ? d[i - 1][j] + 1 : least;
+            least = d[i][j - 1] + 1 < least ? d[i][j - 1] + 1 : least;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                d[i - 2][j - 2] + 1 < least)
+                least = d[i - 2][j - 2] + 1;
+            d[i][j] = least;
+        }
+    }
+    return d[n][m];
+}
+
+/* The command that was probably meant; NULL when none is near. */
+static const char *nearest(const char *name)
+{
+    const char *found = NULL;
+    int best = 3; /* more than two slips are another word */
+    for (const struct command *command = commands; command->name; command++) {
+        const int d = distance(name, command->name);
+        if (d < best && d < (int)strlen(name)) {
+            best = d;
+            found = command->name;
+        }
+    }
+    return found;
+}
+
 int main(int argc, char **argv)
 {
     /* A file that may grow no further is an error code of write(), not the end of the process. */
@@ -70,6 +113,11 @@ int main(int argc, char **argv)
     for (const struct command *command = commands; command->name; command++) {
         if (strcmp(name, command->name) == 0)
             return run(command, argc - 1, argv + 1);
+    }
+    const char *const meant = nearest(name);
+    if (meant) {
+        wb_error("no command '%s': did you mean `wirebench %s`?", name, meant);
+        return WB_EXIT_USAGE;
     }
     if (argc > 1)
         wb_error("no command '%s'", name);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "base/file.h"
 #include "daq/recording_private.h"
 
 #define WB_LOG_DOMAIN "recording"
@@ -125,6 +126,13 @@ static enum wb_status make_file(const char *path)
     if (errno == EEXIST)
         return wb_fail(WB_ERR_EXISTS,
                        "'%s' exists: a recording is never overwritten; choose another name", path);
+    char folder[WB_PATH];
+    const int error = errno;
+    wb_file_folder(folder, path);
+    if (error == ENOENT && wb_file_is_folder(folder)) /* /proc and the like */
+        return wb_fail(WB_ERR_PERMISSION, "'%s' cannot be made: nothing can be written in '%s'",
+                       path, folder);
+    errno = error;
     if (errno == ENOENT || errno == ENOTDIR)
         return wb_fail(WB_ERR_NOT_FOUND, "'%s' cannot be made: its folder does not exist", path);
     return wb_fail(errno == EACCES || errno == EROFS ? WB_ERR_PERMISSION : WB_ERR_IO,

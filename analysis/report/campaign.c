@@ -132,7 +132,9 @@ static enum wb_status add_file(struct wb_campaign_tests *tests, const char *path
         snprintf(test.path, sizeof test.path, "%s", path);
     else
         snprintf(test.missing, sizeof test.missing, "%s",
-                 entry ? "the index lists it, but the file is not there" : "no such file");
+                 entry                       ? "the index lists it, but the file is not there"
+                 : strpbrk(test.name, "*?[") ? "no file matches this pattern"
+                                             : "no such file");
     return add_test(tests, &test);
 }
 

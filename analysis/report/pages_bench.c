@@ -88,7 +88,7 @@ static void put_specimens(struct wb_document *document, const struct wb_results 
         {.heading = "Largest deflection (mm)", .right = true, .wraps = true},
         {.heading = "Largest force (mN)", .right = true, .wraps = true},
         {.heading = "Markers seen (%)", .right = true, .wraps = true},
-        {.heading = "Operator", .wraps = true},
+        {.heading = "Operator"},
     };
     wb_document_heading(document, 2, "specimens", "Specimens");
     struct wb_document_table *const table = wb_document_table(

@@ -209,7 +209,9 @@ static void put_search(struct wb_document *document, const struct wb_results_wir
                    "(eqs. 12 to 16), %d runs of the beam; stopped because %s.",
                    c->first_strength_coefficient / WB_MPA, c->first_hardening_exponent,
                    c->evaluations, wb_calibrate_end_text(c->end));
-    if (c->restarted)
+    if (c->restarted && c->restart_moved == 0.0)
+        wb_text_append(&text, " A restart from the optimum did not move K and n.");
+    else if (c->restarted)
         wb_text_append(&text, " A restart from the optimum moved K and n by at most %.2g %%.",
                        100.0 * c->restart_moved);
     if (c->failed_evaluations > 0)

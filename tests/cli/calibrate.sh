@@ -96,5 +96,20 @@ sed 's/^wire: /colour: red\nwire: /' type3.yaml >unknown.yaml
 expect 1 'unknown.yaml:1: colour' "$wirebench" validate unknown.yaml L100
 expect 1 'missing.yaml' "$wirebench" validate missing.yaml L100
 
+# What is given where a dataset or the properties are expected, and a command misspelt.
+mkdir several && cp -r L85 several/b && cp -r L100 several/a && touch test.wbr
+expect 1 "run \`wirebench align\` first" "$wirebench" calibrate test.wbr
+expect 1 "holds several datasets: several/a, several/b;" "$wirebench" calibrate several
+expect 1 'the properties file comes first' "$wirebench" validate L100 type3.yaml
+expect 2 "no command 'calibrat': did you mean \`wirebench calibrate\`?" "$wirebench" calibrat
+expect 2 "no command 'xyz'" "$wirebench" xyz
+"$wirebench" xyz 2>&1 | grep -q 'did you mean' && fail 'xyz means nothing'
+# One sample has no scatter, and numbers come without exponents.
+# shellcheck disable=SC2086
+"$wirebench" calibrate L85 $quick >said || fail 'calibrate'
+grep -q '^one sample: no uncertainty$' said || fail "one sample: $(cat said)"
+grep -qE '^(E|sigma_Y|K|n) .*e[-+]' said && fail "exponents: $(cat said)"
+"$wirebench" calibrate --help | grep -q 'Mandatory or optional' && fail 'argp speaks of long options'
+
 [ $failures -eq 0 ] && echo 'all as expected'
 exit $((failures > 0))
