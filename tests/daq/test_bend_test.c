@@ -1,93 +1,11 @@
-/* The bending test against a small bench in a thread: the whole sequence, every way it is stopped
- * with the latencies measured, and everything that keeps it from starting. */
-#include <fcntl.h>
+/* The bending test against a small bench in a thread: the whole sequence, and every way it is
+ * stopped with the latencies measured. */
 #include <signal.h>
-#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "base/interrupt.h"
-#include "base/log.h"
 #include "daq/bend_recording.h"
-#include "daq/bend_test.h"
-#include "daq/stream.h"
-#include "tests/daq/fake_bench.h"
-#include "tests/daq/sample_log.h"
-
-#define MS WB_NS_PER_MS
-
-struct fixture {
-    struct fake_bench *bench;
-    char folder[64], rig[96], specimen[96], output[96];
-    struct wb_bend_test_request request;
-    struct sample_log log;
-    char errors[4096];  /* messages at error level, one a line */
-    char events[16384]; /* "kind: text" of the finished recording, one a line */
-};
-
-static void keep_errors(void *context, enum wb_log_level level, const char *domain,
-                        const char *message)
-{
-    struct fixture *const fixture = context;
-    const size_t used = strlen(fixture->errors);
-    (void)domain;
-    if (level == WB_LOG_ERROR)
-        snprintf(fixture->errors + used, sizeof fixture->errors - used, "%s\n", message);
-}
-
-static int set_up(void **state)
-{
-    struct fixture *const fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/wb-bend-XXXXXX");
-    assert_non_null(mkdtemp(fixture->folder));
-    snprintf(fixture->rig, sizeof fixture->rig, "%s/rig.yaml", fixture->folder);
-    snprintf(fixture->specimen, sizeof fixture->specimen, "%s/specimen.yaml", fixture->folder);
-    snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
-    fixture->bench = fake_start();
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, 60.0);
-    fake_write_specimen(fixture->specimen);
-    wb_bend_test_default_request(&fixture->request);
-    fixture->request.rig_path = fixture->rig;
-    fixture->request.specimen_path = fixture->specimen;
-    fixture->request.output_path = fixture->output;
-    fixture->request.operator_name = "tester";
-    fixture->request.travel = 50.0 * WB_MM;
-    fixture->request.connect_timeout = 0.4;
-    fixture->request.sink = sample_log_sink(&fixture->log);
-    wb_interrupt_set(false);
-    wb_log_set_sink(keep_errors, fixture);
-    *state = fixture;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    struct fixture *const fixture = *state;
-    char command[128];
-    wb_log_set_sink(NULL, NULL);
-    wb_interrupt_set(false);
-    fake_stop(fixture->bench);
-    sample_log_release(&fixture->log);
-    snprintf(command, sizeof command, "rm -rf %s", fixture->folder);
-    const int code = system(command);
-    free(fixture);
-    return code;
-}
-
-/* Runs until the test ends or `until` says so; false when it ended. */
-static bool run(struct wb_bend_test *test, bool (*until)(const struct wb_bend_test_status *status))
-{
-    const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
-    struct wb_bend_test_status status;
-    while (wb_bend_test_step(test, 20 * MS) == WB_BEND_TEST_RUNNING) {
-        wb_bend_test_status(test, &status);
-        if (until && until(&status))
-            return true;
-        assert_true(wb_acquisition_now_ns() < patience_ns);
-    }
-    return false;
-}
+#include "tests/daq/bend_fixture.h"
 
 static bool well_down(const struct wb_bend_test_status *status)
 {
@@ -97,25 +15,6 @@ static bool well_down(const struct wb_bend_test_status *status)
 static bool takes_tare(const struct wb_bend_test_status *status)
 {
     return strcmp(status->phase, "tare") == 0;
-}
-
-static enum wb_status append_event(void *context, const struct wb_event *event)
-{
-    struct fixture *const fixture = context;
-    const size_t used = strlen(fixture->events);
-    snprintf(fixture->events + used, sizeof fixture->events - used, "%s: %s\n", event->kind,
-             event->text);
-    return WB_OK;
-}
-
-/* The finished recording opens; its events are read. */
-static void read_events(struct fixture *fixture)
-{
-    struct wb_recording *recording;
-    fixture->events[0] = '\0';
-    assert_int_equal(wb_recording_open(&recording, fixture->output), WB_OK);
-    assert_int_equal(wb_recording_each_event(recording, append_event, fixture), WB_OK);
-    assert_int_equal(wb_recording_close(recording), WB_OK);
 }
 
 /* The events named come in this order. */
@@ -588,184 +487,6 @@ static void a_lost_answer_of_the_stage_only_delays_the_next_motion(void **state)
     assert_close(fixture->bench->position_mm, 0.0, 1e-9);
 }
 
-/* --- what keeps it from starting --- */
-
-static void assert_refused(struct fixture *fixture, const char *words, bool recorded)
-{
-    struct wb_bend_test *test;
-    struct wb_bend_test_result result;
-    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
-    assert_false(run(test, NULL));
-    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
-    if (!strstr(result.text, words))
-        fail_msg("'%s' does not say '%s'", result.text, words);
-    assert_false(result.started);
-    assert_int_equal(result.recorded, recorded);
-    assert_int_equal(access(fixture->output, F_OK) == 0, recorded);
-    assert_int_equal(fixture->bench->holds, 0);
-}
-
-static void no_natnet_answer_is_told_and_leaves_nothing(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->bench->mocap_dead = true;
-    assert_refused(fixture, "no NatNet answer from udp:127.0.0.1", false);
-}
-
-static void a_silent_load_cell_is_told(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->bench->load_silent = true;
-    assert_refused(fixture, "sent nothing within", false);
-}
-
-static void a_load_cell_of_another_protocol_is_told(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->bench->garbage = true;
-    assert_refused(fixture, "no reading that can be decoded", false);
-}
-
-static void a_silent_stage_is_told(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->bench->stage_silent = true;
-    assert_refused(fixture, "the stage at pty:", false);
-}
-
-static void a_missing_marker_is_named(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->bench->markers = 6;
-    assert_refused(fixture, "6 of 7 markers seen", true);
-    read_events(fixture);
-    assert_non_null(strstr(fixture->events, "check: refused: 6 of 7"));
-}
-
-static void a_stray_reflection_does_not_hurt(void **state)
-{
-    struct fixture *const fixture = *state;
-    struct wb_bend_test *test;
-    fixture->bench->markers = 9;
-    fixture->request.travel = 1.0 * WB_MM;
-    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
-    assert_false(run(test, NULL));
-    assert_int_equal(wb_bend_test_step(test, 0), WB_BEND_TEST_DONE);
-    assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
-}
-
-static void a_loaded_zero_is_refused(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->bench->force_mg = 2700;
-    assert_refused(fixture, "the unloaded load cell reads 26", true);
-}
-
-static void a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out(void **state)
-{
-    struct fixture *const fixture = *state;
-    char words[160];
-    fixture->bench->state = "Alarm";
-    snprintf(words, sizeof words, "'wirebench stage %s unlock'", fixture->rig);
-    assert_refused(fixture, words, true);
-    unlink(fixture->output);
-    fixture->bench->state = "Hold:0";
-    snprintf(words, sizeof words, "'wirebench stage %s release'", fixture->rig);
-    assert_refused(fixture, words, true);
-}
-
-static void a_tare_with_the_counterweight_adds_its_weight(void **state)
-{
-    struct fixture *const fixture = *state;
-    struct fake_bench *const bench = fixture->bench;
-    struct wb_bend_test *test;
-    struct wb_bend_test_result result;
-    FILE *const file = fopen(fixture->rig, "a");
-    assert_non_null(file);
-    fputs("strand:\n  length_mm: 760\n  counterweight_g: 2.7\n", file);
-    fclose(file);
-    char command[256];
-    snprintf(command, sizeof command,
-             "sed -i 's/noise_mg: 10/noise_mg: 10\\n  tare: counterweight/' %s", fixture->rig);
-    assert_int_equal(system(command), 0);
-    fixture->request.travel = 8.0 * WB_MM;
-    assert_refused(fixture, "not the counterweight's 26.48 mN", true); /* nothing hangs there */
-    unlink(fixture->output);
-    bench->force_mg = 2800;
-    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
-    assert_false(run(test, NULL));
-    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_DONE);
-    assert_close(result.tare, 2.8e-3 * WB_STANDARD_GRAVITY, 0.01e-3 * WB_STANDARD_GRAVITY);
-    assert_close(result.peak_tension, 6.7e-3 * WB_STANDARD_GRAVITY, 0.05e-3 * WB_STANDARD_GRAVITY);
-}
-
-/* --- what cannot be opened --- */
-
-static void assert_not_opened(struct fixture *fixture, enum wb_status expected, const char *words)
-{
-    struct wb_bend_test *test = NULL;
-    fixture->errors[0] = '\0';
-    assert_int_equal(wb_bend_test_open(&test, &fixture->request), expected);
-    assert_null(test);
-    if (!strstr(fixture->errors, words))
-        fail_msg("'%s' does not say '%s'", fixture->errors, words);
-    /* One message, no more. */
-    assert_ptr_equal(strchr(fixture->errors, '\n'), fixture->errors + strlen(fixture->errors) - 1);
-}
-
-static void a_missing_port_is_one_message(void **state)
-{
-    struct fixture *const fixture = *state;
-    char gone[64];
-    snprintf(gone, sizeof gone, "%s", fixture->bench->load_path);
-    snprintf(fixture->bench->load_path, sizeof fixture->bench->load_path, "/dev/pts/no-such");
-    fake_write_rig(fixture->bench, fixture->rig, 40.0, 60.0);
-    assert_not_opened(fixture, WB_ERR_NOT_FOUND, "/dev/pts/no-such");
-    assert_int_not_equal(access(fixture->output, F_OK), 0);
-}
-
-static void a_busy_port_is_one_message(void **state)
-{
-    struct fixture *const fixture = *state;
-    struct wb_stream *other;
-    char address[80];
-    snprintf(address, sizeof address, "pty:%s", fixture->bench->stage_path);
-    assert_int_equal(wb_stream_open(&other, address), WB_OK);
-    assert_not_opened(fixture, WB_ERR_BUSY, fixture->bench->stage_path);
-    wb_stream_close(other);
-    assert_int_not_equal(access(fixture->output, F_OK), 0);
-}
-
-static void an_existing_recording_is_never_overwritten(void **state)
-{
-    struct fixture *const fixture = *state;
-    FILE *const file = fopen(fixture->output, "w");
-    assert_non_null(file);
-    fputs("precious", file);
-    fclose(file);
-    assert_not_opened(fixture, WB_ERR_EXISTS, "never overwritten");
-}
-
-static void too_much_travel_is_refused_before_anything_is_opened(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->request.travel = 59.0 * WB_MM;
-    assert_not_opened(fixture, WB_ERR_ARGUMENT, "59 mm is not free");
-    fixture->request.travel = (double)NAN;
-    assert_not_opened(fixture, WB_ERR_ARGUMENT, "not free");
-}
-
-static void a_folder_that_cannot_be_written_is_one_message(void **state)
-{
-    struct fixture *const fixture = *state;
-    fixture->request.output_path = "/no/such/folder/test.wbr";
-    struct wb_bend_test *test = NULL;
-    assert_int_not_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
-    assert_non_null(strstr(fixture->errors, "/no/such/folder/test.wbr"));
-}
-
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -789,20 +510,6 @@ int main(void)
         TEST(a_full_disk_stops_the_stage_and_what_was_written_stays),
         TEST(a_stage_that_refuses_to_move_is_told),
         TEST(a_lost_answer_of_the_stage_only_delays_the_next_motion),
-        TEST(no_natnet_answer_is_told_and_leaves_nothing),
-        TEST(a_silent_load_cell_is_told),
-        TEST(a_load_cell_of_another_protocol_is_told),
-        TEST(a_silent_stage_is_told),
-        TEST(a_missing_marker_is_named),
-        TEST(a_stray_reflection_does_not_hurt),
-        TEST(a_loaded_zero_is_refused),
-        TEST(a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out),
-        TEST(a_tare_with_the_counterweight_adds_its_weight),
-        TEST(a_missing_port_is_one_message),
-        TEST(a_busy_port_is_one_message),
-        TEST(an_existing_recording_is_never_overwritten),
-        TEST(too_much_travel_is_refused_before_anything_is_opened),
-        TEST(a_folder_that_cannot_be_written_is_one_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,106 @@
+/* A bend test against the small bench in a thread, in a folder of its own, for its tests. */
+#ifndef WB_TESTS_DAQ_BEND_FIXTURE_H
+#define WB_TESTS_DAQ_BEND_FIXTURE_H
+
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "daq/bend_test.h"
+#include "tests/daq/fake_bench.h"
+#include "tests/daq/sample_log.h"
+
+#define MS WB_NS_PER_MS
+
+struct fixture {
+    struct fake_bench *bench;
+    char folder[64], rig[96], specimen[96], output[96];
+    struct wb_bend_test_request request;
+    struct sample_log log;
+    char errors[4096];  /* messages at error level, one a line */
+    char events[16384]; /* "kind: text" of the finished recording, one a line */
+};
+
+static inline void keep_errors(void *context, enum wb_log_level level, const char *domain,
+                               const char *message)
+{
+    struct fixture *const fixture = context;
+    const size_t used = strlen(fixture->errors);
+    (void)domain;
+    if (level == WB_LOG_ERROR)
+        snprintf(fixture->errors + used, sizeof fixture->errors - used, "%s\n", message);
+}
+
+static inline int set_up(void **state)
+{
+    struct fixture *const fixture = calloc(1, sizeof *fixture);
+    assert_non_null(fixture);
+    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/wb-bend-XXXXXX");
+    assert_non_null(mkdtemp(fixture->folder));
+    snprintf(fixture->rig, sizeof fixture->rig, "%s/rig.yaml", fixture->folder);
+    snprintf(fixture->specimen, sizeof fixture->specimen, "%s/specimen.yaml", fixture->folder);
+    snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
+    fixture->bench = fake_start();
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 60.0);
+    fake_write_specimen(fixture->specimen);
+    wb_bend_test_default_request(&fixture->request);
+    fixture->request.rig_path = fixture->rig;
+    fixture->request.specimen_path = fixture->specimen;
+    fixture->request.output_path = fixture->output;
+    fixture->request.operator_name = "tester";
+    fixture->request.travel = 50.0 * WB_MM;
+    fixture->request.connect_timeout = 0.4;
+    fixture->request.sink = sample_log_sink(&fixture->log);
+    wb_interrupt_set(false);
+    wb_log_set_sink(keep_errors, fixture);
+    *state = fixture;
+    return 0;
+}
+
+static inline int tear_down(void **state)
+{
+    struct fixture *const fixture = *state;
+    char command[128];
+    wb_log_set_sink(NULL, NULL);
+    wb_interrupt_set(false);
+    fake_stop(fixture->bench);
+    sample_log_release(&fixture->log);
+    snprintf(command, sizeof command, "rm -rf %s", fixture->folder);
+    const int code = system(command);
+    free(fixture);
+    return code;
+}
+
+/* Runs until the test ends or `until` says so; false when it ended. */
+static inline bool run(struct wb_bend_test *test,
+                       bool (*until)(const struct wb_bend_test_status *status))
+{
+    const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
+    struct wb_bend_test_status status;
+    while (wb_bend_test_step(test, 20 * MS) == WB_BEND_TEST_RUNNING) {
+        wb_bend_test_status(test, &status);
+        if (until && until(&status))
+            return true;
+        assert_true(wb_acquisition_now_ns() < patience_ns);
+    }
+    return false;
+}
+
+static inline enum wb_status append_event(void *context, const struct wb_event *event)
+{
+    struct fixture *const fixture = context;
+    const size_t used = strlen(fixture->events);
+    snprintf(fixture->events + used, sizeof fixture->events - used, "%s: %s\n", event->kind,
+             event->text);
+    return WB_OK;
+}
+
+/* The finished recording opens; its events are read. */
+static inline void read_events(struct fixture *fixture)
+{
+    struct wb_recording *recording;
+    fixture->events[0] = '\0';
+    assert_int_equal(wb_recording_open(&recording, fixture->output), WB_OK);
+    assert_int_equal(wb_recording_each_event(recording, append_event, fixture), WB_OK);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+}
+
+#endif

@@ -1,0 +1,205 @@
+/* What keeps a bending test from starting, each with its one message, against a small bench in a
+ * thread. */
+#include "daq/stream.h"
+#include "tests/daq/bend_fixture.h"
+
+/* --- what keeps it from starting --- */
+
+static void assert_refused(struct fixture *fixture, const char *words, bool recorded)
+{
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
+    if (!strstr(result.text, words))
+        fail_msg("'%s' does not say '%s'", result.text, words);
+    assert_false(result.started);
+    assert_int_equal(result.recorded, recorded);
+    assert_int_equal(access(fixture->output, F_OK) == 0, recorded);
+    assert_int_equal(fixture->bench->holds, 0);
+}
+
+static void no_natnet_answer_is_told_and_leaves_nothing(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->mocap_dead = true;
+    assert_refused(fixture, "no NatNet answer from udp:127.0.0.1", false);
+}
+
+static void a_silent_load_cell_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->load_silent = true;
+    assert_refused(fixture, "sent nothing within", false);
+}
+
+static void a_load_cell_of_another_protocol_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->garbage = true;
+    assert_refused(fixture, "no reading that can be decoded", false);
+}
+
+static void a_silent_stage_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->stage_silent = true;
+    assert_refused(fixture, "the stage at pty:", false);
+}
+
+static void a_missing_marker_is_named(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->markers = 6;
+    assert_refused(fixture, "6 of 7 markers seen", true);
+    read_events(fixture);
+    assert_non_null(strstr(fixture->events, "check: refused: 6 of 7"));
+}
+
+static void a_stray_reflection_does_not_hurt(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_bend_test *test;
+    fixture->bench->markers = 9;
+    fixture->request.travel = 1.0 * WB_MM;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_step(test, 0), WB_BEND_TEST_DONE);
+    assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
+}
+
+static void a_loaded_zero_is_refused(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->force_mg = 2700;
+    assert_refused(fixture, "the unloaded load cell reads 26", true);
+}
+
+static void a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out(void **state)
+{
+    struct fixture *const fixture = *state;
+    char words[160];
+    fixture->bench->state = "Alarm";
+    snprintf(words, sizeof words, "'wirebench stage %s unlock'", fixture->rig);
+    assert_refused(fixture, words, true);
+    unlink(fixture->output);
+    fixture->bench->state = "Hold:0";
+    snprintf(words, sizeof words, "'wirebench stage %s release'", fixture->rig);
+    assert_refused(fixture, words, true);
+}
+
+static void a_tare_with_the_counterweight_adds_its_weight(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    struct wb_bend_test *test;
+    struct wb_bend_test_result result;
+    FILE *const file = fopen(fixture->rig, "a");
+    assert_non_null(file);
+    fputs("strand:\n  length_mm: 760\n  counterweight_g: 2.7\n", file);
+    fclose(file);
+    char command[256];
+    snprintf(command, sizeof command,
+             "sed -i 's/noise_mg: 10/noise_mg: 10\\n  tare: counterweight/' %s", fixture->rig);
+    assert_int_equal(system(command), 0);
+    fixture->request.travel = 8.0 * WB_MM;
+    assert_refused(fixture, "not the counterweight's 26.48 mN", true); /* nothing hangs there */
+    unlink(fixture->output);
+    bench->force_mg = 2800;
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_false(run(test, NULL));
+    assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
+    assert_int_equal(result.end, WB_BEND_TEST_DONE);
+    assert_close(result.tare, 2.8e-3 * WB_STANDARD_GRAVITY, 0.01e-3 * WB_STANDARD_GRAVITY);
+    assert_close(result.peak_tension, 6.7e-3 * WB_STANDARD_GRAVITY, 0.05e-3 * WB_STANDARD_GRAVITY);
+}
+
+/* --- what cannot be opened --- */
+
+static void assert_not_opened(struct fixture *fixture, enum wb_status expected, const char *words)
+{
+    struct wb_bend_test *test = NULL;
+    fixture->errors[0] = '\0';
+    assert_int_equal(wb_bend_test_open(&test, &fixture->request), expected);
+    assert_null(test);
+    if (!strstr(fixture->errors, words))
+        fail_msg("'%s' does not say '%s'", fixture->errors, words);
+    /* One message, no more. */
+    assert_ptr_equal(strchr(fixture->errors, '\n'), fixture->errors + strlen(fixture->errors) - 1);
+}
+
+static void a_missing_port_is_one_message(void **state)
+{
+    struct fixture *const fixture = *state;
+    char gone[64];
+    snprintf(gone, sizeof gone, "%s", fixture->bench->load_path);
+    snprintf(fixture->bench->load_path, sizeof fixture->bench->load_path, "/dev/pts/no-such");
+    fake_write_rig(fixture->bench, fixture->rig, 40.0, 60.0);
+    assert_not_opened(fixture, WB_ERR_NOT_FOUND, "/dev/pts/no-such");
+    assert_int_not_equal(access(fixture->output, F_OK), 0);
+}
+
+static void a_busy_port_is_one_message(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct wb_stream *other;
+    char address[80];
+    snprintf(address, sizeof address, "pty:%s", fixture->bench->stage_path);
+    assert_int_equal(wb_stream_open(&other, address), WB_OK);
+    assert_not_opened(fixture, WB_ERR_BUSY, fixture->bench->stage_path);
+    wb_stream_close(other);
+    assert_int_not_equal(access(fixture->output, F_OK), 0);
+}
+
+static void an_existing_recording_is_never_overwritten(void **state)
+{
+    struct fixture *const fixture = *state;
+    FILE *const file = fopen(fixture->output, "w");
+    assert_non_null(file);
+    fputs("precious", file);
+    fclose(file);
+    assert_not_opened(fixture, WB_ERR_EXISTS, "never overwritten");
+}
+
+static void too_much_travel_is_refused_before_anything_is_opened(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->request.travel = 59.0 * WB_MM;
+    assert_not_opened(fixture, WB_ERR_ARGUMENT, "59 mm is not free");
+    fixture->request.travel = (double)NAN;
+    assert_not_opened(fixture, WB_ERR_ARGUMENT, "not free");
+}
+
+static void a_folder_that_cannot_be_written_is_one_message(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->request.output_path = "/no/such/folder/test.wbr";
+    struct wb_bend_test *test = NULL;
+    assert_int_not_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
+    assert_non_null(strstr(fixture->errors, "/no/such/folder/test.wbr"));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(no_natnet_answer_is_told_and_leaves_nothing),
+        TEST(a_silent_load_cell_is_told),
+        TEST(a_load_cell_of_another_protocol_is_told),
+        TEST(a_silent_stage_is_told),
+        TEST(a_missing_marker_is_named),
+        TEST(a_stray_reflection_does_not_hurt),
+        TEST(a_loaded_zero_is_refused),
+        TEST(a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out),
+        TEST(a_tare_with_the_counterweight_adds_its_weight),
+        TEST(a_missing_port_is_one_message),
+        TEST(a_busy_port_is_one_message),
+        TEST(an_existing_recording_is_never_overwritten),
+        TEST(too_much_travel_is_refused_before_anything_is_opened),
+        TEST(a_folder_that_cannot_be_written_is_one_message),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
