@@ -333,15 +333,35 @@ static void draw_legend(cairo_t *cairo, const struct wb_layout_panel *layout)
     (void)wb_layout_legend(layout, cairo, draw_entry, &pen, &size);
 }
 
+/* White below an inset's frame and its labels, and nowhere else: the outer panel's grid goes on
+ * around them. */
+static void clear_behind(cairo_t *cairo, const struct wb_layout_panel *layout)
+{
+    const struct wb_place_box *const room = &layout->room, *const plot = &layout->plot;
+    const double margin = 2.0, half_label = 0.6 * layout->text_size;
+    const double right = plot->x + plot->width, bottom = plot->y + plot->height;
+    const bool has_right = layout->panel->right_factor > 0.0;
+    cairo_set_source_rgb(cairo, 1.0, 1.0, 1.0);
+    cairo_rectangle(cairo, plot->x, plot->y - margin, plot->width + margin,
+                    plot->height + 2.0 * margin);
+    /* Tick labels stand out by half their size at the ends of the axes. */
+    cairo_rectangle(cairo, room->x, plot->y - half_label, plot->x - room->x,
+                    plot->height + 2.0 * half_label);
+    cairo_rectangle(cairo, plot->x - half_label, bottom, plot->width + 2.0 * half_label,
+                    room->y + room->height - bottom);
+    if (has_right)
+        cairo_rectangle(cairo, right, plot->y - half_label, room->x + room->width - right,
+                        plot->height + 2.0 * half_label);
+    if (layout->panel->title)
+        cairo_rectangle(cairo, plot->x, room->y, plot->width, plot->y - room->y);
+    cairo_fill(cairo);
+}
+
 static void draw_panel(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_panel *const panel = layout->panel;
-    if (panel->is_inset) {
-        cairo_rectangle(cairo, layout->room.x, layout->room.y, layout->room.width,
-                        layout->room.height);
-        cairo_set_source_rgb(cairo, 1.0, 1.0, 1.0);
-        cairo_fill(cairo);
-    }
+    if (panel->is_inset)
+        clear_behind(cairo, layout);
     if (!panel->hidden_axes)
         draw_grid(cairo, layout);
     draw_series(cairo, layout);
