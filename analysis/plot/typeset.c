@@ -9,6 +9,9 @@ static PangoLayout *layout_of(cairo_t *cairo, const char *markup,
 {
     PangoLayout *const layout = pango_cairo_create_layout(cairo);
     PangoContext *const context = pango_layout_get_context(layout);
+    /* Under a scaled or turned matrix Pango 1.50 makes subscripts larger by the scale; cairo
+     * applies the matrix when it draws in any case. */
+    pango_context_set_matrix(context, NULL);
     cairo_font_options_t *const options = cairo_font_options_create();
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
     cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);

@@ -11,6 +11,7 @@
 #include "analysis/plot/layout.h"
 #include "analysis/plot/place.h"
 #include "analysis/plot/scale.h"
+#include "analysis/plot/typeset.h"
 #include "base/file.h"
 
 /* --- scales --- */
@@ -413,6 +414,31 @@ static void files_are_written_whole_and_a_missing_folder_is_an_error(void **stat
     rmdir(folder);
 }
 
+/* PNGs are drawn under a scale, and labels of y axes are turned. */
+static void text_has_the_same_size_under_every_matrix(void **state)
+{
+    (void)state;
+    cairo_surface_t *const surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 100, 100);
+    const struct wb_typeset_style style = {.size = 8.0};
+    const char *const markup = "<i>F</i><sub>max</sub> 10<sup>3</sup>";
+    struct wb_typeset_size sizes[3];
+    for (int i = 0; i < 3; i++) {
+        cairo_t *const cairo = cairo_create(surface);
+        if (i == 1)
+            cairo_scale(cairo, 3.0, 3.0);
+        if (i == 2)
+            cairo_rotate(cairo, -M_PI_2);
+        sizes[i] = wb_typeset_measure(cairo, markup, &style);
+        cairo_destroy(cairo);
+    }
+    assert_true(sizes[0].width > 10.0);
+    for (int i = 1; i < 3; i++) {
+        assert_close(sizes[i].width, sizes[0].width, 0.05);
+        assert_close(sizes[i].height, sizes[0].height, 0.05);
+    }
+    cairo_surface_destroy(surface);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -426,6 +452,7 @@ int main(void)
         cmocka_unit_test(legends_and_insets_cover_no_data),
         cmocka_unit_test(a_legend_without_room_stands_outside_of_the_axes),
         cmocka_unit_test(an_inset_covers_no_data_when_the_legend_had_to_leave),
+        cmocka_unit_test(text_has_the_same_size_under_every_matrix),
         cmocka_unit_test(values_stand_where_the_scales_say),
         cmocka_unit_test(equal_aspect_gives_both_axes_the_same_unit),
         cmocka_unit_test(the_same_description_gives_the_same_bytes),
