@@ -47,6 +47,20 @@ static bool talks_without_waiting(void)
     return wb_progress_now_ns() - before_ns < WB_NS_PER_S;
 }
 
+/* Perhaps in parts: the kernel's own buffers may make room in between. */
+static int said_to_be_lost(void)
+{
+    static const char words[] = "wirebench: ", what[] = " messages were dropped";
+    int sum = 0;
+    for (const char *at = heard; (at = strstr(at, words)); at += strlen(words)) {
+        char *end;
+        const long n = strtol(at + strlen(words), &end, 10);
+        if (strncmp(end, what, strlen(what)) == 0)
+            sum += (int)n;
+    }
+    return sum;
+}
+
 static void assert_never_waits(int theirs, int ours)
 {
     const int kept = dup(STDERR_FILENO);
@@ -66,9 +80,7 @@ static void assert_never_waits(int theirs, int ours)
     assert_true(free);
     assert_in_range(lost, 1, 399);
     assert_non_null(strstr(heard, "warning: 0 xxx"));
-    char told[64];
-    snprintf(told, sizeof told, "%d messages were dropped", (int)lost);
-    assert_non_null(strstr(heard, told));
+    assert_int_equal(said_to_be_lost(), lost);
     assert_non_null(strstr(heard, "warning: at last"));
 }
 
