@@ -77,9 +77,25 @@ static void put_specimen_rows(struct wb_document *document, struct wb_document_t
     }
 }
 
+/* Names of usual length stay in one line: "make-/recordings" reads as two. */
+static bool has_long_operator(const struct wb_results *results)
+{
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_results_tests *const both[] = {&results->wires[i].calibration_tests,
+                                                       &results->wires[i].validation_tests};
+        for (int k = 0; k < 2; k++) {
+            for (int j = 0; j < both[k]->n; j++) {
+                if (strlen(both[k]->items[j].operator_name) > 20)
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
 static void put_specimens(struct wb_document *document, const struct wb_results *results)
 {
-    static const struct wb_document_column columns[] = {
+    const struct wb_document_column columns[] = {
         {"Wire"},
         {.heading = "Length (mm)", .right = true, .wraps = true},
         {.heading = "Sample", .right = true},
@@ -88,7 +104,7 @@ static void put_specimens(struct wb_document *document, const struct wb_results 
         {.heading = "Largest deflection (mm)", .right = true, .wraps = true},
         {.heading = "Largest force (mN)", .right = true, .wraps = true},
         {.heading = "Markers seen (%)", .right = true, .wraps = true},
-        {.heading = "Operator"},
+        {.heading = "Operator", .wraps = has_long_operator(results)},
     };
     wb_document_heading(document, 2, "specimens", "Specimens");
     struct wb_document_table *const table = wb_document_table(
