@@ -348,8 +348,14 @@ static void describe_tare(struct wb_align *align)
         .value = align->tare,
         .uncertainty = align->reading_noise / sqrt((double)align->tare_samples),
     };
-    wb_align_correct(align, &tare, "mean of %ld readings of the unloaded cell before the test",
-                     align->tare_samples);
+    if (wb_rig_tare_load(&align->rig) != 0.0)
+        wb_align_correct(align, &tare,
+                         "mean of %ld readings before the test with the counterweight on the "
+                         "strand, less its weight of %.4g mN",
+                         align->tare_samples, wb_rig_tare_load(&align->rig) / WB_MN);
+    else
+        wb_align_correct(align, &tare, "mean of %ld readings of the unloaded cell before the test",
+                         align->tare_samples);
 }
 
 /* --- zero of force --- */

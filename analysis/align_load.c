@@ -177,6 +177,8 @@ static enum wb_status load_events(struct wb_align *align, struct wb_recording *r
         return wb_fail(WB_ERR_DATA,
                        "%s: no tare: the load cell's zero is not known, so there is no force",
                        align->name);
+    /* From here on the reading of the unloaded cell. */
+    align->tare -= wb_rig_tare_load(&align->rig);
     if (align->is_cut_short)
         wb_align_warn(align, "the test was cut short%s%s", align->stop_reason[0] ? ": " : "",
                       align->stop_reason);

@@ -40,6 +40,7 @@ struct syn {
     int cycles;
     double travel; /* m */
     bool no_events, no_tare;
+    bool loaded_tare; /* the tare is taken with the counterweight on the strand */
     /* Faults and noise. */
     double marker_noise, force_noise; /* m, N */
     double drift;                     /* N/s */
@@ -365,7 +366,8 @@ static inline void syn_write_events(const struct syn *syn, struct wb_recording *
 {
     char text[160];
     snprintf(text, sizeof text, "{\"force_N\": %.9g, \"samples\": 160, \"sd_N\": %.9g}",
-             syn->sign * 3e-3, syn->force_noise);
+             syn->sign * 3e-3 + (syn->loaded_tare ? SYN_COUNTERWEIGHT * SYN_GRAVITY : 0.0),
+             syn->force_noise);
     if (!syn->no_tare)
         syn_event(syn, recording, -0.01, "tare", text);
     for (int cycle = 0; cycle < syn->cycles && !syn->no_events; cycle++) {
@@ -402,6 +404,7 @@ static inline void syn_write_meta(const struct syn *syn, struct wb_recording *re
              "  filter_delay_ms: %g\n"
              "  filter_delay_uncertainty_ms: 5\n"
              "  noise_mg: 10\n"
+             "  tare: %s\n"
              "%s"
              "mocap:\n"
              "  address: memory:mocap\n"
@@ -420,7 +423,7 @@ static inline void syn_write_meta(const struct syn *syn, struct wb_recording *re
              "  counterweight_g: 2.7\n"
              "virtual: true\n"
              "time_scale: %g\n",
-             SYN_FILTER * 1e3,
+             SYN_FILTER * 1e3, syn->loaded_tare ? "counterweight" : "unloaded",
              syn->polled ? "  poll_command: \"W\\r\"\n  poll_period_ms: 12.5\n" : "",
              syn->z_up ? 'z' : 'y', syn->time_scale);
     if (wb_recording_set_meta(recording, "rig", rig) != WB_OK ||

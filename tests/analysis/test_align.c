@@ -246,6 +246,27 @@ static void drift_between_zero_loads_is_taken_off(void **state)
     wb_dataset_release(&dataset);
 }
 
+/* Only the event differs: the weight that hung on the cell is taken off the tare again. */
+static void a_tare_with_the_counterweight_gives_the_same_tension(void **state)
+{
+    (void)state;
+    struct syn syn;
+    struct wb_dataset unloaded, loaded;
+    syn_default(&syn);
+    align(&syn, &unloaded);
+    syn_default(&syn);
+    syn.loaded_tare = true;
+    align(&syn, &loaded);
+    assert_true_to(&syn, &loaded);
+    assert_close(correction(&loaded, "tare", "value_mN"), correction(&unloaded, "tare", "value_mN"),
+                 1e-4);
+    assert_int_equal(loaded.n_rows, unloaded.n_rows);
+    assert_close(loaded.rows[loaded.n_rows / 2].tension, unloaded.rows[unloaded.n_rows / 2].tension,
+                 1e-9);
+    wb_dataset_release(&loaded);
+    wb_dataset_release(&unloaded);
+}
+
 static void drift_that_cannot_be_seen_is_bounded(void **state)
 {
     (void)state;
@@ -598,6 +619,7 @@ int main(void)
         cmocka_unit_test(bows_are_found_within_what_is_stated),
         cmocka_unit_test(an_elastic_loop_is_closed),
         cmocka_unit_test(drift_between_zero_loads_is_taken_off),
+        cmocka_unit_test(a_tare_with_the_counterweight_gives_the_same_tension),
         cmocka_unit_test(drift_that_cannot_be_seen_is_bounded),
         cmocka_unit_test(cycles_and_phases_come_from_the_clamp),
         cmocka_unit_test(slack_rows_are_those_without_tension),
