@@ -38,6 +38,12 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
+static bool is_recording_name(const char *path)
+{
+    const size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".wbr") == 0;
+}
+
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
@@ -76,6 +82,11 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "no --specimen given");
         if (!request->output_path)
             argp_error(state, "no recording to write given (-o REC.wbr)");
+        if (!is_recording_name(request->output_path))
+            argp_error(state,
+                       "a recording is written as NAME.wbr, not '%s'; compress it afterwards "
+                       "with zstd",
+                       request->output_path);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -100,36 +111,69 @@ static const struct argp argp = {
         "usage; 3 stopped early or data lost, what was recorded is usable.",
 };
 
+/* What the live line says, each field apart. */
+struct fields {
+    const char *origin;
+    char phase[48], force[64], travel[32], deflection[32], markers[32], drops[32], rates[64];
+};
+
+static void fill_fields(const struct wb_bend_test_status *status, struct fields *f)
+{
+    const struct wb_acquisition_latest *const latest = status->latest;
+    const struct wb_acquisition_stream_state *const stream = latest->stream;
+    const int seconds = (int)status->elapsed;
+    *f = (struct fields){status->is_virtual ? "virtual rig: " : "",
+                         "",
+                         "-- mN",
+                         "-- mm",
+                         "-- mm",
+                         "no markers",
+                         "",
+                         ""};
+    if (status->cycle > 0)
+        snprintf(f->phase, sizeof f->phase, "%s %d/%d %d:%02d", status->phase, status->cycle,
+                 status->cycles, seconds / 60, seconds % 60);
+    else
+        snprintf(f->phase, sizeof f->phase, "%s %d:%02d", status->phase, seconds / 60,
+                 seconds % 60);
+    if (status->has_tension)
+        snprintf(f->force, sizeof f->force, "%.2f mN %.2f g", status->tension / WB_MN,
+                 status->tension / status->gravity / WB_G);
+    if (status->has_deflection)
+        snprintf(f->deflection, sizeof f->deflection, "%.1f mm", status->deflection / WB_MM);
+    if (status->has_travel)
+        snprintf(f->travel, sizeof f->travel, "%.1f mm", status->travel / WB_MM);
+    if (latest->has_mocap)
+        snprintf(f->markers, sizeof f->markers, "%d/%d", latest->markers_seen,
+                 status->markers_expected);
+    snprintf(f->drops, sizeof f->drops, "%" PRIu64,
+             stream[WB_ROLE_LOAD].drops + stream[WB_ROLE_MOCAP].drops +
+                 stream[WB_ROLE_STAGE].drops);
+    snprintf(f->rates, sizeof f->rates, "%.0f/%.0f/%.0f Hz", stream[WB_ROLE_LOAD].rate,
+             stream[WB_ROLE_MOCAP].rate, stream[WB_ROLE_STAGE].rate);
+}
+
+/* The longest form that the terminal has room for: in words, short, and short without rates. */
 static void show(const struct wb_bend_test *test)
 {
     struct wb_bend_test_status status;
+    struct fields f;
+    char line[512];
     wb_bend_test_status(test, &status);
-    const struct wb_acquisition_latest *const latest = status.latest;
-    char phase[32], force[64] = "-- mN", travel[32] = "--", deflection[32] = "-- mm",
-                    markers[32] = "no markers";
-    if (status.cycle > 0)
-        snprintf(phase, sizeof phase, "%s %d/%d", status.phase, status.cycle, status.cycles);
-    else
-        snprintf(phase, sizeof phase, "%s", status.phase);
-    if (status.has_tension)
-        snprintf(force, sizeof force, "%.2f mN %.3f g", status.tension / WB_MN,
-                 status.tension / status.gravity / WB_G);
-    if (status.has_deflection)
-        snprintf(deflection, sizeof deflection, "%.1f mm", status.deflection / WB_MM);
-    if (status.has_travel)
-        snprintf(travel, sizeof travel, "%.2f", status.travel / WB_MM);
-    if (latest->has_mocap)
-        snprintf(markers, sizeof markers, "markers %d/%d", latest->markers_seen,
-                 status.markers_expected);
-    const struct wb_acquisition_stream_state *const stream = latest->stream;
-    const uint64_t drops =
-        stream[WB_ROLE_LOAD].drops + stream[WB_ROLE_MOCAP].drops + stream[WB_ROLE_STAGE].drops;
-    const int seconds = (int)status.elapsed;
-    wb_live_line_show("%s%s %d:%02d  %s  travel %s deflection %s  %s  %" PRIu64
-                      " drops  %.0f+%.0f+%.0f/s",
-                      status.is_virtual ? "[virtual rig] " : "", phase, seconds / 60, seconds % 60,
-                      force, travel, deflection, markers, drops, stream[WB_ROLE_LOAD].rate,
-                      stream[WB_ROLE_MOCAP].rate, stream[WB_ROLE_STAGE].rate);
+    fill_fields(&status, &f);
+    const int columns = wb_live_line_columns();
+    int length =
+        snprintf(line, sizeof line,
+                 "%s%s  force %s  deflection %s  travel %s  markers %s  drops %s  "
+                 "cell/cameras/stage %s",
+                 f.origin, f.phase, f.force, f.deflection, f.travel, f.markers, f.drops, f.rates);
+    if (length > columns)
+        length = snprintf(line, sizeof line, "%s%s %s y %s %s %s drops %s", f.origin, f.phase,
+                          f.force, f.deflection, f.markers, f.drops, f.rates);
+    if (length > columns)
+        snprintf(line, sizeof line, "%s%s %s y %s %s %s drops", f.origin, f.phase, f.force,
+                 f.deflection, f.markers, f.drops);
+    wb_live_line_show("%s", line);
 }
 
 static void obey(struct wb_bend_test *test, int key)

@@ -99,20 +99,27 @@ bool wb_live_line_due(void)
     return live.draws && wb_progress_now_ns() - live.drawn_ns >= REDRAW_NS;
 }
 
+int wb_live_line_columns(void)
+{
+    struct winsize window;
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1)
+        return window.ws_col - 1; /* a full line would wrap */
+    return (int)sizeof live.text - 1;
+}
+
 void wb_live_line_show(const char *format, ...)
 {
     if (!live.draws)
         return;
     char text[sizeof live.text + 16];
-    struct winsize window;
+    const size_t columns = (size_t)wb_live_line_columns();
     pthread_mutex_lock(&lock);
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(live.text, sizeof live.text, format, arguments);
     va_end(arguments);
-    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1 &&
-        strlen(live.text) >= window.ws_col)
-        live.text[window.ws_col - 1] = '\0';
+    if (strlen(live.text) > columns)
+        live.text[columns] = '\0';
     snprintf(text, sizeof text, "\r%s\033[K", live.text);
     /* Behind a message that waits it would be old news. */
     if (wb_talk_flush()) {

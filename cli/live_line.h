@@ -18,6 +18,9 @@ bool wb_live_line_due(void);
 /* Draws, cut to the terminal's width. */
 void wb_live_line_show(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Columns that the line may fill; many where stderr is no terminal. */
+int wb_live_line_columns(void);
+
 /* The next key pressed, 0 when there is none (or stdin is no terminal, or somebody else has its
  * foreground). Never waits. */
 int wb_live_line_key(void);

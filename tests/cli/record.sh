@@ -324,6 +324,8 @@ wrong_usage() {
     [ $? = 2 ] || fail "record without a rig is not a usage error"
     "$wirebench" record rig.yaml --cycles 0 --specimen a -o b >/dev/null 2>&1
     [ $? = 2 ] || fail "0 cycles are not a usage error"
+    "$wirebench" record a.yaml --specimen "$specimen" -o "$folder/x.wbr.zst" >/dev/null 2>&1
+    [ $? = 2 ] || fail "a recording that would not be what its name says is not a usage error"
     "$wirebench" stage rig.yaml fly >/dev/null 2>&1
     [ $? = 2 ] || fail "an unknown action is not a usage error"
 }
