@@ -10,48 +10,16 @@
 
 #define WB_LOG_DOMAIN "export"
 
-struct options {
-    const char *path, *output;
-    bool force, json;
-};
-
-enum {
-    KEY_FORCE = 256,
-    KEY_JSON
-};
-
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write into", 0},
-    {"force", KEY_FORCE, NULL, 0, "Write into a folder that holds files already", 0},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Write into a folder that holds files already", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    struct options *const o = state->input;
-    switch (key) {
-    case 'o':
-        o->output = argument;
-        return 0;
-    case KEY_FORCE:
-        o->force = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->path)
-            argp_error(state, "one recording at a time, not '%s' too", argument);
-        o->path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->path || !o->output)
-            argp_error(state, "name the recording and the folder (-o DIR)");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+    return wb_command_parse_common(key, argument, state, state->input);
 }
 
 static const struct argp argp = {
@@ -65,19 +33,20 @@ static const struct argp argp = {
            "damaged and left out.",
 };
 
-static enum wb_status export(struct wb_recording *recording, const struct options *options,
+static enum wb_status export(struct wb_recording *recording,
+                             const struct wb_command_common *options,
                              struct wb_export_counts *counts) {
     struct wb_rig rig; char sha256[65],
     source[WB_PATH + 160]; WB_TRY(wb_replay_rig(recording, &rig));
-        if (wb_recording_sha256(options->path, sha256) != WB_OK)
+        if (wb_recording_sha256(options->input, sha256) != WB_OK)
             snprintf(sha256, sizeof sha256, "unknown");
         WB_TRY(wb_file_prepare_output(options->output, options->force));
         snprintf(source, sizeof source, "%s (sha256 %s), wirebench %s (%s)",
-                 wb_file_name(options->path), sha256, wb_version(), wb_version_revision());
+                 wb_file_name(options->input), sha256, wb_version(), wb_version_revision());
         return wb_export_csv(recording, &rig, source, options->output, counts);
 }
 
-static int print(const struct options *options, const struct wb_export_counts *counts)
+static int print(const struct wb_command_common *options, const struct wb_export_counts *counts)
 {
     if (!options->json) {
         printf("%s: %" PRIu64 " load readings, %" PRIu64 " markers, %" PRIu64
@@ -99,11 +68,11 @@ static int print(const struct options *options, const struct wb_export_counts *c
 
 int wb_cmd_export(int argc, char **argv)
 {
-    struct options options = {.path = NULL};
+    struct wb_command_common options = {.noun = "recording", .destination = "files go"};
     struct wb_recording *recording = NULL;
     struct wb_export_counts counts = {0};
     wb_command_parse(&argp, argc, argv, &options);
-    enum wb_status status = wb_recording_open(&recording, options.path);
+    enum wb_status status = wb_recording_open(&recording, options.input);
     bool complete = status == WB_OK && wb_recording_is_complete(recording);
     if (status == WB_OK)
         status = export(recording, &options, &counts);

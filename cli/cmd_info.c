@@ -13,39 +13,14 @@
 
 #define WB_LOG_DOMAIN "info"
 
-struct options {
-    const char *path;
-    bool json;
-};
-
-enum {
-    KEY_JSON = 256
-};
-
 static const struct argp_option option_table[] = {
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    struct options *const o = state->input;
-    switch (key) {
-    case KEY_JSON:
-        o->json = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->path)
-            argp_error(state, "one recording at a time, not '%s' too", argument);
-        o->path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->path)
-            argp_error(state, "name the recording");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+    return wb_command_parse_common(key, argument, state, state->input);
 }
 
 static const struct argp argp = {
@@ -269,15 +244,15 @@ static int print_json(struct facts *facts, const char *path)
 
 int wb_cmd_info(int argc, char **argv)
 {
-    struct options options = {.json = false};
+    struct wb_command_common options = {.noun = "recording"};
     wb_command_parse(&argp, argc, argv, &options);
     struct facts facts = {.recording = NULL};
-    enum wb_status status = gather(&facts, options.path);
+    enum wb_status status = gather(&facts, options.input);
     int code = wb_command_exit(status);
     if (status == WB_OK && options.json)
-        code = print_json(&facts, options.path);
+        code = print_json(&facts, options.input);
     else if (status == WB_OK)
-        code = wb_command_exit(print_text(&facts, options.path));
+        code = wb_command_exit(print_text(&facts, options.input));
     bool whole = wb_survey_is_whole(&facts.survey);
     status = wb_recording_close(facts.recording);
     if (code == WB_EXIT_OK && status != WB_OK)

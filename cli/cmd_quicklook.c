@@ -8,51 +8,16 @@
 
 #define WB_LOG_DOMAIN "quicklook"
 
-struct options {
-    const char *recording, *output;
-    bool force, json;
-};
-
-enum {
-    KEY_FORCE = 1000,
-    KEY_JSON
-};
-
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
-    {"force", KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    struct options *const o = state->input;
-
-    switch (key) {
-    case 'o':
-        o->output = argument;
-        return 0;
-    case KEY_FORCE:
-        o->force = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->recording)
-            argp_error(state, "one recording at a time, not also '%s'", argument);
-        o->recording = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->recording)
-            argp_error(state, "name a recording");
-        if (!o->output)
-            argp_error(state, "say where the figures go: -o DIR");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+    return wb_command_parse_common(key, argument, state, state->input);
 }
 
 static const struct argp argp = {
@@ -83,7 +48,7 @@ static int print_json(const struct wb_dataset *dataset, const char *output)
     return wb_command_print_json(root);
 }
 
-static int deliver(const struct wb_dataset *dataset, const struct options *options)
+static int deliver(const struct wb_dataset *dataset, const struct wb_command_common *options)
 {
     bool complete = false;
     if (wb_quicklook_write(dataset, options->output, options->force) != WB_OK)
@@ -99,13 +64,13 @@ static int deliver(const struct wb_dataset *dataset, const struct options *optio
 
 int wb_cmd_quicklook(int argc, char **argv)
 {
-    struct options options = {0};
+    struct wb_command_common options = {.noun = "recording", .destination = "figures go"};
     struct wb_align_settings settings;
     struct wb_dataset dataset;
     wb_command_parse(&argp, argc, argv, &options);
 
     wb_align_default_settings(&settings);
-    if (wb_align_run(&dataset, options.recording, &settings) != WB_OK)
+    if (wb_align_run(&dataset, options.input, &settings) != WB_OK)
         return WB_EXIT_FAILED;
     const int code = deliver(&dataset, &options);
     wb_dataset_release(&dataset);

@@ -15,46 +15,29 @@
 #define WB_LOG_DOMAIN "replay"
 
 struct options {
-    const char *path;
+    struct wb_command_common common;
     double rate; /* 0: as fast as it can */
-    bool json;
 };
 
 enum {
-    KEY_RATE = 256,
-    KEY_JSON
+    KEY_RATE = WB_KEY_OWN
 };
 
 static const struct argp_option option_table[] = {
     {"rate", KEY_RATE, "1|N|max", 0, "Speed: 1 (default) as recorded, N times, or max", 0},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object at the end", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object at the end", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
-    switch (key) {
-    case KEY_RATE:
-        o->rate = strcmp(argument, "max") == 0
-                      ? 0.0
-                      : wb_command_number(state, "--rate", argument, 1e-3, 1e6);
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->path)
-            argp_error(state, "one recording at a time, not '%s' too", argument);
-        o->path = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->path)
-            argp_error(state, "name the recording");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+    if (key != KEY_RATE)
+        return wb_command_parse_common(key, argument, state, &o->common);
+    o->rate = strcmp(argument, "max") == 0
+                  ? 0.0
+                  : wb_command_number(state, "--rate", argument, 1e-3, 1e6);
+    return 0;
 }
 
 static const struct argp argp = {
@@ -142,16 +125,16 @@ static int print(const struct options *options, const struct player *player,
                  const struct wb_replay_counts *counts, double wall_s)
 {
     double duration_s = wb_survey_seconds(player->first_ns, player->last_ns);
-    if (!options->json) {
+    if (!options->common.json) {
         printf("%s: %s%.1f s, %" PRIu64 " chunks, %" PRIu64 " load readings, %" PRIu64
                " mocap frames, %" PRIu64 " stage reports, %" PRIu64 " damaged chunks\n",
-               options->path, player->is_virtual ? "virtual rig, " : "", duration_s, counts->chunks,
-               counts->load_samples, counts->mocap_frames, counts->stage_reports,
+               options->common.input, player->is_virtual ? "virtual rig, " : "", duration_s,
+               counts->chunks, counts->load_samples, counts->mocap_frames, counts->stage_reports,
                counts->damaged_chunks);
         return WB_EXIT_OK;
     }
     struct wb_json *root = wb_json_create();
-    wb_json_set_text(root, "recording", options->path);
+    wb_json_set_text(root, "recording", options->common.input);
     wb_json_set_boolean(root, "virtual_rig", player->is_virtual);
     wb_json_set_integer(root, "chunks", (int64_t)counts->chunks);
     wb_json_set_integer(root, "damaged_chunks", (int64_t)counts->damaged_chunks);
@@ -187,13 +170,13 @@ static enum wb_status play(struct wb_recording *recording, const struct options 
 
 int wb_cmd_replay(int argc, char **argv)
 {
-    struct options options = {.rate = 1.0};
+    struct options options = {.common = {.noun = "recording"}, .rate = 1.0};
     struct wb_recording *recording = NULL;
     struct player player = {.started = false};
     struct wb_replay_counts counts = {0};
     wb_command_parse(&argp, argc, argv, &options);
     wb_interrupt_install();
-    if (wb_recording_open(&recording, options.path) != WB_OK)
+    if (wb_recording_open(&recording, options.common.input) != WB_OK)
         return WB_EXIT_FAILED;
     bool complete = wb_recording_is_complete(recording);
     int64_t started_ns = wb_progress_now_ns();

@@ -11,56 +11,29 @@
 #define WB_LOG_DOMAIN "report"
 
 struct options {
-    const char *campaign, *output;
+    struct wb_command_common common;
     int threads;
-    bool force, json;
 };
 
 enum {
-    KEY_FORCE = 1000,
-    KEY_JSON,
-    KEY_THREADS
+    KEY_THREADS = WB_KEY_OWN
 };
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
-    {"force", KEY_FORCE, NULL, 0, "Replace the report that the folder holds", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Replace the report that the folder holds", 0},
     {"threads", KEY_THREADS, "N", 0, "Threads to compute on (as many as cores, 4 at most)", 0},
-    {"json", KEY_JSON, NULL, 0, "Print all numbers as one JSON object", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print all numbers as one JSON object", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
-
-    switch (key) {
-    case 'o':
-        o->output = argument;
-        return 0;
-    case KEY_FORCE:
-        o->force = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
-    case KEY_THREADS:
-        o->threads = wb_command_integer(state, "--threads", argument, 1, 16);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (o->campaign)
-            argp_error(state, "one campaign at a time, not also '%s'", argument);
-        o->campaign = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->campaign)
-            argp_error(state, "name a campaign file");
-        if (!o->output)
-            argp_error(state, "say where the report goes: -o DIR");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+    if (key != KEY_THREADS)
+        return wb_command_parse_common(key, argument, state, &o->common);
+    o->threads = wb_command_integer(state, "--threads", argument, 1, 16);
+    return 0;
 }
 
 static const struct argp argp = {
@@ -127,11 +100,11 @@ static int finish(const struct options *o, const struct wb_results *results)
         wb_error("interrupted: no report is written");
         return WB_EXIT_FAILED;
     }
-    if (wb_report_write(results, o->output, o->force) != WB_OK)
+    if (wb_report_write(results, o->common.output, o->common.force) != WB_OK)
         return WB_EXIT_FAILED;
-    if (!o->json)
-        print_summary(results, o->output);
-    else if (print_json(o->output) != WB_OK)
+    if (!o->common.json)
+        print_summary(results, o->common.output);
+    else if (print_json(o->common.output) != WB_OK)
         return WB_EXIT_FAILED;
     if (!results->is_complete)
         return WB_EXIT_INCOMPLETE;
@@ -140,14 +113,14 @@ static int finish(const struct options *o, const struct wb_results *results)
 
 int wb_cmd_report(int argc, char **argv)
 {
-    struct options options = {0};
+    struct options options = {.common = {.noun = "campaign file", .destination = "report goes"}};
     wb_command_parse(&argp, argc, argv, &options);
     struct wb_campaign campaign;
-    if (wb_campaign_read(&campaign, options.campaign) != WB_OK)
+    if (wb_campaign_read(&campaign, options.common.input) != WB_OK)
         return WB_EXIT_FAILED;
     /* A folder that may not be written should not cost the time of the calibrations. */
-    const bool existed = wb_file_exists(options.output);
-    int code = wb_command_exit(wb_file_prepare_output(options.output, options.force));
+    const bool existed = wb_file_exists(options.common.output);
+    int code = wb_command_exit(wb_file_prepare_output(options.common.output, options.common.force));
     if (code == WB_EXIT_OK) {
         int n_missing;
         wb_interrupt_install();
@@ -163,7 +136,7 @@ int wb_cmd_report(int argc, char **argv)
             wb_results_release(&results);
         }
         if (code == WB_EXIT_FAILED && !existed)
-            remove(options.output); /* only if it is empty */
+            remove(options.common.output); /* only if it is empty */
     }
     wb_campaign_release(&campaign);
     return code;

@@ -70,6 +70,35 @@ int wb_command_integer(struct argp_state *state, const char *option, const char 
     return (int)value;
 }
 
+error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
+                                struct wb_command_common *common)
+{
+    switch (key) {
+    case 'o':
+        common->output = argument;
+        return 0;
+    case WB_KEY_FORCE:
+        common->force = true;
+        return 0;
+    case WB_KEY_JSON:
+        common->json = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (common->input)
+            argp_error(state, "one %s at a time, not also '%s'", common->noun, argument);
+        common->input = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!common->input)
+            argp_error(state, "name a %s", common->noun);
+        if (common->destination && !common->output)
+            argp_error(state, "say where the %s: -o DIR", common->destination);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
 int wb_command_exit(enum wb_status status)
 {
     return status == WB_OK ? WB_EXIT_OK : WB_EXIT_FAILED;

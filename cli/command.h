@@ -33,6 +33,26 @@ double wb_command_number(struct argp_state *state, const char *option, const cha
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum);
 
+/* What most commands take: one argument, an output folder, --force and --json. */
+struct wb_command_common {
+    const char *noun;        /* of the argument, for messages: "recording" */
+    const char *destination; /* what goes to -o, for messages: "figures"; NULL: there is no -o */
+    const char *input;       /* the argument */
+    const char *output;
+    bool force, json;
+};
+
+enum {
+    WB_KEY_FORCE = 1000,
+    WB_KEY_JSON,
+    WB_KEY_OWN /* the first key for options of a command's own */
+};
+
+/* The rest of a command's argp parser: takes 'o', WB_KEY_FORCE, WB_KEY_JSON and the argument, and
+ * sees at the end that argument and output were given. */
+error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
+                                struct wb_command_common *common);
+
 /* The exit code of a failed library call: WB_EXIT_FAILED (its message was logged). */
 int wb_command_exit(enum wb_status status);
 

@@ -237,7 +237,7 @@ static void bad_input_is_one_message_and_the_proper_exit_code(void **state)
         const char *arguments, *word;
         int code;
     } bad[] = {
-        {"info", "name the recording", 2},
+        {"info", "name a recording", 2},
         {"info $REC $REC", "one recording", 2},
         {"verify", "name the recordings", 2},
         {"export $REC", "-o DIR", 2},
