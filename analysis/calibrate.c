@@ -15,6 +15,7 @@
 #include "analysis/first_guess.h"
 #include "analysis/jackknife.h"
 #include "analysis/scatter.h"
+#include "base/progress.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -434,13 +435,6 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     return status;
 }
 
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
                                 const struct wb_dataset *const *datasets, int n,
                                 const struct wb_calibrate_settings *settings)
@@ -448,7 +442,7 @@ enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
     /* GSL's default handler aborts the program. */
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, silence_gsl);
-    const double started = cpu_seconds();
+    const double started = wb_progress_thread_cpu();
     WB_TRY(check_settings(settings));
     struct wb_calibrate_result made = {0};
     struct wb_curve curve;
@@ -461,7 +455,7 @@ enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
         wb_calibrate_result_release(&made);
         return status;
     }
-    made.cpu_s = cpu_seconds() - started;
+    made.cpu_s = wb_progress_thread_cpu() - started;
     *result = made;
     return WB_OK;
 }

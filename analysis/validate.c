@@ -12,6 +12,7 @@
 #include "analysis/shapes.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "base/version.h"
@@ -130,20 +131,13 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     return status;
 }
 
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 enum wb_status wb_validate_run(struct wb_validate_result *result,
                                const struct wb_properties *properties,
                                const struct wb_dataset *const *datasets, int n,
                                const struct wb_validate_settings *settings)
 {
     const struct wb_validate_settings defaults = {0};
-    const double started = cpu_seconds();
+    const double started = wb_progress_thread_cpu();
     struct wb_validate_result made = {0};
     if (!settings)
         settings = &defaults;
@@ -160,7 +154,7 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
         wb_validate_result_release(&made);
         return status;
     }
-    made.cpu_s = cpu_seconds() - started;
+    made.cpu_s = wb_progress_thread_cpu() - started;
     *result = made;
     return WB_OK;
 }

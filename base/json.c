@@ -224,15 +224,6 @@ enum wb_status wb_json_format(const struct wb_json *root, char **text)
     return WB_OK;
 }
 
-enum wb_status wb_json_write(const struct wb_json *root, const char *path)
-{
-    char *text;
-    WB_TRY(wb_json_format(root, &text));
-    const enum wb_status status = wb_file_write(path, text, strlen(text));
-    free(text);
-    return status;
-}
-
 enum wb_status wb_json_parse(struct wb_json **root, const char *text, const char *origin)
 {
     *root = NULL;

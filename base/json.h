@@ -42,8 +42,6 @@ void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_j
 /* Text of the document (caller frees), indented by two spaces, with a final newline, doubles that
  * read back the same. WB_ERR_MEMORY when the document failed while it was built. */
 WB_MUST_CHECK enum wb_status wb_json_format(const struct wb_json *root, char **text);
-/* The same into a file, atomically. */
-WB_MUST_CHECK enum wb_status wb_json_write(const struct wb_json *root, const char *path);
 
 /* Reads a document whose root is an object; errors name file and line. */
 WB_MUST_CHECK enum wb_status wb_json_read(struct wb_json **root, const char *path);

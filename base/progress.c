@@ -13,6 +13,13 @@ int64_t wb_progress_now_ns(void)
     return (int64_t)now.tv_sec * WB_NS_PER_S + now.tv_nsec;
 }
 
+double wb_progress_thread_cpu(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 void wb_progress_start(struct wb_progress *progress, const char *label, const char *unit,
                        double total)
 {

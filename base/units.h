@@ -9,7 +9,6 @@
 #define WB_G 1e-3                      /* kg: one gram */
 #define WB_MG 1e-6                     /* kg: one milligram */
 #define WB_MPA 1e6                     /* Pa */
-#define WB_GPA 1e9                     /* Pa */
 #define WB_G_PER_CM3 1e3               /* kg/m3 */
 #define WB_NMM 1e-3                    /* N m: one newton millimetre */
 #define WB_MN 1e-3                     /* N: one millinewton */

@@ -33,17 +33,19 @@ static const struct argp argp = {
            "damaged and left out.",
 };
 
-static enum wb_status export(struct wb_recording *recording,
-                             const struct wb_command_common *options,
-                             struct wb_export_counts *counts) {
-    struct wb_rig rig; char sha256[65],
-    source[WB_PATH + 160]; WB_TRY(wb_replay_rig(recording, &rig));
-        if (wb_recording_sha256(options->input, sha256) != WB_OK)
-            snprintf(sha256, sizeof sha256, "unknown");
-        WB_TRY(wb_file_prepare_output(options->output, options->force));
-        snprintf(source, sizeof source, "%s (sha256 %s), wirebench %s (%s)",
-                 wb_file_name(options->input), sha256, wb_version(), wb_version_revision());
-        return wb_export_csv(recording, &rig, source, options->output, counts);
+static enum wb_status write_samples(struct wb_recording *recording,
+                                    const struct wb_command_common *options,
+                                    struct wb_export_counts *counts)
+{
+    struct wb_rig rig;
+    char sha256[65], source[WB_PATH + 160];
+    WB_TRY(wb_replay_rig(recording, &rig));
+    if (wb_recording_sha256(options->input, sha256) != WB_OK)
+        snprintf(sha256, sizeof sha256, "unknown");
+    WB_TRY(wb_file_prepare_output(options->output, options->force));
+    snprintf(source, sizeof source, "%s (sha256 %s), wirebench %s (%s)",
+             wb_file_name(options->input), sha256, wb_version(), wb_version_revision());
+    return wb_export_csv(recording, &rig, source, options->output, counts);
 }
 
 static int print(const struct wb_command_common *options, const struct wb_export_counts *counts)
@@ -75,7 +77,7 @@ int wb_cmd_export(int argc, char **argv)
     enum wb_status status = wb_recording_open(&recording, options.input);
     bool complete = status == WB_OK && wb_recording_is_complete(recording);
     if (status == WB_OK)
-        status = export(recording, &options, &counts);
+        status = write_samples(recording, &options, &counts);
     if (wb_recording_close(recording) != WB_OK)
         return WB_EXIT_FAILED;
     /* Damage met on the way was logged; what could be read has been written. */

@@ -267,8 +267,10 @@ int wb_cmd_record(int argc, char **argv)
     struct options options = {.json = false};
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
+    char specimen[WB_PATH];
     wb_bend_test_default_request(&options.request);
     wb_command_parse(&argp, argc, argv, &options);
+    options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
     wb_interrupt_install();
     wb_interrupt_guard();
     wb_acquisition_raise_priority();

@@ -113,10 +113,11 @@ static int finish(const struct options *o, const struct wb_results *results)
 
 int wb_cmd_report(int argc, char **argv)
 {
+    char path[WB_PATH];
     struct options options = {.common = {.noun = "campaign file", .destination = "report goes"}};
     wb_command_parse(&argp, argc, argv, &options);
     struct wb_campaign campaign;
-    if (wb_campaign_read(&campaign, options.common.input) != WB_OK)
+    if (wb_campaign_read(&campaign, wb_command_find(options.common.input, path)) != WB_OK)
         return WB_EXIT_FAILED;
     /* A folder that may not be written should not cost the time of the calibrations. */
     const bool existed = wb_file_exists(options.common.output);

@@ -151,10 +151,12 @@ int wb_cmd_rig(int argc, char **argv)
 {
     struct options options = {.bench = {.seed = 1}};
     struct wb_bench *bench;
-    char path[WB_PATH];
+    char path[WB_PATH], rig[WB_PATH], specimen[WB_PATH];
     struct wb_file_lock lock;
     static const volatile bool never = false;
     wb_command_parse(&argp, argc, argv, &options);
+    options.bench.rig = wb_command_find(options.bench.rig, rig);
+    options.bench.specimen = wb_command_find(options.bench.specimen, specimen);
     wb_interrupt_install();
     wb_acquisition_raise_priority();
     if (wb_file_make_folder(options.run) != WB_OK ||

@@ -99,6 +99,13 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
     }
 }
 
+const char *wb_command_find(const char *name, char path[WB_PATH])
+{
+    if (wb_file_exists(name) || wb_file_find_data(path, name) != WB_OK)
+        return name;
+    return path;
+}
+
 int wb_command_exit(enum wb_status status)
 {
     return status == WB_OK ? WB_EXIT_OK : WB_EXIT_FAILED;

@@ -10,6 +10,7 @@
 #include <argp.h>
 #include <stdbool.h>
 
+#include "base/file.h"
 #include "base/json.h"
 #include "base/status.h"
 
@@ -36,7 +37,7 @@ int wb_command_integer(struct argp_state *state, const char *option, const char 
 /* What most commands take: one argument, an output folder, --force and --json. */
 struct wb_command_common {
     const char *noun;        /* of the argument, for messages: "recording" */
-    const char *destination; /* what goes to -o, for messages: "figures"; NULL: there is no -o */
+    const char *destination; /* what goes to -o, for messages: "figures go"; NULL: there is no -o */
     const char *input;       /* the argument */
     const char *output;
     bool force, json;
@@ -52,6 +53,11 @@ enum {
  * sees at the end that argument and output were given. */
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
                                 struct wb_command_common *common);
+
+/* The file of that name, or where there is none the shipped one ("fixtures/rigs/paper.yaml" works
+ * from any folder once installed). `path` holds the answer where it is needed; returns it or
+ * `name`, which may then not exist. */
+const char *wb_command_find(const char *name, char path[WB_PATH]);
 
 /* The exit code of a failed library call: WB_EXIT_FAILED (its message was logged). */
 int wb_command_exit(enum wb_status status);

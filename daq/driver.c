@@ -1,5 +1,7 @@
 #include "daq/driver.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/config.h"
@@ -52,4 +54,24 @@ void wb_outbox_clear(struct wb_outbox *outbox)
 {
     outbox->n_bytes = 0;
     outbox->n_entries = 0;
+}
+
+void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
+                      const char *kind, const char *format, ...)
+{
+    if (!sink->remark)
+        return;
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    sink->remark(sink->context, level, t_ns, kind, text);
+}
+
+bool wb_driver_worth_saying(uint64_t n)
+{
+    while (n > 3 && n % 10 == 0)
+        n /= 10;
+    return n <= 3;
 }

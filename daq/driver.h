@@ -87,6 +87,14 @@ struct wb_driver {
     void (*stop)(void *state, struct wb_outbox *outbox);
 };
 
+/* For drivers: formats a remark and passes it on; nothing where the sink takes none. */
+void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
+                      const char *kind, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* True for the 1st, 2nd, 3rd, 10th, 20th, 30th, 100th, ... of many: what repeats is said rarely. */
+bool wb_driver_worth_saying(uint64_t n);
+
 /* All drivers, and lookup by role and protocol name (NULL when there is none). */
 extern const struct wb_driver *const wb_drivers[];
 extern const int wb_n_drivers;

@@ -2,29 +2,10 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-void wb_loadcell_remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
-                        const char *kind, const char *format, ...)
-{
-    if (!sink->remark)
-        return;
-    char text[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    sink->remark(sink->context, level, t_ns, kind, text);
-}
-
-bool wb_loadcell_worth_saying(uint64_t n)
-{
-    while (n > 3 && n % 10 == 0)
-        n /= 10;
-    return n <= 3;
-}
+#include "daq/driver.h"
 
 char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size)
 {
@@ -40,8 +21,8 @@ static void refuse(struct wb_loadcell *loadcell, int64_t t_ns, const char *reaso
 {
     char text[64];
     loadcell->n_refused++;
-    if (wb_loadcell_worth_saying(loadcell->n_refused))
-        wb_loadcell_remark(
+    if (wb_driver_worth_saying(loadcell->n_refused))
+        wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "refused", "line '%s' refused: %s; %" PRIu64 " so far",
             wb_loadcell_printable(line, text, sizeof text), reason, loadcell->n_refused);
 }
@@ -58,8 +39,8 @@ static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *u
         strcpy(loadcell->last_unit, unit);
     }
     if (strcmp(loadcell->last_unit, unit) != 0)
-        wb_loadcell_remark(sink, WB_LOG_ERROR, t_ns, "unit", "the unit changed from %s to %s",
-                           loadcell->last_unit, unit);
+        wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "unit", "the unit changed from %s to %s",
+                         loadcell->last_unit, unit);
     strcpy(loadcell->last_unit, unit);
     return strcmp(loadcell->first_unit, unit) != 0;
 }
@@ -71,9 +52,9 @@ static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample
     sample->overload = true;
     loadcell->n_overloads++;
     if (!loadcell->overloaded)
-        wb_loadcell_remark(sink, WB_LOG_ERROR, sample->t_ns, "overload",
-                           "the load cell is out of range: '%s'",
-                           wb_loadcell_printable(line, text, sizeof text));
+        wb_driver_remark(sink, WB_LOG_ERROR, sample->t_ns, "overload",
+                         "the load cell is out of range: '%s'",
+                         wb_loadcell_printable(line, text, sizeof text));
     loadcell->overloaded = true;
     loadcell->n_samples++;
     if (sink->load)

@@ -26,14 +26,6 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
                          const struct wb_line_reading *reading, const struct wb_line_buffer *line,
                          const struct wb_sink *sink);
 
-/* Formats and passes on a remark. */
-void wb_loadcell_remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
-                        const char *kind, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
-
-/* True for the 1st, 2nd, 3rd, 10th, 20th, 30th, 100th, ... of many. */
-bool wb_loadcell_worth_saying(uint64_t n);
-
 /* A printable copy of a line, cut to `size`. Returns `text`. */
 char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size);
 

@@ -37,9 +37,9 @@ static void end_line(struct generic_state *state, int64_t t_ns, const struct wb_
     if (!state->whole) {
         /* Reading may have begun amid a line: `00.00 g` would look like a value. */
         if (state->line.n > 0)
-            wb_loadcell_remark(sink, WB_LOG_INFO, t_ns, "partial",
-                               "the first line may be incomplete and is dropped: '%s'",
-                               wb_loadcell_printable(&state->line, text, sizeof text));
+            wb_driver_remark(sink, WB_LOG_INFO, t_ns, "partial",
+                             "the first line may be incomplete and is dropped: '%s'",
+                             wb_loadcell_printable(&state->line, text, sizeof text));
         state->whole = true;
     } else {
         const size_t n = state->line.overlong ? sizeof state->line.bytes : state->line.n;

@@ -76,12 +76,11 @@ static void check_serial(const struct mtsics_state *state, int64_t t_ns, const c
         return;
     memcpy(number, serial + quoted, length);
     number[length] = '\0';
-    wb_loadcell_remark(sink, WB_LOG_INFO, t_ns, "connected", "balance with serial number %s",
-                       number);
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected", "balance with serial number %s", number);
     if (expected[0] && strcmp(expected, number) != 0)
-        wb_loadcell_remark(sink, WB_LOG_WARNING, t_ns, "serial",
-                           "the balance has serial number %s, the rig file names %s", number,
-                           expected);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "serial",
+                         "the balance has serial number %s, the rig file names %s", number,
+                         expected);
 }
 
 static void decode_line(struct mtsics_state *state, int64_t t_ns, const struct wb_sink *sink)
@@ -116,8 +115,8 @@ static void decode_line(struct mtsics_state *state, int64_t t_ns, const struct w
     /* Only a line that cannot be read may have been cut off by opening the port amid it: a weight
      * begins with its status. */
     if (!state->whole && reading.kind == WB_LINE_REFUSED) {
-        wb_loadcell_remark(sink, WB_LOG_INFO, t_ns, "partial",
-                           "the first line may be incomplete and is dropped");
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "partial",
+                         "the first line may be incomplete and is dropped");
         return;
     }
     wb_loadcell_deliver(&state->loadcell, t_ns, &reading, &state->line, sink);

@@ -133,11 +133,6 @@ void wb_mass_check_hung(struct wb_mass_check *check)
         enter(check, WB_MASS_CHECK_SETTLING);
 }
 
-double wb_mass_check_reading(const struct wb_mass_check *check)
-{
-    return check->reading;
-}
-
 void wb_mass_check_result(const struct wb_mass_check *check, double known, double tolerance,
                           struct wb_mass_check_result *result)
 {

@@ -32,8 +32,6 @@ WB_MUST_CHECK enum wb_status wb_mass_check_open(struct wb_mass_check **out,
 enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t timeout_ns);
 /* The mass hangs: go on. */
 void wb_mass_check_hung(struct wb_mass_check *check);
-/* Last reading, N; NaN before the first. */
-double wb_mass_check_reading(const struct wb_mass_check *check);
 
 struct wb_mass_check_result {
     double zero, loaded;       /* N, means */

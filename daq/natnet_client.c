@@ -8,7 +8,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -67,22 +66,6 @@ struct natnet_state {
 
 static const struct wb_channel channels[] = {{"markers", "length", "m"}};
 
-static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
-                   const char *kind, const char *format, ...) __attribute__((format(printf, 5, 6)));
-
-static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
-                   const char *kind, const char *format, ...)
-{
-    if (!sink->remark)
-        return;
-    char text[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    sink->remark(sink->context, level, t_ns, kind, text);
-}
-
 /* True the first time since the server was found. */
 static bool first_time(struct natnet_state *state, unsigned what)
 {
@@ -107,21 +90,24 @@ static void check_group(const struct natnet_state *state, int64_t t_ns, const st
     if (!server->multicast) {
         /* A group of 255.255.255.255 listens to broadcasts, of which server info says nothing. */
         if (listed && strncmp(listed, ",group=255.", 11) != 0)
-            remark(sink, WB_LOG_WARNING, t_ns, "group",
-                   "the server streams unicast: the group in mocap.address will stay silent");
+            wb_driver_remark(
+                sink, WB_LOG_WARNING, t_ns, "group",
+                "the server streams unicast: the group in mocap.address will stay silent");
         return;
     }
     if (!listed) {
-        remark(sink, WB_LOG_WARNING, t_ns, "group",
-               "the server streams to the multicast group %s: add ',group=%s' to mocap.address",
-               group, group);
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "group",
+            "the server streams to the multicast group %s: add ',group=%s' to mocap.address", group,
+            group);
         return;
     }
     const size_t n = strlen(group);
     const char *const value = listed + strlen(",group=");
     if (strncmp(value, group, n) != 0 || (value[n] != '\0' && value[n] != ','))
-        remark(sink, WB_LOG_WARNING, t_ns, "group",
-               "the server streams to the multicast group %s, not the one in mocap.address", group);
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "group",
+            "the server streams to the multicast group %s, not the one in mocap.address", group);
 }
 
 /* A version and what it means for us. */
@@ -137,16 +123,18 @@ static void remark_version(const struct natnet_state *state, int64_t t_ns,
     }
     name[n] = '\0';
     const uint8_t *const app = state->server.app_version;
-    remark(sink, WB_LOG_INFO, t_ns, "connected", "'%s' %u.%u.%u.%u, NatNet %u.%u", name, app[0],
-           app[1], app[2], app[3], version.major, version.minor);
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected", "'%s' %u.%u.%u.%u, NatNet %u.%u", name,
+                     app[0], app[1], app[2], app[3], version.major, version.minor);
     if (wb_natnet_version_at_least(version, 4, 2))
-        remark(sink, WB_LOG_WARNING, t_ns, "version",
-               "NatNet %u.%u is newer than 4.1, the newest we know: sections are skipped by size",
-               version.major, version.minor);
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "version",
+            "NatNet %u.%u is newer than 4.1, the newest we know: sections are skipped by size",
+            version.major, version.minor);
     else if (!wb_natnet_version_at_least(version, 2, 5))
-        remark(sink, WB_LOG_WARNING, t_ns, "version",
-               "NatNet %u.%u is older than 2.5, the oldest we know: markers may be missing",
-               version.major, version.minor);
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "version",
+            "NatNet %u.%u is older than 2.5, the oldest we know: markers may be missing",
+            version.major, version.minor);
 }
 
 static void receive_server(struct natnet_state *state, int64_t t_ns,
@@ -161,7 +149,7 @@ static void receive_server(struct natnet_state *state, int64_t t_ns,
     if (state->connected && memcmp(&server, &state->server, sizeof server) == 0)
         return;
     if (state->connected)
-        remark(sink, WB_LOG_WARNING, t_ns, "server", "the server announces itself anew");
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "server", "the server announces itself anew");
     state->server = server;
     state->version = (struct wb_natnet_version){server.natnet_version[0], server.natnet_version[1]};
     state->connected = true;
@@ -191,27 +179,30 @@ static void take_units(struct natnet_state *state, double units, int64_t t_ns,
                        const struct wb_sink *sink)
 {
     if (!is_unit(units)) {
-        remark(sink, WB_LOG_WARNING, t_ns, "units",
-               "the server does not tell a unit of length that we know; metres are assumed");
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "units",
+            "the server does not tell a unit of length that we know; metres are assumed");
         return;
     }
     state->units_factor = 1.0;
     if (fabs(units - 1000.0) <= 1e-2)
         return;
     state->units_factor = units * WB_MM;
-    remark(sink, WB_LOG_WARNING, t_ns, "units",
-           "the server's unit of length is %g mm: positions are converted to metres", units);
+    wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "units",
+                     "the server's unit of length is %g mm: positions are converted to metres",
+                     units);
 }
 
 static void take_frame_rate(const struct natnet_state *state, float rate, int64_t t_ns,
                             const struct wb_sink *sink)
 {
     const double expected = state->rig.mocap.frame_rate;
-    remark(sink, WB_LOG_INFO, t_ns, "rate", "the server captures %g frames a second", (double)rate);
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "rate", "the server captures %g frames a second",
+                     (double)rate);
     if (expected > 0.0 && !(fabs((double)rate - expected) <= 0.005 * expected))
-        remark(sink, WB_LOG_WARNING, t_ns, "rate",
-               "the server captures %g frames a second, the rig file expects %g", (double)rate,
-               expected);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "rate",
+                         "the server captures %g frames a second, the rig file expects %g",
+                         (double)rate, expected);
 }
 
 /* An answer does not repeat its question: they come one at a time, in the order asked. After the
@@ -229,14 +220,16 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
     if (state->n_answers == QUERY_UNITS && response.is_number && !is_unit((double)response.real) &&
         state->n_strays < STRAYS_MAX) {
         state->n_strays++;
-        remark(sink, WB_LOG_WARNING, t_ns, "units",
-               "the server answers %g, which is no unit of length that we know: it is asked again",
-               (double)response.real);
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "units",
+            "the server answers %g, which is no unit of length that we know: it is asked again",
+            (double)response.real);
         return;
     }
     const enum query query = (enum query)state->n_answers++;
     if (unknown || !response.is_number)
-        remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not answer '%s'", queries[query]);
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "query", "the server does not answer '%s'",
+                         queries[query]);
     if (query == QUERY_UNITS)
         take_units(state, (double)response.real, t_ns, sink);
     else if (response.is_number)
@@ -275,19 +268,23 @@ static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct 
 {
     const struct wb_natnet_frame *const frame = &state->frame;
     if (frame->n_labelled == 0 && frame->n_others > 0 && first_time(state, SAID_NO_LABELLED))
-        remark(sink, WB_LOG_WARNING, t_ns, "markers",
-               "no labelled markers are streamed, only the legacy list: switch on labelled and "
-               "unlabelled markers in the server's streaming settings");
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "markers",
+            "no labelled markers are streamed, only the legacy list: switch on labelled and "
+            "unlabelled markers in the server's streaming settings");
     if (frame->n_labelled > frame->mocap.n_markers && first_time(state, SAID_TOO_MANY))
-        remark(sink, WB_LOG_WARNING, t_ns, "markers", "%d markers in a frame, %d are kept",
-               frame->n_labelled, frame->mocap.n_markers);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
+                         "%d markers in a frame, %d are kept", frame->n_labelled,
+                         frame->mocap.n_markers);
     if (frame->skipped > 0 && first_time(state, SAID_SKIPPED))
-        remark(sink, WB_LOG_INFO, t_ns, "version",
-               "%zu bytes a frame are of sections we do not know and skip", frame->skipped);
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "version",
+                         "%zu bytes a frame are of sections we do not know and skip",
+                         frame->skipped);
     if (wb_natnet_version_at_least(state->version, 2, 6) && !(frame->mocap.params & 4) &&
         first_time(state, SAID_NOT_LIVE))
-        remark(sink, WB_LOG_INFO, t_ns, "mode",
-               "the server does not flag its frames as live: it may be playing back a take");
+        wb_driver_remark(
+            sink, WB_LOG_INFO, t_ns, "mode",
+            "the server does not flag its frames as live: it may be playing back a take");
 }
 
 /* Positions to metres, and what is no position to a missing marker. */
@@ -310,9 +307,10 @@ static void mend_markers(struct natnet_state *state, int64_t t_ns, const struct 
             continue;
         marker->params |= WB_MARKER_OCCLUDED;
         if (first_time(state, SAID_NOT_FINITE))
-            remark(sink, WB_LOG_WARNING, t_ns, "markers",
-                   "marker %" PRId32 " has no finite position: such are taken as occluded",
-                   marker->id);
+            wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
+                             "marker %" PRId32
+                             " has no finite position: such are taken as occluded",
+                             marker->id);
     }
 }
 
@@ -322,8 +320,9 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
 {
     if (!state->connected) {
         if (first_time(state, SAID_EARLY))
-            remark(sink, WB_LOG_INFO, t_ns, "early",
-                   "frames come before the server told its version: they are not decoded");
+            wb_driver_remark(
+                sink, WB_LOG_INFO, t_ns, "early",
+                "frames come before the server told its version: they are not decoded");
         return;
     }
     struct wb_mocap_frame *const mocap = &state->frame.mocap;
@@ -369,14 +368,6 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     send_connect(state, now_ns, outbox);
 }
 
-/* True one in 1, 2, 3, 10, 100, ... so that a flood of faults does not become one of remarks. */
-static bool worth_saying(uint64_t n)
-{
-    while (n > 3 && n % 10 == 0)
-        n /= 10;
-    return n <= 3;
-}
-
 static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
                     const struct wb_sink *sink)
 {
@@ -402,30 +393,31 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
         case WB_NATNET_MESSAGESTRING: {
             char text[256];
             if (wb_natnet_decode_text(&packet, text, sizeof text, &fault) == WB_OK)
-                remark(sink, WB_LOG_INFO, t_ns, "message", "the server says: %s", text);
+                wb_driver_remark(sink, WB_LOG_INFO, t_ns, "message", "the server says: %s", text);
             break;
         }
         case WB_NATNET_DISCONNECTBYTIMEOUT:
-            remark(sink, WB_LOG_WARNING, t_ns, "disconnected",
-                   "the server ended the connection for want of keepalives");
+            wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "disconnected",
+                             "the server ended the connection for want of keepalives");
             break;
         case WB_NATNET_MODELDEF:
             break;
         default:
             if (first_time(state, SAID_UNKNOWN))
-                remark(sink, WB_LOG_INFO, t_ns, "unknown", "message %d is not known and ignored",
-                       packet.message);
+                wb_driver_remark(sink, WB_LOG_INFO, t_ns, "unknown",
+                                 "message %d is not known and ignored", packet.message);
         }
     }
     if (!fault.reason)
         return;
     state->n_refused++;
-    if (worth_saying(state->n_refused))
-        remark(sink, WB_LOG_WARNING, t_ns, "refused",
-               "datagram of %zu bytes (message %d, NatNet %u.%u) refused at byte %zu: %s; %" PRIu64
-               " so far",
-               n, packet.message, state->version.major, state->version.minor, fault.offset,
-               fault.reason, state->n_refused);
+    if (wb_driver_worth_saying(state->n_refused))
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "refused",
+            "datagram of %zu bytes (message %d, NatNet %u.%u) refused at byte %zu: %s; %" PRIu64
+            " so far",
+            n, packet.message, state->version.major, state->version.minor, fault.offset,
+            fault.reason, state->n_refused);
 }
 
 /* Clock probes: a burst to start with, then one a period (of the rig's own time). */

@@ -4,7 +4,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,22 +42,6 @@ struct grbl_state {
 
 static const struct wb_channel channels[] = {{"position", "length", "m"}};
 
-static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
-                   const char *kind, const char *format, ...) __attribute__((format(printf, 5, 6)));
-
-static void remark(const struct wb_sink *sink, enum wb_log_level level, int64_t t_ns,
-                   const char *kind, const char *format, ...)
-{
-    if (!sink->remark)
-        return;
-    char text[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    sink->remark(sink->context, level, t_ns, kind, text);
-}
-
 static enum wb_status init(void *opaque, const struct wb_rig *rig)
 {
     struct grbl_state *const state = opaque;
@@ -87,14 +70,15 @@ static void receive_report(struct grbl_state *state, int64_t t_ns,
     double position_mm = (double)NAN;
     wb_grbl_position(report, &state->offset, state->axis, &position_mm);
     if (!state->answered)
-        remark(sink, WB_LOG_INFO, t_ns, "connected", "the stage answers, state %s", report->name);
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected", "the stage answers, state %s",
+                         report->name);
     state->answered = true;
     if (report->state == WB_STAGE_ALARM && state->state != WB_STAGE_ALARM && state->alarm == 0)
-        remark(sink, WB_LOG_WARNING, t_ns, "locked",
-               "the stage is locked (state Alarm): home or unlock it");
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "locked",
+                         "the stage is locked (state Alarm): home or unlock it");
     if (report->limit[state->axis] && !state->limit_pressed)
-        remark(sink, WB_LOG_WARNING, t_ns, "switch", "the limit switch of axis %c is pressed",
-               state->rig.stage.axis);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "switch",
+                         "the limit switch of axis %c is pressed", state->rig.stage.axis);
     state->limit_pressed = report->limit[state->axis];
     /* Out of the alarm by $X or $H: the number is history. */
     if (report->state != WB_STAGE_ALARM)
@@ -110,7 +94,8 @@ static void receive_alarm(struct grbl_state *state, int64_t t_ns, int number,
     state->state = WB_STAGE_ALARM;
     state->waits = false;
     state->position_lost = state->position_lost || wb_grbl_alarm_loses_position(number);
-    remark(sink, WB_LOG_ERROR, t_ns, "alarm", "ALARM:%d, %s", number, wb_grbl_alarm_text(number));
+    wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "alarm", "ALARM:%d, %s", number,
+                     wb_grbl_alarm_text(number));
     deliver(state, t_ns, (double)NAN, sink);
 }
 
@@ -119,9 +104,10 @@ static void receive_banner(struct grbl_state *state, int64_t t_ns, const struct 
                            const struct wb_sink *sink)
 {
     if (state->answered && state->state != WB_STAGE_ALARM)
-        remark(sink, WB_LOG_WARNING, t_ns, "reset", "the stage was reset: %s", line->text);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "reset", "the stage was reset: %s",
+                         line->text);
     else
-        remark(sink, WB_LOG_INFO, t_ns, "firmware", "%s", line->text);
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "firmware", "%s", line->text);
     state->waits = false;
     state->offset.known = false;
 }
@@ -131,22 +117,15 @@ static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct w
 {
     state->answered = true;
     if (line->kind == WB_GRBL_LINE_ERROR)
-        remark(sink, WB_LOG_ERROR, t_ns, "error", "error:%d, %s%s%s", line->number,
-               wb_grbl_error_text(line->number), state->waits ? ": " : "",
-               state->waits ? state->pending : "");
+        wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "error", "error:%d, %s%s%s", line->number,
+                         wb_grbl_error_text(line->number), state->waits ? ": " : "",
+                         state->waits ? state->pending : "");
     else if (state->waits && strcmp(state->pending, "$H") == 0 && state->position_lost) {
         state->position_lost = false;
-        remark(sink, WB_LOG_INFO, t_ns, "homed", "the stage was homed, its position is known");
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "homed",
+                         "the stage was homed, its position is known");
     }
     state->waits = false;
-}
-
-/* True one in 1, 2, 3, 10, 100, ... so that noise does not become a flood of remarks. */
-static bool worth_saying(uint64_t n)
-{
-    while (n > 3 && n % 10 == 0)
-        n /= 10;
-    return n <= 3;
 }
 
 static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb_sink *sink)
@@ -168,16 +147,17 @@ static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb
         receive_report(state, t_ns, &line.report, sink);
         break;
     case WB_GRBL_LINE_MESSAGE:
-        remark(sink, WB_LOG_INFO, t_ns, "message", "%s", line.text);
+        wb_driver_remark(sink, WB_LOG_INFO, t_ns, "message", "%s", line.text);
         break;
     case WB_GRBL_LINE_SETTING:
     case WB_GRBL_LINE_EMPTY:
         break;
     case WB_GRBL_LINE_UNKNOWN:
         state->n_unknown++;
-        if (worth_saying(state->n_unknown))
-            remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                   "line not understood: '%s'; %" PRIu64 " so far", line.text, state->n_unknown);
+        if (wb_driver_worth_saying(state->n_unknown))
+            wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
+                             "line not understood: '%s'; %" PRIu64 " so far", line.text,
+                             state->n_unknown);
     }
 }
 
@@ -194,8 +174,8 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
             continue;
         }
         if (state->overlong)
-            remark(sink, WB_LOG_WARNING, t_ns, "refused", "a line of more than %d bytes is dropped",
-                   LINE_BYTES);
+            wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
+                             "a line of more than %d bytes is dropped", LINE_BYTES);
         else
             receive_line(state, t_ns, sink);
         state->n_line = 0;

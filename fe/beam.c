@@ -538,16 +538,6 @@ double wb_beam_scale_force(const struct wb_beam *beam)
     return wb_fibres_bending_stiffness(beam->fibres) / (beam->length * beam->length);
 }
 
-double wb_beam_largest_plastic_strain(const struct wb_beam *beam)
-{
-    const size_t row = wb_fibres_history_size(beam->fibres);
-    double largest = 0.0;
-    for (int g = 0; g < beam->n_elements * POINTS; g++)
-        largest = fmax(largest, wb_fibres_largest_plastic_strain(beam->fibres,
-                                                                 beam->history + (size_t)g * row));
-    return largest;
-}
-
 const struct wb_beam_point *wb_beam_point(const struct wb_beam *beam, int g)
 {
     return &beam->points[g];

@@ -83,9 +83,6 @@ double wb_beam_noise(const struct wb_beam *beam);
 /* Bending stiffness of the virgin section over the square of the length: a force to scale by, N. */
 double wb_beam_scale_force(const struct wb_beam *beam);
 
-/* Largest accumulated plastic strain anywhere in the committed state. */
-double wb_beam_largest_plastic_strain(const struct wb_beam *beam);
-
 /* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, of the state last evaluated. */
 const struct wb_beam_point *wb_beam_point(const struct wb_beam *beam, int g);
 

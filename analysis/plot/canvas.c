@@ -186,12 +186,6 @@ static void draw_series(cairo_t *cairo, const struct wb_layout_panel *layout)
             continue;
         if (series->kind == WB_SERIES_LINE)
             draw_line(cairo, layout, series);
-        if (series->kind == WB_SERIES_LEVEL) {
-            set_line(cairo, &series->style);
-            cairo_move_to(cairo, plot->x, wb_layout_y(layout, series->y[0]));
-            cairo_line_to(cairo, plot->x + plot->width, wb_layout_y(layout, series->y[0]));
-            cairo_stroke(cairo);
-        }
     }
     cairo_restore(cairo);
     for (int i = 0; i < panel->n_series; i++) {

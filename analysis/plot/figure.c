@@ -251,17 +251,6 @@ void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, con
     series->n = series->x && series->y && series->high ? n : 0;
 }
 
-void wb_figure_add_level(struct wb_panel *panel, const char *label, double y,
-                         const struct wb_figure_style *style)
-{
-    struct wb_series *const series = add_series(panel, WB_SERIES_LEVEL, label);
-    if (!series)
-        return;
-    series->style = *style;
-    series->y = copy_values(panel->figure, &y, 1);
-    series->n = series->y ? 1 : 0;
-}
-
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup)
 {
     struct wb_series *const series = add_series(panel, WB_SERIES_TEXT, markup);

@@ -92,9 +92,6 @@ void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, con
 /* `edges`: the lower and the upper one, each of n values. */
 void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *const edges[2], struct wb_colour colour);
-/* A horizontal line over the whole width. */
-void wb_figure_add_level(struct wb_panel *panel, const char *label, double y,
-                         const struct wb_figure_style *style);
 /* A text whose left (-1), middle (0) or right (1) end stands at a point. */
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup);
 

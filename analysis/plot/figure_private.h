@@ -12,7 +12,6 @@
 enum wb_series_kind {
     WB_SERIES_BAND,
     WB_SERIES_LINE, /* and points */
-    WB_SERIES_LEVEL,
     WB_SERIES_TEXT
 };
 

@@ -53,7 +53,7 @@ static void find_ranges(const struct wb_panel *panel, double x[2], double y[2])
     for (int i = 0; i < panel->n_series; i++) {
         const struct wb_series *const series = &panel->series[i];
         for (size_t k = 0; k < series->n; k++) {
-            if (series->kind != WB_SERIES_LEVEL && !isfinite(series->y[k]))
+            if (!isfinite(series->y[k]))
                 continue;
             if (series->x)
                 widen(x, series->x[k], false);
@@ -231,11 +231,6 @@ static void mark_series(struct wb_place *place, const struct wb_layout_panel *la
         case WB_SERIES_BAND:
             mark_band(place, layout, series);
             break;
-        case WB_SERIES_LEVEL: {
-            const double y = wb_layout_y(layout, series->y[0]) - layout->plot.y;
-            wb_place_mark_segment(place, 0.0, y, layout->plot.width, y, 0.5 * series->style.width);
-            break;
-        }
         case WB_SERIES_TEXT:
             if (series->label)
                 mark_text(place, layout, series, cairo);

@@ -55,11 +55,6 @@ void wb_document_release(struct wb_document *document)
     memset(document, 0, sizeof *document);
 }
 
-bool wb_document_failed(const struct wb_document *document)
-{
-    return document->failed;
-}
-
 static struct wb_document_block *add_block(struct wb_document *document, enum wb_document_kind kind,
                                            const char *text)
 {

@@ -3,8 +3,8 @@
  *
  * Text is the markup that Pango and HTML share: <b>, <i>, <sub>, <sup>, <tt>, and &amp; &lt; &gt;.
  * Title, subtitle, footer, headings and code are plain text.
- * Builders copy text, return nothing and remember running out of memory for
- * wb_document_failed(). Figures are borrowed and must outlive the document.
+ * Builders copy text, return nothing and remember running out of memory in `failed`, which
+ * the views refuse. Figures are borrowed and must outlive the document.
  */
 #ifndef WB_ANALYSIS_REPORT_DOCUMENT_H
 #define WB_ANALYSIS_REPORT_DOCUMENT_H
@@ -77,8 +77,6 @@ struct wb_document {
 void wb_document_init(struct wb_document *document, const char *title, const char *subtitle,
                       const char *footer, const char *date_utc);
 void wb_document_release(struct wb_document *document);
-/* Whether memory ran out while it was built: then it must not be rendered. */
-bool wb_document_failed(const struct wb_document *document);
 
 /* `anchor`: letters, digits and '-'; unique, or "" for none. */
 void wb_document_heading(struct wb_document *document, int level, const char *anchor,

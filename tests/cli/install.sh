@@ -17,3 +17,19 @@ done
 [ -z "$(find share/wirebench -name '*.[ch]')" ] || { echo "sources are installed"; exit 1; }
 WIREBENCH_DATA=$place$prefix/share/wirebench bin/wirebench solve cantilever --wire type3 \
     --length-mm 85 --deflection-mm 53 --points 2 | grep -q '^cycle,phase,deflection_mm,'
+
+# From any folder the shipped files are found by the names that the manual uses.
+export WIREBENCH_DATA=$place$prefix/share/wirebench
+cd "$place"
+"$place$prefix/bin/wirebench" rig fixtures/rigs/paper.yaml \
+    --specimen fixtures/specimens/type1-L85-1.yaml --run run 2>rig.log &
+rig=$!
+tries=0
+until grep -qx ready rig.log; do
+    tries=$((tries + 1))
+    [ $tries -lt 100 ] && kill -0 $rig || { cat rig.log; exit 1; }
+    sleep 0.1
+done
+! grep -q "$place" run/rig.yaml || { echo "the rig file holds a path of the machine"; exit 1; }
+kill -INT $rig
+wait $rig
