@@ -183,6 +183,67 @@ static void rates_and_latest_values_are_those_of_the_bench(void **state)
         assert_true(latest->stream[role].ready && !latest->stream[role].lost);
 }
 
+/* The linker puts this in the place of wb_stream_read(): every 40th read stalls first, as a process
+ * does that is kept from running between its wake-up and its read. */
+enum wb_status __real_wb_stream_read(struct wb_stream *stream, void *buffer, size_t size,
+                                     size_t *n);
+enum wb_status __wrap_wb_stream_read(struct wb_stream *stream, void *buffer, size_t size,
+                                     size_t *n);
+
+#define MOST_READS 4096
+static struct {
+    bool stalls;
+    int n_calls, n;
+    int64_t begun_ns[MOST_READS]; /* of the reads that gave bytes, after the stall */
+} reads;
+
+enum wb_status __wrap_wb_stream_read(struct wb_stream *stream, void *buffer, size_t size, size_t *n)
+{
+    if (reads.stalls && ++reads.n_calls % 40 == 0)
+        usleep(30000);
+    const int64_t begun_ns = wb_acquisition_now_ns();
+    const enum wb_status status = __real_wb_stream_read(stream, buffer, size, n);
+    if (reads.stalls && status == WB_OK && *n > 0 && reads.n < MOST_READS)
+        reads.begun_ns[reads.n++] = begun_ns;
+    return status;
+}
+
+struct stamps {
+    int n;
+    int64_t t_ns[MOST_READS];
+};
+
+static enum wb_status take_stamp(void *context, const struct wb_chunk *chunk)
+{
+    struct stamps *const stamps = context;
+    assert_true(stamps->n < MOST_READS);
+    stamps->t_ns[stamps->n++] = chunk->t_ns;
+    return WB_OK;
+}
+
+/* Bytes that came during the stall are in the read: its stamp may not be that of the wake-up. */
+static void no_stamp_is_before_its_read(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct stamps *const stamps = calloc(1, sizeof *stamps);
+    struct wb_recording *recording;
+    assert_non_null(stamps);
+    start(fixture);
+    memset(&reads, 0, sizeof reads);
+    reads.stalls = true;
+    run_for(fixture, 800 * MS);
+    reads.stalls = false;
+    finish(fixture);
+    assert_true(reads.n_calls > 80 && reads.n < MOST_READS);
+    assert_int_equal(wb_recording_open(&recording, fixture->output), WB_OK);
+    assert_int_equal(wb_recording_each_chunk(recording, take_stamp, stamps), WB_OK);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+    assert_true(stamps->n >= reads.n);
+    for (int i = 0; i < reads.n; i++)
+        assert_true(stamps->t_ns[i] >= reads.begun_ns[i]);
+    free(stamps);
+}
+
 static void clock_probes_bracket_the_server_clock(void **state)
 {
     struct fixture *const fixture = *state;
@@ -307,6 +368,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(every_byte_is_stored_and_decodes_the_same_again),
         TEST(rates_and_latest_values_are_those_of_the_bench),
+        TEST(no_stamp_is_before_its_read),
         TEST(clock_probes_bracket_the_server_clock),
         TEST(a_silent_stream_is_lost_and_found_again),
         TEST(rubbish_floods_neither_recording_nor_terminal),
