@@ -13,17 +13,14 @@
 #define WB_LOG_DOMAIN "align"
 
 struct options {
+    struct wb_command_common common;
     const char **recordings; /* (n) borrowed texts, owned array */
     size_t n;
-    const char *output;
     struct wb_align_settings settings;
-    bool force, json;
 };
 
 enum {
-    KEY_FORCE = 1000,
-    KEY_JSON,
-    KEY_ROW_RATE,
+    KEY_ROW_RATE = WB_KEY_OWN,
     KEY_LONGEST_GAP,
     KEY_SHAPE_STEP,
     KEY_LOST_STEPS
@@ -32,14 +29,14 @@ enum {
 static const struct argp_option option_table[] = {
     {"output", 'o', "DATASET", 0, "Folder to write; of several recordings, a folder in it for each",
      0},
-    {"force", KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
     {"row-rate", KEY_ROW_RATE, "N", 0, "Rows per second of bench time (20)", 0},
     {"longest-gap-s", KEY_LONGEST_GAP, "S", 0,
      "Make no row where force or shape is missing for longer (0.1)", 0},
     {"shape-step-mm", KEY_SHAPE_STEP, "H", 0, "Deflection between stored shapes (0.5)", 0},
     {"lost-steps-mm", KEY_LOST_STEPS, "H", 0,
      "Flag the stage when commanded and measured travel differ by more (0.3)", 0},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
@@ -59,15 +56,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct options *const o = state->input;
 
     switch (key) {
-    case 'o':
-        o->output = argument;
-        return 0;
-    case KEY_FORCE:
-        o->force = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case KEY_ROW_RATE:
         o->settings.row_rate = wb_command_number(state, "--row-rate", argument, 0.1, 1e4);
         return 0;
@@ -88,11 +76,11 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (o->n == 0)
             argp_error(state, "name at least one recording");
-        if (!o->output)
+        if (!o->common.output)
             argp_error(state, "say where the dataset goes: -o DATASET");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_common(key, argument, state, &o->common);
     }
 }
 
@@ -131,13 +119,13 @@ static enum wb_status choose_folder(const struct options *o, struct result *resu
 {
     char name[WB_PATH];
     if (o->n == 1) {
-        if (strlen(o->output) >= WB_PATH)
+        if (strlen(o->common.output) >= WB_PATH)
             return wb_fail(WB_ERR_ARGUMENT, "the output path is too long");
-        strcpy(results[i].folder, o->output);
+        strcpy(results[i].folder, o->common.output);
         return WB_OK;
     }
     base_name(name, o->recordings[i]);
-    WB_TRY(wb_file_join(results[i].folder, o->output, name));
+    WB_TRY(wb_file_join(results[i].folder, o->common.output, name));
     for (size_t k = 0; k < i; k++) {
         if (strcmp(results[k].folder, results[i].folder) == 0)
             return wb_fail(WB_ERR_ARGUMENT, "two recordings are named '%s': align them apart",
@@ -154,7 +142,7 @@ static enum wb_status run(const struct options *o, struct result *results, size_
         struct result *const result = &results[i];
         WB_TRY(wb_align_run(&result->dataset, o->recordings[i], &o->settings));
         *n_done = i + 1;
-        WB_TRY(wb_dataset_write(&result->dataset, result->folder, o->force));
+        WB_TRY(wb_dataset_write(&result->dataset, result->folder, o->common.force));
     }
     return WB_OK;
 }
@@ -217,7 +205,7 @@ int wb_cmd_align(int argc, char **argv)
     else
         code = wb_command_exit(run(&options, results, &n_done));
     if (code == WB_EXIT_OK)
-        code = options.json ? print_json(results, n_done) : print_text(results, n_done);
+        code = options.common.json ? print_json(results, n_done) : print_text(results, n_done);
     for (size_t i = 0; i < n_done; i++) {
         if (code == WB_EXIT_OK && !is_complete(&results[i].dataset))
             code = WB_EXIT_INCOMPLETE;

@@ -15,14 +15,13 @@
 #define WB_LOG_DOMAIN "calibrate"
 
 struct options {
+    struct wb_command_common common;
     struct wb_datasets datasets;
     struct wb_calibrate_settings settings;
-    const char *output;
-    bool json, force;
 };
 
 enum {
-    KEY_ZONE = 1000,
+    KEY_ZONE = WB_KEY_OWN,
     KEY_YIELD,
     KEY_STRAIGHT,
     KEY_BOW,
@@ -34,9 +33,7 @@ enum {
     KEY_FIBRES,
     KEY_SIZE,
     KEY_ERROR,
-    KEY_ITERATIONS,
-    KEY_FORCE,
-    KEY_JSON
+    KEY_ITERATIONS
 };
 
 static const struct argp_option option_table[] = {
@@ -58,8 +55,8 @@ static const struct argp_option option_table[] = {
     {"size-tolerance", KEY_SIZE, "X", 0, "Stop when the simplex is smaller (1e-4 of K0, n0)", 0},
     {"error-tolerance", KEY_ERROR, "X", 0, "Stop when the error is smaller (1e-4 of F_max)", 0},
     {"max-iterations", KEY_ITERATIONS, "N", 0, "Stop after N iterations of a simplex (200)", 0},
-    {"force", KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
@@ -69,9 +66,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct wb_calibrate_settings *const s = &o->settings;
 
     switch (key) {
-    case 'o':
-        o->output = argument;
-        return 0;
     case KEY_ZONE:
         s->elastic_zone = wb_command_number(state, "--elastic-zone", argument,
                                             WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE);
@@ -115,12 +109,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_ITERATIONS:
         s->max_iterations = wb_command_integer(state, "--max-iterations", argument, 1, 100000);
         return 0;
-    case KEY_FORCE:
-        o->force = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         if (wb_datasets_add(&o->datasets, argument) != WB_OK)
             exit(WB_EXIT_FAILED);
@@ -130,7 +118,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "name at least one dataset");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_common(key, argument, state, &o->common);
     }
 }
 
@@ -295,8 +283,8 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
 static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *result)
 {
     struct wb_progress progress;
-    if (o->output && !o->force && wb_file_exists(o->output))
-        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->output);
+    if (o->common.output && !o->common.force && wb_file_exists(o->common.output))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
     WB_TRY(wb_datasets_read(&o->datasets));
     o->settings.progress = report_progress;
     o->settings.progress_context = &progress;
@@ -309,13 +297,14 @@ static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *r
 
 static int deliver(const struct options *o, const struct wb_calibrate_result *result)
 {
-    if (o->output) {
-        const enum wb_status status = wb_properties_write(
-            o->output, result, &o->settings, o->datasets.names, o->datasets.n, o->force);
+    if (o->common.output) {
+        const enum wb_status status =
+            wb_properties_write(o->common.output, result, &o->settings, o->datasets.names,
+                                o->datasets.n, o->common.force);
         if (status != WB_OK)
             return wb_command_exit(status);
     }
-    if (o->json) {
+    if (o->common.json) {
         const int code = print_json(o, result);
         if (code != WB_EXIT_OK)
             return code;

@@ -22,12 +22,12 @@ enum {
 };
 
 struct options {
+    struct wb_command_common common;
     const char *model;                 /* "cantilever" */
     const char *wire;                  /* name or file */
-    const char *output;                /* dataset folder, or NULL */
     double length, deflection, strand; /* m */
     int cycles, points;
-    bool elastic, weight, json, force;
+    bool elastic, weight;
 };
 
 /* Everything a run needs and gives. */
@@ -45,16 +45,14 @@ struct run {
 };
 
 enum {
-    KEY_WIRE = 1000,
+    KEY_WIRE = WB_KEY_OWN,
     KEY_LENGTH,
     KEY_DEFLECTION,
     KEY_LAW,
     KEY_STRAND,
     KEY_WEIGHT,
     KEY_CYCLES,
-    KEY_POINTS,
-    KEY_JSON,
-    KEY_FORCE
+    KEY_POINTS
 };
 
 static const struct argp_option option_table[] = {
@@ -70,8 +68,8 @@ static const struct argp_option option_table[] = {
     {"cycles", KEY_CYCLES, "N", 0, "Load and unload N times; without it, load once", 0},
     {"points", KEY_POINTS, "N", 0, "N equal steps to the largest deflection (53)", 0},
     {"output", 'o', "DATASET", 0, "Write a dataset folder", 0},
-    {"force", KEY_FORCE, NULL, 0, "Overwrite the dataset", 0},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
     {0},
 };
 
@@ -106,15 +104,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_POINTS:
         o->points = wb_command_integer(state, "--points", argument, 1, 100000);
         return 0;
-    case 'o':
-        o->output = argument;
-        return 0;
-    case KEY_FORCE:
-        o->force = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         if (state->arg_num > 0)
             argp_error(state, "one model at a time, not '%s' too", argument);
@@ -129,7 +118,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "--wire, --length-mm and --deflection-mm are needed");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_common(key, argument, state, &o->common);
     }
 }
 
@@ -233,7 +222,7 @@ static enum wb_status write_dataset(const struct run *run)
     WB_TRY(wb_dataset_init(&dataset));
     enum wb_status status = wb_simulated_fill(&dataset, &info, &run->history, run->marker, &origin);
     if (status == WB_OK)
-        status = wb_dataset_write(&dataset, o->output, o->force);
+        status = wb_dataset_write(&dataset, o->common.output, o->common.force);
     wb_dataset_release(&dataset);
     return status;
 }
@@ -278,16 +267,16 @@ static void print_csv(const struct run *run)
 
 static int deliver(const struct run *run)
 {
-    if (run->options->output) {
+    if (run->options->common.output) {
         const int code = wb_command_exit(write_dataset(run));
         if (code != WB_EXIT_OK)
             return code;
     }
-    if (run->options->json) {
+    if (run->options->common.json) {
         const int code = print_json(run);
         if (code != WB_EXIT_OK)
             return code;
-    } else if (!run->options->output) {
+    } else if (!run->options->common.output) {
         print_csv(run);
     }
     if (!run->history.converged)

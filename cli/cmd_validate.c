@@ -13,20 +13,17 @@
 #define WB_LOG_DOMAIN "validate"
 
 struct options {
+    struct wb_command_common common;
     const char *properties;
     struct wb_datasets datasets;
     struct wb_validate_settings settings;
-    const char *output;
-    bool json, force;
 };
 
 enum {
-    KEY_STRAIGHT = 1000,
+    KEY_STRAIGHT = WB_KEY_OWN,
     KEY_STEP,
     KEY_ELEMENTS,
-    KEY_FIBRES,
-    KEY_FORCE,
-    KEY_JSON
+    KEY_FIBRES
 };
 
 static const struct argp_option option_table[] = {
@@ -35,8 +32,8 @@ static const struct argp_option option_table[] = {
     {"step-mm", KEY_STEP, "H", 0, "Deflection step of the comparison (0.5)", 0},
     {"elements", KEY_ELEMENTS, "N", 0, "Beam elements (50)", 0},
     {"fibres", KEY_FIBRES, "N", 0, "Fibres over the diameter (20)", 0},
-    {"force", KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
@@ -45,9 +42,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct options *const o = state->input;
 
     switch (key) {
-    case 'o':
-        o->output = argument;
-        return 0;
     case KEY_STRAIGHT:
         o->settings.straight = true;
         return 0;
@@ -60,12 +54,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_FIBRES:
         o->settings.n_fibres = wb_command_integer(state, "--fibres", argument, 4, 1000);
         return 0;
-    case KEY_FORCE:
-        o->force = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         if (state->arg_num == 0)
             o->properties = argument;
@@ -77,7 +65,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "name the properties and at least one dataset");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_common(key, argument, state, &o->common);
     }
 }
 
@@ -145,11 +133,11 @@ static void csv_name(char *name, size_t size, const struct wb_test_info *info)
 
 static enum wb_status write_tables(const struct options *o, const struct groups *groups)
 {
-    WB_TRY(wb_file_prepare_output(o->output, o->force));
+    WB_TRY(wb_file_prepare_output(o->common.output, o->common.force));
     for (int i = 0; i < groups->n; i++) {
         char name[128], path[WB_PATH];
         csv_name(name, sizeof name, &groups->results[i].info);
-        WB_TRY(wb_file_join(path, o->output, name));
+        WB_TRY(wb_file_join(path, o->common.output, name));
         WB_TRY(wb_validate_write_csv(&groups->results[i], path));
     }
     return WB_OK;
@@ -220,19 +208,19 @@ static int deliver(const struct options *o, const struct wb_properties *properti
                    const struct groups *groups)
 {
     bool complete = true;
-    if (o->output) {
+    if (o->common.output) {
         const enum wb_status status = write_tables(o, groups);
         if (status != WB_OK)
             return wb_command_exit(status);
     }
-    if (o->json) {
+    if (o->common.json) {
         const int code = print_json(o, properties, groups);
         if (code != WB_EXIT_OK)
             return code;
     }
     for (int i = 0; i < groups->n; i++) {
         const struct wb_prediction *const prediction = &groups->results[i].elastoplastic;
-        if (!o->json)
+        if (!o->common.json)
             print_group(&groups->results[i]);
         complete = complete && prediction->n_reached == prediction->n;
     }

@@ -11,17 +11,13 @@
 #define MAX_RECORDINGS 1024
 
 struct options {
+    struct wb_command_common common;
     const char *paths[MAX_RECORDINGS];
     int n;
-    bool json;
-};
-
-enum {
-    KEY_JSON = 256
 };
 
 static const struct argp_option option_table[] = {
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
@@ -29,9 +25,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
     switch (key) {
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         if (o->n == MAX_RECORDINGS)
             argp_error(state, "at most %d recordings at a time", MAX_RECORDINGS);
@@ -42,7 +35,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "name the recordings");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_common(key, argument, state, &o->common);
     }
 }
 
@@ -125,7 +118,7 @@ int wb_cmd_verify(int argc, char **argv)
 {
     struct options options = {.n = 0};
     wb_command_parse(&argp, argc, argv, &options);
-    struct wb_json *root = options.json ? wb_json_create() : NULL;
+    struct wb_json *root = options.common.json ? wb_json_create() : NULL;
     struct wb_json *array = root ? wb_json_set_array(root, "recordings") : NULL;
     int code = WB_EXIT_OK;
     for (int i = 0; i < options.n; i++) {
@@ -137,12 +130,12 @@ int wb_cmd_verify(int argc, char **argv)
         }
         if (code == WB_EXIT_OK && !wb_survey_is_whole(&survey))
             code = WB_EXIT_INCOMPLETE;
-        if (options.json)
+        if (options.common.json)
             add_json(array, options.paths[i], sha256, &survey);
         else
             print_text(options.paths[i], sha256, &survey);
     }
-    if (options.json && wb_command_print_json(root) != WB_EXIT_OK)
+    if (options.common.json && wb_command_print_json(root) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     return code;
 }

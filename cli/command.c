@@ -84,12 +84,14 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
         common->json = true;
         return 0;
     case ARGP_KEY_ARG:
+        if (!common->noun)
+            return ARGP_ERR_UNKNOWN;
         if (common->input)
             argp_error(state, "one %s at a time, not also '%s'", common->noun, argument);
         common->input = argument;
         return 0;
     case ARGP_KEY_END:
-        if (!common->input)
+        if (common->noun && !common->input)
             argp_error(state, "name a %s", common->noun);
         if (common->destination && !common->output)
             argp_error(state, "say where the %s: -o DIR", common->destination);

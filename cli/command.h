@@ -34,9 +34,10 @@ double wb_command_number(struct argp_state *state, const char *option, const cha
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum);
 
-/* What most commands take: one argument, an output folder, --force and --json. */
+/* What most commands take: one argument, an output, --force and --json. */
 struct wb_command_common {
-    const char *noun;        /* of the argument, for messages: "recording" */
+    const char *noun;        /* of the argument, for messages: "recording"; NULL: the command looks
+                                at its arguments itself */
     const char *destination; /* what goes to -o, for messages: "figures go"; NULL: there is no -o */
     const char *input;       /* the argument */
     const char *output;
