@@ -57,6 +57,12 @@ double wb_dataset_bow(const struct wb_test_info *info)
     return sum * info->length / (3.0 * N);
 }
 
+bool wb_dataset_is_complete(const struct wb_dataset *dataset)
+{
+    bool complete;
+    return wb_json_get_boolean(dataset->document, "complete", &complete) && complete;
+}
+
 enum wb_status wb_dataset_init(struct wb_dataset *dataset)
 {
     memset(dataset, 0, sizeof *dataset);

@@ -91,6 +91,10 @@ double wb_dataset_natural_curvature(void *context, double arc_length);
 WB_MUST_CHECK enum wb_status wb_dataset_init(struct wb_dataset *dataset);
 void wb_dataset_release(struct wb_dataset *dataset); /* accepts a zeroed one */
 
+/* Whether the document says that nothing was missing or cut short (see align); false where it says
+ * nothing. */
+bool wb_dataset_is_complete(const struct wb_dataset *dataset);
+
 /* Appends a row; doubles the memory as needed. */
 WB_MUST_CHECK enum wb_status wb_dataset_add_row(struct wb_dataset *dataset,
                                                 const struct wb_row *row);

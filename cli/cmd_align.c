@@ -147,30 +147,14 @@ static enum wb_status run(const struct options *o, struct result *results, size_
     return WB_OK;
 }
 
-static bool is_complete(const struct wb_dataset *dataset)
-{
-    bool complete;
-    return wb_json_get_boolean(dataset->document, "complete", &complete) && complete;
-}
-
 static int print_json(const struct result *results, size_t n)
 {
-    static const char *const copied[] = {"recordings", "cycles",      "largest_deflection_mm",
-                                         "complete",   "corrections", "warnings"};
     struct wb_json *const root = wb_json_create();
     struct wb_json *const list = wb_json_set_array(root, "datasets");
     for (size_t i = 0; i < n; i++) {
-        const struct wb_dataset *const dataset = &results[i].dataset;
         struct wb_json *const entry = wb_json_append_object(list);
         wb_json_set_text(entry, "folder", results[i].folder);
-        wb_json_set_text(entry, "wire", dataset->info.wire);
-        wb_json_set_integer(entry, "sample", dataset->info.sample);
-        wb_json_set_number(entry, "length_mm", dataset->info.length / WB_MM);
-        wb_json_set_boolean(entry, "virtual_rig", dataset->info.is_virtual);
-        wb_json_set_integer(entry, "rows", (int64_t)dataset->n_rows);
-        wb_json_set_number(entry, "bow_mm", wb_dataset_bow(&dataset->info) / WB_MM);
-        for (size_t k = 0; k < sizeof copied / sizeof copied[0]; k++)
-            wb_json_set_copy(entry, copied[k], wb_json_get(dataset->document, copied[k]));
+        wb_quicklook_describe(&results[i].dataset, entry);
     }
     return wb_command_print_json(root);
 }
@@ -207,7 +191,7 @@ int wb_cmd_align(int argc, char **argv)
     if (code == WB_EXIT_OK)
         code = options.common.json ? print_json(results, n_done) : print_text(results, n_done);
     for (size_t i = 0; i < n_done; i++) {
-        if (code == WB_EXIT_OK && !is_complete(&results[i].dataset))
+        if (code == WB_EXIT_OK && !wb_dataset_is_complete(&results[i].dataset))
             code = WB_EXIT_INCOMPLETE;
         wb_dataset_release(&results[i].dataset);
     }

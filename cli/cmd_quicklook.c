@@ -50,16 +50,13 @@ static int print_json(const struct wb_dataset *dataset, const char *output)
 
 static int deliver(const struct wb_dataset *dataset, const struct wb_command_common *options)
 {
-    bool complete = false;
     if (wb_quicklook_write(dataset, options->output, options->force) != WB_OK)
         return WB_EXIT_FAILED;
     const int code =
         options->json ? print_json(dataset, options->output) : print_text(dataset, options->output);
     if (code != WB_EXIT_OK)
         return code;
-    return wb_json_get_boolean(dataset->document, "complete", &complete) && complete
-               ? WB_EXIT_OK
-               : WB_EXIT_INCOMPLETE;
+    return wb_dataset_is_complete(dataset) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
 int wb_cmd_quicklook(int argc, char **argv)
