@@ -68,16 +68,16 @@ static void show(struct player *player, int64_t t_ns)
     player->last_ns = t_ns;
     if (!wb_live_line_due())
         return;
-    char force[64] = "force --", travel[48] = "travel --", markers[32] = "markers --";
+    char force[64] = "-- mN", travel[48] = "travel --", markers[32] = "markers --";
     if (player->has_force)
-        snprintf(force, sizeof force, "force %.2f mN (%.3f g)", player->force / WB_MN,
+        snprintf(force, sizeof force, "%.2f mN %.2f g", player->force / WB_MN,
                  player->force / player->gravity / WB_G);
     if (player->has_travel)
-        snprintf(travel, sizeof travel, "travel %.2f mm",
+        snprintf(travel, sizeof travel, "travel %.1f mm",
                  (player->travel - player->travel_start) * player->down / WB_MM);
     if (player->has_frame)
         snprintf(markers, sizeof markers, "markers %d", player->markers);
-    wb_live_line_show("%sreplay %.1f s  %s  %s  %s", player->is_virtual ? "[virtual rig] " : "",
+    wb_live_line_show("%sreplay %.1f s  %s  %s  %s", player->is_virtual ? "virtual rig: " : "",
                       wb_survey_seconds(player->first_ns, t_ns), force, travel, markers);
 }
 

@@ -154,7 +154,7 @@ static void show_job(const struct wb_stage_job *job)
     if (status.has_position)
         snprintf(position, sizeof position, "position %.3f mm, moved %.3f mm",
                  status.position / WB_MM, status.moved / WB_MM);
-    wb_live_line_show("%s%s  %s%s", status.is_virtual ? "[virtual rig] " : "", status.phase, force,
+    wb_live_line_show("%s%s  %s%s", status.is_virtual ? "virtual rig: " : "", status.phase, force,
                       position);
 }
 
