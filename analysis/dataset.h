@@ -59,6 +59,8 @@ struct wb_test_info {
     double mass_per_length; /* kg/m */
     double poissons_ratio;  /* 1 */
     double strand_length;   /* m; 0: vertical dead force, no strand */
+    bool is_follower;       /* the tip force stays normal to the wire; `force` is its size, and a
+                               strand there is none */
     double counterweight;   /* kg */
     double gravity;         /* m/s2 towards -y; 0 when weight is not in the data */
     double rest_level;      /* m; NaN when there was no rest below the tip */

@@ -1,0 +1,71 @@
+/* What computing a wire model gives, by the 3D solid (fe/wire3d.h) and by the 1D rod (fe/wire1d.h)
+ * alike: rows along its history, the axis' shapes, and how it ended.
+ */
+#ifndef WB_FE_WIRE_RUN_H
+#define WB_FE_WIRE_RUN_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "fe/history.h"
+#include "fe/wire_model.h"
+
+struct wb_wire_row {
+    int step;                    /* index into the model's steps */
+    double fraction;             /* of the step, (0, 1]; the first row of all is at 0 */
+    int cycle;                   /* from 1; a new one begins with each loading after an unloading */
+    enum wb_history_phase phase; /* slack: the strand carries nothing */
+    struct wb_tip_loads loads;   /* that act */
+    double tip[3];               /* m, of the axis' end */
+    double tangent[3];           /* unit vector along the wire at the tip */
+    double tip_angle;            /* rad, atan2 of the tangent's y and x, continued over the rows so
+                                    that a wire that curls past pi goes on */
+    double tension;              /* N: strand's tension or vertical force that makes the deflection;
+                                    without either the vertical part of all tip forces */
+    double vertical_force;       /* N: vertical part of the tension */
+    double force; /* N: as the dataset's `force`: vertical force less its value at zero
+                     deflection on the first loading (0 when there is none); of a
+                     follower test the follower force itself */
+    int increments, iterations; /* spent since the row before */
+};
+
+struct wb_wire_run {
+    int n_rows, capacity;
+    struct wb_wire_row *rows; /* (n_rows), owned; only those reached */
+    int n_shape;
+    double *shape_s;                      /* (n_shape) m, reference arc lengths, owned */
+    double (*shape)[3];                   /* (n_rows x n_shape), m, owned */
+    bool converged;                       /* false: the history ends early */
+    bool stopped;                         /* by the observer */
+    char problem[320];                    /* where and why it did not converge; "" otherwise */
+    int increments, iterations, cutbacks; /* in all */
+    int n_elements, n_unknowns;
+    double zero_force; /* N: subtracted from `force` */
+};
+
+/* Told during a run; each may be NULL. */
+struct wb_wire_observer {
+    /* After every converged increment: step, share of it done, iterations of the increment, share
+     * of the whole history done (for the time left). False stops the run. */
+    bool (*increment)(void *context, const struct wb_wire_run *run, int step, double fraction,
+                      int iterations, double done);
+    /* After every row; `last` in its step. The solver stands at that state. */
+    enum wb_status (*row)(void *context, const struct wb_wire_run *run, bool last);
+    void *context;
+};
+
+/* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length. */
+WB_MUST_CHECK enum wb_status wb_wire_run_init(struct wb_wire_run *run,
+                                              const struct wb_wire_model *model, int n_shape);
+void wb_wire_run_release(struct wb_wire_run *run); /* accepts a zeroed one */
+
+/* Rows that a model gives when it runs through: one at the start and those of every step. */
+int wb_wire_run_planned_rows(const struct wb_wire_model *model);
+
+/* Appends a row that has step, fraction, loads, tip, tangent, tension, vertical_force, increments
+ * and iterations, and completes it: cycle, phase, angle, force. `slack`: the strand carries
+ * nothing. `shape` is (n_shape x 3). */
+void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
+                     const struct wb_wire_row *row, bool slack, const double (*shape)[3]);
+
+#endif
