@@ -132,7 +132,7 @@ struct wb_wire_model {
 /* Reads a model with its wire and materials. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_wire_model_read(struct wb_wire_model *model, const char *path);
 
-/* Whether the only force is the follower (a test whose `force` is the follower's size). */
+/* Whether the only load is a follower across the wire, in its y (a test whose `force` is that). */
 bool wb_wire_model_is_follower(const struct wb_wire_model *model);
 
 /* Mass per length of all parts, kg/m. Flexural rigidity sum E I (N m2) and the homogenised

@@ -24,8 +24,8 @@ struct wb_wire_row {
                                     without either the vertical part of all tip forces */
     double vertical_force;       /* N: vertical part of the tension */
     double force; /* N: as the dataset's `force`: vertical force less its value at zero
-                     deflection on the first loading (0 when there is none); of a
-                     follower test the follower force itself */
+                     deflection on the first loading, which is the first row when the first step
+                     is a deflection (0 otherwise); of a follower test the follower force itself */
     int increments, iterations; /* spent since the row before */
 };
 
@@ -54,7 +54,8 @@ struct wb_wire_observer {
     void *context;
 };
 
-/* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length. */
+/* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length (none,
+ * or 2 to 1000). */
 WB_MUST_CHECK enum wb_status wb_wire_run_init(struct wb_wire_run *run,
                                               const struct wb_wire_model *model, int n_shape);
 void wb_wire_run_release(struct wb_wire_run *run); /* accepts a zeroed one */
@@ -64,7 +65,7 @@ int wb_wire_run_planned_rows(const struct wb_wire_model *model);
 
 /* Appends a row that has step, fraction, loads, tip, tangent, tension, vertical_force, increments
  * and iterations, and completes it: cycle, phase, angle, force. `slack`: the strand carries
- * nothing. `shape` is (n_shape x 3). */
+ * nothing. `shape` is (n_shape x 3). Rows beyond the planned ones are not taken. */
 void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
                      const struct wb_wire_row *row, bool slack, const double (*shape)[3]);
 

@@ -1,0 +1,100 @@
+#include "fe/wire_run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WB_LOG_DOMAIN "wire run"
+
+enum {
+    MOST_SHAPE = 1000
+};
+
+int wb_wire_run_planned_rows(const struct wb_wire_model *model)
+{
+    int rows = 1;
+    for (int i = 0; i < model->n_steps; i++)
+        rows += model->step[i].rows;
+    return rows;
+}
+
+enum wb_status wb_wire_run_init(struct wb_wire_run *run, const struct wb_wire_model *model,
+                                int n_shape)
+{
+    *run = (struct wb_wire_run){.converged = true};
+    if (n_shape < 0 || n_shape == 1 || n_shape > MOST_SHAPE)
+        return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
+                       n_shape, MOST_SHAPE);
+
+    const size_t rows = (size_t)wb_wire_run_planned_rows(model);
+    const size_t n = (size_t)n_shape;
+    run->rows = calloc(rows, sizeof *run->rows);
+    if (n_shape > 0) {
+        run->shape_s = calloc(n, sizeof *run->shape_s);
+        run->shape = calloc(rows * n, sizeof *run->shape);
+    }
+    if (!run->rows || (n_shape > 0 && (!run->shape_s || !run->shape))) {
+        wb_wire_run_release(run);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
+    }
+    run->capacity = (int)rows;
+    run->n_shape = n_shape;
+    for (int i = 0; i < n_shape; i++)
+        run->shape_s[i] = model->length * i / (n_shape - 1);
+    return WB_OK;
+}
+
+void wb_wire_run_release(struct wb_wire_run *run)
+{
+    if (!run)
+        return;
+    free(run->rows);
+    free(run->shape_s);
+    free(run->shape);
+    *run = (struct wb_wire_run){0};
+}
+
+/* The branch's phase is that of its step, also in rows in which the strand is slack. */
+static int cycle_of(const struct wb_wire_run *run, const struct wb_wire_model *model, int step)
+{
+    if (run->n_rows == 0)
+        return 1;
+    const struct wb_wire_row *const before = &run->rows[run->n_rows - 1];
+    const bool begins = model->step[before->step].unloads && !model->step[step].unloads;
+    return before->cycle + (begins ? 1 : 0);
+}
+
+/* The angle's branch nearest to the row before. */
+static double angle_of(const struct wb_wire_run *run, const double tangent[3])
+{
+    const double angle = atan2(tangent[1], tangent[0]);
+    if (run->n_rows == 0)
+        return angle;
+    const double before = run->rows[run->n_rows - 1].tip_angle;
+    return angle + 2.0 * M_PI * round((before - angle) / (2.0 * M_PI));
+}
+
+void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
+                     const struct wb_wire_row *row, bool slack, const double (*shape)[3])
+{
+    if (run->n_rows >= run->capacity)
+        return;
+
+    struct wb_wire_row *const out = &run->rows[run->n_rows];
+    *out = *row;
+    out->cycle = cycle_of(run, model, row->step);
+    out->phase = slack                            ? WB_HISTORY_SLACK
+                 : model->step[row->step].unloads ? WB_HISTORY_UNLOAD
+                                                  : WB_HISTORY_LOAD;
+    out->tip_angle = angle_of(run, row->tangent);
+    /* A deflection as the first step begins at zero, with the weight on. */
+    if (run->n_rows == 0)
+        run->zero_force =
+            model->step[0].kind == WB_WIRE_STEP_DEFLECTION ? row->vertical_force : 0.0;
+    out->force = wb_wire_model_is_follower(model) ? row->loads.follower[1]
+                                                  : row->vertical_force - run->zero_force;
+    if (run->n_shape > 0)
+        memcpy(run->shape + (size_t)run->n_rows * (size_t)run->n_shape, shape,
+               (size_t)run->n_shape * sizeof *shape);
+    run->n_rows++;
+}
