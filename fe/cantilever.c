@@ -209,9 +209,17 @@ static bool is_unilateral(const struct wb_cantilever *c)
     return c->model.strand_length > 0.0;
 }
 
+/* Controls that prescribe where the tip is and find the force. */
 static bool drives_tip(enum wb_cantilever_control control)
 {
-    return control == WB_CONTROL_DEFLECTION || control == WB_CONTROL_STAGE;
+    return control == WB_CONTROL_DEFLECTION || control == WB_CONTROL_STAGE ||
+           control == WB_CONTROL_FOLLOWER_DEFLECTION;
+}
+
+/* The force that such a control finds. */
+static double *driving_force(struct loads *loads, enum wb_cantilever_control control)
+{
+    return control == WB_CONTROL_FOLLOWER_DEFLECTION ? &loads->follower : &loads->tension;
 }
 
 /* Value of a control in the trial state. */
@@ -219,6 +227,7 @@ static double present_value(const struct wb_cantilever *c, enum wb_cantilever_co
 {
     switch (control) {
     case WB_CONTROL_DEFLECTION:
+    case WB_CONTROL_FOLLOWER_DEFLECTION:
         return wb_beam_tip(c->beam)->y;
     case WB_CONTROL_STAGE:
         return stage_travel(c, wb_beam_tip(c->beam));
@@ -284,7 +293,7 @@ static bool check_balance(struct wb_cantilever *c, const struct step *step, stru
 }
 
 /* The tip's system: condensed beam, stiffness of the loads, and rows and columns of the unknown
- * tension and reaction. Returns the number of unknowns. */
+ * driving force and reaction. Returns the number of unknowns. */
 static int tip_system(struct wb_cantilever *c, const struct step *step, const struct strand *strand,
                       double A[MOST_UNKNOWNS * MOST_UNKNOWNS], double b[MOST_UNKNOWNS])
 {
@@ -313,8 +322,9 @@ static int tip_system(struct wb_cantilever *c, const struct step *step, const st
     if (drives_tip(step->control) && (step->mode & TAUT)) {
         for (int j = 0; j < W; j++)
             A[n * W + j] = A[j * W + n] = 0.0;
-        A[n] = -strand->x;
-        A[W + n] = -strand->y;
+        const bool follows = step->control == WB_CONTROL_FOLLOWER_DEFLECTION;
+        A[n] = follows ? sin(t) : -strand->x;
+        A[W + n] = follows ? -cos(t) : -strand->y;
         A[n * W] = step->control == WB_CONTROL_STAGE ? strand->x / strand->y : 0.0;
         A[n * W + 1] = 1.0;
         b[n++] = miss.control;
@@ -329,6 +339,28 @@ static int tip_system(struct wb_cantilever *c, const struct step *step, const st
     return n;
 }
 
+/* Whether follower force and deflection of the converged trial state have grown together, and would
+ * go on to. Past the largest deflection they do not: just below it the same deflection belongs to a
+ * farther curled wire too, and above it to one that springs back, and Newton's method may end in
+ * either. A plastic hinge turns at a constant force, which is taken. */
+static bool follower_rises(struct wb_cantilever *c, const struct step *step,
+                           const struct strand *strand)
+{
+    const double flat = 1e-6 * wb_beam_scale_force(c->beam) / c->model.length;
+    const double raised = wb_beam_tip(c->beam)->y - wb_beam_position(c->beam, c->model.length).y;
+    const double more = c->loads.follower - c->state.loads.follower;
+    double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+
+    /* The weight that comes with the first step moves the tip too. */
+    if (step->weight == c->state.loads.weight && more * raised < -flat * raised * raised)
+        return false;
+    const int n = tip_system(c, step, strand, A, b);
+    for (int i = 0; i < n; i++)
+        b[i] = i == n - 1 ? 1.0 : 0.0;
+    wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
+    return b[n - 1] > -flat;
+}
+
 /* Newton's method from the trial state; true when it converged. An iteration that had to be held
  * back is a sign of a step too long: after a few it gives up, because a shorter step is cheaper. */
 static bool solve(struct wb_cantilever *c, const struct step *step)
@@ -339,7 +371,8 @@ static bool solve(struct wb_cantilever *c, const struct step *step)
 
     for (int iteration = 0;; iteration++) {
         if (check_balance(c, step, &strand, r))
-            return true;
+            return step->control != WB_CONTROL_FOLLOWER_DEFLECTION ||
+                   follower_rises(c, step, &strand);
         if (iteration == c->settings.max_iterations || held_back == most_held_back ||
             !isfinite(c->residual))
             return false;
@@ -352,7 +385,7 @@ static bool solve(struct wb_cantilever *c, const struct step *step)
 
         int next = 3;
         if (drives_tip(step->control) && (step->mode & TAUT))
-            c->loads.tension += scale * b[next++];
+            *driving_force(&c->loads, step->control) += scale * b[next++];
         if (step->mode & RESTING)
             c->loads.reaction += scale * b[next++];
         c->iterations++;
@@ -378,6 +411,8 @@ static void start_loads(struct wb_cantilever *c, const struct step *step)
     case WB_CONTROL_STAGE:
         if (!(step->mode & TAUT))
             c->loads.tension = 0.0;
+        break;
+    case WB_CONTROL_FOLLOWER_DEFLECTION:
         break;
     }
     if (!(step->mode & RESTING))
@@ -406,7 +441,9 @@ static bool solve_mode(struct wb_cantilever *c, const struct step *step)
         start_loads(c, step);
         wb_beam_extrapolate(c->beam, ratio);
         if (step->mode & TAUT && drives_tip(step->control))
-            c->loads.tension += ratio * (c->state.loads.tension - c->state.earlier.tension);
+            *driving_force(&c->loads, step->control) +=
+                ratio * (*driving_force(&c->state.loads, step->control) -
+                         *driving_force(&c->state.earlier, step->control));
         if (step->mode & RESTING)
             c->loads.reaction += ratio * (c->state.loads.reaction - c->state.earlier.reaction);
         if (solve(c, step))
@@ -492,7 +529,7 @@ static enum wb_status check_move(const struct wb_cantilever *c, enum wb_cantilev
         return wb_fail(WB_ERR_ARGUMENT, "target %g is not a finite number", target);
     if (control == WB_CONTROL_STAGE && !is_unilateral(c))
         return wb_fail(WB_ERR_ARGUMENT, "stage control needs a strand");
-    if (!drives_tip(control) && is_unilateral(c))
+    if ((!drives_tip(control) || control == WB_CONTROL_FOLLOWER_DEFLECTION) && is_unilateral(c))
         return wb_fail(WB_ERR_ARGUMENT, "force control and a strand exclude each other");
     return WB_OK;
 }
@@ -511,6 +548,7 @@ static void describe(struct wb_cantilever *c, enum wb_cantilever_control control
     point->tip_angle = tip->t;
     point->tension = c->loads.tension;
     point->vertical_force = c->loads.tension * strand.y;
+    point->follower = c->loads.follower;
     point->root_moment = wb_beam_root_moment(c->beam);
     point->slack = is_unilateral(c) && !(c->state.mode & TAUT);
     point->resting = (c->state.mode & RESTING) != 0;

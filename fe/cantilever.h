@@ -28,7 +28,11 @@ enum wb_cantilever_control {
     WB_CONTROL_STAGE,          /* downward travel of the clamp's stage, m; needs a strand */
     WB_CONTROL_DEAD_FORCE,     /* vertical tip force, N; no strand, no unilateral contact */
     WB_CONTROL_FOLLOWER_FORCE, /* tip force that stays normal to the wire, N */
-    WB_CONTROL_TIP_MOMENT      /* N m */
+    /* y of the tip, m, by a follower force that is found; no strand. Under a growing follower force
+     * the wire curls up and y has a maximum. This control stays where force and deflection grow
+     * together: it ends short of the maximum, not converged, and is not for beyond. */
+    WB_CONTROL_FOLLOWER_DEFLECTION,
+    WB_CONTROL_TIP_MOMENT /* N m */
 };
 
 struct wb_cantilever_model {
@@ -68,6 +72,8 @@ struct wb_cantilever_point {
     double tip_angle;      /* rad */
     double tension;        /* strand tension or vertical tip force, N; never zeroed */
     double vertical_force; /* vertical part of the tension, N */
+    double follower;       /* size of the follower force, N, in neither of the two above; positive
+                              pushes the straight wire's tip upwards */
     double root_moment;    /* N m, internal moment at the clamp's first integration point,
                               extrapolated to the clamp by equilibrium */
     bool slack;            /* the strand carries nothing */
@@ -96,7 +102,8 @@ void wb_cantilever_set_materials(struct wb_cantilever *cantilever,
                                  const struct wb_material *materials);
 
 /* Moves to the equilibrium at `target`, from wherever the state is, in one step or in as many
- * sub-steps as convergence needs. The first move also applies weight and counterweight. While the
+ * sub-steps as convergence needs. The first move also applies weight and counterweight. Tip loads
+ * that the control does not name or find stay as they are. While the
  * strand is slack the control is where the strand would be; the point then describes the free tip.
  * WB_OK also when it did not converge: point->end says so, and the state then stays at the last
  * converged sub-step. Errors: an argument that the model does not allow. */

@@ -89,6 +89,12 @@ static bool goes_on(struct wb_history *history, const struct wb_history_plan *pl
     return history->converged && !history->stopped;
 }
 
+static bool is_follower(const struct wb_history_plan *plan)
+{
+    return plan->control == WB_CONTROL_FOLLOWER_FORCE ||
+           plan->control == WB_CONTROL_FOLLOWER_DEFLECTION;
+}
+
 /* Moves to step `index` of the way up and adds the row, if it gets there. */
 static enum wb_status add_row(struct wb_history *history, const struct wb_history_plan *plan,
                               struct wb_cantilever *cantilever, int cycle, int index,
@@ -104,11 +110,12 @@ static enum wb_status add_row(struct wb_history *history, const struct wb_histor
         return WB_OK;
     }
     row->point = history->end;
-    if (history->n_rows == 0)
+    const bool follows = is_follower(plan);
+    if (history->n_rows == 0 && !follows)
         history->zero_force = row->point.vertical_force;
     row->cycle = cycle;
     row->phase = row->point.slack ? WB_HISTORY_SLACK : phase;
-    row->force = row->point.vertical_force - history->zero_force;
+    row->force = follows ? row->point.follower : row->point.vertical_force - history->zero_force;
     if (history->n_shape > 0) {
         const size_t at = (size_t)history->n_rows * (size_t)history->n_shape;
         wb_cantilever_shape(cantilever, history->n_shape, plan->shape_s, history->shape_x + at,

@@ -5,7 +5,7 @@
  * no fit and say so; after unloading ends in them the next loading begins with them.
  *
  * The force is zeroed as the bench zeroes it: vertical part of the tension less its value at zero
- * deflection on the first loading.
+ * deflection on the first loading. Under a follower force it is that force's size, as it is.
  */
 #ifndef WB_FE_HISTORY_H
 #define WB_FE_HISTORY_H
@@ -35,7 +35,7 @@ struct wb_history_plan {
 struct wb_history_row {
     int cycle; /* from 1 */
     enum wb_history_phase phase;
-    double force; /* N, zeroed vertical force */
+    double force; /* N, zeroed vertical force, or the follower force */
     struct wb_cantilever_point point;
 };
 
@@ -44,7 +44,7 @@ struct wb_history {
     struct wb_history_row *rows; /* (n_rows), owned; only those that were reached */
     int n_shape;
     double *shape_x, *shape_y;      /* (n_rows x n_shape), m, owned; NULL without shape */
-    double zero_force;              /* N: what was subtracted, vertical */
+    double zero_force;              /* N: what was subtracted, vertical; 0 with a follower force */
     bool converged;                 /* false: the test ends early, at `end` */
     struct wb_cantilever_point end; /* of the last move: where it stopped short of its target */
     bool stopped;                   /* by plan->stop */
