@@ -389,6 +389,35 @@ static void longitudinal_section_is_a_rectangle(void **unused)
     wb_solid_mesh_release(&mesh);
 }
 
+/* The unit cube with side `k` of six on z = 0, above it. */
+static void turned_cube(void *context, const double unit[3], double position[3])
+{
+    const int k = *(const int *)context, up = k / 2;
+    const bool far = k % 2 == 1;
+    position[2] = far ? 1.0 - unit[up] : unit[up];
+    position[0] = unit[(up + (far ? 2 : 1)) % 3];
+    position[1] = unit[(up + (far ? 1 : 2)) % 3];
+}
+
+static void every_side_of_an_element_can_lie_in_the_longitudinal_section(void **unused)
+{
+    (void)unused;
+    for (int k = 0; k < 6; k++) {
+        struct wb_solid_mesh mesh;
+        struct wb_solid_face *faces;
+        double normal[3];
+        int n;
+        assert_int_equal(wb_solid_mesh_block(&mesh, 1, 1, 1, turned_cube, &k), WB_OK);
+        assert_close(volume(&mesh, 0, NULL), 1.0, 1e-8);
+        assert_int_equal(wb_solid_mesh_longitudinal(&mesh, &faces, &n), WB_OK);
+        assert_int_equal(n, 1);
+        assert_close(face_area(&mesh, faces[0].node, normal), 1.0, 1e-8);
+        assert_close(normal[2], -1.0, 1e-8);
+        free(faces);
+        wb_solid_mesh_release(&mesh);
+    }
+}
+
 static void cross_section_is_taken_nearest_to_x(void **unused)
 {
     (void)unused;
@@ -519,6 +548,7 @@ int main(void)
         cmocka_unit_test(tip_faces_cover_the_free_end),
         cmocka_unit_test(clamp_and_axis_are_where_they_should_be),
         cmocka_unit_test(longitudinal_section_is_a_rectangle),
+        cmocka_unit_test(every_side_of_an_element_can_lie_in_the_longitudinal_section),
         cmocka_unit_test(cross_section_is_taken_nearest_to_x),
         cmocka_unit_test(block_is_mapped_with_its_midside_nodes),
         cmocka_unit_test(mesh_to_fill_in_has_one_layer),
