@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "daq/rig.h"
 #include "daq/specimen.h"
+#include "fe/material_file.h"
 #include "fe/wire.h"
 
 /* Calls `look` with every shipped file that matches; there must be at least `least`. */
@@ -156,31 +157,61 @@ static void bundles_weigh_what_table_4_says(void **state)
 
 static void look_at_material(const char *path)
 {
-    struct wb_config *config;
-    char name[64], source[200];
-    bool substitute = false;
-    double E, density, nu = 0.0, yield = 0.0, K = 0.0, n = 0.0, thickness = 0.0;
-    assert_int_equal(wb_config_read(&config, path), WB_OK);
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_TEXT("name", name),
-        WB_CONFIG_OPTIONAL_BOOLEAN("substitute", &substitute),
-        WB_CONFIG_TEXT("source", source),
-        WB_CONFIG_NUMBER("youngs_modulus_MPa", &E, WB_MPA, 1, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("poissons_ratio", &nu, 1, 0, 0.5),
-        WB_CONFIG_OPTIONAL_NUMBER("yield_stress_MPa", &yield, WB_MPA, 0.1, 1e4),
-        WB_CONFIG_OPTIONAL_NUMBER("strength_coefficient_MPa", &K, WB_MPA, 0, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("hardening_exponent", &n, 1, 0.01, 2),
-        WB_CONFIG_NUMBER("density_g_cm3", &density, WB_G_PER_CM3, 0.1, 25),
-        WB_CONFIG_OPTIONAL_NUMBER("thickness_of_two_layers_mm", &thickness, WB_MM, 0.01, 10),
-    };
-    assert_int_equal(wb_config_map(wb_config_root(config), keys, WB_COUNT(keys)), WB_OK);
-    wb_config_destroy(config);
+    struct wb_material_file file;
+    assert_int_equal(wb_material_file_read(&file, path), WB_OK);
+    assert_true(strlen(file.source) > 0);
+    /* What is computed with in section 2 is a substitute and says so. */
+    if (strcmp(file.name, "tape") != 0)
+        assert_true(file.is_substitute && file.material.poissons_ratio > 0.0);
+    assert_int_equal(file.material.hardening, WB_HARDENING_ISOTROPIC_POWER);
+    assert_true(file.material.strength_coefficient > 0.0);
 }
 
 static void materials_are_complete(void **state)
 {
     (void)state;
     each_file("fixtures/materials/*.yaml", 3, look_at_material);
+}
+
+static void read_material(const char *name, struct wb_material_file *file)
+{
+    char path[WB_PATH];
+    assert_int_equal(wb_file_find_fixture(path, "materials", name, NULL), WB_OK);
+    assert_int_equal(wb_material_file_read(file, path), WB_OK);
+}
+
+/* Eqs. 8 and 9 with copper and PVC give the homogenised wire of section 2. */
+static void copper_and_pvc_make_the_8awg_wire(void **state)
+{
+    (void)state;
+    struct wb_material_file copper, pvc;
+    struct wb_wire wire;
+    char path[WB_PATH];
+    read_material("annealed-copper", &copper);
+    read_material("pvc", &pvc);
+    assert_int_equal(wb_file_find_fixture(path, "wires", "8awg", NULL), WB_OK);
+    assert_int_equal(wb_wire_read(path, &wire), WB_OK);
+    const double r = wire.conductor_diameter / wire.outer_diameter;
+    const double I = r * r * r * r, A = r * r;
+    assert_close_relative(copper.material.youngs_modulus * I +
+                              pvc.material.youngs_modulus * (1.0 - I),
+                          wire.material.youngs_modulus, 1e-3);
+    assert_close(copper.material.poissons_ratio * A + pvc.material.poissons_ratio * (1.0 - A),
+                 wire.material.poissons_ratio, 0.005);
+    assert_close_relative(copper.density * A + pvc.density * (1.0 - A), wire.density, 0.01);
+}
+
+/* The nominal tensile strength and elongation that its comment names. */
+static void pvc_passes_through_its_tensile_strength(void **state)
+{
+    (void)state;
+    struct wb_material_file pvc;
+    read_material("pvc", &pvc);
+    const struct wb_material *const m = &pvc.material;
+    const double plastic = 2.5 - 17e6 / m->youngs_modulus;
+    assert_close_relative(m->yield_stress +
+                              m->strength_coefficient * pow(plastic, m->hardening_exponent),
+                          17e6, 5e-3);
 }
 
 int main(void)
@@ -192,6 +223,8 @@ int main(void)
         cmocka_unit_test(rigs_read),
         cmocka_unit_test(bundles_weigh_what_table_4_says),
         cmocka_unit_test(materials_are_complete),
+        cmocka_unit_test(copper_and_pvc_make_the_8awg_wire),
+        cmocka_unit_test(pvc_passes_through_its_tensile_strength),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
