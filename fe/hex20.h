@@ -37,11 +37,12 @@ struct wb_hex20_state {
     double accumulated;       /* equivalent plastic strain, never decreases */
 };
 
-/* Gradients with respect to the reference position, and weights, at all points of one element. */
+/* Gradients with respect to the reference position, and weights, at all points of one element. A
+ * gradient is stored as three rows: the derivatives of the 20 shape functions along x, y and z. */
 struct wb_hex20_geometry {
-    double gradient[WB_HEX20_MOST_POINTS][WB_HEX20_NODES][3];          /* 1/m, deviatoric points */
+    double gradient[WB_HEX20_MOST_POINTS][3][WB_HEX20_NODES];          /* 1/m, deviatoric points */
     double weight[WB_HEX20_MOST_POINTS];                               /* m3 */
-    double corner_gradient[WB_HEX20_CORNER_POINTS][WB_HEX20_NODES][3]; /* volumetric points */
+    double corner_gradient[WB_HEX20_CORNER_POINTS][3][WB_HEX20_NODES]; /* volumetric points */
     double corner_weight[WB_HEX20_CORNER_POINTS];
     double volume; /* m3 */
 };
@@ -53,6 +54,9 @@ struct wb_hex20_result {
     double smallest_jacobian; /* least J at any point */
     int yielding;             /* points that yield in this step */
 };
+
+/* Parent coordinates of the nodes. */
+extern const double wb_hex20_node_place[WB_HEX20_NODES][3];
 
 /* States of an element: 27 or 8. */
 int wb_hex20_points(enum wb_hex20_integration integration);
@@ -73,7 +77,8 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
                        double *restrict stiffness, struct wb_hex20_result *result);
 
 /* Cauchy stress (Pa, global frame) and equivalent plastic strain at the nodes, of a converged state
- * (its histories are `state`): values at the points extrapolated in the element. */
+ * (its histories are `state`): values at the points extrapolated in the element.
+ * Not a number where an element is inverted. */
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
                            enum wb_hex20_integration integration,
                            const struct wb_material *material, const double *restrict u,
