@@ -32,6 +32,7 @@ struct block {
     double *diagonal, *below, *right;
     lapack_int *pivot; /* (n) */
     enum factors factors;
+    bool stale, stale_links; /* the diagonal block, those beside it: to be zeroed before use */
 };
 
 struct wb_layered {
@@ -188,17 +189,33 @@ double wb_layered_operations(const struct wb_layered *layered)
 void wb_layered_clear(struct wb_layered *layered)
 {
     layered->singular = false;
-    if (!layered->symmetric) {
-        memset(layered->entries, 0, layered->n_entries * sizeof *layered->entries);
+    for (int b = 0; b < layered->n_blocks; b++)
+        layered->blocks[b].stale = layered->blocks[b].stale_links = true;
+}
+
+/* Zeroes what an element is about to be added to, not earlier: it then is in the cache, and adding
+ * takes half the time that it takes to fetch entry by entry what was zeroed long before. */
+static void freshen(bool symmetric, struct block *block)
+{
+    const size_t n = (size_t)block->n;
+    if (!block->stale)
         return;
+    block->stale = false;
+    for (size_t j = 0; j < n; j++) {
+        const size_t from = symmetric ? j : 0;
+        memset(block->diagonal + j * n + from, 0, (n - from) * sizeof(double));
     }
-    for (int b = 0; b < layered->n_blocks; b++) {
-        const struct block *block = &layered->blocks[b];
-        const size_t n = (size_t)block->n;
-        for (size_t j = 0; j < n; j++)
-            memset(block->diagonal + j * n + j, 0, (n - j) * sizeof(double));
-        memset(block->below, 0, (size_t)block->next * (size_t)block->linked * sizeof(double));
-    }
+}
+
+static void freshen_links(bool symmetric, struct block *block)
+{
+    const size_t n = (size_t)block->n, linked = (size_t)block->linked, next = (size_t)block->next;
+    if (!block->stale_links)
+        return;
+    block->stale_links = false;
+    memset(block->below, 0, next * linked * sizeof(double));
+    if (!symmetric)
+        memset(block->right, 0, n * next * sizeof(double));
 }
 
 /* Unknowns that take part, ascending, and their rows in the matrix to be added. */
@@ -244,7 +261,7 @@ void wb_layered_add(struct wb_layered *layered, int n, const int *index, const d
     /* The first `here` unknowns are in the first block, the others in the next one. */
     assert(s.unknown[s.n - 1] < layered->n_unknowns);
     const int b = layered->block_of[s.unknown[0]];
-    const struct block *block = &layered->blocks[b];
+    struct block *block = &layered->blocks[b];
     int here = 0;
     for (; here < s.n && s.unknown[here] < block->first + block->n; here++)
         place[here] = s.unknown[here] - block->first;
@@ -254,6 +271,11 @@ void wb_layered_add(struct wb_layered *layered, int n, const int *index, const d
 
     const bool symmetric = layered->symmetric;
     const int there = s.n - here;
+    freshen(symmetric, block);
+    if (there > 0) {
+        freshen_links(symmetric, block);
+        freshen(symmetric, block + 1);
+    }
     for (int k = 0; k < s.n; k++) {
         /* Entry (i, j) is matrix[n i + j]; of a symmetric one also matrix[n j + i], side by side,
          * and rows above the diagonal are not stored. */
@@ -409,6 +431,10 @@ void wb_layered_factor(struct wb_layered *layered, struct wb_layered_pivots *piv
 {
     int negative = 0;
     layered->singular = false;
+    for (int b = 0; b < layered->n_blocks; b++) {
+        freshen(layered->symmetric, &layered->blocks[b]);
+        freshen_links(layered->symmetric, &layered->blocks[b]);
+    }
     for (int b = 0; b < layered->n_blocks && !layered->singular; b++) {
         struct block *block = &layered->blocks[b];
         if (block->n == 0)

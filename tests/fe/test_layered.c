@@ -343,7 +343,7 @@ static void many_right_hand_sides_give_what_each_gives(void **unused)
         const int n = twin.n, tail = twin.first[twin.n_blocks - 1];
         double together[RIGHT * MOST], last[RIGHT * MOST], right[RIGHT * MOST] = {0.0}, x[MOST];
         for (int c = 0; c < RIGHT; c++) {
-            for (int i = c % 2 == 0 ? 0 : tail; i < n; i++)
+            for (int i = c % 7 == 3 ? tail : 0; i < n; i++)
                 right[c * n + i] = random_number() - 0.5;
         }
         memcpy(together, right, sizeof right);
@@ -390,6 +390,15 @@ static void cleared_system_starts_again(void **unused)
             twin_strengthen(&twin, 1.0);
             assert_int_equal(twin_check(&twin, 1e-15).negative, 0);
         }
+
+        /* Nothing is left of a block that is not added to again. */
+        struct wb_layered_pivots pivots;
+        const double one = 1.0;
+        wb_layered_clear(twin.layered);
+        for (int i = 0; i < twin.first[1]; i++)
+            wb_layered_add(twin.layered, 1, &i, &one);
+        wb_layered_factor(twin.layered, &pivots);
+        assert_true(pivots.singular);
         twin_release(&twin);
     }
 }
