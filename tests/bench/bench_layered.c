@@ -207,7 +207,7 @@ static void print_timing(const struct problem *problem, bool symmetric, const st
         "  clear and add %.4f s (%.2f us an element of 60 x 60), %.0f MB\n"
         "  factor %.4f s (%.1f GFlop/s), solve %.4f s, %d at once %.4f s, %d of the tip %.4f s\n",
         problem->title, symmetric ? "symmetric" : "general", t->n, t->n_elements, t->most, t->band,
-        t->clear, t->add, 1e6 * t->add / t->n_elements, 1e-6 * t->memory, t->factor,
+        t->add, 1e6 * t->add / t->n_elements, 1e-6 * t->memory, t->factor,
         1e-9 * t->operations / t->factor, t->solve, RIGHT, t->solve_ten, RIGHT - 1, t->solve_last);
     if (problem->has_band)
         printf("  LAPACK's %s: factor %.4f s, solve %.4f s, %.0f MB; ours / LAPACK: factor %.2f, "
