@@ -1,0 +1,456 @@
+#include "fe/wire3d.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "fe/solid.h"
+
+#define WB_LOG_DOMAIN "wire3d"
+
+/* Past a limit point the path is followed by the arc length: as long as this share of the wire per
+ * increment, at most as often. */
+static const double arc_share = 0.02;
+
+enum {
+    MOST_ARC_INCREMENTS = 100
+};
+
+/* Small sliding holds up to this share of an element's length. */
+static const double slip_share = 0.25;
+
+struct wb_wire3d {
+    const struct wb_wire_model *model; /* borrowed */
+    struct wb_solid_mesh mesh;
+    struct wb_solid *solid;
+};
+
+/* A run under way. */
+struct run {
+    struct wb_wire3d *wire;
+    struct wb_wire_run *run;
+    const struct wb_wire_observer *observer;
+    double (*shape)[3]; /* (n_shape) workspace */
+    int step, row;      /* under way; row from 1 */
+    int increments, iterations;
+    bool slack;
+    enum wb_status status; /* of the observer */
+};
+
+static enum wb_status make_mesh(struct wb_wire3d *wire)
+{
+    const struct wb_wire_model *m = wire->model;
+    struct wb_solid_mesh_wire shape = {
+        .length = m->length,
+        .n_parts = m->n_parts,
+        .elements_along = m->elements_along,
+        .section_density = m->section_density,
+        .split = m->has_contact,
+    };
+
+    for (int p = 0; p < m->n_parts; p++)
+        shape.outer_diameter[p] = m->part[p].outer_diameter;
+    return wb_solid_mesh_sweep(&wire->mesh, &shape);
+}
+
+/* A plane clamp holds the section's plane, and its centre and turning by the nodes on its axes, so
+ * that the section may contract freely. */
+static int hold_clamp(const struct wb_wire3d *wire, struct wb_solid_support *supports)
+{
+    const struct wb_solid_mesh *mesh = &wire->mesh;
+    const double tolerance = 1e-9 * wire->model->part[wire->model->n_parts - 1].outer_diameter;
+    const bool fixed = wire->model->clamp == WB_WIRE_CLAMP_FIXED;
+    int n = 0;
+
+    for (int i = 0; i < mesh->n_clamp; i++) {
+        const int node = mesh->clamp[i];
+        supports[n++] = (struct wb_solid_support){.node = node, .axis = 0};
+        for (int axis = 1; axis < 3; axis++)
+            if (fixed || fabs(mesh->node[node][axis]) < tolerance)
+                supports[n++] = (struct wb_solid_support){.node = node, .axis = axis};
+    }
+    return n;
+}
+
+static enum wb_status make_solid(struct wb_wire3d *wire)
+{
+    const struct wb_wire_model *m = wire->model;
+    struct wb_solid_part parts[WB_WIRE_MODEL_PARTS];
+    struct wb_solid_support *supports =
+        calloc(3 * (size_t)wire->mesh.n_clamp + 1, sizeof *supports);
+    if (!supports)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the clamp");
+
+    for (int p = 0; p < m->n_parts; p++)
+        parts[p] =
+            (struct wb_solid_part){.material = m->part[p].material, .density = m->part[p].density};
+    const struct wb_solid_model model = {
+        .mesh = &wire->mesh,
+        .parts = parts,
+        .integration = m->integration,
+        .gravity = {m->gravity[0], m->gravity[1], m->gravity[2]},
+        .n_supports = hold_clamp(wire, supports),
+        .supports = supports,
+        .interface = m->has_contact ? &m->interface : NULL,
+        .strand_length = m->strand_length,
+        .strand_x = m->length,
+    };
+    const enum wb_status status = wb_solid_create(&wire->solid, &model, NULL);
+    free(supports);
+    return status;
+}
+
+enum wb_status wb_wire3d_create(struct wb_wire3d **out, const struct wb_wire_model *model)
+{
+    *out = NULL;
+    struct wb_wire3d *wire = calloc(1, sizeof *wire);
+    if (!wire)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for a wire");
+    wire->model = model;
+
+    enum wb_status status = make_mesh(wire);
+    if (status == WB_OK)
+        status = make_solid(wire);
+    if (status != WB_OK)
+        wb_wire3d_destroy(wire);
+    else
+        *out = wire;
+    return status;
+}
+
+void wb_wire3d_destroy(struct wb_wire3d *wire)
+{
+    if (!wire)
+        return;
+    wb_solid_destroy(wire->solid);
+    wb_solid_mesh_release(&wire->mesh);
+    free(wire);
+}
+
+/* Position of the axis at reference arc length s: quadratic in the element slice that holds it. */
+static void axis_at(const struct wb_wire3d *wire, double s, double position[3])
+{
+    const struct wb_solid_mesh *mesh = &wire->mesh;
+    const double *u = wb_solid_displacement(wire->solid);
+    const int slices = (mesh->n_axis - 1) / 2;
+    const double along = s / wire->model->length * slices;
+    const int slice = (int)fmin(fmax(floor(along), 0.0), slices - 1);
+    const double t = along - slice;
+    const double shape[3] = {(1.0 - t) * (1.0 - 2.0 * t), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)};
+
+    position[0] = position[1] = position[2] = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const int node = mesh->axis[2 * slice + k];
+        for (int i = 0; i < 3; i++)
+            position[i] += shape[k] * (mesh->node[node][i] + u[3 * node + i]);
+    }
+}
+
+static bool has_deflection(const struct wb_wire_model *model)
+{
+    for (int i = 0; i < model->n_steps; i++)
+        if (model->step[i].kind == WB_WIRE_STEP_DEFLECTION)
+            return true;
+    return false;
+}
+
+static void add_row(struct run *r, double fraction)
+{
+    const struct wb_wire3d *wire = r->wire;
+    const struct wb_wire_model *model = wire->model;
+    const struct wb_solid_loads *loads = wb_solid_loads(wire->solid);
+    struct wb_solid_tip tip;
+    struct wb_wire_row row = {
+        .step = r->step,
+        .fraction = fraction,
+        .loads = loads->tip,
+        .increments = r->increments,
+        .iterations = r->iterations,
+    };
+
+    wb_solid_tip(wire->solid, &tip);
+    memcpy(row.tip, tip.position, sizeof row.tip);
+    memcpy(row.tangent, tip.frame[0], sizeof row.tangent);
+    if (has_deflection(model)) {
+        double lean = 0.0;
+        if (model->strand_length > 0.0)
+            lean = hypot(model->length - row.tip[0], row.tip[2]) / model->strand_length;
+        row.tension = loads->tension;
+        row.vertical_force = loads->tension * sqrt(1.0 - lean * lean);
+    } else {
+        for (int i = 0; i < 3; i++)
+            row.tension += loads->tip.follower[i] * tip.frame[i][1];
+        row.tension += loads->tip.force[1];
+        row.vertical_force = row.tension;
+    }
+    for (int k = 0; k < r->run->n_shape; k++)
+        axis_at(wire, r->run->shape_s[k], r->shape[k]);
+    wb_wire_run_add(r->run, model, &row, r->slack, (const double(*)[3])r->shape);
+    r->increments = r->iterations = 0;
+    if (r->observer && r->observer->row)
+        r->status = r->observer->row(r->observer->context, r->run, fraction == 1.0);
+}
+
+/* What wb_solid_move() tells after each increment: shares of a row become shares of the step. */
+static bool observe(void *context, double fraction, int iterations)
+{
+    struct run *r = context;
+    const struct wb_wire_model *model = r->wire->model;
+    const int rows = model->step[r->step].rows;
+    const double done = (r->run->n_rows + fraction) / wb_wire_run_planned_rows(model);
+
+    r->increments++;
+    r->iterations += iterations;
+    r->run->increments++;
+    return !r->observer || !r->observer->increment ||
+           r->observer->increment(r->observer->context, r->run, r->step,
+                                  fmin(1.0, (r->row - 1 + fraction) / rows), iterations,
+                                  fmin(1.0, done));
+}
+
+/* One move and what it cost; true when it arrived. */
+static bool move(struct run *r, struct wb_solid_move *move, struct wb_solid_point *point)
+{
+    move->observer = observe;
+    move->context = r;
+    r->status = wb_solid_move(r->wire->solid, move, point);
+    if (r->status != WB_OK)
+        return false;
+    r->run->iterations += point->iterations;
+    r->run->cutbacks += point->cutbacks;
+    r->run->stopped = r->run->stopped || point->end == WB_SOLID_STOPPED;
+    return point->end == WB_SOLID_CONVERGED;
+}
+
+static void blend(const struct wb_tip_loads *a, const struct wb_tip_loads *b, double share,
+                  struct wb_tip_loads *out)
+{
+    for (int i = 0; i < 3; i++) {
+        out->force[i] = a->force[i] + share * (b->force[i] - a->force[i]);
+        out->moment[i] = a->moment[i] + share * (b->moment[i] - a->moment[i]);
+        out->follower[i] = a->follower[i] + share * (b->follower[i] - a->follower[i]);
+    }
+}
+
+/* The end of a row: what the step wants at `share` of its way from `start`. */
+static struct wb_solid_move plan_row(const struct run *r, const struct wb_solid_loads *start,
+                                     double start_deflection, double share)
+{
+    const struct wb_wire_step *step = &r->wire->model->step[r->step];
+    struct wb_solid_move move = {
+        .control = WB_SOLID_LOADS,
+        .target = {.weight = 1.0, .tension = start->tension},
+    };
+
+    blend(&start->tip, &step->loads, share, &move.target.tip);
+    if (step->kind == WB_WIRE_STEP_RELEASE)
+        move.target.tension = (1.0 - share) * start->tension;
+    if (step->kind == WB_WIRE_STEP_DEFLECTION) {
+        move.control = WB_SOLID_DEFLECTION;
+        move.deflection = start_deflection + share * (step->deflection - start_deflection);
+    }
+    return move;
+}
+
+static double tip_y(const struct run *r)
+{
+    struct wb_solid_tip tip;
+    wb_solid_tip(r->wire->solid, &tip);
+    return tip.position[1];
+}
+
+/* Follows the path past a limit point of the load, with a row for each increment, until the row's
+ * loads can be reached again. */
+static bool follow_arc(struct run *r, const struct wb_solid_move *row, double from, double to)
+{
+    struct wb_solid_move arc = *row;
+    struct wb_solid_point point;
+    double length = arc_share * r->wire->model->length;
+
+    arc.control = WB_SOLID_ARC;
+    arc.arc_length = length;
+    for (int i = 0; i < MOST_ARC_INCREMENTS; i++) {
+        if (!move(r, &arc, &point))
+            return false;
+        add_row(r, fmin(from + point.fraction * (to - from), 0.999999));
+        if (r->status != WB_OK || r->run->stopped)
+            return false;
+        if (point.fraction > 0.0 && point.negative_pivots == 0) {
+            struct wb_solid_move rest = *row;
+            if (move(r, &rest, &point))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Moves to the end of a row; a slack strand waits until the tip comes to it again. */
+static bool reach_row(struct run *r, struct wb_solid_move *row, double from, double to)
+{
+    struct wb_solid_point point = {0};
+    const bool strand = r->wire->model->strand_length > 0.0;
+
+    if (r->slack && row->control == WB_SOLID_DEFLECTION && row->deflection <= tip_y(r))
+        return true;
+    r->slack = false;
+    if (!move(r, row, &point)) {
+        snprintf(r->run->problem, sizeof r->run->problem, "step '%s', row %d (%.3g of the way): %s",
+                 r->wire->model->step[r->step].name, r->row, point.fraction, point.problem);
+        if (r->status != WB_OK || r->run->stopped || row->control != WB_SOLID_LOADS)
+            return false;
+        return follow_arc(r, row, from, to);
+    }
+    if (strand && row->control == WB_SOLID_DEFLECTION &&
+        wb_solid_loads(r->wire->solid)->tension < 0.0) {
+        struct wb_solid_move release = *row;
+        release.control = WB_SOLID_LOADS;
+        release.target.tension = 0.0;
+        r->slack = true;
+        return move(r, &release, &point);
+    }
+    return true;
+}
+
+static bool run_step(struct run *r)
+{
+    const struct wb_wire_step *step = &r->wire->model->step[r->step];
+    const struct wb_solid_loads start = *wb_solid_loads(r->wire->solid);
+    const double start_deflection = tip_y(r);
+
+    for (r->row = 1; r->row <= step->rows; r->row++) {
+        const double from = (r->row - 1.0) / step->rows, to = (double)r->row / step->rows;
+        struct wb_solid_move row = plan_row(r, &start, start_deflection, to);
+        if (!reach_row(r, &row, from, to))
+            return false;
+        r->run->problem[0] = '\0';
+        add_row(r, r->row == step->rows ? 1.0 : to);
+        if (r->status != WB_OK || r->run->stopped)
+            return false;
+    }
+    return true;
+}
+
+/* The virgin wire under its weight; a test that begins by a deflection begins at zero. */
+static bool begin(struct run *r)
+{
+    const bool level = r->wire->model->step[0].kind == WB_WIRE_STEP_DEFLECTION;
+    struct wb_solid_move first = {
+        .control = level ? WB_SOLID_DEFLECTION : WB_SOLID_LOADS,
+        .target = {.weight = 1.0},
+    };
+    struct wb_solid_point point = {0};
+
+    if (!move(r, &first, &point)) {
+        snprintf(r->run->problem, sizeof r->run->problem, "under its weight: %s", point.problem);
+        return false;
+    }
+    add_row(r, 0.0);
+    return r->status == WB_OK && !r->run->stopped;
+}
+
+enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
+                             const struct wb_wire_observer *observer)
+{
+    struct run r = {.wire = wire, .run = run, .observer = observer, .status = WB_OK};
+
+    r.shape = calloc((size_t)run->n_shape + 1, sizeof *r.shape);
+    if (!r.shape)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for %d positions", run->n_shape);
+    run->n_elements = wire->mesh.n_elements;
+    run->n_unknowns = wb_solid_unknowns(wire->solid);
+    run->converged = begin(&r);
+    for (r.step = 0; run->converged && r.step < wire->model->n_steps; r.step++)
+        run->converged = run_step(&r);
+    if (run->stopped)
+        run->converged = true;
+    free(r.shape);
+    return r.status;
+}
+
+const struct wb_solid_mesh *wb_wire3d_mesh(const struct wb_wire3d *wire)
+{
+    return &wire->mesh;
+}
+
+/* Replaces the elements' own values at a node by their mean over the elements of one part. */
+static enum wb_status average_by_part(const struct wb_solid_mesh *mesh,
+                                      struct wb_wire3d_fields *fields)
+{
+    enum {
+        VALUES = 7
+    };
+    const size_t places = (size_t)mesh->n_nodes * (size_t)mesh->n_parts;
+    double(*sum)[VALUES] = calloc(places, sizeof *sum);
+    int *count = calloc(places, sizeof *count);
+    const bool taken = sum && count;
+
+    for (int pass = 0; taken && pass < 2; pass++)
+        for (int e = 0; e < mesh->n_elements; e++)
+            for (int k = 0; k < WB_SOLID_MESH_NODES; k++) {
+                const size_t at =
+                    (size_t)mesh->element[e][k] * (size_t)mesh->n_parts + (size_t)mesh->part[e];
+                for (int i = 0; i < VALUES; i++) {
+                    double *value = i < 6 ? &fields->stress[e][k][i] : &fields->plastic[e][k];
+                    if (pass == 0)
+                        sum[at][i] += *value;
+                    else
+                        *value = sum[at][i] / count[at];
+                }
+                count[at] += pass == 0;
+            }
+    free(sum);
+    free(count);
+    return taken ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for fields");
+}
+
+enum wb_status wb_wire3d_fields(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields)
+{
+    const struct wb_solid_mesh *mesh = &wire->mesh;
+    const double *u = wb_solid_displacement(wire->solid);
+
+    *fields = (struct wb_wire3d_fields){
+        .position = calloc((size_t)mesh->n_nodes, sizeof *fields->position),
+        .stress = calloc((size_t)mesh->n_elements, sizeof *fields->stress),
+        .plastic = calloc((size_t)mesh->n_elements, sizeof *fields->plastic),
+    };
+    if (!fields->position || !fields->stress || !fields->plastic) {
+        wb_wire3d_fields_release(fields);
+        return wb_fail(WB_ERR_MEMORY, "out of memory for fields of %d elements", mesh->n_elements);
+    }
+    for (int a = 0; a < mesh->n_nodes; a++)
+        for (int i = 0; i < 3; i++)
+            fields->position[a][i] = mesh->node[a][i] + u[3 * a + i];
+    for (int e = 0; e < mesh->n_elements; e++)
+        wb_solid_nodal_stress(wire->solid, e, fields->stress[e], fields->plastic[e]);
+    const enum wb_status status = average_by_part(mesh, fields);
+    if (status != WB_OK)
+        wb_wire3d_fields_release(fields);
+    return status;
+}
+
+void wb_wire3d_fields_release(struct wb_wire3d_fields *fields)
+{
+    free(fields->position);
+    free(fields->stress);
+    free(fields->plastic);
+    *fields = (struct wb_wire3d_fields){0};
+}
+
+void wb_wire3d_balance(const struct wb_wire3d *wire, struct wb_wire3d_balance *balance)
+{
+    struct wb_solid_balance b;
+
+    wb_solid_balance(wire->solid, &b);
+    *balance = (struct wb_wire3d_balance){
+        .penetration = b.interface.penetration,
+        .opening = b.interface.opening,
+        .slip = b.interface.slip,
+        .slip_limit = slip_share * wire->model->length / wire->model->elements_along,
+        .work = b.work,
+        .elastic = b.elastic,
+        .dissipated = b.dissipated,
+        .friction = b.friction,
+    };
+}
