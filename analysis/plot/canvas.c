@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "analysis/plot/layout.h"
+#include "analysis/plot/shading.h"
 
 #define WB_LOG_DOMAIN "figure"
 
@@ -176,6 +177,10 @@ static void draw_series(cairo_t *cairo, const struct wb_layout_panel *layout)
     cairo_save(cairo);
     cairo_rectangle(cairo, plot->x, plot->y, plot->width, plot->height);
     cairo_clip(cairo);
+    for (int i = 0; i < panel->n_series; i++) {
+        if (panel->series[i].kind == WB_SERIES_FIELD)
+            wb_shading_draw_field(cairo, layout, &panel->series[i]);
+    }
     for (int i = 0; i < panel->n_series; i++) {
         if (panel->series[i].kind == WB_SERIES_BAND && panel->series[i].n > 0)
             draw_band(cairo, layout, &panel->series[i]);
@@ -354,6 +359,10 @@ static void clear_behind(cairo_t *cairo, const struct wb_layout_panel *layout)
 static void draw_panel(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_panel *const panel = layout->panel;
+    if (panel->is_bar) {
+        wb_shading_draw_bar(cairo, layout);
+        return;
+    }
     if (panel->is_inset)
         clear_behind(cairo, layout);
     if (!panel->hidden_axes)

@@ -58,6 +58,7 @@ static void destroy_panel(struct wb_panel *panel)
         free(panel->series[i].x);
         free(panel->series[i].y);
         free(panel->series[i].high);
+        wb_contour_release(&panel->series[i].contour);
     }
     free(panel->series);
     free(panel->x_label);
@@ -122,6 +123,33 @@ struct wb_panel *wb_figure_add_panel(struct wb_figure *figure)
     if (panel)
         figure->panels[figure->n_panels++] = panel;
     return panel;
+}
+
+void wb_figure_set_width(struct wb_panel *panel, double width)
+{
+    if (panel)
+        panel->width = width;
+}
+
+/* The number of colours that is drawn. */
+static struct wb_figure_colours complete(const struct wb_figure_colours *colours)
+{
+    struct wb_figure_colours all = *colours;
+    if (all.n == 0)
+        all.n = 48;
+    return all;
+}
+
+void wb_figure_add_colour_bar(struct wb_figure *figure, const struct wb_figure_colours *colours,
+                              const char *label)
+{
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    if (!panel)
+        return;
+    panel->is_bar = true;
+    panel->width = 46.0;
+    panel->colours = complete(colours);
+    replace_text(figure, &panel->y_label, label);
 }
 
 /* The other builders take a NULL panel, which is what running out of memory leaves behind. */
@@ -249,6 +277,30 @@ void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, con
     series->y = copy_values(panel->figure, edges[0], n);
     series->high = copy_values(panel->figure, edges[1], n);
     series->n = series->x && series->y && series->high ? n : 0;
+}
+
+void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_contour_face *faces,
+                         const struct wb_figure_colours *colours)
+{
+    struct wb_series *const series = add_series(panel, WB_SERIES_FIELD, NULL);
+    if (!series)
+        return;
+    series->colours = complete(colours);
+    const struct wb_contour_levels levels = {series->colours.low, series->colours.high,
+                                             series->colours.n};
+    const size_t n = (size_t)n_faces * 8;
+    series->x = malloc((n + 1) * sizeof *series->x);
+    series->y = malloc((n + 1) * sizeof *series->y);
+    if (!series->x || !series->y ||
+        wb_contour_create(&series->contour, n_faces, faces, &levels) != WB_OK) {
+        panel->figure->failed = true;
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        series->x[i] = faces[i / 8].x[i % 8];
+        series->y[i] = faces[i / 8].y[i % 8];
+    }
+    series->n = n;
 }
 
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup)

@@ -13,6 +13,9 @@
  * copy what they are given, return nothing and never fail visibly: running out of memory is
  * remembered and reported when the figure is drawn. The same description gives the same bytes.
  *
+ * Fields on 8-node faces are drawn as filled contours, see contour.h; a colour bar is a panel of
+ * its own.
+ *
  * Legends and insets are placed where they cover no data: in the emptiest corner, else as near to a
  * corner as they fit, else outside of the axes. A figure is used by one thread at a time.
  */
@@ -22,6 +25,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "analysis/plot/contour.h"
 #include "analysis/plot/palette.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -54,6 +58,14 @@ struct wb_figure_style {
     double marker_size; /* 0: 4 */
 };
 
+/* How the values of a field become colours. Values beyond the ends have the end's colour. */
+struct wb_figure_colours {
+    enum wb_palette_map map;
+    double low, high;   /* low < high */
+    int n;              /* of different colours; 0: 48 */
+    bool light_outline; /* of the faces: white, for a field that lies within another */
+};
+
 /* `name` is a file name without ending: letters, digits, '-' and '_'. Size in points. */
 WB_MUST_CHECK enum wb_status wb_figure_create(struct wb_figure **out, const char *name,
                                               double width, double height);
@@ -69,6 +81,11 @@ void wb_figure_set_footer(struct wb_figure *figure, const char *markup);
 
 /* Panels stand side by side in the order they were added, each with equal width. */
 struct wb_panel *wb_figure_add_panel(struct wb_figure *figure);
+/* A width in points instead; the others share what is left. */
+void wb_figure_set_width(struct wb_panel *panel, double width);
+/* A narrow panel with the scale of a field's colours, as high as the panel before it. */
+void wb_figure_add_colour_bar(struct wb_figure *figure, const struct wb_figure_colours *colours,
+                              const char *label);
 /* A small panel within another; one at most. */
 struct wb_panel *wb_figure_add_inset(struct wb_panel *panel);
 
@@ -86,12 +103,15 @@ void wb_figure_set_right_axis(struct wb_panel *panel, const char *label, double 
 /* No frame, ticks and labels: a drawing. */
 void wb_figure_hide_axes(struct wb_panel *panel);
 
-/* Series, drawn in the order bands, lines, points. `label` NULL: not in the legend. */
+/* Series, drawn in the order fields, bands, lines, points. `label` NULL: not in the legend. */
 void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *y, const struct wb_figure_style *style);
 /* `edges`: the lower and the upper one, each of n values. */
 void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *const edges[2], struct wb_colour colour);
+/* A field with the outline of its faces; copied. Faces that are not finite are left out. */
+void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_contour_face *faces,
+                         const struct wb_figure_colours *colours);
 /* A text whose left (-1), middle (0) or right (1) end stands at a point. */
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup);
 

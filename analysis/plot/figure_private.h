@@ -7,9 +7,10 @@
 
 #include "analysis/plot/figure.h"
 
-#define WB_FIGURE_PANELS 4
+#define WB_FIGURE_PANELS 6
 
 enum wb_series_kind {
+    WB_SERIES_FIELD,
     WB_SERIES_BAND,
     WB_SERIES_LINE, /* and points */
     WB_SERIES_TEXT
@@ -22,6 +23,9 @@ struct wb_series {
     double *x, *y, *high; /* (n), owned; `high` of a band, whose low edge is y */
     struct wb_figure_style style;
     int side; /* of a text */
+    /* Of a field, whose x and y are the nodes of its faces, eight each. */
+    struct wb_contour contour; /* owned */
+    struct wb_figure_colours colours;
 };
 
 struct wb_panel {
@@ -31,6 +35,9 @@ struct wb_panel {
     double right_factor;
     double x_range[2], y_range[2]; /* NaN: from the data */
     bool logarithmic_y, equal_aspect, hidden_axes, is_inset;
+    double width;                     /* pt; 0: a share of what is left */
+    bool is_bar;                      /* of colours: */
+    struct wb_figure_colours colours; /* those; the label is y_label */
     int n_series, capacity;
     struct wb_series *series;
 };
@@ -40,7 +47,7 @@ struct wb_figure {
     double width, height;
     int n_panels;
     struct wb_panel *panels[WB_FIGURE_PANELS];
-    bool failed; /* out of memory, or more panels than there are places */
+    bool failed; /* out of memory, or more panels than there are places, or no field's colours */
 };
 
 #endif

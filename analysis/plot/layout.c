@@ -205,6 +205,23 @@ static void mark_band(struct wb_place *place, const struct wb_layout_panel *layo
     }
 }
 
+/* The edges of the faces and their diagonals: faces are small, so that leaves no room in them. */
+static void mark_field(struct wb_place *place, const struct wb_layout_panel *layout,
+                       const struct wb_series *series)
+{
+    static const int ends[6][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}, {1, 3}};
+    for (size_t i = 0; i + 8 <= series->n; i += 8) {
+        for (int k = 0; k < 6; k++) {
+            const double *const x = &series->x[i], *const y = &series->y[i];
+            const int a = ends[k][0], b = ends[k][1];
+            wb_place_mark_segment(place, wb_layout_x(layout, x[a]) - layout->plot.x,
+                                  wb_layout_y(layout, y[a]) - layout->plot.y,
+                                  wb_layout_x(layout, x[b]) - layout->plot.x,
+                                  wb_layout_y(layout, y[b]) - layout->plot.y, 1.5);
+        }
+    }
+}
+
 static void mark_text(struct wb_place *place, const struct wb_layout_panel *layout,
                       const struct wb_series *series, cairo_t *cairo)
 {
@@ -225,6 +242,9 @@ static void mark_series(struct wb_place *place, const struct wb_layout_panel *la
         if (series->n == 0)
             continue;
         switch (series->kind) {
+        case WB_SERIES_FIELD:
+            mark_field(place, layout, series);
+            break;
         case WB_SERIES_LINE:
             mark_line(place, layout, series);
             break;
@@ -368,6 +388,47 @@ static enum wb_status lay_panel(struct wb_layout_panel *layout, struct wb_layout
     return WB_OK;
 }
 
+/* A colour bar, as high as the plot before it. */
+static void lay_bar(struct wb_layout_panel *layout, const struct wb_layout_panel *before)
+{
+    const struct wb_figure_colours *const colours = &layout->panel->colours;
+    layout->plot =
+        (struct wb_place_box){layout->room.x + 3.0, layout->room.y, 8.0, layout->room.height};
+    if (before) {
+        layout->plot.y = before->plot.y;
+        layout->plot.height = before->plot.height;
+    }
+    /* Its label stands above it, half of a tick's label below it. */
+    const double above = layout->panel->y_label ? 1.9 * layout->text_size : 0.6 * layout->text_size;
+    const double most_y = layout->room.y + above;
+    if (layout->plot.y < most_y) {
+        layout->plot.height -= most_y - layout->plot.y;
+        layout->plot.y = most_y;
+    }
+    const double bottom = layout->room.y + layout->room.height - 0.6 * layout->text_size;
+    layout->plot.height = fmax(8.0, fmin(layout->plot.height, bottom - layout->plot.y));
+    layout->y = (struct wb_scale){.low = colours->low, .high = colours->high};
+    wb_scale_place_ticks(&layout->y, (int)(layout->plot.height / (2.2 * layout->text_size)));
+}
+
+/* Where each panel begins and ends: given widths first, the others share the rest. */
+static void share_width(struct wb_layout *layout, const struct wb_figure *figure, double height)
+{
+    const double gap = 10.0;
+    double rest = figure->width - gap * (figure->n_panels - 1), x = 0.0;
+    int n = 0;
+    for (int i = 0; i < figure->n_panels; i++) {
+        rest -= figure->panels[i]->width;
+        n += !(figure->panels[i]->width > 0.0);
+    }
+    for (int i = 0; i < figure->n_panels; i++) {
+        const double given = figure->panels[i]->width;
+        const double width = given > 0.0 ? given : fmax(8.0, rest / n);
+        layout->panels[i].room = (struct wb_place_box){x, 0.0, width, height};
+        x += width + gap;
+    }
+}
+
 enum wb_status wb_layout_compute(struct wb_layout *layout, const struct wb_figure *figure,
                                  cairo_t *cairo)
 {
@@ -378,13 +439,15 @@ enum wb_status wb_layout_compute(struct wb_layout *layout, const struct wb_figur
         height -= wb_typeset_measure(cairo, figure->footer, &footer).height + 2.0;
     layout->footer_y = height + 1.0;
     layout->n_panels = figure->n_panels;
-    const double gap = 10.0;
+    share_width(layout, figure, height);
     for (int i = 0; i < figure->n_panels; i++) {
         struct wb_layout_panel *const panel = &layout->panels[i];
-        const double width = (figure->width - gap * (figure->n_panels - 1)) / figure->n_panels;
         panel->panel = figure->panels[i];
-        panel->text_size = width < 300.0 ? 7.0 : 7.6;
-        panel->room = (struct wb_place_box){i * (width + gap), 0.0, width, height};
+        panel->text_size = panel->room.width < 300.0 ? 7.0 : 7.6;
+        if (panel->panel->is_bar) {
+            lay_bar(panel, i > 0 ? panel - 1 : NULL);
+            continue;
+        }
         struct wb_layout_panel *const inset = &layout->insets[i];
         inset->panel = panel->panel->inset;
         inset->text_size = 6.2;

@@ -10,6 +10,14 @@ struct wb_colour {
     double red, green, blue, alpha;
 };
 
+/* Colour maps for fields, of even steps in perceived lightness (interpolated in OKLab). */
+enum wb_palette_map {
+    WB_PALETTE_SEQUENTIAL, /* viridis: dark violet to yellow */
+    WB_PALETTE_DIVERGING   /* blue, white in the middle, red (ColorBrewer's RdBu) */
+};
+/* The colour at `part`, 0 to 1, of a map; beyond that the end's. */
+struct wb_colour wb_palette_map(enum wb_palette_map map, double part);
+
 /* The colour of a wire by its place in the campaign, from 0; repeats after six. */
 struct wb_colour wb_palette_wire(int index);
 /* The colour of a sample by its number, from 1; repeats after four. */
