@@ -11,6 +11,7 @@
 #include "daq/specimen.h"
 #include "fe/material_file.h"
 #include "fe/wire.h"
+#include "fe/wire_model.h"
 
 /* Calls `look` with every shipped file that matches; there must be at least `least`. */
 static void each_file(const char *pattern, size_t least, void (*look)(const char *path))
@@ -214,6 +215,30 @@ static void pvc_passes_through_its_tensile_strength(void **state)
                           17e6, 5e-3);
 }
 
+static void look_at_model(const char *path)
+{
+    struct wb_wire_model model;
+    char file[WB_PATH];
+    assert_int_equal(wb_wire_model_read(&model, path), WB_OK);
+    snprintf(file, sizeof file, "%s.yaml", model.name);
+    assert_string_equal(wb_file_name(path), file);
+    assert_true(strlen(model.title) > 0);
+    assert_int_equal(wb_file_find_fixture(file, "models", model.name, NULL), WB_OK);
+    /* Those of section 2 have no weight and keep fields. */
+    if (strstr(model.name, "8awg")) {
+        assert_int_equal(model.n_parts, 2);
+        assert_true(model.gravity[1] == 0.0 && model.n_sections == 2);
+        assert_true(model.step[model.n_steps - 1].fields);
+        assert_close(model.step[model.n_steps - 1].loads.follower[1], 24.0, 0.0);
+    }
+}
+
+static void models_read(void **state)
+{
+    (void)state;
+    each_file("fixtures/models/*.yaml", 6, look_at_model);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -225,6 +250,7 @@ int main(void)
         cmocka_unit_test(materials_are_complete),
         cmocka_unit_test(copper_and_pvc_make_the_8awg_wire),
         cmocka_unit_test(pvc_passes_through_its_tensile_strength),
+        cmocka_unit_test(models_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
