@@ -13,10 +13,11 @@ static char *copy_text(struct wb_document *document, const char *text)
     return copy;
 }
 
-void wb_document_init(struct wb_document *document, const char *title, const char *subtitle,
-                      const char *footer, const char *date_utc)
+void wb_document_init(struct wb_document *document, const char *kind, const char *title,
+                      const char *subtitle, const char *footer, const char *date_utc)
 {
     memset(document, 0, sizeof *document);
+    document->kind = copy_text(document, kind);
     document->title = copy_text(document, title);
     document->subtitle = copy_text(document, subtitle);
     document->footer = copy_text(document, footer);
@@ -48,6 +49,7 @@ void wb_document_release(struct wb_document *document)
         destroy_table(block->table);
     }
     free(document->blocks);
+    free(document->kind);
     free(document->title);
     free(document->subtitle);
     free(document->footer);

@@ -2,7 +2,7 @@
  * and the HTML page are two views of it, so they cannot tell different things.
  *
  * Text is the markup that Pango and HTML share: <b>, <i>, <sub>, <sup>, <tt>, and &amp; &lt; &gt;.
- * Title, subtitle, footer, headings and code are plain text.
+ * Kind, title, subtitle, footer, headings and code are plain text.
  * Builders copy text, return nothing and remember running out of memory in `failed`, which
  * the views refuse. Figures are borrowed and must outlive the document.
  */
@@ -66,16 +66,17 @@ struct wb_document_block {
 };
 
 struct wb_document {
+    char *kind;                      /* of report: "Calibration report" */
     char *title, *subtitle, *footer; /* footer: on every page */
-    char *date_utc;                  /* of the document: of the latest recording; "" unknown */
+    char *date_utc;                  /* of the document: of its latest data; "" unknown */
     int n, capacity, n_figures;
     struct wb_document_block *blocks;
     bool failed;
 };
 
 /* Starts an empty document. Release it also after a failure; a zeroed one may be released. */
-void wb_document_init(struct wb_document *document, const char *title, const char *subtitle,
-                      const char *footer, const char *date_utc);
+void wb_document_init(struct wb_document *document, const char *kind, const char *title,
+                      const char *subtitle, const char *footer, const char *date_utc);
 void wb_document_release(struct wb_document *document);
 
 /* `anchor`: letters, digits and '-'; unique, or "" for none. */

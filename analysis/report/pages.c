@@ -158,7 +158,8 @@ void wb_pages_build(struct wb_document *document, const struct wb_results *resul
                  "none of %d recordings \xc2\xb7 wirebench %s, revision "
                  "%s",
                  results->n_tests, wb_version(), wb_version_revision());
-    wb_document_init(document, results->campaign->title, subtitle, footer, results->latest_utc);
+    wb_document_init(document, "Calibration report", results->campaign->title, subtitle, footer,
+                     results->latest_utc);
     wb_pages_summary(document, results);
     wb_pages_bench(document, results, figures);
     add_overview(document, results, figures);

@@ -1,224 +1,47 @@
 #include "analysis/report/report.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "analysis/report/figures.h"
 #include "analysis/report/pages.h"
-#include "analysis/report/report_html.h"
+#include "analysis/report/report_files.h"
 #include "analysis/report/report_json.h"
-#include "analysis/report/report_pdf.h"
-#include "base/file.h"
-#include "base/json.h"
-#include "base/text.h"
 
 #define WB_LOG_DOMAIN "report"
 
-/* Pixels of a PNG for a point: 216 dots an inch. */
-static const double png_scale = 3.0;
-
-struct output {
-    char name[128]; /* relative to the report's folder */
-    struct wb_text bytes;
-};
-
-struct outputs {
-    int n;
-    struct output *items;
-};
-
-/* --- drawing --- */
-
-static enum wb_status draw_figures(struct outputs *outputs, const struct wb_figure *const *list,
-                                   int n)
+static struct wb_json *build_json(const void *context, const char *const *files, int n_files)
 {
-    for (int i = 0; i < n; i++) {
-        struct output *const svg = &outputs->items[outputs->n++];
-        snprintf(svg->name, sizeof svg->name, "figures/%s.svg", wb_figure_name(list[i]));
-        WB_TRY(wb_figure_svg(list[i], &svg->bytes));
-        struct output *const png = &outputs->items[outputs->n++];
-        snprintf(png->name, sizeof png->name, "figures/%s.png", wb_figure_name(list[i]));
-        WB_TRY(wb_figure_png(list[i], png_scale, &png->bytes));
-    }
-    return WB_OK;
+    return wb_report_json_build(context, files, n_files);
 }
 
-static enum wb_status draw_document(struct outputs *outputs, const struct wb_results *results,
-                                    const struct wb_figures *figures)
+static enum wb_status write_all(const struct wb_results *results, const struct wb_figures *figures,
+                                const char *folder, bool force)
 {
+    const int n = wb_figures_list(figures, NULL);
+    const struct wb_figure **const list = calloc((size_t)n + 1, sizeof(struct wb_figure *));
+    if (!list)
+        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
+    wb_figures_list(figures, list);
     struct wb_document document;
     wb_pages_build(&document, results, figures);
-    struct output *const pdf = &outputs->items[outputs->n++];
-    snprintf(pdf->name, sizeof pdf->name, "report.pdf");
-    enum wb_status status = wb_report_pdf_render(&document, &pdf->bytes);
-    if (status == WB_OK) {
-        struct output *const html = &outputs->items[outputs->n++];
-        snprintf(html->name, sizeof html->name, "report.html");
-        status = wb_report_html_render(&document, &html->bytes);
-    }
+    const struct wb_report_content content = {
+        .document = &document,
+        .n_figures = n,
+        .figures = list,
+        .json = build_json,
+        .context = results,
+    };
+    const enum wb_status status = wb_report_files_write(&content, folder, force);
     wb_document_release(&document);
-    return status;
-}
-
-static enum wb_status draw_json(struct outputs *outputs, const struct wb_results *results)
-{
-    const char **const names = calloc((size_t)outputs->n + 1, sizeof *names);
-    if (!names)
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
-    for (int i = 0; i < outputs->n; i++)
-        names[i] = outputs->items[i].name;
-    names[outputs->n] = "report.json";
-    struct wb_json *const root = wb_report_json_build(results, names, outputs->n + 1);
-    free(names);
-    char *text;
-    const enum wb_status status = wb_json_format(root, &text);
-    wb_json_destroy(root);
-    if (status != WB_OK)
-        return status;
-    struct output *const json = &outputs->items[outputs->n++];
-    snprintf(json->name, sizeof json->name, "report.json");
-    wb_text_append_bytes(&json->bytes, text, strlen(text));
-    free(text);
-    return WB_OK;
-}
-
-static enum wb_status draw(struct outputs *outputs, const struct wb_results *results)
-{
-    struct wb_figures figures;
-    WB_TRY(wb_figures_create(&figures, results));
-    const int n = wb_figures_list(&figures, NULL);
-    const struct wb_figure **const list = calloc((size_t)n + 1, sizeof(struct wb_figure *));
-    outputs->items = calloc(2 * (size_t)n + 3, sizeof *outputs->items);
-    enum wb_status status =
-        list && outputs->items ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
-    if (status == WB_OK) {
-        wb_figures_list(&figures, list);
-        status = draw_document(outputs, results, &figures);
-    }
-    if (status == WB_OK)
-        status = draw_figures(outputs, list, n);
-    if (status == WB_OK)
-        status = draw_json(outputs, results);
     free(list);
-    wb_figures_release(&figures);
-    for (int i = 0; status == WB_OK && i < outputs->n; i++) {
-        if (outputs->items[i].bytes.failed)
-            status = wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
-    }
-    return status;
-}
-
-static void release(struct outputs *outputs)
-{
-    for (int i = 0; outputs->items && i < outputs->n; i++)
-        wb_text_release(&outputs->items[i].bytes);
-    free(outputs->items);
-}
-
-/* --- writing --- */
-
-static enum wb_status fail_errno(const char *what, const char *path)
-{
-    const int error = errno;
-    return wb_fail(WB_ERR_IO, "cannot %s '%s': %s", what, path, strerror(error));
-}
-
-/* Writes all into a new folder within the report's, from where it is moved when all is there. */
-static enum wb_status write_all(const struct outputs *outputs, const char *folder)
-{
-    char path[WB_PATH];
-    WB_TRY(wb_file_join(path, folder, "figures"));
-    WB_TRY(wb_file_make_folder(path));
-    for (int i = 0; i < outputs->n; i++) {
-        const struct output *const output = &outputs->items[i];
-        WB_TRY(wb_file_join(path, folder, output->name));
-        WB_TRY(wb_file_write(path, wb_text_string(&output->bytes), output->bytes.length));
-    }
-    return WB_OK;
-}
-
-static void remove_all(const struct outputs *outputs, const char *folder)
-{
-    char path[WB_PATH];
-    for (int i = 0; i < outputs->n; i++) {
-        if (wb_file_join(path, folder, outputs->items[i].name) == WB_OK)
-            unlink(path);
-    }
-    if (wb_file_join(path, folder, "figures") == WB_OK)
-        rmdir(path);
-    rmdir(folder);
-}
-
-static bool is_made(const struct outputs *outputs, const char *name)
-{
-    for (int i = 0; i < outputs->n; i++) {
-        if (strcmp(outputs->items[i].name, name) == 0)
-            return true;
-    }
-    return false;
-}
-
-/* Files that the report before made and this one does not, as its report.json lists them. */
-static void remove_stale(const struct outputs *outputs, const char *folder)
-{
-    char path[WB_PATH];
-    struct wb_json *before = NULL;
-    if (wb_file_join(path, folder, "report.json") != WB_OK || !wb_file_exists(path) ||
-        wb_json_read(&before, path) != WB_OK)
-        return;
-    const struct wb_json *const files = wb_json_get(before, "files");
-    for (size_t i = 0; i < wb_json_length(files); i++) {
-        const char *name;
-        /* Only names that this program gives: nothing outside of the folder. */
-        if (wb_json_text(wb_json_item(files, i), &name) && !strstr(name, "..") && name[0] != '/' &&
-            (strncmp(name, "figures/", 8) == 0 || !strchr(name, '/')) && !is_made(outputs, name) &&
-            wb_file_join(path, folder, name) == WB_OK)
-            unlink(path);
-    }
-    wb_json_destroy(before);
-}
-
-/* Moves the new files over the old ones, each at once. */
-static enum wb_status move_all(const struct outputs *outputs, const char *from, const char *to)
-{
-    char source[WB_PATH], target[WB_PATH];
-    WB_TRY(wb_file_join(target, to, "figures"));
-    WB_TRY(wb_file_make_folder(target));
-    remove_stale(outputs, to);
-    for (int i = 0; i < outputs->n; i++) {
-        WB_TRY(wb_file_join(source, from, outputs->items[i].name));
-        WB_TRY(wb_file_join(target, to, outputs->items[i].name));
-        if (rename(source, target) != 0)
-            return fail_errno("write", target);
-    }
-    return WB_OK;
-}
-
-static enum wb_status write_folder(const struct outputs *outputs, const char *folder, bool force)
-{
-    char beside[WB_PATH];
-    WB_TRY(wb_file_join(beside, folder, ".new-XXXXXX"));
-    WB_TRY(wb_file_prepare_output(folder, force));
-    if (!mkdtemp(beside))
-        return fail_errno("write into", folder);
-    enum wb_status status = write_all(outputs, beside);
-    if (status == WB_OK)
-        status = move_all(outputs, beside, folder);
-    remove_all(outputs, beside);
-    if (status != WB_OK)
-        rmdir(folder); /* succeeds only when it is empty, that is, when it was just made */
     return status;
 }
 
 enum wb_status wb_report_write(const struct wb_results *results, const char *folder, bool force)
 {
-    struct outputs outputs = {0};
-    enum wb_status status = draw(&outputs, results);
-    if (status == WB_OK)
-        status = write_folder(&outputs, folder, force);
-    release(&outputs);
+    struct wb_figures figures;
+    WB_TRY(wb_figures_create(&figures, results));
+    const enum wb_status status = write_all(results, &figures, folder, force);
+    wb_figures_release(&figures);
     return status;
 }

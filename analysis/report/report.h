@@ -11,10 +11,7 @@
 #include "analysis/report/results.h"
 #include "base/status.h"
 
-/* Writes everything into `folder`, which is made. WB_ERR_EXISTS when it holds anything, unless
- * `force`: then the files of the report before are replaced (and those that are no longer made are
- * removed), others are left alone. All is drawn first and written into a hidden folder in it, so
- * that on a failure the old report stays and nothing half-written is left behind. */
+/* Writes everything into `folder`, as wb_report_files_write() does. */
 WB_MUST_CHECK enum wb_status wb_report_write(const struct wb_results *results, const char *folder,
                                              bool force);
 

@@ -14,7 +14,7 @@ static const char style[] =
     "main{max-width:62rem;margin:0 auto;padding:2.5rem 3rem 4rem;background:#fff;"
     "box-shadow:0 0 24px rgba(29,39,51,.08)}\n"
     "header .kicker{margin:0;color:var(--blue);font-weight:700;font-size:.85rem;"
-    "letter-spacing:.06em}\n"
+    "letter-spacing:.06em;text-transform:uppercase}\n"
     "h1{margin:.2rem 0 .3rem;font-size:2.1rem;line-height:1.2}\n"
     ".subtitle{margin:0 0 1.2rem;color:var(--grey);font-size:.9rem}\n"
     "nav{position:sticky;top:0;z-index:1;margin:0 -3rem;padding:.5rem 3rem;background:#fff;"
@@ -194,7 +194,9 @@ static void put_head(struct wb_text *html, const struct wb_document *document)
     wb_text_append(html, "</title>\n<meta name=\"generator\" content=\"");
     wb_text_append_escaped(html, document->footer);
     wb_text_append(html, "\">\n<style>\n%s</style>\n</head>\n<body>\n<main>\n<header>\n", style);
-    wb_text_append(html, "<p class=\"kicker\">CALIBRATION REPORT</p>\n<h1>");
+    wb_text_append(html, "<p class=\"kicker\">");
+    wb_text_append_escaped(html, document->kind);
+    wb_text_append(html, "</p>\n<h1>");
     wb_text_append_escaped(html, document->title);
     wb_text_append(html, "</h1>\n<p class=\"subtitle\">");
     wb_text_append_escaped(html, document->subtitle);

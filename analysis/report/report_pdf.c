@@ -1,5 +1,6 @@
 #include "analysis/report/report_pdf.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -94,7 +95,7 @@ static void draw_frame(struct pen *pen)
     const double right_edge = margin_left + WB_REPORT_WIDTH;
     if (pen->page > 1) {
         put_plain(pen, margin_left, 34.0, pen->document->title, &small);
-        put_plain(pen, right_edge, 34.0, "Calibration report", &right);
+        put_plain(pen, right_edge, 34.0, pen->document->kind, &right);
         rule(pen, margin_left, right_edge, 47.0, 0.5, wb_palette_rule());
     }
     const double y = page_height - 40.0;
@@ -156,7 +157,12 @@ static void put_title(struct pen *pen)
     const struct wb_typeset_style subtitle = {
         .size = 9.0, .colour = wb_palette_grey(), .width = WB_REPORT_WIDTH};
     pen->y = margin_top - 16.0;
-    put_text(pen, margin_left, "CALIBRATION REPORT", &kicker);
+    char kind[80];
+    size_t n = 0;
+    for (; pen->document->kind[n] && n + 1 < sizeof kind; n++)
+        kind[n] = (char)toupper((unsigned char)pen->document->kind[n]);
+    kind[n] = '\0';
+    put_plain(pen, margin_left, pen->y, kind, &kicker);
     pen->y += 15.0;
     put_plain(pen, margin_left, pen->y, pen->document->title, &title);
     pen->y += plain_height(pen, pen->document->title, &title) + 2.0;
@@ -535,7 +541,7 @@ static void set_metadata(cairo_surface_t *surface, const struct wb_document *doc
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, date);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_MOD_DATE, date);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, document->title);
-    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_SUBJECT, "Calibration report");
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_SUBJECT, document->kind);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, document->footer);
 }
 
