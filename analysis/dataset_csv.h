@@ -1,4 +1,4 @@
-/* The two tables of a dataset as CSV text. Used by dataset.c only.
+/* The two tables of a dataset as CSV text. Used by dataset.c, its numbers by fields.c too.
  *
  * Strict: comma-separated, no quotes, comment lines ('#') only at the begin ("# virtual rig" where
  * the data come from it), a header line with the columns' names, every line with as

@@ -1,13 +1,14 @@
 /* Stress fields on sections of a simulated wire, kept in its dataset as fields.csv:
  *
- *     state,section,x_mm,face,part,node,X_mm,Y_mm,Z_mm,x_mm,y_mm,z_mm,
+ *     state,section,at_mm,face,part,node,X_mm,Y_mm,Z_mm,x_mm,y_mm,z_mm,
  *     von_mises_MPa,axial_MPa,plastic_strain
  *
  * (one line; one row for each of the 8 nodes of a face: corners 0-3 around, then midside nodes 0-1,
  * 1-2, 2-3, 3-0). `state` is the name of the model's step at whose end it was kept; `section` is
- * `longitudinal` (the plane z = 0 of the straight wire, x_mm empty) or `cross` at x_mm along it.
+ * `longitudinal` (the plane z = 0 of the straight wire, at_mm empty) or `cross` at at_mm along it.
  * Capital coordinates are those of the straight wire. The axial stress is the normal stress along
- * the wire. Sections of a 1D model are the fibres' cells, each with constant values.
+ * the wire. Sections of a 1D model are the fibres' cells, each with constant values. Numbers are
+ * kept to 8 digits.
  */
 #ifndef WB_ANALYSIS_FIELDS_H
 #define WB_ANALYSIS_FIELDS_H
@@ -37,7 +38,8 @@ struct wb_fields {
     struct wb_field *items; /* (n), owned */
 };
 
-/* Appends an empty field with room for n_faces; *field stays valid until the next call. */
+/* Appends a field with room for n_faces (at least 1), all zero; *field stays valid until the next
+ * call. */
 WB_MUST_CHECK enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x,
                                            int n_faces, struct wb_field **field);
 void wb_fields_release(struct wb_fields *fields); /* accepts a zeroed one */
@@ -45,8 +47,9 @@ void wb_fields_release(struct wb_fields *fields); /* accepts a zeroed one */
 /* The field of a state, longitudinal (x NaN) or of the cross section nearest to x; NULL: none. */
 const struct wb_field *wb_fields_find(const struct wb_fields *fields, const char *state, double x);
 
-/* fields.csv in a dataset's folder. Reading errors name file, line and column; a folder without
- * fields.csv reads as no fields. */
+/* fields.csv in a dataset's folder, written whole or not at all; without any field the file is
+ * removed. Writing refuses what is not finite. Reading errors name file, line and column; a folder
+ * without fields.csv reads as no fields. */
 WB_MUST_CHECK enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folder);
 WB_MUST_CHECK enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder);
 

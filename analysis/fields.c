@@ -1,0 +1,359 @@
+#include "analysis/fields.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/dataset_csv.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/text.h"
+
+#define WB_LOG_DOMAIN "fields"
+
+static const char file_name[] = "fields.csv";
+
+enum {
+    TEXT_COLUMNS = 6, /* state, section, at_mm, face, part, node */
+    VALUES = 9,
+    COLUMNS = TEXT_COLUMNS + VALUES,
+    MOST_FACES = 1000000,
+    MOST_PARTS = 2,
+    DIGITS = 8
+};
+
+static const char *const column_names[COLUMNS] = {
+    "state", "section", "at_mm", "face", "part",          "node",      "X_mm",           "Y_mm",
+    "Z_mm",  "x_mm",    "y_mm",  "z_mm", "von_mises_MPa", "axial_MPa", "plastic_strain",
+};
+/* Decimal places from SI to the file's unit. */
+static const int value_shifts[VALUES] = {3, 3, 3, 3, 3, 3, -6, -6, 0};
+
+static void get_values(const struct wb_field_node *node, double values[VALUES])
+{
+    memcpy(values, node->reference, sizeof node->reference);
+    memcpy(values + 3, node->position, sizeof node->position);
+    values[6] = node->von_mises;
+    values[7] = node->axial;
+    values[8] = node->plastic;
+}
+
+static void set_values(struct wb_field_node *node, const double values[VALUES])
+{
+    memcpy(node->reference, values, sizeof node->reference);
+    memcpy(node->position, values + 3, sizeof node->position);
+    node->von_mises = values[6];
+    node->axial = values[7];
+    node->plastic = values[8];
+}
+
+/* --- the list --- */
+
+enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x, int n_faces,
+                             struct wb_field **field)
+{
+    if (strlen(state) >= sizeof fields->items->state || state[strcspn(state, ",\"\r\n")] != '\0' ||
+        state[0] == '\0')
+        return wb_fail(WB_ERR_ARGUMENT, "'%s' cannot name a state of fields", state);
+    if (n_faces < 1 || n_faces > MOST_FACES)
+        return wb_fail(WB_ERR_ARGUMENT, "%d faces in a field: expected 1 to %d", n_faces,
+                       MOST_FACES);
+    struct wb_field *const items =
+        realloc(fields->items, (size_t)(fields->n + 1) * sizeof *fields->items);
+    if (!items)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d fields", fields->n + 1);
+    fields->items = items;
+
+    struct wb_field *const added = &items[fields->n];
+    *added = (struct wb_field){.x = x, .n_faces = n_faces};
+    strcpy(added->state, state);
+    added->faces = calloc((size_t)n_faces, sizeof *added->faces);
+    if (!added->faces)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d faces", n_faces);
+    fields->n++;
+    *field = added;
+    return WB_OK;
+}
+
+void wb_fields_release(struct wb_fields *fields)
+{
+    if (!fields)
+        return;
+    for (int i = 0; i < fields->n; i++)
+        free(fields->items[i].faces);
+    free(fields->items);
+    *fields = (struct wb_fields){0};
+}
+
+const struct wb_field *wb_fields_find(const struct wb_fields *fields, const char *state, double x)
+{
+    const struct wb_field *found = NULL;
+    for (int i = 0; i < fields->n; i++) {
+        const struct wb_field *const field = &fields->items[i];
+        if (strcmp(field->state, state) != 0 || isnan(field->x) != isnan(x))
+            continue;
+        if (isnan(x))
+            return field;
+        if (!found || fabs(field->x - x) < fabs(found->x - x))
+            found = field;
+    }
+    return found;
+}
+
+/* --- writing --- */
+
+static void append_number(struct wb_text *text, double value, int shift)
+{
+    char rounded[WB_DATASET_CSV_NUMBER], number[WB_DATASET_CSV_NUMBER];
+    snprintf(rounded, sizeof rounded, "%.*e", DIGITS - 1, value);
+    wb_dataset_csv_format_number(strtod(rounded, NULL), shift, number);
+    wb_text_append_bytes(text, number, strlen(number));
+}
+
+static enum wb_status append_field(struct wb_text *text, const struct wb_field *field)
+{
+    for (int f = 0; f < field->n_faces; f++) {
+        for (int k = 0; k < 8; k++) {
+            double values[VALUES];
+            get_values(&field->faces[f].node[k], values);
+            wb_text_append(text, "%s,%s,", field->state,
+                           isnan(field->x) ? "longitudinal" : "cross");
+            if (!isnan(field->x))
+                append_number(text, field->x, 3);
+            wb_text_append(text, ",%d,%d,%d", f, field->faces[f].part, k);
+            for (int i = 0; i < VALUES; i++) {
+                if (!isfinite(values[i]))
+                    return wb_fail(WB_ERR_DATA, "state %s, face %d: %s is not a finite number",
+                                   field->state, f, column_names[TEXT_COLUMNS + i]);
+                wb_text_append_bytes(text, ",", 1);
+                append_number(text, values[i], value_shifts[i]);
+            }
+            wb_text_append_bytes(text, "\n", 1);
+        }
+    }
+    return WB_OK;
+}
+
+static enum wb_status format(const struct wb_fields *fields, struct wb_text *text)
+{
+    for (int i = 0; i < COLUMNS; i++)
+        wb_text_append(text, "%s%s", i == 0 ? "" : ",", column_names[i]);
+    wb_text_append_bytes(text, "\n", 1);
+    for (int i = 0; i < fields->n; i++)
+        WB_TRY(append_field(text, &fields->items[i]));
+    if (text->failed)
+        return wb_fail(WB_ERR_MEMORY, "out of memory writing %d fields", fields->n);
+    return WB_OK;
+}
+
+enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folder)
+{
+    char path[WB_PATH];
+    struct wb_text text = {0};
+    WB_TRY(wb_file_join(path, folder, file_name));
+    if (fields->n == 0) {
+        if (unlink(path) != 0 && errno != ENOENT)
+            return wb_fail(WB_ERR_IO, "cannot remove '%s': %s", path, strerror(errno));
+        return WB_OK;
+    }
+    enum wb_status status = format(fields, &text);
+    if (status == WB_OK)
+        status = wb_file_write(path, wb_text_string(&text), text.length);
+    wb_text_release(&text);
+    return status;
+}
+
+/* --- reading --- */
+
+struct reader {
+    const char *path;
+    int line;
+    struct wb_fields *fields;
+    int capacity; /* faces of the last field */
+};
+
+/* A row as it stands in the file. */
+struct row {
+    const char *state;
+    double x;
+    int face, part, node;
+    double values[VALUES];
+};
+
+static enum wb_status refuse(const struct reader *reader, int column, const char *expected,
+                             const char *text)
+{
+    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", reader->path, reader->line,
+                   column_names[column], expected, text);
+}
+
+static enum wb_status parse_integer(const struct reader *reader, int column, char *const *fields,
+                                    int most, int *value)
+{
+    long number;
+    char expected[64];
+    if (wb_number_parse_integer(fields[column], &number) && number >= 0 && number <= most) {
+        *value = (int)number;
+        return WB_OK;
+    }
+    snprintf(expected, sizeof expected, "a whole number from 0 to %d", most);
+    return refuse(reader, column, expected, fields[column]);
+}
+
+static enum wb_status split(const struct reader *reader, char *line, char *fields[COLUMNS])
+{
+    int n = 0;
+    for (char *next = line; next;) {
+        char *const field = strsep(&next, ",");
+        if (n < COLUMNS)
+            fields[n] = field;
+        n++;
+    }
+    if (n != COLUMNS)
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", reader->path, reader->line,
+                       n, COLUMNS);
+    return WB_OK;
+}
+
+static enum wb_status parse_row(const struct reader *reader, char *line, struct row *row)
+{
+    char *fields[COLUMNS];
+    WB_TRY(split(reader, line, fields));
+    row->state = fields[0];
+    if (fields[0][0] == '\0' || strlen(fields[0]) >= sizeof reader->fields->items->state)
+        return refuse(reader, 0, "the name of a step", fields[0]);
+
+    const bool cross = strcmp(fields[1], "cross") == 0;
+    if (!cross && strcmp(fields[1], "longitudinal") != 0)
+        return refuse(reader, 1, "longitudinal or cross", fields[1]);
+    row->x = (double)NAN;
+    if (cross && !wb_dataset_csv_parse_number(fields[2], 3, &row->x))
+        return refuse(reader, 2, "a number", fields[2]);
+    if (!cross && fields[2][0] != '\0')
+        return refuse(reader, 2, "nothing for a longitudinal section", fields[2]);
+
+    WB_TRY(parse_integer(reader, 3, fields, MOST_FACES - 1, &row->face));
+    WB_TRY(parse_integer(reader, 4, fields, MOST_PARTS - 1, &row->part));
+    WB_TRY(parse_integer(reader, 5, fields, 7, &row->node));
+    for (int i = 0; i < VALUES; i++)
+        if (!wb_dataset_csv_parse_number(fields[TEXT_COLUMNS + i], value_shifts[i],
+                                         &row->values[i]))
+            return refuse(reader, TEXT_COLUMNS + i, "a number", fields[TEXT_COLUMNS + i]);
+    return WB_OK;
+}
+
+/* Makes room for one more face in the last field. */
+static enum wb_status add_face(struct reader *reader, struct wb_field *field)
+{
+    if (field->n_faces == reader->capacity) {
+        const int capacity = 2 * reader->capacity;
+        struct wb_field_face *const faces = realloc(field->faces, (size_t)capacity * sizeof *faces);
+        if (!faces)
+            return wb_fail(WB_ERR_MEMORY, "no memory for %d faces", capacity);
+        field->faces = faces;
+        reader->capacity = capacity;
+    }
+    field->n_faces++;
+    return WB_OK;
+}
+
+static bool has_field(const struct wb_fields *fields, const struct row *row)
+{
+    const struct wb_field *const found = wb_fields_find(fields, row->state, row->x);
+    return found && (isnan(row->x) || found->x == row->x);
+}
+
+/* Rows of a field follow each other, face by face and node by node. `expected` is the node that is
+ * due, 0 where a face or a field may begin. */
+static enum wb_status take_row(struct reader *reader, const struct row *row, int expected)
+{
+    struct wb_fields *const fields = reader->fields;
+    struct wb_field *field = fields->n > 0 ? &fields->items[fields->n - 1] : NULL;
+    const bool same = field && strcmp(field->state, row->state) == 0 &&
+                      (isnan(field->x) ? isnan(row->x) : field->x == row->x);
+    if (expected != row->node || (expected > 0 && !same))
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: node: expected node %d of a face, not %d of %s",
+                       reader->path, reader->line, expected, row->node,
+                       same ? "it" : "another field");
+    if (expected == 0 && !same) {
+        if (has_field(fields, row))
+            return wb_fail(WB_ERR_FORMAT, "%s:%d: section: this field of state %s stood before",
+                           reader->path, reader->line, row->state);
+        WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field));
+        reader->capacity = 1;
+    } else if (expected == 0) {
+        WB_TRY(add_face(reader, field));
+    }
+
+    struct wb_field_face *const face = &field->faces[field->n_faces - 1];
+    if (row->face != field->n_faces - 1 || (expected > 0 && row->part != face->part))
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: face: expected face %d in one part", reader->path,
+                       reader->line, field->n_faces - 1);
+    face->part = row->part;
+    set_values(&face->node[row->node], row->values);
+    return WB_OK;
+}
+
+static enum wb_status check_header(const struct reader *reader, char *line)
+{
+    char *fields[COLUMNS];
+    WB_TRY(split(reader, line, fields));
+    for (int i = 0; i < COLUMNS; i++)
+        if (strcmp(fields[i], column_names[i]) != 0)
+            return wb_fail(WB_ERR_FORMAT, "%s:%d: expected column '%s', not '%.40s'", reader->path,
+                           reader->line, column_names[i], fields[i]);
+    return WB_OK;
+}
+
+static enum wb_status parse(struct reader *reader, char *text, size_t size)
+{
+    int due = 0;
+    if (memchr(text, '\0', size))
+        return wb_fail(WB_ERR_FORMAT, "%s: a byte 0: not a text file", reader->path);
+    if (size == 0)
+        return wb_fail(WB_ERR_FORMAT, "%s:1: empty file, expected a line of column names",
+                       reader->path);
+    for (char *next = text; next && *next;) {
+        char *const line = strsep(&next, "\n");
+        const size_t length = strlen(line);
+        if (length > 0 && line[length - 1] == '\r')
+            line[length - 1] = '\0';
+        reader->line++;
+        if (reader->line == 1) {
+            WB_TRY(check_header(reader, line));
+            continue;
+        }
+        struct row row;
+        WB_TRY(parse_row(reader, line, &row));
+        WB_TRY(take_row(reader, &row, due));
+        due = (due + 1) % 8;
+    }
+    if (due != 0)
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: node: the last face ends before node %d",
+                       reader->path, reader->line, due);
+    return WB_OK;
+}
+
+enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder)
+{
+    char path[WB_PATH];
+    char *text;
+    size_t size;
+    struct wb_fields read = {0};
+    WB_TRY(wb_file_join(path, folder, file_name));
+    if (!wb_file_exists(path)) {
+        *fields = read;
+        return WB_OK;
+    }
+    WB_TRY(wb_file_read(path, &text, &size));
+    struct reader reader = {.path = path, .fields = &read};
+    const enum wb_status status = parse(&reader, text, size);
+    free(text);
+    if (status != WB_OK)
+        wb_fields_release(&read);
+    *fields = read;
+    return status;
+}
