@@ -25,9 +25,9 @@ struct reading {
 
 /* --- single parts --- */
 
-static enum wb_status read_settings(const struct wb_config_node *node, struct wb_campaign *campaign)
+enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
+                                         struct wb_calibrate_settings *settings)
 {
-    struct wb_calibrate_settings *const settings = &campaign->calibrate;
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_NUMBER("elastic_zone", &settings->elastic_zone, 1.0,
                                   WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
@@ -41,8 +41,13 @@ static enum wb_status read_settings(const struct wb_config_node *node, struct wb
         WB_CONFIG_OPTIONAL_INTEGER("elements", &settings->n_elements, 2, 1000),
         WB_CONFIG_OPTIONAL_INTEGER("fibres", &settings->n_fibres, 4, 1000),
     };
-    if (node)
-        WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+}
+
+static enum wb_status read_settings(const struct wb_config_node *node, struct wb_campaign *campaign)
+{
+    const struct wb_calibrate_settings *const settings = &campaign->calibrate;
+    WB_TRY(wb_campaign_read_settings(node, &campaign->calibrate));
     campaign->validate.straight = settings->straight;
     campaign->validate.step = settings->step;
     campaign->validate.n_elements = settings->n_elements;
@@ -305,6 +310,7 @@ static enum wb_status read_campaign(struct reading *reading, const struct wb_con
     char index[1024] = "";
     campaign->samples = 1;
     const struct wb_config_key keys[] = {
+        WB_CONFIG_IGNORED("kind"),
         WB_CONFIG_TEXT("title", campaign->title),
         WB_CONFIG_OPTIONAL_TEXT("notes", campaign->notes),
         WB_CONFIG_OPTIONAL_TEXT("index", index),
@@ -326,13 +332,32 @@ static enum wb_status read_campaign(struct reading *reading, const struct wb_con
 }
 
 /* No path of this machine may reach the report: shipped campaigns are named from fixtures/ on. */
-static void set_name(struct wb_campaign *campaign, const char *path)
+void wb_campaign_set_name(char *name, size_t size, const char *path)
 {
     static const char place[] = "fixtures/campaigns/";
     const char *const file = wb_file_name(path);
     const size_t before = (size_t)(file - path), length = sizeof place - 1;
     const bool shipped = before >= length && memcmp(file - length, place, length) == 0;
-    snprintf(campaign->name, sizeof campaign->name, "%s%.200s", shipped ? place : "", file);
+    snprintf(name, size, "%s%.200s", shipped ? place : "", file);
+}
+
+enum wb_status wb_campaign_read_kind(enum wb_campaign_kind *kind, const char *path)
+{
+    static const char *const kinds[] = {"recordings", "comparison"};
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path));
+    const struct wb_config_node *const root = wb_config_root(config);
+    const struct wb_config_node *const node = wb_config_find(root, "kind");
+    const char *const text = node ? wb_config_scalar(node) : kinds[0];
+    enum wb_status status = WB_OK;
+    if (text && strcmp(text, kinds[0]) == 0)
+        *kind = WB_CAMPAIGN_RECORDINGS;
+    else if (text && strcmp(text, kinds[1]) == 0)
+        *kind = WB_CAMPAIGN_COMPARISON;
+    else
+        status = wb_config_refuse(root, "kind", "expected recordings or comparison");
+    wb_config_destroy(config);
+    return status;
 }
 
 enum wb_status wb_campaign_read(struct wb_campaign *campaign, const char *path)
@@ -340,7 +365,7 @@ enum wb_status wb_campaign_read(struct wb_campaign *campaign, const char *path)
     memset(campaign, 0, sizeof *campaign);
     wb_calibrate_default_settings(&campaign->calibrate);
     WB_TRY(wb_hash_file(path, campaign->sha256));
-    set_name(campaign, path);
+    wb_campaign_set_name(campaign->name, sizeof campaign->name, path);
     struct wb_config *config;
     WB_TRY(wb_config_read(&config, path));
     struct reading reading = {.campaign = campaign};

@@ -1,6 +1,7 @@
 /* A campaign: which wires were tested, with which recordings, how they are calibrated and
  * validated, and within which limits. Its YAML file:
  *
+ *     kind: recordings                            # optional, this by default
  *     title: Single wires, types 1 to 3
  *     notes: what a reader should know            # optional
  *     index: ../../recordings/index.yaml          # optional, this by default as shipped data
@@ -44,6 +45,7 @@
 
 #include "analysis/calibrate.h"
 #include "analysis/validate.h"
+#include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
@@ -89,6 +91,19 @@ struct wb_campaign {
     int n_wires;
     struct wb_campaign_wire *wires; /* (n_wires), owned */
 };
+
+/* What a campaign file is about. */
+enum wb_campaign_kind {
+    WB_CAMPAIGN_RECORDINGS, /* this file's */
+    WB_CAMPAIGN_COMPARISON  /* analysis/report/comparison.h */
+};
+WB_MUST_CHECK enum wb_status wb_campaign_read_kind(enum wb_campaign_kind *kind, const char *path);
+
+/* What campaigns of all kinds share: the settings of a calibration (`node` NULL: leaves them), and
+ * the name that a report may tell of a campaign file. */
+WB_MUST_CHECK enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
+                                                       struct wb_calibrate_settings *settings);
+void wb_campaign_set_name(char *name, size_t size, const char *path);
 
 /* Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_campaign_read(struct wb_campaign *campaign, const char *path);

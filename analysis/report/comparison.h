@@ -1,0 +1,103 @@
+/* A comparison campaign: one wire computed as a 3D solid and as a 1D rod, elastic and
+ * elastoplastic, without and with residual stresses, after section 2 of the paper. Computing a
+ * solid takes minutes, so the campaign names datasets that `wirebench solve` made from its models.
+ * Its YAML file:
+ *
+ *     kind: comparison
+ *     title: A wire as a solid and as a rod
+ *     notes: what a reader should know               # optional
+ *     simulations: ../../simulations                 # optional, the shipped ones by default
+ *     elastic: {model: follower-8awg-elastic}        # name in fixtures/models, or a path
+ *     contact: {model: follower-8awg-elastic-contact}    # optional; the solid only
+ *     elastoplastic:
+ *       model: follower-8awg
+ *       solid: my-solid                              # optional; dataset in `simulations`, or a
+ * path rod: my-rod                                  # relative to this file; MODEL and MODEL-1d
+ *     residual:                                      # optional
+ *       - {label: Residual 1, model: residual-1-8awg}
+ *     section_mm: 3.26                               # of the stresses that are drawn; optional,
+ * the # core's diameter by default states: {loaded: loaded, residual: unloaded}   # optional: steps
+ * at whose ends fields are kept fit_modulus: mixture                           # of the fitted rod:
+ * of eq. 8 (default), or # `curve`: of eq. 10 fit: {step_mm: 0.5}                            #
+ * optional, as a campaign's `settings` limits:                                        # optional,
+ * absent: none tip_max: 0.003                               # elastic tips over the length
+ *       stress_max: 0.01                             # elastic stress over E kappa r, less 1
+ *       cost_max: 0.02                               # CPU seconds of the rod over the solid's
+ *     printed:                                       # optional: the paper's own values
+ *       wire: 8awg                                   # its homogenised properties
+ *       source: section 2 of the paper
+ *       stress_MPa: 697
+ *       cost: 0.02
+ *
+ * A dataset that is not there is no error: the report says so, and how to make it.
+ */
+#ifndef WB_ANALYSIS_REPORT_COMPARISON_H
+#define WB_ANALYSIS_REPORT_COMPARISON_H
+
+#include <stdbool.h>
+
+#include "analysis/calibrate.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/status.h"
+#include "fe/wire.h"
+#include "fe/wire_model.h"
+
+#define WB_COMPARISON_RESIDUALS 4
+
+/* What computes a model. */
+enum wb_comparison_solver {
+    WB_COMPARISON_SOLID, /* solve wire3d */
+    WB_COMPARISON_ROD,   /* solve wire1d */
+    WB_COMPARISON_SOLVERS
+};
+const char *wb_comparison_command(enum wb_comparison_solver solver); /* "wire3d", "wire1d" */
+
+/* A dataset that the campaign wants. */
+struct wb_comparison_dataset {
+    bool wanted;
+    char name[256];     /* as it is told: no path of this machine */
+    char path[WB_PATH]; /* of its folder, which may not be there */
+};
+
+/* A model with its datasets. */
+struct wb_comparison_case {
+    char label[64];
+    char model_name[300];        /* as it is told, for commands */
+    struct wb_wire_model *model; /* owned */
+    struct wb_comparison_dataset datasets[WB_COMPARISON_SOLVERS];
+};
+
+/* Indices of the cases; those of residual stresses follow. */
+enum {
+    WB_COMPARISON_ELASTIC,
+    WB_COMPARISON_CONTACT, /* `model` NULL: not wanted */
+    WB_COMPARISON_ELASTOPLASTIC,
+    WB_COMPARISON_RESIDUAL,
+    WB_COMPARISON_CASES = WB_COMPARISON_RESIDUAL + WB_COMPARISON_RESIDUALS
+};
+
+struct wb_comparison {
+    char title[200];
+    char notes[2000];
+    char name[256];              /* of the file, from fixtures/ on when it is a shipped one */
+    char sha256[WB_SHA256_TEXT]; /* of the file */
+    int n_cases, n_residual;
+    struct wb_comparison_case cases[WB_COMPARISON_CASES];
+    double section;                            /* m */
+    char loaded_state[32], residual_state[32]; /* names of steps */
+    bool mixture;                              /* E of eq. 8 for the fit */
+    struct wb_calibrate_settings fit;
+    double tip_limit, stress_limit, cost_limit; /* 0: none */
+    char printed_source[160];
+    bool has_printed_wire;
+    struct wb_wire printed_wire;
+    double printed_stress; /* Pa; 0: none */
+    double printed_cost;   /* 1; 0: none */
+};
+
+/* Errors name file, line and key. */
+WB_MUST_CHECK enum wb_status wb_comparison_read(struct wb_comparison *comparison, const char *path);
+void wb_comparison_release(struct wb_comparison *comparison); /* accepts a zeroed one */
+
+#endif
