@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/dataset_csv.h"
+#include "analysis/fields.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -242,6 +243,13 @@ static enum wb_status write_file(const char *folder, const char *name, const cha
     return wb_file_write(path, bytes, size);
 }
 
+/* Those of another dataset that is overwritten. */
+static enum wb_status remove_fields(const char *folder)
+{
+    const struct wb_fields none = {0};
+    return wb_fields_write(&none, folder);
+}
+
 enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder, bool force)
 {
     char *document;
@@ -250,6 +258,8 @@ enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *fo
     enum wb_status status = wb_dataset_csv_format(dataset, &rows, &shapes);
     if (status == WB_OK)
         status = wb_file_prepare_output(folder, force);
+    if (status == WB_OK)
+        status = remove_fields(folder);
     if (status == WB_OK)
         status = write_file(folder, "force_deflection.csv", wb_text_string(&rows), rows.length);
     if (status == WB_OK)

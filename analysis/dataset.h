@@ -41,13 +41,15 @@ struct wb_row {
     double tip_angle;  /* rad; NaN unknown */
 };
 
-/* One row of shape.csv: t_s,deflection_mm,marker,s_mm,x_mm,y_mm. Missing markers have no row:
- * gaps stay gaps. */
+/* One row of shape.csv: t_s,deflection_mm,marker,s_mm,x_mm,y_mm and, in a test that leaves the
+ * plane, z_mm. Missing markers have no row: gaps stay gaps. */
 struct wb_shape_row {
     double t, deflection; /* s, m: of the frame */
     int marker;           /* from 0, the clamp's */
     double s;             /* m, arc length along the wire */
     double x, y;          /* m, on the wire's axis */
+    double z;             /* m, out of the plane; NaN read from a file that does not have it; the
+                             column is written when any row has one other than 0 */
 };
 
 /* What every consumer needs of the test, kept typed; the same stands in dataset.json. */

@@ -72,6 +72,7 @@ bool wb_dataset_csv_parse_number(const char *text, int shift, double *value)
 enum kind {
     KIND_NUMBER,   /* must be there */
     KIND_OPTIONAL, /* empty means not known; the whole column may be missing */
+    KIND_EXTRA,    /* the same, and not written where every row has none or zero */
     KIND_INTEGER,
     KIND_PHASE
 };
@@ -103,6 +104,7 @@ static const struct column shape_columns[] = {
     {"s_mm", KIND_NUMBER, offsetof(struct wb_shape_row, s), 3},
     {"x_mm", KIND_NUMBER, offsetof(struct wb_shape_row, x), 3},
     {"y_mm", KIND_NUMBER, offsetof(struct wb_shape_row, y), 3},
+    {"z_mm", KIND_EXTRA, offsetof(struct wb_shape_row, z), 3},
     {0},
 };
 
@@ -134,15 +136,30 @@ static enum wb_status append_field(struct wb_text *text, const struct column *co
     return WB_OK;
 }
 
+/* An extra column comes last in its table, so leaving it out ends the columns. */
+static bool is_written(const struct column *column, const void *rows, size_t n, size_t row_size)
+{
+    if (!column->name || column->kind != KIND_EXTRA)
+        return column->name != NULL;
+    for (size_t i = 0; i < n; i++) {
+        double value;
+        memcpy(&value, (const char *)rows + i * row_size + column->offset, sizeof value);
+        if (isfinite(value) && value != 0.0)
+            return true;
+    }
+    return false;
+}
+
 static enum wb_status append_table(struct wb_text *text, const struct column *columns,
                                    const void *rows, size_t n, size_t row_size)
 {
-    for (const struct column *column = columns; column->name; column++)
-        wb_text_append(text, "%s%s", column == columns ? "" : ",", column->name);
+    const struct column *end = columns;
+    for (; is_written(end, rows, n, row_size); end++)
+        wb_text_append(text, "%s%s", end == columns ? "" : ",", end->name);
     wb_text_append_bytes(text, "\n", 1);
     for (size_t i = 0; i < n; i++) {
         const void *const row = (const char *)rows + i * row_size;
-        for (const struct column *column = columns; column->name; column++) {
+        for (const struct column *column = columns; column < end; column++) {
             if (column != columns)
                 wb_text_append_bytes(text, ",", 1);
             WB_TRY(append_field(text, column, row, i));
@@ -219,7 +236,7 @@ static enum wb_status check_columns(const struct reader *reader, const struct co
         int count = 0;
         for (int i = 0; i < reader->n_fields; i++)
             count += reader->fields[i] == column;
-        if (count == 0 && column->kind != KIND_OPTIONAL)
+        if (count == 0 && column->kind != KIND_OPTIONAL && column->kind != KIND_EXTRA)
             return wb_fail(WB_ERR_FORMAT, "%s:%d: no column '%s'", reader->path, reader->line,
                            column->name);
         if (count > 1)
@@ -280,7 +297,8 @@ static enum wb_status parse_field(const struct reader *reader, const struct colu
         expected = "load, unload or slack";
     } else {
         double value = (double)NAN;
-        if ((column->kind == KIND_OPTIONAL && *text == '\0') ||
+        const bool may_lack = column->kind == KIND_OPTIONAL || column->kind == KIND_EXTRA;
+        if ((may_lack && *text == '\0') ||
             wb_dataset_csv_parse_number(text, column->shift, &value)) {
             memcpy(member, &value, sizeof value);
             return WB_OK;
@@ -342,7 +360,7 @@ enum wb_status wb_dataset_csv_parse_shapes(struct wb_dataset *dataset, const cha
     char *line;
     WB_TRY(start_reading(&reader, path, text, n, shape_columns));
     while ((line = next_line(&reader))) {
-        struct wb_shape_row row = {0};
+        struct wb_shape_row row = {.z = (double)NAN};
         WB_TRY(parse_line(&reader, line, &row));
         WB_TRY(wb_dataset_add_shape_row(dataset, &row));
     }

@@ -213,6 +213,60 @@ static void no_rest_and_a_straight_wire_are_kept(void **state)
     wb_dataset_release(&dataset);
 }
 
+static void first_line_of_shapes(const char *dataset, char line[256])
+{
+    char path[WB_PATH];
+    snprintf(path, sizeof path, "%s/shape.csv", dataset);
+    FILE *const file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, 256, file)); /* "# virtual rig" */
+    assert_non_null(fgets(line, 256, file));
+    fclose(file);
+}
+
+static void z_is_kept_where_a_test_leaves_the_plane(void **state)
+{
+    (void)state;
+    struct wb_dataset written, read;
+    char path[WB_PATH], line[256];
+    snprintf(path, sizeof path, "%s/space", folder);
+    fill(&written);
+    assert_int_equal(wb_dataset_write(&written, path, false), WB_OK);
+    first_line_of_shapes(path, line);
+    assert_string_equal(line, "t_s,deflection_mm,marker,s_mm,x_mm,y_mm\n");
+    assert_int_equal(wb_dataset_read(&read, path), WB_OK);
+    assert_true(isnan(read.shape_rows[17].z));
+    wb_dataset_release(&read);
+
+    written.shape_rows[17].z = -0.00123456789;
+    written.shape_rows[18].z = (double)NAN;
+    assert_int_equal(wb_dataset_write(&written, path, true), WB_OK);
+    first_line_of_shapes(path, line);
+    assert_string_equal(line, "t_s,deflection_mm,marker,s_mm,x_mm,y_mm,z_mm\n");
+    assert_int_equal(wb_dataset_read(&read, path), WB_OK);
+    assert_same(read.shape_rows[17].z, -0.00123456789);
+    assert_true(isnan(read.shape_rows[18].z));
+    assert_same(read.shape_rows[19].z, 0.0);
+    assert_same(read.shape_rows[19].x, written.shape_rows[19].x);
+    wb_dataset_release(&written);
+    wb_dataset_release(&read);
+}
+
+static void overwriting_leaves_no_fields_of_another(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset;
+    char path[WB_PATH], fields[WB_PATH];
+    snprintf(path, sizeof path, "%s/overwritten", folder);
+    assert_int_equal(wb_file_join(fields, path, "fields.csv"), WB_OK);
+    fill(&dataset);
+    assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);
+    assert_int_equal(wb_file_write(fields, "old\n", 4), WB_OK);
+    assert_int_equal(wb_dataset_write(&dataset, path, true), WB_OK);
+    assert_false(wb_file_exists(fields));
+    wb_dataset_release(&dataset);
+}
+
 static void a_row_without_force_is_not_written(void **state)
 {
     (void)state;
@@ -408,6 +462,8 @@ int main(void)
         cmocka_unit_test(numbers_are_short_and_in_their_unit),
         cmocka_unit_test(a_dataset_comes_back_as_it_was),
         cmocka_unit_test(no_rest_and_a_straight_wire_are_kept),
+        cmocka_unit_test(z_is_kept_where_a_test_leaves_the_plane),
+        cmocka_unit_test(overwriting_leaves_no_fields_of_another),
         cmocka_unit_test(a_row_without_force_is_not_written),
         cmocka_unit_test(bad_tables_are_refused_with_line_and_column),
         cmocka_unit_test(other_tables_are_read),
