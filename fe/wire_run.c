@@ -26,7 +26,7 @@ enum wb_status wb_wire_run_init(struct wb_wire_run *run, const struct wb_wire_mo
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
                        n_shape, MOST_SHAPE);
 
-    const size_t rows = (size_t)wb_wire_run_planned_rows(model);
+    const size_t rows = (size_t)wb_wire_run_planned_rows(model) + WB_WIRE_RUN_SPARE;
     const size_t n = (size_t)n_shape;
     run->rows = calloc(rows, sizeof *run->rows);
     if (n_shape > 0) {

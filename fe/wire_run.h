@@ -54,8 +54,13 @@ struct wb_wire_observer {
     void *context;
 };
 
-/* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length (none,
- * or 2 to 1000). */
+enum {
+    WB_WIRE_RUN_SPARE = 400 /* rows that may come on top of the planned ones, on a path that is
+                               followed past a limit point */
+};
+
+/* Takes memory for a model's rows, spare ones, and n_shape equally spaced positions from 0 to its
+ * length (none, or 2 to 1000). */
 WB_MUST_CHECK enum wb_status wb_wire_run_init(struct wb_wire_run *run,
                                               const struct wb_wire_model *model, int n_shape);
 void wb_wire_run_release(struct wb_wire_run *run); /* accepts a zeroed one */
@@ -65,7 +70,7 @@ int wb_wire_run_planned_rows(const struct wb_wire_model *model);
 
 /* Appends a row that has step, fraction, loads, tip, tangent, tension, vertical_force, increments
  * and iterations, and completes it: cycle, phase, angle, force. `slack`: the strand carries
- * nothing. `shape` is (n_shape x 3). Rows beyond the planned ones are not taken. */
+ * nothing. `shape` is (n_shape x 3). Rows beyond the spare ones are not taken. */
 void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
                      const struct wb_wire_row *row, bool slack, const double (*shape)[3]);
 

@@ -46,7 +46,7 @@ static void positions_are_equally_spaced_over_the_length(void **state)
     make_raise_and_release();
     assert_int_equal(wb_wire_run_planned_rows(&model), 9);
     assert_int_equal(wb_wire_run_init(&run, &model, 3), WB_OK);
-    assert_int_equal(run.capacity, 9);
+    assert_int_equal(run.capacity, 9 + WB_WIRE_RUN_SPARE);
     assert_int_equal(run.n_rows, 0);
     assert_true(run.converged && !run.stopped);
     assert_close(run.shape_s[0], 0.0, 0.0);
@@ -98,9 +98,10 @@ static void loading_after_unloading_is_a_new_cycle(void **state)
         assert_int_equal(run.rows[i].phase, rows[i].phase);
         assert_int_equal(run.rows[i].iterations, 3);
     }
-    /* There is no room for more than was planned. */
-    add(&run, 3, 0.0, 0.0, false);
-    assert_int_equal(run.n_rows, 9);
+    /* There is room for some more than planned, and then no more. */
+    for (int i = 0; i <= WB_WIRE_RUN_SPARE; i++)
+        add(&run, 3, 0.0, 0.0, false);
+    assert_int_equal(run.n_rows, 9 + WB_WIRE_RUN_SPARE);
     wb_wire_run_release(&run);
 }
 
