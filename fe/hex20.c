@@ -20,6 +20,7 @@ struct sums {
     double u[3][NODES];     /* displacements relative to node 0's */
     double force[3][NODES]; /* N */
     struct wb_hex20_result result;
+    double accumulated;             /* of all points, to see that they are numbers */
     struct wb_hex20_kernel *kernel; /* NULL without stiffness */
 };
 
@@ -90,6 +91,7 @@ static bool add_deviatoric(const struct wb_hex20_geometry *geometry, int points,
         add_point(sums, geometry->gradient[p][0], geometry->weight[p], &motion, &response);
         sums->result.dissipated += geometry->weight[p] * response.dissipated;
         sums->result.yielding += response.yields;
+        sums->accumulated += after[p].accumulated;
     }
     return true;
 }
@@ -142,7 +144,7 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
     }
     *result = sums.result;
     if (!all_finite(force, UNKNOWNS) || !isfinite(result->elastic_energy) ||
-        !isfinite(result->dissipated))
+        !isfinite(result->dissipated) || !isfinite(sums.accumulated))
         return false;
     if (!stiffness)
         return true;
