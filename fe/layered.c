@@ -542,7 +542,7 @@ static void solve_from(struct wb_layered *layered, int first, int n_right, doubl
 {
     if (layered->singular) {
         for (ptrdiff_t i = 0; i < (ptrdiff_t)layered->n_unknowns * n_right; i++)
-            right[i] = NAN;
+            right[i] = (double)NAN;
         return;
     }
     if (n_right < 1)
