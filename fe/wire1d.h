@@ -41,4 +41,9 @@ struct wb_wire1d_fibre {
 WB_MUST_CHECK enum wb_status wb_wire1d_section(const struct wb_wire1d *wire, double s,
                                                struct wb_wire1d_fibre **fibres, int *n);
 
+/* Of the present state at arc length s: position of the axis (m) and the section's frame, rows:
+ * unit vectors along the wire, the section's y, its z. */
+void wb_wire1d_frame(const struct wb_wire1d *wire, double s, double position[3],
+                     double frame[3][3]);
+
 #endif
