@@ -10,18 +10,6 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Moment of the tip force about each point: (r_tip - r) x F. */
-static void find_curvature(struct wb_comparison_rod *rod, const struct wb_comparison_wire *wire)
-{
-    const int last = WB_COMPARISON_POINTS - 1;
-    const double rigidity = wire->material.youngs_modulus * pi / 64.0 * pow(wire->diameter, 4.0);
-    const double force = rod->force[rod->n_curve - 1], angle = rod->angle[rod->n_curve - 1];
-    for (int i = 0; i <= last; i++) {
-        const double arm_x = rod->x[last] - rod->x[i], arm_y = rod->y[last] - rod->y[i];
-        rod->curvature[i] = force * (arm_x * cos(angle) + arm_y * sin(angle)) / rigidity;
-    }
-}
-
 static enum wb_status load(struct wb_comparison_rod *rod, const struct wb_comparison_wire *wire,
                            struct wb_cantilever *cantilever)
 {
@@ -42,7 +30,7 @@ static enum wb_status load(struct wb_comparison_rod *rod, const struct wb_compar
     for (int i = 0; i < WB_COMPARISON_POINTS; i++)
         rod->s[i] = wire->length * i / (WB_COMPARISON_POINTS - 1);
     wb_cantilever_shape(cantilever, WB_COMPARISON_POINTS, rod->s, rod->x, rod->y, NULL);
-    find_curvature(rod, wire);
+    rod->tip_angle = rod->angle[rod->n_curve - 1];
     rod->done = true;
     return WB_OK;
 }
@@ -66,6 +54,61 @@ enum wb_status wb_comparison_rod_compute(struct wb_comparison_rod *rod,
     wb_cantilever_destroy(cantilever);
     wb_section_release(&section);
     return status;
+}
+
+/* State of the elastica from the tip: angle to the tip's tangent, its derivative, and the place in
+ * the frame of that tangent. */
+static void derive(const double state[4], double load, double derivative[4])
+{
+    derivative[0] = state[1];
+    derivative[1] = load * cos(state[0]);
+    derivative[2] = cos(state[0]);
+    derivative[3] = -sin(state[0]);
+}
+
+/* One step of the classical Runge-Kutta method. */
+static void step_elastica(double state[4], double load, double h)
+{
+    static const double places[4] = {0.0, 0.5, 0.5, 1.0}, weights[4] = {1.0, 2.0, 2.0, 1.0};
+    double derivative[4] = {0.0}, sum[4] = {0.0};
+    for (int stage = 0; stage < 4; stage++) {
+        double at[4];
+        for (int i = 0; i < 4; i++)
+            at[i] = state[i] + places[stage] * h * derivative[i];
+        derive(at, load, derivative);
+        for (int i = 0; i < 4; i++)
+            sum[i] += weights[stage] / 6.0 * derivative[i];
+    }
+    for (int i = 0; i < 4; i++)
+        state[i] += h * sum[i];
+}
+
+void wb_comparison_rod_exact(struct wb_comparison_rod *rod, const struct wb_comparison_wire *wire)
+{
+    const int last = WB_COMPARISON_POINTS - 1, substeps = 20;
+    const double load =
+        wire->force / (wire->material.youngs_modulus * pi / 64.0 * pow(wire->diameter, 4.0));
+    const double h = wire->length / (last * substeps);
+    double state[4] = {0.0}, back[WB_COMPARISON_POINTS][2] = {{0.0}};
+    memset(rod, 0, sizeof *rod);
+    for (int i = last - 1; i >= 0; i--) {
+        for (int k = 0; k < substeps; k++)
+            step_elastica(state, load, h);
+        rod->curvature[i] = state[1];
+        back[i][0] = state[2];
+        back[i][1] = state[3];
+    }
+    /* From the frame of the tip's tangent into that of the clamp. */
+    const double c = cos(state[0]), s = sin(state[0]);
+    for (int i = 0; i <= last; i++) {
+        const double along = back[0][0] - back[i][0], across = back[0][1] - back[i][1];
+        rod->s[i] = wire->length * i / last;
+        rod->x[i] = c * along - s * across;
+        rod->y[i] = s * along + c * across;
+    }
+    rod->tip_angle = state[0];
+    rod->n_curve = 1;
+    rod->done = rod->reached = true;
 }
 
 double wb_comparison_rod_curvature(const struct wb_comparison_rod *rod, double s)

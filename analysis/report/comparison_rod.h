@@ -21,19 +21,22 @@ struct wb_comparison_wire {
 };
 
 struct wb_comparison_rod {
-    bool done;    /* computed at all */
+    bool done;    /* there is a last state */
     bool reached; /* the whole force; else it stopped before */
     int n_curve;  /* states reached, the first without force */
     double force[WB_COMPARISON_STEPS + 1], deflection[WB_COMPARISON_STEPS + 1]; /* N, m */
     double angle[WB_COMPARISON_STEPS + 1];                                      /* rad, tip */
-    /* Of the last state: axis and its curvature by the moment of the tip force over E I, which is
-     * that of an elastic wire. */
+    double tip_angle; /* rad, of the last state: */
     double s[WB_COMPARISON_POINTS], x[WB_COMPARISON_POINTS], y[WB_COMPARISON_POINTS]; /* m */
-    double curvature[WB_COMPARISON_POINTS];                                           /* 1/m */
+    double curvature[WB_COMPARISON_POINTS]; /* 1/m, of the exact solution only */
 };
 
 WB_MUST_CHECK enum wb_status wb_comparison_rod_compute(struct wb_comparison_rod *rod,
                                                        const struct wb_comparison_wire *wire);
+
+/* The exact solution for a linear elastic wire that neither stretches nor shears: only the last
+ * state, by integration of the elastica from the tip, where angle and curvature are known. */
+void wb_comparison_rod_exact(struct wb_comparison_rod *rod, const struct wb_comparison_wire *wire);
 
 /* Curvature at an arc length, m; NaN outside. */
 double wb_comparison_rod_curvature(const struct wb_comparison_rod *rod, double s);
