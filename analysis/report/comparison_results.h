@@ -1,0 +1,117 @@
+/* Everything that the report of a comparison tells: its datasets read and checked, the 1D
+ * properties fitted to the solid, and what is computed beside them.
+ */
+#ifndef WB_ANALYSIS_REPORT_COMPARISON_RESULTS_H
+#define WB_ANALYSIS_REPORT_COMPARISON_RESULTS_H
+
+#include <stdbool.h>
+
+#include "analysis/calibrate.h"
+#include "analysis/dataset.h"
+#include "analysis/fields.h"
+#include "analysis/report/comparison.h"
+#include "analysis/report/comparison_rod.h"
+#include "base/status.h"
+#include "base/text.h"
+
+enum wb_comparison_state {
+    WB_COMPARISON_NOT_WANTED,
+    WB_COMPARISON_MISSING, /* there is no such dataset */
+    WB_COMPARISON_REFUSED, /* of a model that has changed, not converged, damaged, ... */
+    WB_COMPARISON_USABLE
+};
+
+/* A dataset, and what it says of its simulation; numbers are NaN where it does not. */
+struct wb_comparison_run {
+    enum wb_comparison_state state;
+    struct wb_text problem; /* why it cannot be used */
+    char command[800];      /* that makes it */
+    bool is_stale;          /* the model has changed since */
+    bool is_cut_short;      /* it did not converge, or was stopped */
+    double elements, unknowns, iterations, cpu_s, memory_MB;
+    char revision[64];           /* of the program that made it */
+    char sha256[WB_SHA256_TEXT]; /* of its force_deflection.csv */
+    struct wb_dataset dataset;   /* of a usable one, as all that follows */
+    struct wb_fields fields;
+    double force, tip_angle; /* N, rad: at its end */
+    double tip[3];           /* m */
+    int n_shape;
+    double *s;          /* (n_shape) m, owned */
+    double (*shape)[3]; /* (n_shape) m, owned */
+};
+
+/* Largest von Mises stress of a part on a section. */
+struct wb_comparison_peak {
+    double stress;       /* Pa; NaN: no such part */
+    double reference[3]; /* m, on the straight wire */
+    double position[3];  /* m */
+};
+
+/* A cross section of the elastic solid beside beam theory. */
+struct wb_comparison_stress {
+    double x; /* m */
+    struct wb_comparison_peak core, jacket;
+    double curvature; /* 1/m, of the exact rod */
+    double beam;      /* Pa: E kappa r of the core's outer fibre */
+};
+
+#define WB_COMPARISON_STRESSES 8
+
+struct wb_comparison_results {
+    const struct wb_comparison *comparison; /* borrowed */
+    struct wb_comparison_run runs[WB_COMPARISON_CASES][WB_COMPARISON_SOLVERS];
+    struct wb_comparison_rod exact; /* elastic */
+
+    int n_stresses;
+    struct wb_comparison_stress stresses[WB_COMPARISON_STRESSES];
+
+    enum wb_comparison_state fit_state; /* refused: the calibration failed */
+    struct wb_text fit_problem;
+    struct wb_calibrate_result fit;
+    struct wb_comparison_rod fitted;  /* the rod with the fitted properties */
+    struct wb_comparison_rod printed; /* with the printed ones; not done: none are */
+    double collapse_force;            /* N: of the printed yield stress, without hardening */
+
+    int n_wanted, n_usable; /* datasets */
+    bool is_complete;
+    bool exceeds_limit;
+    bool interrupted;
+};
+
+typedef void wb_comparison_progress(void *context, int done, int total, const char *what);
+
+/* How many steps wb_comparison_compute() tells of. */
+int wb_comparison_count(const struct wb_comparison *comparison);
+
+/* Computes everything; WB_OK also when datasets are missing. */
+WB_MUST_CHECK enum wb_status wb_comparison_compute(struct wb_comparison_results *results,
+                                                   const struct wb_comparison *comparison,
+                                                   wb_comparison_progress *progress, void *context);
+void wb_comparison_results_release(
+    struct wb_comparison_results *results); /* accepts a zeroed one */
+
+/* A run that is usable, else NULL. */
+const struct wb_comparison_run *wb_comparison_usable(const struct wb_comparison_results *results,
+                                                     int index, enum wb_comparison_solver solver);
+
+/* Largest distance of two axes at the same arc length, m, over the second one's points. */
+double wb_comparison_distance(const struct wb_comparison_run *run,
+                              const struct wb_comparison_run *other);
+double wb_comparison_rod_distance(const struct wb_comparison_run *run,
+                                  const struct wb_comparison_rod *rod);
+
+/* CPU seconds of the rod over the solid's; NaN when one is not known. */
+double wb_comparison_cost(const struct wb_comparison_results *results, int index);
+
+/* Distance of a usable run's tip from the exact elastic one, over that one's displacement. */
+double wb_comparison_tip_error(const struct wb_comparison_results *results,
+                               const struct wb_comparison_run *run);
+
+/* By how much E of the jacket moves when that of the core moves by a part `change` and the
+ * effective modulus of eq. 8 stays, Pa. */
+double wb_comparison_split(const struct wb_wire_model *model, double change);
+
+/* The peak of a part (0 core, 1 jacket) on a field. */
+struct wb_comparison_peak wb_comparison_find_peak(const struct wb_field *field, int part);
+
+#endif
