@@ -18,6 +18,9 @@
 
 static const char *const phase_names[] = {"load", "unload", "slack"};
 
+/* By is_follower. */
+static const char *const loading_names[] = {"tip", "follower"};
+
 const char *wb_phase_name(enum wb_phase phase)
 {
     return phase_names[phase];
@@ -137,6 +140,7 @@ static void set_info(struct wb_json *document, const struct wb_test_info *info)
     set_scaled(test, "outer_diameter_mm", info->outer_diameter, WB_MM);
     wb_json_set_number(test, "mass_per_length_kg_m", info->mass_per_length);
     wb_json_set_number(test, "poissons_ratio", info->poissons_ratio);
+    wb_json_set_text(test, "loading", loading_names[info->is_follower]);
     set_scaled(test, "strand_length_mm", info->strand_length, WB_MM);
     set_scaled(test, "counterweight_g", info->counterweight, WB_G);
     wb_json_set_number(test, "gravity_m_s2", info->gravity);
@@ -184,6 +188,24 @@ static enum wb_status get_shape(const struct wb_json *test, const char *path,
     return WB_OK;
 }
 
+/* Files older than the key have none: their force is the strand's, or vertical. */
+static enum wb_status get_loading(const struct wb_json *test, const char *path,
+                                  struct wb_test_info *info)
+{
+    const char *loading = loading_names[false];
+    if (wb_json_get(test, "loading") && !wb_json_get_text(test, "loading", &loading))
+        return wb_fail(WB_ERR_FORMAT, "%s: test.loading: expected a text", path);
+    info->is_follower = strcmp(loading, loading_names[true]) == 0;
+    if (!info->is_follower && strcmp(loading, loading_names[false]) != 0)
+        return wb_fail(WB_ERR_FORMAT, "%s: test.loading: expected %s or %s, not '%.40s'", path,
+                       loading_names[false], loading_names[true], loading);
+    if (info->is_follower && info->strand_length != 0.0)
+        return wb_fail(WB_ERR_FORMAT,
+                       "%s: test.strand_length_mm: a follower force is not a strand's: expected 0",
+                       path);
+    return WB_OK;
+}
+
 static enum wb_status get_info(const struct wb_json *document, const char *path,
                                struct wb_test_info *info)
 {
@@ -204,6 +226,7 @@ static enum wb_status get_info(const struct wb_json *document, const char *path,
     WB_TRY(get_number(test, path, "mass_per_length_kg_m", 1.0, &info->mass_per_length));
     WB_TRY(get_number(test, path, "poissons_ratio", 1.0, &info->poissons_ratio));
     WB_TRY(get_number(test, path, "strand_length_mm", WB_MM, &info->strand_length));
+    WB_TRY(get_loading(test, path, info));
     WB_TRY(get_number(test, path, "counterweight_g", WB_G, &info->counterweight));
     WB_TRY(get_number(test, path, "gravity_m_s2", 1.0, &info->gravity));
     if (wb_json_get_number(test, "rest_level_mm", &info->rest_level))
@@ -254,6 +277,8 @@ enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *fo
 {
     char *document;
     struct wb_text rows = {0}, shapes = {0};
+    if (dataset->info.is_follower && dataset->info.strand_length != 0.0)
+        return wb_fail(WB_ERR_ARGUMENT, "a dataset with a follower force and a strand");
     WB_TRY(format_document(dataset, &document));
     enum wb_status status = wb_dataset_csv_format(dataset, &rows, &shapes);
     if (status == WB_OK)

@@ -267,6 +267,61 @@ static void overwriting_leaves_no_fields_of_another(void **state)
     wb_dataset_release(&dataset);
 }
 
+/* dataset.json with one text exchanged, read again. */
+static enum wb_status read_altered(const char *path, const char *old, const char *new,
+                                   struct wb_dataset *dataset)
+{
+    char file[WB_PATH], *text, altered[8192];
+    assert_int_equal(wb_file_join(file, path, "dataset.json"), WB_OK);
+    assert_int_equal(wb_file_read(file, &text, NULL), WB_OK);
+    const char *const at = strstr(text, old);
+    assert_non_null(at);
+    snprintf(altered, sizeof altered, "%.*s%s%s", (int)(at - text), text, new, at + strlen(old));
+    assert_int_equal(wb_file_write(file, altered, strlen(altered)), WB_OK);
+    const enum wb_status status = wb_dataset_read(dataset, path);
+    assert_int_equal(wb_file_write(file, text, strlen(text)), WB_OK);
+    free(text);
+    return status;
+}
+
+static void a_follower_force_is_said(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset;
+    char path[WB_PATH];
+    snprintf(path, sizeof path, "%s/follower", folder);
+    fill(&dataset);
+    dataset.info.is_follower = true;
+    assert_int_equal(wb_dataset_write(&dataset, path, false), WB_ERR_ARGUMENT);
+    dataset.info.strand_length = 0.0;
+    assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);
+    wb_dataset_release(&dataset);
+    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
+    assert_true(dataset.info.is_follower);
+    wb_dataset_release(&dataset);
+
+    /* Other words, other kinds, and what contradicts it. */
+    static const struct {
+        const char *old, *new, *message;
+    } cases[] = {
+        {"\"follower\"", "\"sideways\"", "test.loading: expected tip or follower, not 'sideways'"},
+        {"\"follower\"", "true", "test.loading: expected a text"},
+        {"\"strand_length_mm\": 0", "\"strand_length_mm\": 760", "not a strand's"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        assert_int_equal(read_altered(path, cases[i].old, cases[i].new, &dataset), WB_ERR_FORMAT);
+        if (!strstr(last_message, cases[i].message))
+            fail_msg("'%s' does not say '%s'", last_message, cases[i].message);
+    }
+    /* The other word, and files from before there was one. */
+    assert_int_equal(read_altered(path, "\"follower\"", "\"tip\"", &dataset), WB_OK);
+    assert_false(dataset.info.is_follower);
+    wb_dataset_release(&dataset);
+    assert_int_equal(read_altered(path, "\"loading\": \"follower\",", "", &dataset), WB_OK);
+    assert_false(dataset.info.is_follower);
+    wb_dataset_release(&dataset);
+}
+
 static void a_row_without_force_is_not_written(void **state)
 {
     (void)state;
@@ -464,6 +519,7 @@ int main(void)
         cmocka_unit_test(no_rest_and_a_straight_wire_are_kept),
         cmocka_unit_test(z_is_kept_where_a_test_leaves_the_plane),
         cmocka_unit_test(overwriting_leaves_no_fields_of_another),
+        cmocka_unit_test(a_follower_force_is_said),
         cmocka_unit_test(a_row_without_force_is_not_written),
         cmocka_unit_test(bad_tables_are_refused_with_line_and_column),
         cmocka_unit_test(other_tables_are_read),
