@@ -56,7 +56,8 @@ static void add_point(struct sums *sums, const double *gradient, double weight,
                       const struct wb_solid_point_response *response)
 {
     const double *along_x = gradient, *along_y = gradient + NODES, *along_z = gradient + 2 * NODES;
-    double g[3][NODES]; /* with respect to the present position */
+    double plain[3][NODES]; /* derivatives with respect to the present position */
+    double(*g)[NODES] = sums->kernel ? sums->kernel->g[sums->kernel->points] : plain;
 
     for (int i = 0; i < 3; i++) {
         const double f[3] = {motion->inverse[0][i], motion->inverse[1][i], motion->inverse[2][i]};
@@ -73,7 +74,7 @@ static void add_point(struct sums *sums, const double *gradient, double weight,
     sums->result.elastic_energy += weight * response->energy;
     sums->result.smallest_jacobian = fmin(sums->result.smallest_jacobian, motion->jacobian);
     if (sums->kernel)
-        wb_hex20_kernel_add(sums->kernel, weight, &g[0][0], response);
+        wb_hex20_kernel_add(sums->kernel, weight, response);
 }
 
 static bool add_deviatoric(const struct wb_hex20_geometry *geometry, int points,
@@ -130,7 +131,7 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
     struct wb_hex20_kernel kernel;
     struct sums sums = {.kernel = stiffness ? &kernel : NULL};
 
-    kernel.rows = 0;
+    kernel.points = 0;
     sums.result.smallest_jacobian = (double)INFINITY;
     wb_solid_point_law_init(&law, material);
     take_displacements(u, sums.u);
