@@ -230,6 +230,22 @@ static void accept(struct wb_solid *solid, const struct wb_solid_increment *incr
     wb_solid_body_commit(&solid->body);
 }
 
+/* A stable equilibrium has no business to become an unstable one by growing loads: the increment
+ * stepped over a critical point, perhaps to another branch. */
+static bool steps_over(struct wb_solid *solid, const struct wb_solid_increment *increment)
+{
+    const bool unstable = wb_solid_newton_unstable(solid, increment);
+
+    if (!unstable || solid->unstable) {
+        solid->unstable = unstable;
+        return false;
+    }
+    snprintf(solid->problem, sizeof solid->problem,
+             "a critical point (a limit load or buckling) lies between %.4g and %.4g of the way",
+             increment->from, increment->share);
+    return true;
+}
+
 static void revert(struct wb_solid *solid)
 {
     memcpy(solid->u, solid->committed, vector_bytes(solid));
@@ -267,6 +283,7 @@ static void finish(const struct wb_solid *solid, struct wb_solid_point *point,
     point->end = end;
     point->residual = solid->residual;
     point->negative_pivots = solid->negative_pivots;
+    point->unstable = solid->unstable;
     if (end == WB_SOLID_NOT_CONVERGED)
         snprintf(point->problem, sizeof point->problem, "%s", solid->problem);
 }
@@ -292,7 +309,7 @@ static void move_by_shares(struct wb_solid *solid, struct wb_solid_increment *in
             converged = wb_solid_newton(solid, increment, false);
             point->iterations += solid->iterations;
         }
-        if (!converged) {
+        if (!converged || steps_over(solid, increment)) {
             revert(solid);
             point->cutbacks++;
             pace = 0.5 * (increment->share - increment->from);
@@ -300,6 +317,14 @@ static void move_by_shares(struct wb_solid *solid, struct wb_solid_increment *in
                 finish(solid, point, WB_SOLID_NOT_CONVERGED);
                 return;
             }
+            continue;
+        }
+        if (turned(increment) > 2.0 * solid->settings.most_rotation) {
+            /* Too far for the path of a plastic material. */
+            pace = (increment->share - increment->from) * solid->settings.most_rotation /
+                   turned(increment);
+            revert(solid);
+            point->cutbacks++;
             continue;
         }
         accept(solid, increment);
@@ -342,6 +367,7 @@ static void move_by_arc(struct wb_solid *solid, struct wb_solid_increment *incre
             }
             continue;
         }
+        solid->unstable = wb_solid_newton_unstable(solid, increment);
         accept(solid, increment);
         increment->last_direction = solid->last_change;
         point->fraction = increment->share;

@@ -99,6 +99,9 @@ struct wb_solid_point {
     int increments, iterations, cutbacks;
     double residual;     /* relative, of the last equilibrium */
     int negative_pivots; /* of the last factorisation */
+    bool unstable;       /* the equilibrium cannot stand under its control: it is on a path past a
+                            critical       point (a limit load, buckling). Moves by loads or deflection never
+                            step over       such a point: they end before it, not converged */
     char problem[240];   /* why it did not converge; "" otherwise */
 };
 

@@ -353,6 +353,29 @@ static void take_step(struct wb_solid *solid, struct wb_solid_increment *increme
     }
 }
 
+bool wb_solid_newton_unstable(const struct wb_solid *solid,
+                              const struct wb_solid_increment *increment)
+{
+    const struct wb_tip_loads *tip = &solid->loads.tip;
+    const bool odd = solid->negative_pivots % 2 != 0;
+    double A[ALL * ALL], b[ALL], turning = 0.0;
+    lapack_int pivot[ALL];
+
+    if (solid->tip.n_nodes == 0)
+        return solid->body.has_contact ? odd : solid->negative_pivots > 0;
+    tip_equations(solid, increment, A, b);
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, ALL, ALL, A, ALL, pivot) != 0)
+        return true;
+    bool negative = false;
+    for (int i = 0; i < ALL; i++)
+        negative ^= (A[ALL * i + i] < 0.0) ^ (pivot[i] != i + 1);
+    for (int i = 0; i < 3; i++)
+        turning += fabs(tip->follower[i]) + fabs(tip->moment[i]);
+    if (solid->body.has_contact || turning > 0.0)
+        return odd ^ negative;
+    return solid->negative_pivots > (negative ? 1 : 0);
+}
+
 static double first_scale(const struct step *step)
 {
     double turn = 0.0;

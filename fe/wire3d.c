@@ -277,7 +277,7 @@ static bool follow_arc(struct run *r, const struct wb_solid_move *row, double fr
         add_row(r, fmin(from + point.fraction * (to - from), 0.999999));
         if (r->status != WB_OK || r->run->stopped)
             return false;
-        if (point.fraction > 0.0 && point.negative_pivots == 0) {
+        if (point.fraction > 0.0 && !point.unstable) {
             struct wb_solid_move rest = *row;
             if (move(r, &rest, &point))
                 return true;
