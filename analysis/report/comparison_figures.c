@@ -1,0 +1,260 @@
+#include "analysis/report/comparison_figures.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/report_pdf.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double full_turn = 180.0 / 3.14159265358979323846; /* degrees of a radian */
+
+enum wb_status wb_comparison_figures_start(struct wb_figure **figure, const char *name,
+                                           double height)
+{
+    WB_TRY(wb_figure_create(figure, name, WB_REPORT_WIDTH, height));
+    wb_figure_set_footer(*figure, "simulation, no test");
+    return WB_OK;
+}
+
+/* --- lines --- */
+
+/* How a model looks in every figure: the solid a broad pale line, the others on it. */
+static const struct wb_figure_style solid_style = {.colour = {0.34, 0.71, 0.91, 0.75},
+                                                   .width = 3.6};
+static const struct wb_figure_style contact_style = {.colour = {0.0, 0.28, 0.45, 1.0},
+                                                     .width = 0.9};
+static const struct wb_figure_style rod_style = {
+    .colour = {0.835, 0.369, 0.0, 1.0}, .width = 1.3, .dash = WB_DASH_DASHED};
+static const struct wb_figure_style fitted_style = {
+    .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DOTTED};
+static const struct wb_figure_style printed_style = {
+    .colour = {0.365, 0.408, 0.459, 1.0}, .width = 1.0, .dash = WB_DASH_MIXED};
+
+enum {
+    MOST_POINTS = 512
+};
+
+/* The axis of a run; `plane` 1: x and y, 2: x and z. */
+static void add_axis(struct wb_panel *panel, const char *label, const struct wb_comparison_run *run,
+                     int plane, const struct wb_figure_style *style)
+{
+    double x[MOST_POINTS], y[MOST_POINTS];
+    size_t n = 0;
+    if (!run)
+        return;
+    for (int i = 0; i < run->n_shape && n < MOST_POINTS; i++, n++) {
+        x[n] = run->shape[i][0] / WB_MM;
+        y[n] = run->shape[i][plane] / WB_MM;
+    }
+    wb_figure_add_line(panel, label, n, x, y, style);
+}
+
+static void add_rod_axis(struct wb_panel *panel, const char *label,
+                         const struct wb_comparison_rod *rod, const struct wb_figure_style *style)
+{
+    double x[WB_COMPARISON_POINTS], y[WB_COMPARISON_POINTS];
+    if (!rod->done)
+        return;
+    for (int i = 0; i < WB_COMPARISON_POINTS; i++) {
+        x[i] = rod->x[i] / WB_MM;
+        y[i] = rod->y[i] / WB_MM;
+    }
+    wb_figure_add_line(panel, label, WB_COMPARISON_POINTS, x, y, style);
+}
+
+static struct wb_panel *add_shape_panel(struct wb_figure *figure, const char *title,
+                                        const char *y_label)
+{
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    wb_figure_set_axes(panel, "<i>x</i> (mm)", y_label);
+    wb_figure_set_equal_aspect(panel);
+    wb_figure_set_title(panel, title);
+    return panel;
+}
+
+/* --- Fig. 4 --- */
+
+static enum wb_status draw_shapes(struct wb_figure **figure,
+                                  const struct wb_comparison_results *results)
+{
+    const struct wb_comparison_run *const bonded =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTIC, WB_COMPARISON_SOLID);
+    const struct wb_comparison_run *const contact =
+        wb_comparison_usable(results, WB_COMPARISON_CONTACT, WB_COMPARISON_SOLID);
+    const struct wb_comparison_run *const elastic =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTIC, WB_COMPARISON_ROD);
+    const struct wb_comparison_run *const solid =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_SOLID);
+    const struct wb_comparison_run *const rod =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_ROD);
+    if (!bonded && !contact && !elastic && !solid && !rod)
+        return WB_OK;
+    WB_TRY(wb_comparison_figures_start(figure, "shapes", 230.0));
+    struct wb_panel *panel = add_shape_panel(*figure, "Linear elastic", "<i>y</i> (mm)");
+    add_axis(panel, "3D, bonded", bonded, 1, &solid_style);
+    add_axis(panel, "3D, friction", contact, 1, &contact_style);
+    add_axis(panel, "1D", elastic, 1, &rod_style);
+    panel = add_shape_panel(*figure, "Elastoplastic", "<i>y</i> (mm)");
+    add_axis(panel, "3D", solid, 1, &solid_style);
+    add_axis(panel, "1D fibres", rod, 1, &rod_style);
+    if (results->fit_state == WB_COMPARISON_USABLE)
+        add_rod_axis(panel, "1D fitted", &results->fitted, &fitted_style);
+    return WB_OK;
+}
+
+/* --- force against deflection and angle --- */
+
+static void add_rows(struct wb_panel *panels[2], const char *label,
+                     const struct wb_comparison_run *run, const struct wb_figure_style *style)
+{
+    double force[MOST_POINTS], deflection[MOST_POINTS], angle[MOST_POINTS];
+    size_t n = 0;
+    if (!run)
+        return;
+    for (size_t i = 0; i < run->dataset.n_rows && n < MOST_POINTS; i++, n++) {
+        force[n] = run->dataset.rows[i].force;
+        deflection[n] = run->dataset.rows[i].deflection / WB_MM;
+        angle[n] = run->dataset.rows[i].tip_angle * full_turn;
+    }
+    wb_figure_add_line(panels[0], label, n, deflection, force, style);
+    wb_figure_add_line(panels[1], label, n, angle, force, style);
+}
+
+static void add_rod_rows(struct wb_panel *panels[2], const char *label,
+                         const struct wb_comparison_rod *rod, const struct wb_figure_style *style)
+{
+    double deflection[WB_COMPARISON_STEPS + 1], angle[WB_COMPARISON_STEPS + 1];
+    if (!rod->done)
+        return;
+    for (int i = 0; i < rod->n_curve; i++) {
+        deflection[i] = rod->deflection[i] / WB_MM;
+        angle[i] = rod->angle[i] * full_turn;
+    }
+    wb_figure_add_line(panels[0], label, (size_t)rod->n_curve, deflection, rod->force, style);
+    wb_figure_add_line(panels[1], label, (size_t)rod->n_curve, angle, rod->force, style);
+}
+
+static enum wb_status draw_loading(struct wb_figure **figure,
+                                   const struct wb_comparison_results *results)
+{
+    const struct wb_comparison_run *const solid =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_SOLID);
+    const struct wb_comparison_run *const rod =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_ROD);
+    if (!solid && !rod)
+        return WB_OK;
+    WB_TRY(wb_comparison_figures_start(figure, "loading", 200.0));
+    struct wb_panel *panels[2];
+    for (int i = 0; i < 2; i++)
+        panels[i] = wb_figure_add_panel(*figure);
+    wb_figure_set_axes(panels[0], "Deflection of the tip (mm)", "Follower force (N)");
+    wb_figure_set_axes(panels[1], "Angle of the tip (degrees)", "Follower force (N)");
+    add_rows(panels, "3D", solid, &solid_style);
+    add_rows(panels, "1D fibres", rod, &rod_style);
+    if (results->fit_state == WB_COMPARISON_USABLE)
+        add_rod_rows(panels, "1D fitted", &results->fitted, &fitted_style);
+    add_rod_rows(panels, "1D as printed", &results->printed, &printed_style);
+    return WB_OK;
+}
+
+/* --- shapes with residual stresses --- */
+
+static enum wb_status draw_residual_shapes(struct wb_figure **figure,
+                                           const struct wb_comparison_results *results)
+{
+    const struct wb_comparison *const comparison = results->comparison;
+    bool any = false;
+    for (int i = 0; i < comparison->n_residual; i++) {
+        for (int k = 0; k < 2; k++)
+            any |= wb_comparison_usable(results, WB_COMPARISON_RESIDUAL + i,
+                                        (enum wb_comparison_solver)k) != NULL;
+    }
+    if (!any)
+        return WB_OK;
+    WB_TRY(wb_comparison_figures_start(figure, "residual-shapes", 215.0));
+    struct wb_panel *const side = add_shape_panel(*figure, "From the side", "<i>y</i> (mm)");
+    struct wb_panel *const above = add_shape_panel(*figure, "From above", "<i>z</i> (mm)");
+    for (int i = 0; i <= comparison->n_residual; i++) {
+        const int index = WB_COMPARISON_ELASTOPLASTIC + i;
+        const char *const name = i == 0 ? "None" : comparison->cases[index].label;
+        const struct wb_comparison_run *const solid =
+            wb_comparison_usable(results, index, WB_COMPARISON_SOLID);
+        const struct wb_comparison_run *const rod =
+            wb_comparison_usable(results, index, WB_COMPARISON_ROD);
+        const struct wb_figure_style broad = {.colour = wb_palette_fade(wb_palette_wire(i), 0.4),
+                                              .width = 3.4};
+        const struct wb_figure_style thin = {
+            .colour = wb_palette_wire(i), .width = 1.2, .dash = WB_DASH_DASHED};
+        char label[100];
+        snprintf(label, sizeof label, "%s, 3D", name);
+        add_axis(side, label, solid, 1, &broad);
+        add_axis(above, NULL, solid, 2, &broad);
+        snprintf(label, sizeof label, "%s, 1D", name);
+        add_axis(side, label, rod, 1, &thin);
+        add_axis(above, NULL, rod, 2, &thin);
+    }
+    return WB_OK;
+}
+
+/* --- all of them --- */
+
+static enum wb_status draw_all(struct wb_comparison_figures *figures,
+                               const struct wb_comparison_results *results)
+{
+    WB_TRY(wb_comparison_figures_draw_stress(&figures->elastic, results, WB_COMPARISON_ELASTIC));
+    WB_TRY(wb_comparison_figures_draw_stress(&figures->elastoplastic, results,
+                                             WB_COMPARISON_ELASTOPLASTIC));
+    WB_TRY(draw_shapes(&figures->shapes, results));
+    WB_TRY(draw_loading(&figures->loading, results));
+    for (int i = 0; i < results->comparison->n_residual; i++)
+        WB_TRY(wb_comparison_figures_draw_residual(&figures->residual[i], results, i));
+    WB_TRY(wb_comparison_figures_draw_residual_stress(&figures->residual_stress, results));
+    return draw_residual_shapes(&figures->residual_shapes, results);
+}
+
+enum wb_status wb_comparison_figures_create(struct wb_comparison_figures *figures,
+                                            const struct wb_comparison_results *results)
+{
+    memset(figures, 0, sizeof *figures);
+    const enum wb_status status = draw_all(figures, results);
+    if (status != WB_OK)
+        wb_comparison_figures_release(figures);
+    return status;
+}
+
+int wb_comparison_figures_list(const struct wb_comparison_figures *figures,
+                               const struct wb_figure *list[WB_COMPARISON_FIGURES])
+{
+    const struct wb_figure *all[WB_COMPARISON_FIGURES];
+    int n_all = 0, n = 0;
+    all[n_all++] = figures->elastic;
+    all[n_all++] = figures->elastoplastic;
+    all[n_all++] = figures->shapes;
+    all[n_all++] = figures->loading;
+    for (int i = 0; i < WB_COMPARISON_RESIDUALS; i++)
+        all[n_all++] = figures->residual[i];
+    all[n_all++] = figures->residual_stress;
+    all[n_all++] = figures->residual_shapes;
+    for (int i = 0; i < n_all; i++) {
+        if (all[i])
+            list[n++] = all[i];
+    }
+    return n;
+}
+
+void wb_comparison_figures_release(struct wb_comparison_figures *figures)
+{
+    wb_figure_destroy(figures->elastic);
+    wb_figure_destroy(figures->elastoplastic);
+    wb_figure_destroy(figures->shapes);
+    wb_figure_destroy(figures->loading);
+    for (int i = 0; i < WB_COMPARISON_RESIDUALS; i++)
+        wb_figure_destroy(figures->residual[i]);
+    wb_figure_destroy(figures->residual_stress);
+    wb_figure_destroy(figures->residual_shapes);
+    memset(figures, 0, sizeof *figures);
+}
