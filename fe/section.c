@@ -11,7 +11,7 @@ enum {
     MOST_FIBRES = 4096
 };
 
-static enum wb_status check_material(const struct wb_material *m)
+enum wb_status wb_section_check_material(const struct wb_material *m)
 {
     if (!(isfinite(m->youngs_modulus) && m->youngs_modulus > 0.0))
         return wb_fail(WB_ERR_ARGUMENT, "youngs_modulus %g Pa: expected a number above 0",
@@ -135,7 +135,7 @@ enum wb_status wb_section_add_ring(struct wb_section *section, double inner_diam
                        area_fraction);
     if (n < 0 || n > MOST_FIBRES)
         return wb_fail(WB_ERR_ARGUMENT, "%d fibres: expected 0 to %d", n, MOST_FIBRES);
-    WB_TRY(check_material(material));
+    WB_TRY(wb_section_check_material(material));
 
     int count = n == 0 ? DEFAULT_FIBRES : n;
     const bool ring = inner_diameter > 0.0;

@@ -45,6 +45,9 @@ WB_MUST_CHECK enum wb_status wb_section_add_ring(struct wb_section *section, dou
  * shear_stiffness. */
 double wb_section_shear_modulus(const struct wb_material *material);
 
+/* Refuses a material whose numbers make no law. */
+WB_MUST_CHECK enum wb_status wb_section_check_material(const struct wb_material *material);
+
 /* Frees what the section owns; accepts a zeroed section. */
 void wb_section_release(struct wb_section *section);
 

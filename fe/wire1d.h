@@ -16,7 +16,7 @@ struct wb_wire1d; /* opaque */
 struct wb_wire1d_settings {
     int n_elements; /* 0: 50 */
     int n_rings;    /* of fibres in each part; 0: 8 */
-    int n_around;   /* fibres of a ring; 0: 16 */
+    int n_around;   /* fibres of a ring, a multiple of 4; 0: 24 */
 };
 
 /* `model` is borrowed; `settings` may be NULL. On failure *out is NULL. */
