@@ -9,6 +9,9 @@
 #include "analysis/dataset.h"
 #include "base/status.h"
 #include "fe/history.h"
+#include "fe/wire3d.h"
+#include "fe/wire_model.h"
+#include "fe/wire_run.h"
 
 /* How the simulation was made, for dataset.json. */
 struct wb_simulated_origin {
@@ -25,5 +28,21 @@ WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
                                                const struct wb_history *history,
                                                const double *shape_s,
                                                const struct wb_simulated_origin *origin);
+
+/* How a wire model was computed. */
+struct wb_simulated_wire {
+    const char *solver; /* "wire3d" or "wire1d" */
+    const struct wb_wire_model *model;
+    const struct wb_wire_run *run;
+    const struct wb_wire3d_balance *balance; /* NULL: not known (wire1d) */
+    double wall, cpu;                        /* s */
+    double peak_memory;                      /* bytes; 0: not known */
+};
+
+/* Fills an initialised dataset with a computed wire. Bench time goes on with the tip's way, at
+ * least 1 ms a row. dataset.json's `simulation` says how it was computed and with which materials;
+ * its `steps` name the row with which each step of the model ended. */
+WB_MUST_CHECK enum wb_status wb_simulated_fill_wire(struct wb_dataset *dataset,
+                                                    const struct wb_simulated_wire *wire);
 
 #endif
