@@ -48,10 +48,14 @@ static void read_simulation(struct wb_comparison_run *run)
     const struct wb_json *const simulation = wb_json_get(document, "simulation");
     const char *revision = "";
     run->elements = number_of(simulation, "elements");
-    run->unknowns = number_of(simulation, "unknowns");
+    run->unknowns = number_of(simulation, "degrees_of_freedom");
     run->iterations = number_of(simulation, "iterations");
     run->cpu_s = number_of(simulation, "cpu_s");
     run->memory_MB = number_of(simulation, "peak_memory_MB");
+    const struct wb_json *const interface = wb_json_get(simulation, "interface");
+    run->slip = number_of(interface, "slip_mm") * WB_MM;
+    run->slip_limit = number_of(interface, "slip_limit_mm") * WB_MM;
+    run->opening = number_of(interface, "opening_mm") * WB_MM;
     (void)wb_json_get_text(wb_json_get(document, "tool"), "revision", &revision);
     snprintf(run->revision, sizeof run->revision, "%s", revision);
 }
@@ -64,9 +68,8 @@ static enum wb_status check_simulation(struct wb_comparison_run *run,
     const struct wb_json *const simulation = wb_json_get(run->dataset.document, "simulation");
     const struct wb_test_info *const info = &run->dataset.info;
     const char *sha256 = "", *made_by = "", *problem = "";
-    bool converged = false;
-    if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "solver", &made_by) ||
-        !wb_json_get_text(simulation, "model_sha256", &sha256))
+    if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "model", &made_by) ||
+        !wb_json_get_text(simulation, "sha256", &sha256))
         return wb_fail(WB_ERR_DATA, "it does not say of which model it is a simulation");
     if (strcmp(made_by, wb_comparison_command(solver)) != 0)
         return wb_fail(WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
@@ -74,9 +77,8 @@ static enum wb_status check_simulation(struct wb_comparison_run *run,
     run->is_stale = strcmp(sha256, item->model->sha256) != 0;
     if (run->is_stale)
         return wb_fail(WB_ERR_DATA, "the model, its wire or its materials have changed since");
-    (void)wb_json_get_boolean(simulation, "converged", &converged);
     (void)wb_json_get_text(simulation, "problem", &problem);
-    run->is_cut_short = !converged;
+    run->is_cut_short = !wb_dataset_is_complete(&run->dataset);
     if (run->is_cut_short)
         return wb_fail(WB_ERR_DATA, "it did not converge to its end%s%s", problem[0] ? ": " : "",
                        problem);
@@ -137,7 +139,7 @@ static void load_run(struct wb_comparison_run *run, const struct wb_comparison_c
     const struct wb_comparison_dataset *const wanted = &item->datasets[solver];
     char folder[WB_PATH];
     run->elements = run->unknowns = run->iterations = (double)NAN;
-    run->cpu_s = run->memory_MB = (double)NAN;
+    run->cpu_s = run->memory_MB = run->slip = run->slip_limit = run->opening = (double)NAN;
     if (!wanted->wanted)
         return;
     snprintf(run->command, sizeof run->command, "wirebench solve %s %s -o %s",

@@ -29,9 +29,10 @@ struct wb_comparison_run {
     bool is_stale;          /* the model has changed since */
     bool is_cut_short;      /* it did not converge, or was stopped */
     double elements, unknowns, iterations, cpu_s, memory_MB;
-    char revision[64];           /* of the program that made it */
-    char sha256[WB_SHA256_TEXT]; /* of its force_deflection.csv */
-    struct wb_dataset dataset;   /* of a usable one, as all that follows */
+    double slip, slip_limit, opening; /* m, of an interface with friction */
+    char revision[64];                /* of the program that made it */
+    char sha256[WB_SHA256_TEXT];      /* of its force_deflection.csv */
+    struct wb_dataset dataset;        /* of a usable one, as all that follows */
     struct wb_fields fields;
     double force, tip_angle; /* N, rad: at its end */
     double tip[3];           /* m */

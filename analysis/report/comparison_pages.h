@@ -1,0 +1,33 @@
+/* What the report of a comparison says: summary, linear elastic, elastoplastic, residual stresses,
+ * cost, provenance.
+ */
+#ifndef WB_ANALYSIS_REPORT_COMPARISON_PAGES_H
+#define WB_ANALYSIS_REPORT_COMPARISON_PAGES_H
+
+#include "analysis/report/comparison_figures.h"
+#include "analysis/report/comparison_results.h"
+#include "analysis/report/document.h"
+
+/* Builds the document; release it before the figures. */
+void wb_comparison_pages_build(struct wb_document *document,
+                               const struct wb_comparison_results *results,
+                               const struct wb_comparison_figures *figures);
+
+/* Its parts, in order; each adds its headings. */
+void wb_comparison_pages_summary(struct wb_document *document,
+                                 const struct wb_comparison_results *results);
+void wb_comparison_pages_elastic(struct wb_document *document,
+                                 const struct wb_comparison_results *results,
+                                 const struct wb_comparison_figures *figures);
+void wb_comparison_pages_elastoplastic(struct wb_document *document,
+                                       const struct wb_comparison_results *results,
+                                       const struct wb_comparison_figures *figures);
+void wb_comparison_pages_residual(struct wb_document *document,
+                                  const struct wb_comparison_results *results,
+                                  const struct wb_comparison_figures *figures);
+void wb_comparison_pages_cost(struct wb_document *document,
+                              const struct wb_comparison_results *results);
+void wb_comparison_pages_provenance(struct wb_document *document,
+                                    const struct wb_comparison_results *results);
+
+#endif
