@@ -80,7 +80,7 @@ static double patch_stress(const struct wb_material *material, enum wb_hex20_int
         H[i / 3][i % 3] = scale * 1e-3 * (i / 3 == i % 3 ? 1.0 : 0.5);
     patch_mesh(&t.mesh);
     test_solid_init(&t, material, how);
-    assert_int_equal(patch_hold(&t, H), PATCH_NODES - 20);
+    assert_int_equal(patch_hold(&t, (const double(*)[3])H), PATCH_NODES - 20);
     test_solid_create(&t);
     test_solid_go(&t, 0.5, 0.0);
     test_solid_go(&t, 1.0, 0.0);
