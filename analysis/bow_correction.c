@@ -3,12 +3,11 @@
 #include <stdlib.h>
 
 #include "analysis/computed.h"
-#include "base/units.h"
 
 #define WB_LOG_DOMAIN "calibrate"
 
 /* Adds 1/n of a sample's computed curve to `mean`. */
-static enum wb_status add_sample(double *mean, double *force, const struct wb_bow_samples *samples,
+static enum wb_status add_sample(double *mean, double *value, const struct wb_bow_samples *samples,
                                  const struct wb_test_info *info,
                                  const struct wb_material *material,
                                  const struct wb_computed_settings *how)
@@ -18,15 +17,15 @@ static enum wb_status add_sample(double *mean, double *force, const struct wb_bo
     int reached = 0;
     WB_TRY(wb_computed_create(&computed, info, material, how));
     enum wb_status status =
-        wb_computed_curve(computed, material, curve->n, curve->step, force, &reached);
+        wb_computed_curve(computed, material, curve->n, curve->step, value, &reached);
     wb_computed_destroy(computed);
     if (status == WB_OK && reached < curve->n)
         status = wb_fail(WB_ERR_CONVERGENCE,
-                         "wire '%s', sample %d: the beam stops converging at %.2f mm, so the "
-                         "effect of its bow on E is not known",
-                         info->wire, info->sample, reached * curve->step / WB_MM);
+                         "wire '%s', sample %d: the beam stops converging at %.3g of its way, so "
+                         "the effect of its bow on E is not known",
+                         info->wire, info->sample, (double)reached / curve->n);
     for (int i = 0; status == WB_OK && i < curve->n; i++)
-        mean[i] += force[i] / samples->n;
+        mean[i] += value[i] / samples->n;
     return status;
 }
 
@@ -52,7 +51,7 @@ enum wb_status wb_bow_correction_guess(struct wb_first_guess *guess,
     }
     if (status == WB_OK) {
         struct wb_curve computed = *samples->curve;
-        computed.force = mean;
+        computed.value = mean;
         status = wb_first_guess_run(guess, &computed, &samples->datasets[0]->info,
                                     settings->elastic_zone, yield_point);
     }

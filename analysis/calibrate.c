@@ -46,7 +46,7 @@ struct objective {
     const struct wb_curve *curve;
     struct wb_material material; /* with K and n of the last evaluation */
     double first_strength, first_exponent;
-    double *force;         /* (curve->n) */
+    double *value;         /* (curve->n) */
     enum wb_status status; /* of the last evaluation that failed other than by convergence */
     int evaluations, failed;
 };
@@ -83,6 +83,13 @@ static void silence_gsl(void)
     gsl_set_error_handler_off();
 }
 
+struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *settings)
+{
+    return (struct wb_curve_grid){.step = settings->step,
+                                  .force_step = settings->force_step,
+                                  .largest_deflection = settings->largest_deflection};
+}
+
 static double yield_point(const struct wb_calibrate_settings *settings)
 {
     return settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
@@ -98,8 +105,10 @@ static enum wb_status check_settings(const struct wb_calibrate_settings *setting
                        "and %g",
                        WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE, zone, point);
     if (!(settings->step > 0.0) || !(settings->size_tolerance > 0.0) ||
-        !(settings->error_tolerance >= 0.0) || settings->max_iterations < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "step, tolerances and iterations must be positive");
+        !(settings->error_tolerance >= 0.0) || settings->max_iterations < 1 ||
+        !(settings->force_step >= 0.0) || !(settings->largest_deflection >= 0.0))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "steps, largest deflection, tolerances and iterations must be positive");
     return WB_OK;
 }
 
@@ -114,9 +123,9 @@ static double violation(double strength_ratio, double exponent)
     return outside;
 }
 
-/* E_L2 over F_max sqrt(delta_max) at (K/K0, n/n0). Always finite: a penalty grows with the distance
- * to the domain, and with the part of the curve that a beam did not reach, so that the simplex
- * finds its way back. */
+/* E_L2 over F_max sqrt(delta_max), or its like, at (K/K0, n/n0). Always finite: a penalty grows
+ * with the distance to the domain, and with the part of the curve that a beam did not reach, so
+ * that the simplex finds its way back. */
 static double evaluate(const gsl_vector *at, void *parameters)
 {
     struct objective *const objective = parameters;
@@ -131,7 +140,7 @@ static double evaluate(const gsl_vector *at, void *parameters)
     int reached = 0;
     const enum wb_status status =
         wb_computed_curve(objective->computed, &objective->material, curve->n, curve->step,
-                          objective->force, &reached);
+                          objective->value, &reached);
     objective->evaluations++;
     if (status != WB_OK)
         objective->status = status;
@@ -139,8 +148,8 @@ static double evaluate(const gsl_vector *at, void *parameters)
         objective->failed++;
         return PENALTY * (2.0 - (double)reached / curve->n);
     }
-    return wb_errors_relative_l2(curve->n, curve->step, curve->force, objective->force,
-                                 curve->max_force);
+    return wb_errors_relative_l2(curve->n, curve->step, curve->value, objective->value,
+                                 wb_curve_scale(curve));
 }
 
 static enum wb_status add_step(struct wb_calibrate_result *result,
@@ -246,19 +255,12 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
     return status;
 }
 
-/* Refuses a test that follows the linear elastic prediction to its end. */
-static enum wb_status check_yielded(struct objective *objective, const struct wb_test_info *info)
+/* The force at the end falls short of the elastic one. */
+static enum wb_status check_share(const struct objective *objective,
+                                  const struct wb_test_info *info)
 {
-    struct wb_material elastic = objective->material;
     const struct wb_curve *const curve = objective->curve;
-    int reached = 0;
-    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
-    WB_TRY(wb_computed_curve(objective->computed, &elastic, curve->n, curve->step, objective->force,
-                             &reached));
-    objective->evaluations++;
-    if (reached < curve->n)
-        return WB_OK;
-    const double predicted = objective->force[curve->n - 1];
+    const double predicted = objective->value[curve->n - 1];
     const double share = curve->force[curve->n - 1] / predicted;
     if (predicted > 0.0 && share > ELASTIC_SHARE)
         return wb_fail(WB_ERR_DATA,
@@ -266,6 +268,40 @@ static enum wb_status check_yielded(struct objective *objective, const struct wb
                        "the linear elastic prediction's",
                        info->wire, curve->max_deflection / WB_MM, 100.0 * share);
     return WB_OK;
+}
+
+/* The deflection under a follower force leaves the elastic one somewhere; at the end it may meet it
+ * again, curled up. */
+static enum wb_status check_leaves(const struct objective *objective,
+                                   const struct wb_test_info *info)
+{
+    const struct wb_curve *const curve = objective->curve;
+    double apart = 0.0, highest = 0.0;
+    for (int i = 0; i < curve->n; i++) {
+        apart = fmax(apart, fabs(curve->deflection[i] - objective->value[i]));
+        highest = fmax(highest, fabs(objective->value[i]));
+    }
+    if (apart < (1.0 - ELASTIC_SHARE) * highest)
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': yield is not reached: up to %.4g N the deflection is within "
+                       "%.2f mm of the linear elastic prediction's",
+                       info->wire, curve->max_force, apart / WB_MM);
+    return WB_OK;
+}
+
+/* Refuses a test that follows the linear elastic prediction to its end. */
+static enum wb_status check_yielded(struct objective *objective, const struct wb_test_info *info)
+{
+    struct wb_material elastic = objective->material;
+    const struct wb_curve *const curve = objective->curve;
+    int reached = 0;
+    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+    WB_TRY(wb_computed_curve(objective->computed, &elastic, curve->n, curve->step, objective->value,
+                             &reached));
+    objective->evaluations++;
+    if (reached < curve->n)
+        return WB_OK;
+    return curve->is_follower ? check_leaves(objective, info) : check_share(objective, info);
 }
 
 static void take_optimum(struct wb_calibrate_result *result, const struct objective *objective,
@@ -330,11 +366,12 @@ static enum wb_status judge(struct wb_calibrate_result *result, struct objective
     const struct wb_curve *const curve = objective->curve;
     int reached = 0;
     WB_TRY(wb_computed_curve(objective->computed, &result->material, curve->n, curve->step,
-                             objective->force, &reached));
+                             objective->value, &reached));
     result->evaluations++;
-    wb_errors_curve(curve->n, curve->force, objective->force, curve->max_force, objective->force);
-    result->rms = wb_errors_rms(curve->n, objective->force);
-    result->max_error = wb_errors_largest(curve->n, objective->force);
+    wb_errors_curve(curve->n, curve->value, objective->value, wb_curve_scale(curve),
+                    objective->value);
+    result->rms = wb_errors_rms(curve->n, objective->value);
+    result->max_error = wb_errors_largest(curve->n, objective->value);
     result->scatter_rms = wb_curve_scatter(curve);
     result->n_samples = curve->n_samples;
     result->max_force = curve->max_force;
@@ -409,8 +446,8 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
         objective.material.yield_stress = settings->yield_stress;
     const struct wb_computed_settings how = {settings->straight, settings->n_elements,
                                              settings->n_fibres};
-    objective.force = malloc((size_t)curve->n * sizeof *objective.force);
-    if (!objective.force)
+    objective.value = malloc((size_t)curve->n * sizeof *objective.value);
+    if (!objective.value)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d points", curve->n);
     enum wb_status status =
         wb_computed_create(&objective.computed, &result->info, &objective.material, &how);
@@ -428,7 +465,7 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
         status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
                                      &result->material, &how);
     wb_computed_destroy(objective.computed);
-    free(objective.force);
+    free(objective.value);
     if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
         status = wb_jackknife_run(result->deviation, datasets, n, settings, &result->material,
                                   &result->evaluations);
@@ -448,7 +485,8 @@ enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
     struct wb_curve curve;
     for (int k = 0; k < 4; k++)
         made.deviation[k] = (double)NAN;
-    WB_TRY(wb_curve_average(&curve, datasets, n, settings->step));
+    const struct wb_curve_grid grid = wb_calibrate_grid(settings);
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
     const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings);
     wb_curve_release(&curve);
     if (status != WB_OK) {

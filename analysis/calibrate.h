@@ -5,6 +5,10 @@
  * eq. 17, with the beam under the test's real loading and the samples' mean natural shape. E and
  * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size test
  * sees both.
+ *
+ * Of a follower test deflections are compared at equal forces, over the whole of the loading:
+ * forces at equal deflections would end short of the largest deflection and tell nothing of the
+ * curling beyond. Errors are then over the largest deflection.
  */
 #ifndef WB_ANALYSIS_CALIBRATE_H
 #define WB_ANALYSIS_CALIBRATE_H
@@ -27,15 +31,18 @@ struct wb_calibrate_settings {
     double yield_stress;    /* Pa; given instead of eq. 11; 0 (default): eq. 11 */
     double size_tolerance;  /* stop when the simplex' size is below, in units of (K0, n0); 1e-4 */
     double error_tolerance; /* stop when E_L2 is below, relative to its scale F_max
-                               sqrt(delta_max); default 1e-4 */
+                               sqrt(delta_max), or its like of a follower test; default 1e-4 */
     int max_iterations;     /* default 200 per start */
     bool straight;          /* ignore the natural shape */
     bool bow_corrected;     /* take what the samples' bows make of eqs. 10 and 11 out of E and
                                sigma_Y, two passes; default false: the equations as printed */
     bool restart;           /* restart once from the optimum; default true */
     double step;            /* m, deflection step of the comparison grid; default 0.5 mm */
-    int n_elements;         /* 0: 50 */
-    int n_fibres;           /* 0: 20 */
+    double force_step;      /* N, the same of follower tests; 0 (default): see analysis/curve.h */
+    double largest_deflection; /* m: what comes later in the loading is left out; 0 (default):
+                                  nothing */
+    int n_elements;            /* 0: 50 */
+    int n_fibres;              /* 0: 20 */
     /* Called after each iteration; may be NULL. Returns false to stop (Ctrl-C). */
     bool (*progress)(void *context, int evaluation, double error, double size);
     void *progress_context;
@@ -43,6 +50,9 @@ struct wb_calibrate_settings {
 
 /* Fills in the defaults above; no progress. */
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings);
+
+/* The grid on which these settings compare. */
+struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *settings);
 
 enum wb_calibrate_end {
     WB_CALIBRATE_SIZE,       /* the simplex became small */
@@ -55,7 +65,7 @@ const char *wb_calibrate_end_text(enum wb_calibrate_end end);
 /* One evaluation of the optimiser's path. */
 struct wb_calibrate_step {
     double strength_coefficient, hardening_exponent; /* Pa, 1: best vertex so far */
-    double error; /* E_L2 over F_max sqrt(delta_max), 1: comparable with an RMS */
+    double error; /* E_L2 over F_max sqrt(delta_max), or its like, 1: comparable with an RMS */
     double size;  /* simplex size */
 };
 
@@ -78,9 +88,10 @@ struct wb_calibrate_result {
     int n_path;
     struct wb_calibrate_step *path; /* (n_path), owned */
     int start_of_restart; /* index in path where the restart begins; n_path when there was none */
-    double rms;           /* eq. 19 of the final model on the same curve, over its F_max */
-    double max_error;     /* largest of eq. 18 */
-    double scatter_rms;   /* RMS over deflection of the samples' standard deviation over F_max */
+    /* Errors are over F_max, or over the largest deflection of a follower test. */
+    double rms;         /* eq. 19 of the final model on the same curve */
+    double max_error;   /* largest of eq. 18 */
+    double scatter_rms; /* RMS over the grid of the samples' standard deviation */
     /* The same of what is left when each sample is predicted with its own natural shape: scatter of
      * stiffness, yield and measurement, and what the model does not follow of the bows. */
     double residual_scatter_rms;

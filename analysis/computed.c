@@ -13,7 +13,8 @@ struct wb_computed {
     struct wb_test_info info; /* the natural curvature's context: outlives the cantilever */
     struct wb_section section;
     struct wb_cantilever *cantilever;
-    double zero; /* N, vertical force at zero deflection */
+    double zero;  /* N, vertical force at zero deflection; 0 of a follower test */
+    double begin; /* what a curve begins with: no force, or a follower test's deflection, m */
 };
 
 enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test_info *info,
@@ -25,6 +26,10 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
     if (!computed)
         return wb_fail(WB_ERR_MEMORY, "no memory for a computed test");
     computed->info = *info;
+    if (info->is_follower && info->strand_length != 0.0) {
+        wb_computed_destroy(computed);
+        return wb_fail(WB_ERR_ARGUMENT, "wire '%s': a follower force and a strand", info->wire);
+    }
     enum wb_status status = wb_section_init_circle(&computed->section, info->outer_diameter,
                                                    material, settings->n_fibres);
     if (status == WB_OK) {
@@ -61,14 +66,28 @@ void wb_computed_destroy(struct wb_computed *computed)
     free(computed);
 }
 
+/* One move; *force is what the control found or was given, not zeroed. */
+static enum wb_status move(struct wb_computed *computed, enum wb_cantilever_control control,
+                           double target, struct wb_cantilever_point *point, double *force,
+                           bool *reached)
+{
+    WB_TRY(wb_cantilever_move(computed->cantilever, control, target, point));
+    *force = computed->info.is_follower ? point->follower : point->vertical_force;
+    *reached =
+        point->end == WB_CANTILEVER_CONVERGED && isfinite(*force) && isfinite(point->deflection);
+    return WB_OK;
+}
+
 enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_material *material,
                                  bool *reached)
 {
+    const bool follows = computed->info.is_follower;
     struct wb_cantilever_point point;
+    double force;
     wb_cantilever_reset(computed->cantilever);
     wb_cantilever_set_materials(computed->cantilever, material);
-    WB_TRY(wb_cantilever_move(computed->cantilever, WB_CONTROL_DEFLECTION, 0.0, &point));
-    *reached = point.end == WB_CANTILEVER_CONVERGED && isfinite(point.vertical_force);
+    WB_TRY(move(computed, follows ? WB_CONTROL_FOLLOWER_FORCE : WB_CONTROL_DEFLECTION, 0.0, &point,
+                &force, reached));
     if (*reached && point.slack)
         return wb_fail(WB_ERR_DATA,
                        "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries "
@@ -76,7 +95,8 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
                        "there is no force to zero on",
                        computed->info.wire, computed->info.sample,
                        wb_dataset_bow(&computed->info) / WB_MM);
-    computed->zero = *reached ? point.vertical_force : 0.0;
+    computed->zero = *reached && !follows ? force : 0.0;
+    computed->begin = follows ? point.deflection : 0.0;
     return WB_OK;
 }
 
@@ -84,33 +104,51 @@ enum wb_status wb_computed_move(struct wb_computed *computed, double deflection,
                                 bool *reached)
 {
     struct wb_cantilever_point point;
-    WB_TRY(wb_cantilever_move(computed->cantilever, WB_CONTROL_DEFLECTION, deflection, &point));
-    *reached = point.end == WB_CANTILEVER_CONVERGED && isfinite(point.vertical_force);
+    double found;
+    WB_TRY(move(computed,
+                computed->info.is_follower ? WB_CONTROL_FOLLOWER_DEFLECTION : WB_CONTROL_DEFLECTION,
+                deflection, &point, &found, reached));
     if (*reached)
-        *force = point.vertical_force - computed->zero;
+        *force = found - computed->zero;
+    return WB_OK;
+}
+
+enum wb_status wb_computed_push(struct wb_computed *computed, double force, double *deflection,
+                                bool *reached)
+{
+    struct wb_cantilever_point point;
+    double given;
+    if (!computed->info.is_follower)
+        return wb_fail(WB_ERR_ARGUMENT, "wire '%s': a test without a follower force",
+                       computed->info.wire);
+    WB_TRY(move(computed, WB_CONTROL_FOLLOWER_FORCE, force, &point, &given, reached));
+    if (*reached)
+        *deflection = point.deflection;
     return WB_OK;
 }
 
 void wb_computed_shape(const struct wb_computed *computed, int n, const double *s, double *x,
-                       double *y)
+                       double *y, double *angle)
 {
-    wb_cantilever_shape(computed->cantilever, n, s, x, y, NULL);
+    wb_cantilever_shape(computed->cantilever, n, s, x, y, angle);
 }
 
 enum wb_status wb_computed_curve(struct wb_computed *computed, const struct wb_material *material,
-                                 int n, double step, double *force, int *n_reached)
+                                 int n, double step, double *values, int *n_reached)
 {
+    enum wb_status (*const go)(struct wb_computed *, double, double *, bool *) =
+        computed->info.is_follower ? wb_computed_push : wb_computed_move;
     bool reached;
     int done = 0;
     WB_TRY(wb_computed_start(computed, material, &reached));
     if (reached)
-        force[done++] = 0.0;
+        values[done++] = computed->begin;
     while (reached && done < n) {
-        WB_TRY(wb_computed_move(computed, done * step, &force[done], &reached));
+        WB_TRY(go(computed, done * step, &values[done], &reached));
         done += reached;
     }
     *n_reached = done;
     for (int i = done; i < n; i++)
-        force[i] = (double)NAN;
+        values[i] = (double)NAN;
     return WB_OK;
 }

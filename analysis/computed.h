@@ -1,9 +1,11 @@
-/* The bending test computed: the 1D beam under a measured test's own loading (strand,
- * counterweight, weight, natural shape), its force zeroed as the test's is.
+/* The bending test computed: the 1D beam under a measured test's own loading (strand or follower
+ * force, counterweight, weight, natural shape), its force zeroed as the test's is.
  *
  * The force is the vertical part of the strand's tension less its value at zero deflection on the
  * first loading: each run starts from the virgin wire, brings the tip to zero deflection, takes
- * that force as zero, and goes on upwards. All memory is taken at creation; a run resets the state.
+ * that force as zero, and goes on upwards. The force of a follower test is the follower's size, and
+ * its runs start from the wire under its weight only. All memory is taken at creation; a run resets
+ * the state.
  */
 #ifndef WB_ANALYSIS_COMPUTED_H
 #define WB_ANALYSIS_COMPUTED_H
@@ -30,22 +32,30 @@ WB_MUST_CHECK enum wb_status wb_computed_create(struct wb_computed **out,
                                                 const struct wb_computed_settings *settings);
 void wb_computed_destroy(struct wb_computed *computed); /* accepts NULL */
 
-/* Starts a run with a material: virgin wire, tip brought to zero deflection, zero taken. *reached
- * is false when that did not converge; the run is then at its end. */
+/* Starts a run with a material: virgin wire, tip brought to zero deflection, zero taken; of a
+ * follower test no force. *reached is false when that did not converge; the run is then at its end.
+ */
 WB_MUST_CHECK enum wb_status wb_computed_start(struct wb_computed *computed,
                                                const struct wb_material *material, bool *reached);
 
-/* Moves the tip to a deflection (m); *force (N, zeroed) is written when it was reached. */
+/* Moves the tip to a deflection (m); *force (N, zeroed, or the follower's) is written when it was
+ * reached. A follower force does not reach beyond the deflection's maximum. */
 WB_MUST_CHECK enum wb_status wb_computed_move(struct wb_computed *computed, double deflection,
                                               double *force, bool *reached);
 
-/* Positions at n arc lengths (m) at the present deflection. */
-void wb_computed_shape(const struct wb_computed *computed, int n, const double *s, double *x,
-                       double *y);
+/* Brings the follower force to a size (N), through the deflection's maximum and beyond; *deflection
+ * (m) is written when it was reached. WB_ERR_ARGUMENT for a test of another kind. */
+WB_MUST_CHECK enum wb_status wb_computed_push(struct wb_computed *computed, double force,
+                                              double *deflection, bool *reached);
 
-/* A whole run over deflections 0, step, ... (n of them): force (n, N), NaN from *n_reached on. */
+/* Positions at n arc lengths (m) at the present deflection; angle (rad) may be NULL. */
+void wb_computed_shape(const struct wb_computed *computed, int n, const double *s, double *x,
+                       double *y, double *angle);
+
+/* A whole run over deflections 0, step, ... (n of them): forces (n, N); of a follower test over
+ * forces 0, step, ...: deflections (n, m). NaN from *n_reached on. */
 WB_MUST_CHECK enum wb_status wb_computed_curve(struct wb_computed *computed,
                                                const struct wb_material *material, int n,
-                                               double step, double *force, int *n_reached);
+                                               double step, double *values, int *n_reached);
 
 #endif

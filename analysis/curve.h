@@ -1,4 +1,10 @@
-/* Loading curves on a common deflection grid, their average and band (the paper's Figs. 9b, 13). */
+/* Loading curves on a common grid, their average and band (the paper's Figs. 9b, 13).
+ *
+ * A test that raises the tip by strand or vertical force is a force over equally spaced
+ * deflections. A follower test is a deflection over equally spaced forces: under a growing follower
+ * force the wire curls up and the deflection has a maximum, near which it says little of the force
+ * and beyond which it does not say which of two forces it is.
+ */
 #ifndef WB_ANALYSIS_CURVE_H
 #define WB_ANALYSIS_CURVE_H
 
@@ -8,44 +14,71 @@
 #include "analysis/dataset.h"
 #include "base/status.h"
 
-/* Force at equally spaced deflections 0, h, 2h, ... of the first loading. */
+/* The first loading, at 0, h, 2h, ... of deflection, or of the force of a follower test. */
 struct wb_curve {
+    bool is_follower;
     int n;
-    double step;        /* m between deflections */
-    double *force;      /* (n) N, mean over the samples; owned */
-    double *low, *high; /* (n) N, smallest and largest sample; owned */
-    double *deviation;  /* (n) N, standard deviation over the samples (n - 1); 0 for one sample */
+    double step; /* m between deflections; N between a follower's forces */
+    union {      /* (n) mean over the samples; owned */
+        double *value;
+        double *force;      /* N, not of a follower test */
+        double *deflection; /* m, of a follower test */
+    };
+    double *low, *high; /* (n) as value: smallest and largest sample; owned */
+    double *deviation;  /* (n) as value: standard deviation over the samples (n - 1); 0 for one */
     int n_samples;
-    double max_deflection; /* m, (n - 1) step: the largest that every sample reaches */
-    double max_force;      /* N, the largest of `force`: F_max of eq. 18 */
+    double max_deflection; /* m, the largest that every sample reaches; the largest of a follower's
+                              `deflection` */
+    double max_force;      /* N, the largest of `force`: F_max of eq. 18; a follower's largest */
 };
 
-/* Averages the first loading of `n` datasets of one kind (same length and wire; refused
- * otherwise). `step` 0 takes 0.5 mm. Each sample's rows within a bin are averaged by a local
- * straight-line fit, so that noise is reduced and a slope makes no bias. Rows marked slack and gaps
- * are left out; a bin without rows is interpolated if the rows around it are within 4 steps, else
- * the dataset is refused. */
+/* Zero in each: the default. */
+struct wb_curve_grid {
+    double step;               /* m; 0.5 mm */
+    double force_step;         /* N, of follower tests; as the rows of the first sample lie on
+                                  average, but at most 100 steps in all */
+    double largest_deflection; /* m: what comes later in the loading is left out; nothing */
+};
+
+/* Averages the first loading of `n` datasets of one kind (same length, wire and loading; refused
+ * otherwise). Each sample's rows within a bin are averaged by a local straight-line fit, so that
+ * noise is reduced and a slope makes no bias. Rows marked slack and gaps are left out, and rows of
+ * a follower test after its largest force; a bin without rows is interpolated if the rows around it
+ * are within 4 steps, else the dataset is refused. `grid` NULL: defaults. */
+WB_MUST_CHECK enum wb_status wb_curve_average_on(struct wb_curve *curve,
+                                                 const struct wb_dataset *const *datasets, int n,
+                                                 const struct wb_curve_grid *grid);
+/* The same with a deflection step only. */
 WB_MUST_CHECK enum wb_status wb_curve_average(struct wb_curve *curve,
                                               const struct wb_dataset *const *datasets, int n,
                                               double step);
+/* A follower's curve turned into force over deflection: its rising part, from zero deflection on,
+ * where the force is set to zero. It is straight between the grid's points and before the first.
+ * WB_ERR_DATA where the deflection does not rise. */
+WB_MUST_CHECK enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *curve,
+                                           double step);
 void wb_curve_release(struct wb_curve *curve);
 
-/* Linear interpolation of the mean force at a deflection within 0..max_deflection; NaN outside. */
+/* What errors are divided by: max_force, or max_deflection of a follower test. */
+double wb_curve_scale(const struct wb_curve *curve);
+
+/* Linear interpolation of the mean force at a deflection within 0..max_deflection; NaN outside, and
+ * for a follower's curve. */
 double wb_curve_force(const struct wb_curve *curve, double deflection);
 
-/* What the scatter between samples is worth: root mean square over deflection of the standard
- * deviation, over max_force; 0 for one sample. */
+/* What the scatter between samples is worth: root mean square over the grid of the standard
+ * deviation, over wb_curve_scale(); 0 for one sample. */
 double wb_curve_scatter(const struct wb_curve *curve);
 
-/* Same wire and same length: tests that may be averaged. */
+/* Same wire, length and loading: tests that may be averaged. */
 bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info *b);
 
 /* Numbers datasets by kind in the order of their first appearance: group[i] from 0. Returns the
  * number of groups. */
 int wb_curve_group(const struct wb_dataset *const *datasets, int n, int *group);
 
-/* Mean of the samples' natural shapes, and everything else of `info` from the first. */
-/* The mean natural shape is that of the samples whose shape is known. */
+/* Mean of the samples' natural shapes, as far as they are known, and everything else of `info` from
+ * the first. */
 void wb_curve_mean_info(const struct wb_dataset *const *datasets, int n, struct wb_test_info *info);
 
 /* Warns when some of the samples have a natural shape and others none. */

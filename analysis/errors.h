@@ -2,8 +2,9 @@
  * spaced deflection grid, integrated by the trapezoid rule.
  *
  * F_max is the largest force of the measured (averaged) curve, wherever an error is printed: the
- * paper divides by F_max without saying which, and its eq. 17 is not normalised. Pure functions;
- * `n` is at least 2 and `step` (m) positive. A NaN in a curve makes the result NaN.
+ * paper divides by F_max without saying which, and its eq. 17 is not normalised. Of follower tests,
+ * whose curves are deflections over forces, it is the largest deflection. Pure functions; `n` is at
+ * least 2 and `step` positive. A NaN in a curve makes the result NaN.
  */
 #ifndef WB_ANALYSIS_ERRORS_H
 #define WB_ANALYSIS_ERRORS_H

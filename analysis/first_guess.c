@@ -13,6 +13,8 @@
  * and the cell's noise rules, longer and the curve bends. */
 #define SLOPE_RANGE 0.03
 #define FEWEST_SLOPE_POINTS 3
+/* Deflection over length between the points that a follower test's curve is turned into. */
+#define TURNED_STEP 0.005
 /* Limits within which n0 is kept. */
 #define SMALLEST_EXPONENT 0.05
 #define LARGEST_EXPONENT 1.2
@@ -131,9 +133,9 @@ static enum wb_status check_shape(const struct wb_curve *curve, const struct wb_
     return WB_OK;
 }
 
-enum wb_status wb_first_guess_run(struct wb_first_guess *guess, const struct wb_curve *curve,
-                                  const struct wb_test_info *info, double elastic_zone,
-                                  double yield_point)
+/* From force over deflection. */
+static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *curve,
+                          const struct wb_test_info *info, double elastic_zone, double yield_point)
 {
     const double length = info->length, diameter = info->outer_diameter;
     WB_TRY(check_reach(curve, info, elastic_zone, yield_point));
@@ -173,4 +175,17 @@ enum wb_status wb_first_guess_run(struct wb_first_guess *guess, const struct wb_
         result.youngs_modulus, result.yield_stress, result.hardening_exponent);
     *guess = result;
     return WB_OK;
+}
+
+enum wb_status wb_first_guess_run(struct wb_first_guess *guess, const struct wb_curve *curve,
+                                  const struct wb_test_info *info, double elastic_zone,
+                                  double yield_point)
+{
+    struct wb_curve turned;
+    if (!curve->is_follower)
+        return run(guess, curve, info, elastic_zone, yield_point);
+    WB_TRY(wb_curve_turn(&turned, curve, TURNED_STEP * info->length));
+    const enum wb_status status = run(guess, &turned, info, elastic_zone, yield_point);
+    wb_curve_release(&turned);
+    return status;
 }

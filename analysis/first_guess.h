@@ -38,7 +38,9 @@ struct wb_first_guess {
     double hardening_exponent;   /* n0; kept within 0.05..1.2, where eq. 16 makes sense */
 };
 
-/* All of it from an averaged curve of a wire with `info`'s length and diameter. The force at a
+/* All of it from an averaged curve of a wire with `info`'s length and diameter. A follower test's
+ * curve is turned into force over deflection first: at small deflection a follower force differs
+ * from a vertical one by the square of the slope. The force at a
  * deflection is that of a straight line fitted within 1.25 % of L around it; the slope past yield
  * is fitted over the 3 % of L behind the yield point. A curve that cannot serve is WB_ERR_DATA with
  * the reason: too short to yield, reversed sign, not rising, falling behind the yield point. */

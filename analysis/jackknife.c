@@ -30,35 +30,35 @@ struct refit {
     struct wb_computed *computed;
     struct wb_curve curve;
     struct wb_material material;
-    /* (curve.n) computed force, its slopes by ln K and by n, workspace; one block, owned by force
-     */
-    double *force, *by_strength, *by_exponent, *previous;
+    /* (curve.n) computed values, their slopes by ln K and by n, workspace; one block, owned by
+     * value */
+    double *value, *by_strength, *by_exponent, *previous;
     int *evaluations;
 };
 
-static enum wb_status run(struct refit *refit, double log_strength, double exponent, double *force,
+static enum wb_status run(struct refit *refit, double log_strength, double exponent, double *value,
                           bool *complete)
 {
     struct wb_material material = refit->material;
     int reached;
     material.strength_coefficient *= exp(log_strength);
     material.hardening_exponent += exponent;
-    WB_TRY(wb_computed_curve(refit->computed, &material, refit->curve.n, refit->curve.step, force,
+    WB_TRY(wb_computed_curve(refit->computed, &material, refit->curve.n, refit->curve.step, value,
                              &reached));
     ++*refit->evaluations;
     *complete = reached == refit->curve.n;
     return WB_OK;
 }
 
-/* dF/d ln K and dF/dn at refit->material by forward differences; refit->force is there already. */
+/* Slopes by ln K and n at refit->material by forward differences; refit->value is there already. */
 static enum wb_status find_slopes(struct refit *refit, bool *complete)
 {
     WB_TRY(run(refit, SLOPE_STEP, 0.0, refit->by_strength, complete));
     if (*complete)
         WB_TRY(run(refit, 0.0, SLOPE_STEP, refit->by_exponent, complete));
     for (int i = 0; i < refit->curve.n; i++) {
-        refit->by_strength[i] = (refit->by_strength[i] - refit->force[i]) / SLOPE_STEP;
-        refit->by_exponent[i] = (refit->by_exponent[i] - refit->force[i]) / SLOPE_STEP;
+        refit->by_strength[i] = (refit->by_strength[i] - refit->value[i]) / SLOPE_STEP;
+        refit->by_exponent[i] = (refit->by_exponent[i] - refit->value[i]) / SLOPE_STEP;
     }
     return WB_OK;
 }
@@ -70,7 +70,7 @@ static bool newton_step(const struct refit *refit, double damping, double step[2
     double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0;
     for (int i = 0; i < refit->curve.n; i++) {
         const double a = refit->by_strength[i], b = refit->by_exponent[i];
-        const double residual = refit->curve.force[i] - refit->force[i];
+        const double residual = refit->curve.value[i] - refit->value[i];
         aa += a * a;
         ab += a * b;
         bb += b * b;
@@ -99,7 +99,7 @@ static bool newton_step(const struct refit *refit, double damping, double step[2
 static double curve_error(const struct refit *refit, bool complete)
 {
     return complete
-               ? wb_errors_l2(refit->curve.n, refit->curve.step, refit->curve.force, refit->force)
+               ? wb_errors_l2(refit->curve.n, refit->curve.step, refit->curve.value, refit->value)
                : HUGE_VAL;
 }
 
@@ -109,7 +109,7 @@ static enum wb_status refit_hardening(struct refit *refit, bool *settled)
     double damping = FIRST_DAMPING, step[2];
     bool complete;
     *settled = false;
-    WB_TRY(run(refit, 0.0, 0.0, refit->force, &complete));
+    WB_TRY(run(refit, 0.0, 0.0, refit->value, &complete));
     double best = curve_error(refit, complete);
     if (complete)
         WB_TRY(find_slopes(refit, &complete));
@@ -119,16 +119,16 @@ static enum wb_status refit_hardening(struct refit *refit, bool *settled)
         double *const previous = refit->previous;
         if (!newton_step(refit, damping, step))
             return WB_OK;
-        /* The force of the last accepted point is kept until the trial proves better. */
-        memcpy(previous, refit->force, (size_t)refit->curve.n * sizeof *previous);
-        WB_TRY(run(refit, step[0], step[1], refit->force, &complete));
+        /* The curve of the last accepted point is kept until the trial proves better. */
+        memcpy(previous, refit->value, (size_t)refit->curve.n * sizeof *previous);
+        WB_TRY(run(refit, step[0], step[1], refit->value, &complete));
         const double error = curve_error(refit, complete);
         const bool is_small = fmax(fabs(step[0]), fabs(step[1])) < SETTLED;
         if (!(error < best)) {
             /* A step is small by damping too; only an undamped one that gains nothing has arrived.
              */
             *settled = is_small && damping <= FIRST_DAMPING;
-            memcpy(refit->force, previous, (size_t)refit->curve.n * sizeof *previous);
+            memcpy(refit->value, previous, (size_t)refit->curve.n * sizeof *previous);
             damping *= 10.0;
             continue;
         }
@@ -167,12 +167,12 @@ static enum wb_status prepare(struct refit *refit, const struct wb_dataset *cons
         refit->material.youngs_modulus *= guess.youngs_modulus / computed.youngs_modulus;
     if (settings->yield_stress <= 0.0)
         refit->material.yield_stress *= guess.yield_stress / computed.yield_stress;
-    refit->force = calloc(4 * points, sizeof *refit->force);
-    if (!refit->force)
+    refit->value = calloc(4 * points, sizeof *refit->value);
+    if (!refit->value)
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu points", points);
-    refit->by_strength = refit->force + points;
-    refit->by_exponent = refit->force + 2 * points;
-    refit->previous = refit->force + 3 * points;
+    refit->by_strength = refit->value + points;
+    refit->by_exponent = refit->value + 2 * points;
+    refit->previous = refit->value + 3 * points;
     const struct wb_computed_settings how = {settings->straight, settings->n_elements,
                                              settings->n_fibres};
     return wb_computed_create(&refit->computed, &info, &refit->material, &how);
@@ -185,13 +185,14 @@ static enum wb_status leave_out(struct wb_material *material, bool *settled, int
 {
     struct refit refit = {.material = *material, .evaluations = evaluations};
     *settled = false;
-    WB_TRY(wb_curve_average(&refit.curve, others, n, settings->step));
+    const struct wb_curve_grid grid = wb_calibrate_grid(settings);
+    WB_TRY(wb_curve_average_on(&refit.curve, others, n, &grid));
     enum wb_status status = prepare(&refit, others, n, settings);
     if (status == WB_OK)
         status = refit_hardening(&refit, settled);
     *material = refit.material;
     wb_computed_destroy(refit.computed);
-    free(refit.force);
+    free(refit.value);
     wb_curve_release(&refit.curve);
     return status;
 }

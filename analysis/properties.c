@@ -79,6 +79,10 @@ static void put_calibration(struct wb_text *text, const struct wb_calibrate_resu
         settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
     wb_text_append(text, "calibration:\n");
     put_number(text, "  ", "length_mm", result->info.length / WB_MM);
+    if (result->info.is_follower)
+        wb_text_append(text, "  loading: follower\n");
+    if (settings->largest_deflection > 0.0)
+        put_number(text, "  ", "cut_at_mm", settings->largest_deflection / WB_MM);
     put_number(text, "  ", "elastic_zone", settings->elastic_zone);
     put_number(text, "  ", "yield_point", yield_point);
     wb_text_append(text, "  natural_shape: %s\n",
@@ -92,7 +96,9 @@ static void put_calibration(struct wb_text *text, const struct wb_calibrate_resu
     wb_text_append(text, "  evaluations_not_converged: %d\n", result->failed_evaluations);
     if (result->restarted)
         put_number(text, "  ", "restart_moved", result->restart_moved);
-    wb_text_append(text, "  # errors are over F_max, the largest force of the measured average\n");
+    wb_text_append(text, "  # errors are over %s of the measured average\n",
+                   result->info.is_follower ? "the largest deflection"
+                                            : "F_max, the largest force");
     put_number(text, "  ", "max_force_N", result->max_force);
     put_number(text, "  ", "max_deflection_mm", result->max_deflection / WB_MM);
     put_number(text, "  ", "rms", result->rms);
@@ -179,6 +185,8 @@ static enum wb_status read_calibration(const struct wb_config_node *node,
                                   0.0, 1e6),
         WB_CONFIG_OPTIONAL_INTEGER("samples", &properties->n_samples, 0, 100000),
         WB_CONFIG_OPTIONAL_BOOLEAN("virtual_rig", &properties->is_virtual),
+        WB_CONFIG_IGNORED("loading"),
+        WB_CONFIG_IGNORED("cut_at_mm"),
         WB_CONFIG_IGNORED("elastic_zone"),
         WB_CONFIG_IGNORED("yield_point"),
         WB_CONFIG_IGNORED("natural_shape"),

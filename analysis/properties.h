@@ -25,12 +25,13 @@ struct wb_properties {
     double outer_diameter;  /* m */
     double mass_per_length; /* kg/m */
     struct wb_material material;
-    double deviation[4];                      /* of E, sigma_Y, ln K, n in SI; NaN unknown */
-    double calibration_length;                /* m; NaN when not from calibrate */
-    double rms;                               /* of the calibration, 1; NaN unknown */
-    double scatter_rms, residual_scatter_rms; /* of the calibration's samples, over F_max, 1; NaN
-                                                 unknown */
-    int n_samples;                            /* of the calibration; 0 unknown */
+    double deviation[4];       /* of E, sigma_Y, ln K, n in SI; NaN unknown */
+    double calibration_length; /* m; NaN when not from calibrate */
+    double rms;                /* of the calibration, 1; NaN unknown */
+    double scatter_rms,
+        residual_scatter_rms; /* of the calibration's samples, over F_max (a follower
+                                 test's largest deflection), 1; NaN unknown */
+    int n_samples;            /* of the calibration; 0 unknown */
     bool is_virtual;
 };
 

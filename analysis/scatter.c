@@ -5,7 +5,7 @@
 
 #define WB_LOG_DOMAIN "scatter"
 
-/* Measured less computed force of one sample on the grid of the average, into `difference`. */
+/* Measured less computed values of one sample on the grid of the average, into `difference`. */
 static enum wb_status sample_difference(double *difference, bool *complete,
                                         const struct wb_dataset *dataset,
                                         const struct wb_curve *grid,
@@ -15,7 +15,8 @@ static enum wb_status sample_difference(double *difference, bool *complete,
     struct wb_curve one;
     struct wb_computed *computed;
     int reached = 0;
-    WB_TRY(wb_curve_average(&one, &dataset, 1, grid->step));
+    const struct wb_curve_grid steps = {.step = grid->step, .force_step = grid->step};
+    WB_TRY(wb_curve_average_on(&one, &dataset, 1, &steps));
     /* The average ends where the shortest sample does. */
     *complete = one.n >= grid->n;
     enum wb_status status = wb_computed_create(&computed, &dataset->info, material, settings);
@@ -25,7 +26,7 @@ static enum wb_status sample_difference(double *difference, bool *complete,
     }
     *complete = *complete && reached == grid->n;
     for (int i = 0; status == WB_OK && *complete && i < grid->n; i++)
-        difference[i] = one.force[i] - difference[i];
+        difference[i] = one.value[i] - difference[i];
     wb_curve_release(&one);
     return status;
 }
@@ -60,6 +61,6 @@ enum wb_status wb_scatter_residual(double *rms, const struct wb_dataset *const *
     }
     free(differences);
     if (status == WB_OK)
-        *rms = complete ? sqrt(sum / (double)(points - 1)) / curve->max_force : (double)NAN;
+        *rms = complete ? sqrt(sum / (double)(points - 1)) / wb_curve_scale(curve) : (double)NAN;
     return status;
 }

@@ -8,9 +8,9 @@
 #include "analysis/dataset.h"
 #include "base/status.h"
 
-/* Root mean square over deflection of the standard deviation of these differences over the samples
- * (n - 1), over the average's max_force. 0 with one sample; NaN when a prediction does not converge
- * over the whole of `curve`, the average of all. */
+/* Root mean square over the grid of the standard deviation of these differences over the samples
+ * (n - 1), over the average's wb_curve_scale(). 0 with one sample; NaN when a prediction does not
+ * converge over the whole of `curve`, the average of all. */
 WB_MUST_CHECK enum wb_status wb_scatter_residual(double *rms,
                                                  const struct wb_dataset *const *datasets, int n,
                                                  const struct wb_curve *curve,

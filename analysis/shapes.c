@@ -9,30 +9,64 @@
 /* Most different arc lengths at which markers sit. */
 #define MOST_POSITIONS 256
 
-/* Shapes of the model at equal steps of deflection, at every arc length that has a marker. */
+/* Shapes of the model at equal steps of deflection or follower force, at every arc length that has
+ * a marker. */
 struct gallery {
     int n_positions, n_frames, n_reached;
     double s[MOST_POSITIONS];
     double *x, *y; /* (n_frames * n_positions) */
     double step;
+    bool is_follower;
 };
 
-/* Time at which the first loading ends. */
+/* Time at which the first loading ends: that of the largest force, of a follower test. */
 static double end_of_loading(const struct wb_dataset *dataset)
 {
-    double end = -HUGE_VAL;
+    double end = -HUGE_VAL, force = -HUGE_VAL;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        if (row->cycle == 1 && row->phase == WB_PHASE_LOAD)
-            end = fmax(end, row->t);
+        if (row->cycle != 1 || row->phase != WB_PHASE_LOAD)
+            continue;
+        if (dataset->info.is_follower && !(row->force >= force))
+            continue;
+        force = row->force;
+        end = fmax(end, row->t);
     }
     return end;
 }
 
-static bool counts(const struct wb_shape_row *row, double end, double last)
+/* Force at a time, straight between the rows; NaN outside. Rows come by ascending time. */
+static double force_at(const struct wb_dataset *dataset, double t)
 {
-    return row->t <= end && row->s > 0.0 && row->deflection >= 0.0 && row->deflection <= last &&
-           isfinite(row->x) && isfinite(row->y);
+    size_t low = 0, high = dataset->n_rows;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (dataset->rows[middle].t < t)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low < dataset->n_rows && dataset->rows[low].t == t)
+        return dataset->rows[low].force;
+    if (low == 0 || low == dataset->n_rows)
+        return (double)NAN;
+    const struct wb_row *const a = &dataset->rows[low - 1], *const b = &dataset->rows[low];
+    return a->force + (b->force - a->force) * (t - a->t) / (b->t - a->t);
+}
+
+/* Where along the range a frame lies. */
+static double place_of(const struct wb_dataset *dataset, const struct wb_shape_row *row)
+{
+    return dataset->info.is_follower ? force_at(dataset, row->t) : row->deflection;
+}
+
+static bool counts(const struct wb_dataset *dataset, const struct wb_shape_row *row, double end,
+                   double last)
+{
+    if (!(row->t <= end && row->s > 0.0 && isfinite(row->x) && isfinite(row->y)))
+        return false;
+    const double place = place_of(dataset, row);
+    return place >= 0.0 && place <= last * (1.0 + 1e-9);
 }
 
 static int find_position(const struct gallery *gallery, double s)
@@ -52,7 +86,7 @@ static enum wb_status collect_positions(struct gallery *gallery,
         const double end = end_of_loading(datasets[i]);
         for (size_t k = 0; k < datasets[i]->n_shape_rows; k++) {
             const struct wb_shape_row *const row = &datasets[i]->shape_rows[k];
-            if (!counts(row, end, last) || find_position(gallery, row->s) >= 0)
+            if (!counts(datasets[i], row, end, last) || find_position(gallery, row->s) >= 0)
                 continue;
             if (gallery->n_positions == MOST_POSITIONS)
                 return wb_fail(WB_ERR_DATA, "wire '%s': markers at more than %d arc lengths",
@@ -66,27 +100,29 @@ static enum wb_status collect_positions(struct gallery *gallery,
 static enum wb_status fill(struct gallery *gallery, struct wb_computed *computed,
                            const struct wb_material *material)
 {
+    enum wb_status (*const go)(struct wb_computed *, double, double *, bool *) =
+        gallery->is_follower ? wb_computed_push : wb_computed_move;
     bool reached;
-    double force;
+    double found;
     WB_TRY(wb_computed_start(computed, material, &reached));
     for (int i = 0; reached && i < gallery->n_frames; i++) {
         if (i > 0)
-            WB_TRY(wb_computed_move(computed, i * gallery->step, &force, &reached));
+            WB_TRY(go(computed, i * gallery->step, &found, &reached));
         if (!reached)
             break;
         wb_computed_shape(computed, gallery->n_positions, gallery->s,
                           gallery->x + i * gallery->n_positions,
-                          gallery->y + i * gallery->n_positions);
+                          gallery->y + i * gallery->n_positions, NULL);
         gallery->n_reached = i + 1;
     }
     return WB_OK;
 }
 
 /* Distance of one marker; false when the model did not get there. */
-static bool marker_distance(const struct gallery *gallery, const struct wb_shape_row *row,
-                            double *distance)
+static bool marker_distance(const struct gallery *gallery, const struct wb_dataset *dataset,
+                            const struct wb_shape_row *row, double *distance)
 {
-    const double place = row->deflection / gallery->step;
+    const double place = place_of(dataset, row) / gallery->step;
     int frame = (int)place;
     if (frame == gallery->n_frames - 1)
         frame--;
@@ -111,7 +147,8 @@ static void compare(struct wb_shapes_distance *distance, const struct gallery *g
         for (size_t k = 0; k < datasets[i]->n_shape_rows; k++) {
             const struct wb_shape_row *const row = &datasets[i]->shape_rows[k];
             double d;
-            if (!counts(row, end, last) || !marker_distance(gallery, row, &d))
+            if (!counts(datasets[i], row, end, last) ||
+                !marker_distance(gallery, datasets[i], row, &d))
                 continue;
             squares += d * d;
             distance->largest = fmax(distance->largest, d);
@@ -131,7 +168,7 @@ enum wb_status wb_shapes_compare(struct wb_shapes_distance *distance, struct wb_
 {
     const double step = range->step, last = range->last;
     struct wb_shapes_distance result = {(double)NAN, (double)NAN, 0};
-    struct gallery gallery = {.step = step};
+    struct gallery gallery = {.step = step, .is_follower = datasets[0]->info.is_follower};
     WB_TRY(collect_positions(&gallery, datasets, n, last));
     if (gallery.n_positions == 0) {
         *distance = result;

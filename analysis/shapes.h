@@ -11,15 +11,16 @@ struct wb_shapes_distance {
     int n_points;
 };
 
-/* Which frames are compared. */
+/* Which frames are compared: of deflection, or of the force of follower tests. */
 struct wb_shapes_range {
-    double step; /* m of deflection between the model's shapes; frames between are interpolated */
-    double last; /* m: frames at deflections 0..last count */
+    double step; /* m or N between the model's shapes; frames between are interpolated */
+    double last; /* m or N: frames from 0 to there count */
 };
 
 /* Runs the model through the range while the wire is first loaded, and compares each marker that
- * was measured there with the computed point at its own arc length. The marker on the clamp (arc
- * length 0) is the origin and left out, and so is what the model does not reach. */
+ * was measured there with the computed point at its own arc length. A follower test's force at a
+ * marker's time is taken from its rows, and what comes after the largest is left out. The marker on
+ * the clamp (arc length 0) is the origin and left out, and so is what the model does not reach. */
 WB_MUST_CHECK enum wb_status wb_shapes_compare(struct wb_shapes_distance *distance,
                                                struct wb_computed *computed,
                                                const struct wb_material *material,

@@ -23,8 +23,12 @@
 #define NEAR_ZERO (5.0 * WB_MM)
 /* Diameters further apart than this are different wires. */
 #define SAME_DIAMETER 0.01
-/* Deflection step on the way to one shape, m. */
+/* Deflection step on the way to one shape, m, and how many steps of force there are. */
 #define SHAPE_STEP (1.0 * WB_MM)
+#define FORCE_STEPS 100
+/* Frames of a follower test's model to a step of the grid, whose ends may be far from each other.
+ */
+#define FRAMES 4
 
 static enum wb_status check_wire(const struct wb_properties *properties,
                                  const struct wb_test_info *info)
@@ -42,21 +46,33 @@ static enum wb_status check_wire(const struct wb_properties *properties,
     return WB_OK;
 }
 
+/* The first point beyond 5 mm; n when there is none. */
+static int beyond_zero(const struct wb_curve *curve)
+{
+    int first = 0;
+    if (!curve->is_follower)
+        return (int)ceil(NEAR_ZERO / curve->step - 1e-9);
+    while (first < curve->n && curve->deflection[first] < NEAR_ZERO)
+        first++;
+    return first;
+}
+
 static enum wb_status predict(struct wb_prediction *prediction, struct wb_computed *computed,
                               const struct wb_material *material, const struct wb_curve *curve)
 {
     const size_t size = (size_t)curve->n;
     prediction->n = curve->n;
-    prediction->force = malloc(size * sizeof *prediction->force);
+    prediction->value = malloc(size * sizeof *prediction->value);
     prediction->error = malloc(size * sizeof *prediction->error);
-    if (!prediction->force || !prediction->error)
+    if (!prediction->value || !prediction->error)
         return wb_fail(WB_ERR_MEMORY, "no memory for a prediction of %d points", curve->n);
-    WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, prediction->force,
+    WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, prediction->value,
                              &prediction->n_reached));
-    wb_errors_curve(curve->n, curve->force, prediction->force, curve->max_force, prediction->error);
+    wb_errors_curve(curve->n, curve->value, prediction->value, wb_curve_scale(curve),
+                    prediction->error);
     /* Cut short, the errors are of the part that was reached; n_reached tells. */
     const int n = prediction->n_reached;
-    const int first = (int)ceil(NEAR_ZERO / curve->step - 1e-9);
+    const int first = beyond_zero(curve);
     prediction->rms = n >= 2 ? wb_errors_rms(n, prediction->error) : (double)NAN;
     prediction->max_error = n >= 2 ? wb_errors_largest(n, prediction->error) : (double)NAN;
     prediction->rms_from_5mm =
@@ -89,6 +105,25 @@ static void judge_scatter(struct wb_validate_result *result, const struct wb_pro
         result->scatter_share = fmin(1.0, square / (rms * rms));
 }
 
+/* A prediction that goes nowhere is an error, one that is cut short is warned about. */
+static enum wb_status check_reached(const struct wb_validate_result *result)
+{
+    const struct wb_curve *const curve = &result->curve;
+    const int n = result->elastoplastic.n_reached;
+    const char *const unit = curve->is_follower ? "N" : "mm";
+    const double size = curve->is_follower ? 1.0 : WB_MM;
+    if (n < 2)
+        return wb_fail(WB_ERR_CONVERGENCE,
+                       "wire '%s': the beam with the calibrated properties does not converge even "
+                       "at %g %s",
+                       result->info.wire, curve->step / size, unit);
+    if (n < curve->n)
+        wb_warn("wire '%s': the beam stops converging at %.2f of %.2f %s; errors are of that part",
+                result->info.wire, (n - 1) * curve->step / size,
+                (curve->n - 1) * curve->step / size, unit);
+    return WB_OK;
+}
+
 static enum wb_status validate_curve(struct wb_validate_result *result,
                                      const struct wb_properties *properties,
                                      const struct wb_dataset *const *datasets, int n,
@@ -102,7 +137,9 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     WB_TRY(wb_computed_create(&computed, &result->info, &properties->material, &how));
     const struct wb_curve *const curve = &result->curve;
-    const struct wb_shapes_range range = {curve->step, curve->max_deflection};
+    const struct wb_shapes_range range = {curve->is_follower ? curve->step / FRAMES : curve->step,
+                                          curve->is_follower ? curve->max_force
+                                                             : curve->max_deflection};
     enum wb_status status = predict(&result->elastoplastic, computed, &properties->material, curve);
     if (status == WB_OK)
         status = predict(&result->elastic, computed, &elastic, curve);
@@ -116,16 +153,7 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
         result->shape_rms = distance.rms;
         result->shape_max = distance.largest;
         result->n_shape_points = distance.n_points;
-        if (result->elastoplastic.n_reached < 2)
-            status = wb_fail(WB_ERR_CONVERGENCE,
-                             "wire '%s': the beam with the calibrated properties does not "
-                             "converge even at %g mm",
-                             result->info.wire, curve->step / WB_MM);
-        else if (result->elastoplastic.n_reached < curve->n)
-            wb_warn("wire '%s': the beam stops converging at %.2f of %.2f mm; errors are of that "
-                    "part",
-                    result->info.wire, (result->elastoplastic.n_reached - 1) * curve->step / WB_MM,
-                    curve->max_deflection / WB_MM);
+        status = check_reached(result);
     }
     wb_computed_destroy(computed);
     return status;
@@ -141,13 +169,16 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
     struct wb_validate_result made = {0};
     if (!settings)
         settings = &defaults;
-    WB_TRY(wb_curve_average(&made.curve, datasets, n, settings->step));
+    const struct wb_curve_grid grid = {.step = settings->step,
+                                       .force_step = settings->force_step,
+                                       .largest_deflection = settings->largest_deflection};
+    WB_TRY(wb_curve_average_on(&made.curve, datasets, n, &grid));
     wb_curve_mean_info(datasets, n, &made.info);
     wb_curve_warn_unknown_shapes(datasets, n);
     enum wb_status status = check_wire(properties, &made.info);
-    if (status == WB_OK && !(made.curve.max_force > 0.0))
-        status =
-            wb_fail(WB_ERR_DATA, "wire '%s': the measured force is never positive", made.info.wire);
+    if (status == WB_OK && !(wb_curve_scale(&made.curve) > 0.0))
+        status = wb_fail(WB_ERR_DATA, "wire '%s': the measured %s is never positive",
+                         made.info.wire, made.curve.is_follower ? "deflection" : "force");
     if (status == WB_OK)
         status = validate_curve(&made, properties, datasets, n, settings);
     if (status != WB_OK) {
@@ -164,6 +195,29 @@ static void put_field(struct wb_text *text, double value, char end)
 {
     char number[WB_NUMBER_TEXT];
     wb_text_append(text, "%s%c", isfinite(value) ? wb_number_format(value, number) : "", end);
+}
+
+static void put_rows(struct wb_text *text, const struct wb_validate_result *result)
+{
+    const struct wb_curve *const curve = &result->curve;
+    const bool follows = curve->is_follower;
+    const double grid_unit = follows ? 1.0 : WB_MM, unit = follows ? WB_MM : 1.0;
+    wb_text_append(text, follows
+                             ? "force_N,measured_mm,low_mm,high_mm,deviation_mm,elastoplastic_mm,"
+                               "elastoplastic_error,elastic_mm,elastic_error\n"
+                             : "deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,"
+                               "elastoplastic_error,elastic_N,elastic_error\n");
+    for (int i = 0; i < curve->n; i++) {
+        put_field(text, i * (curve->step / grid_unit), ',');
+        put_field(text, curve->value[i] / unit, ',');
+        put_field(text, curve->low[i] / unit, ',');
+        put_field(text, curve->high[i] / unit, ',');
+        put_field(text, curve->deviation[i] / unit, ',');
+        put_field(text, result->elastoplastic.value[i] / unit, ',');
+        put_field(text, result->elastoplastic.error[i], ',');
+        put_field(text, result->elastic.value[i] / unit, ',');
+        put_field(text, result->elastic.error[i], '\n');
+    }
 }
 
 enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, const char *path)
@@ -183,19 +237,7 @@ enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, co
                    wire, result->info.length / WB_MM, curve->n_samples,
                    curve->n_samples == 1 ? "sample" : "samples", wb_version(),
                    wb_version_revision());
-    wb_text_append(&text, "deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,"
-                          "elastoplastic_error,elastic_N,elastic_error\n");
-    for (int i = 0; i < curve->n; i++) {
-        put_field(&text, i * (curve->step / WB_MM), ',');
-        put_field(&text, curve->force[i], ',');
-        put_field(&text, curve->low[i], ',');
-        put_field(&text, curve->high[i], ',');
-        put_field(&text, curve->deviation[i], ',');
-        put_field(&text, result->elastoplastic.force[i], ',');
-        put_field(&text, result->elastoplastic.error[i], ',');
-        put_field(&text, result->elastic.force[i], ',');
-        put_field(&text, result->elastic.error[i], '\n');
-    }
+    put_rows(&text, result);
     enum wb_status status;
     if (text.failed)
         status = wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
@@ -208,9 +250,9 @@ enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, co
 void wb_validate_result_release(struct wb_validate_result *result)
 {
     wb_curve_release(&result->curve);
-    free(result->elastoplastic.force);
+    free(result->elastoplastic.value);
     free(result->elastoplastic.error);
-    free(result->elastic.force);
+    free(result->elastic.value);
     free(result->elastic.error);
     memset(result, 0, sizeof *result);
 }
@@ -231,26 +273,58 @@ static enum wb_status reach(struct wb_computed *computed, const struct wb_materi
     return WB_OK;
 }
 
-enum wb_status wb_validate_shape(const struct wb_properties *properties,
-                                 const struct wb_test_info *info, double deflection, int n,
-                                 double *x, double *y)
+/* The same to a follower force. */
+static enum wb_status push(struct wb_computed *computed, const struct wb_material *material,
+                           double force)
+{
+    bool reached;
+    double deflection;
+    WB_TRY(wb_computed_start(computed, material, &reached));
+    for (int i = 1; reached && i <= FORCE_STEPS; i++)
+        WB_TRY(wb_computed_push(computed, force * i / FORCE_STEPS, &deflection, &reached));
+    if (!reached)
+        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge on the way to %.4g N",
+                       force);
+    return WB_OK;
+}
+
+/* Goes there and takes the shape. */
+static enum wb_status
+find_shape(const struct wb_properties *properties, const struct wb_test_info *info,
+           enum wb_status (*go)(struct wb_computed *, const struct wb_material *, double),
+           double target, const struct wb_validate_points *points)
 {
     const struct wb_computed_settings how = {0};
     struct wb_computed *computed;
-    if (n < 2 || !isfinite(deflection))
-        return wb_fail(WB_ERR_ARGUMENT, "a shape needs at least two points and a deflection");
-    double *const s = malloc((size_t)n * sizeof *s);
+    if (points->n < 2 || !isfinite(target))
+        return wb_fail(WB_ERR_ARGUMENT, "a shape needs at least two points and a finite target");
+    double *const s = malloc((size_t)points->n * sizeof *s);
     if (!s)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a shape of %d points", n);
+        return wb_fail(WB_ERR_MEMORY, "no memory for a shape of %d points", points->n);
     enum wb_status status = wb_computed_create(&computed, info, &properties->material, &how);
     if (status == WB_OK) {
-        for (int i = 0; i < n; i++)
-            s[i] = info->length * i / (n - 1);
-        status = reach(computed, &properties->material, deflection);
+        for (int i = 0; i < points->n; i++)
+            s[i] = info->length * i / (points->n - 1);
+        status = go(computed, &properties->material, target);
         if (status == WB_OK)
-            wb_computed_shape(computed, n, s, x, y);
+            wb_computed_shape(computed, points->n, s, points->x, points->y, points->angle);
         wb_computed_destroy(computed);
     }
     free(s);
     return status;
+}
+
+enum wb_status wb_validate_shape(const struct wb_properties *properties,
+                                 const struct wb_test_info *info, double deflection, int n,
+                                 double *x, double *y)
+{
+    const struct wb_validate_points points = {.n = n, .x = x, .y = y};
+    return find_shape(properties, info, reach, deflection, &points);
+}
+
+enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
+                                          const struct wb_test_info *info, double force,
+                                          const struct wb_validate_points *points)
+{
+    return find_shape(properties, info, push, force, points);
 }

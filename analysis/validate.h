@@ -12,9 +12,14 @@
 struct wb_prediction {
     int n;         /* as the curve's */
     int n_reached; /* points reached before the solver gave up; n when all converged */
-    double *force; /* (n) N, zeroed at zero deflection; NaN beyond n_reached; owned */
-    double *error; /* (n) eq. 18: |measured - computed| / F_max; owned */
-    double rms;    /* eq. 19 over 0..max_deflection, F_max of the measured average */
+    union {        /* (n) NaN beyond n_reached; owned */
+        double *value;
+        double *force;      /* N, zeroed at zero deflection */
+        double *deflection; /* m, of a follower test */
+    };
+    double
+        *error; /* (n) eq. 18: |measured - computed| over wb_curve_scale() of the measured; owned */
+    double rms; /* eq. 19 over the grid */
     double max_error;
     double rms_from_5mm; /* the same over what lies beyond 5 mm, where the zero matters less */
 };
@@ -23,8 +28,9 @@ struct wb_validate_result {
     struct wb_curve curve; /* measured average; owned */
     struct wb_prediction elastoplastic, elastic;
     double shape_rms; /* m: RMS distance of measured markers from the points of the computed axis
-                         at the same arc length and deflection, first loading; the clamp's marker,
-                         which is the origin, is left out; NaN without shapes */
+                         at the same arc length and deflection (follower force, of a follower
+                         test), first loading; the clamp's marker, which is the origin, is left
+                         out; NaN without shapes */
     double shape_max; /* m */
     int n_shape_points;
     double scatter_rms, residual_scatter_rms; /* as in calibrate */
@@ -41,9 +47,11 @@ struct wb_validate_result {
 };
 
 struct wb_validate_settings {
-    bool straight;            /* ignore the natural shape */
-    double step;              /* m; 0: 0.5 mm */
-    int n_elements, n_fibres; /* 0: defaults */
+    bool straight;             /* ignore the natural shape */
+    double step;               /* m; 0: 0.5 mm */
+    double force_step;         /* N, of follower tests; 0: see analysis/curve.h */
+    double largest_deflection; /* m: what comes later in the loading is left out; 0: nothing */
+    int n_elements, n_fibres;  /* 0: defaults */
 };
 
 /* Predicts the average first loading of n datasets of one kind. `settings` NULL: defaults.
@@ -56,7 +64,8 @@ WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
                                              const struct wb_validate_settings *settings);
 /* Measured and computed forces and errors on the grid, as CSV:
  * deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,elastoplastic_error,elastic_N,
- * elastic_error. Written atomically over an existing file. */
+ * elastic_error; of a follower test force_N first and deflections in mm. Written atomically over an
+ * existing file. */
 WB_MUST_CHECK enum wb_status wb_validate_write_csv(const struct wb_validate_result *result,
                                                    const char *path);
 
@@ -64,9 +73,24 @@ WB_MUST_CHECK enum wb_status wb_validate_write_csv(const struct wb_validate_resu
 void wb_validate_result_release(struct wb_validate_result *result);
 
 /* Computed shape of the model at a deflection, for drawing: n points at equal arc length into x
- * and y (m). WB_ERR_CONVERGENCE when the model cannot reach it. */
+ * and y (m). WB_ERR_CONVERGENCE when the model cannot reach it; beyond the largest deflection of a
+ * follower test it cannot. */
 WB_MUST_CHECK enum wb_status wb_validate_shape(const struct wb_properties *properties,
                                                const struct wb_test_info *info, double deflection,
                                                int n, double *x, double *y);
+
+/* Points at equal arc length from the clamp to the tip, to be filled in. */
+struct wb_validate_points {
+    int n;
+    double *x, *y; /* (n) m */
+    double *angle; /* (n) rad; may be NULL */
+};
+
+/* The same of a follower test under a force (N), whether curled up beyond the largest deflection or
+ * not. */
+WB_MUST_CHECK enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
+                                                        const struct wb_test_info *info,
+                                                        double force,
+                                                        const struct wb_validate_points *points);
 
 #endif

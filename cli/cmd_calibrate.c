@@ -29,6 +29,8 @@ enum {
     KEY_MODULUS,
     KEY_STRESS,
     KEY_STEP,
+    KEY_FORCE_STEP,
+    KEY_LARGEST,
     KEY_ELEMENTS,
     KEY_FIBRES,
     KEY_SIZE,
@@ -50,6 +52,11 @@ static const struct argp_option option_table[] = {
     {"yield-stress-mpa", KEY_STRESS, "S", 0, "Given instead of eq. 11", 0},
     {"no-restart", KEY_NO_RESTART, NULL, 0, "Do not start once more from the optimum", 0},
     {"step-mm", KEY_STEP, "H", 0, "Deflection step of the comparison (0.5)", 0},
+    {"force-step-n", KEY_FORCE_STEP, "H", 0,
+     "The same of follower tests, where deflections are compared at equal forces (as the rows lie)",
+     0},
+    {"largest-deflection-mm", KEY_LARGEST, "D", 0,
+     "Leave out what comes later in the loading (nothing)", 0},
     {"elements", KEY_ELEMENTS, "N", 0, "Beam elements (50)", 0},
     {"fibres", KEY_FIBRES, "N", 0, "Fibres over the diameter (20)", 0},
     {"size-tolerance", KEY_SIZE, "X", 0, "Stop when the simplex is smaller (1e-4 of K0, n0)", 0},
@@ -94,6 +101,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_STEP:
         s->step = WB_MM * wb_command_number(state, "--step-mm", argument, 1e-2, 100.0);
         return 0;
+    case KEY_FORCE_STEP:
+        s->force_step = wb_command_number(state, "--force-step-n", argument, 1e-9, 1e6);
+        return 0;
+    case KEY_LARGEST:
+        s->largest_deflection =
+            WB_MM * wb_command_number(state, "--largest-deflection-mm", argument, 1e-3, 1e6);
+        return 0;
     case KEY_ELEMENTS:
         s->n_elements = wb_command_integer(state, "--elements", argument, 2, 2000);
         return 0;
@@ -129,8 +143,9 @@ static const struct argp argp = {
     .doc = "Calibrates the 1D elastoplastic beam on the averaged first loading of datasets of one "
            "wire and length: E by eq. 10, the yield stress by eq. 11, K and n by Nelder-Mead with "
            "the beam under the test's own loading.\v"
-           "Errors are over F_max, the largest force of the measured average. Exit code 3: the "
-           "iterations ran out or it was stopped; the best so far is written.",
+           "Errors are over F_max, the largest force of the measured average, or over the largest "
+           "deflection of tests with a follower force. Exit code 3: the iterations ran out or it "
+           "was stopped; the best so far is written.",
 };
 
 static bool report_progress(void *context, int evaluation, double error, double size)
@@ -186,6 +201,7 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     wb_json_set_integer(root, "samples", r->n_samples);
     wb_json_set_boolean(root, "virtual_rig", r->info.is_virtual);
     wb_json_set_boolean(root, "simulation", r->info.is_simulation);
+    wb_json_set_text(root, "loading", r->info.is_follower ? "follower" : "tip");
     wb_json_set_number(root, "elastic_zone", s->elastic_zone);
     wb_json_set_number(root, "yield_point",
                        s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
@@ -239,11 +255,12 @@ static void print_value(const char *name, double value, double deviation, const 
 static void print_text(const struct options *o, const struct wb_calibrate_result *r)
 {
     const struct wb_calibrate_settings *const s = &o->settings;
-    printf("wire %s, L = %g mm, %d sample%s%s\n", r->info.wire, r->info.length / WB_MM,
+    printf("wire %s, L = %g mm, %d sample%s%s%s\n", r->info.wire, r->info.length / WB_MM,
            r->n_samples, r->n_samples == 1 ? "" : "s",
            r->info.is_virtual      ? ", virtual rig"
            : r->info.is_simulation ? ", simulation"
-                                   : "");
+                                   : "",
+           r->info.is_follower ? ", follower force" : "");
     printf("elastic zone %g L, yield point %g L, ", s->elastic_zone,
            s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
     if (s->straight)
@@ -271,8 +288,12 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
         printf("the restart from the optimum did not move it\n");
     else if (r->restarted)
         printf("the restart from the optimum moved it by %.2g\n", r->restart_moved);
-    printf("RMS %.3g, largest error %.3g (over F_max = %.4g N of the measured average)\n", r->rms,
-           r->max_error, r->max_force);
+    printf("RMS %.3g, largest error %.3g ", r->rms, r->max_error);
+    if (r->info.is_follower)
+        printf("(of the deflection, over the largest measured, %.4g mm)\n",
+               r->max_deflection / WB_MM);
+    else
+        printf("(over F_max = %.4g N of the measured average)\n", r->max_force);
     if (r->n_samples == 1)
         printf("one sample: no uncertainty\n");
     else

@@ -22,6 +22,8 @@ struct options {
 enum {
     KEY_STRAIGHT = WB_KEY_OWN,
     KEY_STEP,
+    KEY_FORCE_STEP,
+    KEY_LARGEST,
     KEY_ELEMENTS,
     KEY_FIBRES
 };
@@ -30,6 +32,11 @@ static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Write forces and errors of each group there as CSV", 0},
     {"straight", KEY_STRAIGHT, NULL, 0, "Ignore the natural shape (bow) of the samples", 0},
     {"step-mm", KEY_STEP, "H", 0, "Deflection step of the comparison (0.5)", 0},
+    {"force-step-n", KEY_FORCE_STEP, "H", 0,
+     "The same of follower tests, where deflections are compared at equal forces (as the rows lie)",
+     0},
+    {"largest-deflection-mm", KEY_LARGEST, "D", 0,
+     "Leave out what comes later in the loading (nothing)", 0},
     {"elements", KEY_ELEMENTS, "N", 0, "Beam elements (50)", 0},
     {"fibres", KEY_FIBRES, "N", 0, "Fibres over the diameter (20)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
@@ -47,6 +54,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_STEP:
         o->settings.step = WB_MM * wb_command_number(state, "--step-mm", argument, 1e-2, 100.0);
+        return 0;
+    case KEY_FORCE_STEP:
+        o->settings.force_step = wb_command_number(state, "--force-step-n", argument, 1e-9, 1e6);
+        return 0;
+    case KEY_LARGEST:
+        o->settings.largest_deflection =
+            WB_MM * wb_command_number(state, "--largest-deflection-mm", argument, 1e-3, 1e6);
         return 0;
     case KEY_ELEMENTS:
         o->settings.n_elements = wb_command_integer(state, "--elements", argument, 2, 2000);
@@ -75,9 +89,10 @@ static const struct argp argp = {
     .args_doc = "PROPERTIES.yaml DATASET...",
     .doc = "Predicts the first loading of tests with calibrated properties and prints the errors "
            "of eqs. 18 and 19, beside those of a linear elastic prediction, and the distance of "
-           "shapes. Datasets are grouped by wire and length, and each group is averaged.\v"
-           "Errors are over F_max, the largest force of the measured average. Exit code 3: a "
-           "prediction was cut short because the beam did not converge.",
+           "shapes. Datasets are grouped by wire, length and loading, and each group is averaged.\v"
+           "Errors are over F_max, the largest force of the measured average, or over the largest "
+           "deflection of tests with a follower force. Exit code 3: a prediction was cut short "
+           "because the beam did not converge.",
 };
 
 /* All groups of one call. */
@@ -124,7 +139,8 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
 /* Name of a group's CSV file: the wire's name with anything unusual in a path replaced. */
 static void csv_name(char *name, size_t size, const struct wb_test_info *info)
 {
-    snprintf(name, size, "%s-L%g.csv", info->wire, info->length / WB_MM);
+    snprintf(name, size, "%s-L%g%s.csv", info->wire, info->length / WB_MM,
+             info->is_follower ? "-follower" : "");
     for (char *c = name; *c; c++) {
         if (*c == '/' || *c == ' ' || (unsigned char)*c < 0x20)
             *c = '_';
@@ -166,6 +182,7 @@ static int print_json(const struct options *o, const struct wb_properties *prope
         wb_json_set_integer(item, "samples", r->curve.n_samples);
         wb_json_set_boolean(item, "virtual_rig", r->info.is_virtual);
         wb_json_set_boolean(item, "simulation", r->info.is_simulation);
+        wb_json_set_text(item, "loading", r->info.is_follower ? "follower" : "tip");
         wb_json_set_number(item, "max_force_N", r->curve.max_force);
         wb_json_set_number(item, "max_deflection_mm", r->curve.max_deflection / WB_MM);
         set_prediction(wb_json_set_object(item, "elastoplastic"), &r->elastoplastic);
@@ -184,14 +201,19 @@ static int print_json(const struct options *o, const struct wb_properties *prope
 
 static void print_group(const struct wb_validate_result *r)
 {
-    printf("wire %s, L = %g mm, %d sample%s%s\n", r->info.wire, r->info.length / WB_MM,
+    printf("wire %s, L = %g mm, %d sample%s%s%s\n", r->info.wire, r->info.length / WB_MM,
            r->curve.n_samples, r->curve.n_samples == 1 ? "" : "s",
            r->info.is_virtual      ? ", virtual rig"
            : r->info.is_simulation ? ", simulation"
-                                   : "");
-    printf("  elastoplastic  RMS %.3g, largest error %.3g (over F_max = %.4g N of the measured "
-           "average)\n",
-           r->elastoplastic.rms, r->elastoplastic.max_error, r->curve.max_force);
+                                   : "",
+           r->info.is_follower ? ", follower force" : "");
+    printf("  elastoplastic  RMS %.3g, largest error %.3g ", r->elastoplastic.rms,
+           r->elastoplastic.max_error);
+    if (r->info.is_follower)
+        printf("(of the deflection, over the largest measured, %.4g mm)\n",
+               r->curve.max_deflection / WB_MM);
+    else
+        printf("(over F_max = %.4g N of the measured average)\n", r->curve.max_force);
     printf("  elastic        RMS %.3g, largest error %.3g\n", r->elastic.rms, r->elastic.max_error);
     if (r->n_shape_points > 0)
         printf("  shapes         RMS %.2f mm, largest %.2f mm, %d markers\n", r->shape_rms / WB_MM,

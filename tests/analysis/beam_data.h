@@ -90,7 +90,7 @@ static inline void beam_dataset(struct wb_dataset *dataset, const struct wb_test
         row.force *= factor;
         row.tension = row.force;
         assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
-        wb_computed_shape(computed, 7, s, x, y);
+        wb_computed_shape(computed, 7, s, x, y, NULL);
         for (int i = 0; i < 7; i++) {
             const struct wb_shape_row shape = {row.t, row.deflection, i, s[i], x[i], y[i]};
             assert_int_equal(wb_dataset_add_shape_row(dataset, &shape), WB_OK);
