@@ -4,112 +4,93 @@
 #include <string.h>
 
 #include "fe/hex20_kernel.h"
+#include "fe/hex20_points.h"
 #include "fe/solid_point.h"
 
 enum {
     NODES = WB_HEX20_NODES,
     UNKNOWNS = WB_HEX20_UNKNOWNS,
-    MOST_POINTS = WB_HEX20_MOST_POINTS,
-    CORNERS = WB_HEX20_CORNER_POINTS
+    CORNERS = WB_HEX20_CORNER_POINTS,
+    ALL_POINTS = WB_HEX20_MOST_POINTS + WB_HEX20_CORNER_POINTS
 };
 
-static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-
-/* What is gathered over the points of an element. */
-struct sums {
-    double u[3][NODES];     /* displacements relative to node 0's */
-    double force[3][NODES]; /* N */
-    struct wb_hex20_result result;
-    double accumulated;             /* of all points, to see that they are numbers */
-    struct wb_hex20_kernel *kernel; /* NULL without stiffness */
+/* Of an element under evaluation: the deviatoric points, then the volumetric ones where those are
+ * others. */
+struct points {
+    int n, n_deviatoric;
+    struct wb_solid_point_motion motion[ALL_POINTS];
+    struct wb_hex20_points_load load[ALL_POINTS];
+    struct wb_hex20_kernel kernel;
 };
 
-/* Rigid translations leave before strains are formed: they may be large against the element. */
-static void take_displacements(const double *restrict u, double relative[3][NODES])
+/* Motions of all points; false when J <= 0 at one. */
+static bool find_motions(struct points *points, const struct wb_hex20_geometry *geometry,
+                         enum wb_hex20_integration integration, const double *restrict u)
 {
+    double relative[3][NODES], h[ALL_POINTS][9];
+    const int n = wb_hex20_points(integration);
+
+    /* Rigid translations leave before strains are formed: they may be large against the element. */
     for (int a = 0; a < NODES; a++) {
         for (int i = 0; i < 3; i++)
             relative[i][a] = u[3 * a + i] - u[i];
     }
-}
-
-/* `gradient` holds three rows of 20; so do others below. */
-static bool find_motion(double u[3][NODES], const double *gradient,
-                        struct wb_solid_point_motion *motion)
-{
-    double h[9];
-
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            double sum = 0.0;
-            for (int a = 0; a < NODES; a++)
-                sum += u[i][a] * gradient[j * NODES + a];
-            h[3 * i + j] = sum;
-        }
+    points->n = points->n_deviatoric = n;
+    wb_hex20_points_gradients(n, geometry->gradient[0][0], relative[0], h[0]);
+    if (integration == WB_HEX20_SELECTIVE) {
+        wb_hex20_points_gradients(CORNERS, geometry->corner_gradient[0][0], relative[0], h[n]);
+        points->n += CORNERS;
     }
-    return wb_solid_point_motion_init(motion, h);
-}
-
-/* Adds a point's force and stiffness. */
-static void add_point(struct sums *sums, const double *gradient, double weight,
-                      const struct wb_solid_point_motion *motion,
-                      const struct wb_solid_point_response *response)
-{
-    const double *along_x = gradient, *along_y = gradient + NODES, *along_z = gradient + 2 * NODES;
-    double plain[3][NODES]; /* derivatives with respect to the present position */
-    double(*g)[NODES] = sums->kernel ? sums->kernel->g[sums->kernel->points] : plain;
-
-    for (int i = 0; i < 3; i++) {
-        const double f[3] = {motion->inverse[0][i], motion->inverse[1][i], motion->inverse[2][i]};
-        for (int a = 0; a < NODES; a++)
-            g[i][a] = f[0] * along_x[a] + f[1] * along_y[a] + f[2] * along_z[a];
-    }
-    for (int i = 0; i < 3; i++) {
-        const double t[3] = {weight * response->stress[place[i][0]],
-                             weight * response->stress[place[i][1]],
-                             weight * response->stress[place[i][2]]};
-        for (int a = 0; a < NODES; a++)
-            sums->force[i][a] += t[0] * g[0][a] + t[1] * g[1][a] + t[2] * g[2][a];
-    }
-    sums->result.elastic_energy += weight * response->energy;
-    sums->result.smallest_jacobian = fmin(sums->result.smallest_jacobian, motion->jacobian);
-    if (sums->kernel)
-        wb_hex20_kernel_add(sums->kernel, weight, response);
-}
-
-static bool add_deviatoric(const struct wb_hex20_geometry *geometry, int points,
-                           const struct wb_solid_point_law *law,
-                           const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                           struct sums *sums)
-{
-    for (int p = 0; p < points; p++) {
-        struct wb_solid_point_motion motion;
-        struct wb_solid_point_response response;
-        if (!find_motion(sums->u, geometry->gradient[p][0], &motion))
+    for (int p = 0; p < points->n; p++) {
+        if (!wb_solid_point_motion_init(&points->motion[p], h[p]))
             return false;
-        wb_solid_point_deviatoric(law, &motion, &before[p], &after[p], sums->kernel != NULL,
-                                  &response);
-        add_point(sums, geometry->gradient[p][0], geometry->weight[p], &motion, &response);
-        sums->result.dissipated += geometry->weight[p] * response.dissipated;
-        sums->result.yielding += response.yields;
-        sums->accumulated += after[p].accumulated;
     }
+    wb_solid_point_diagonalise(points->motion, n);
     return true;
 }
 
-static bool add_volumetric(const struct wb_hex20_geometry *geometry,
-                           const struct wb_solid_point_law *law, struct sums *sums)
+/* Hands on what point p answers. */
+static void take_response(struct points *points, int p, double weight, bool tangent,
+                          const struct wb_solid_point_response *response,
+                          struct wb_hex20_result *result)
 {
-    for (int p = 0; p < CORNERS; p++) {
-        struct wb_solid_point_motion motion;
-        struct wb_solid_point_response response;
-        if (!find_motion(sums->u, geometry->corner_gradient[p][0], &motion))
-            return false;
-        wb_solid_point_volumetric(law, &motion, sums->kernel != NULL, &response);
-        add_point(sums, geometry->corner_gradient[p][0], geometry->corner_weight[p], &motion,
-                  &response);
+    struct wb_hex20_points_load *load = &points->load[p];
+
+    memcpy(load->inverse, points->motion[p].inverse, sizeof load->inverse);
+    for (int a = 0; a < 6; a++)
+        load->stress[a] = weight * response->stress[a];
+    if (tangent)
+        wb_hex20_kernel_add(&points->kernel, weight, response);
+    result->elastic_energy += weight * response->energy;
+    result->dissipated += weight * response->dissipated;
+    result->smallest_jacobian = fmin(result->smallest_jacobian, points->motion[p].jacobian);
+    result->yielding += response->yields;
+}
+
+/* Stresses, histories and tangents at all points. */
+static void respond(struct points *points, const struct wb_hex20_geometry *geometry,
+                    const struct wb_material *material, const struct wb_hex20_state *before,
+                    struct wb_hex20_state *after, bool tangent, struct wb_hex20_result *result)
+{
+    struct wb_solid_point_law law;
+    struct wb_solid_point_response response;
+    const int n = points->n_deviatoric;
+
+    wb_solid_point_law_init(&law, material);
+    *result = (struct wb_hex20_result){.smallest_jacobian = (double)INFINITY};
+    points->kernel.points = 0;
+    for (int p = 0; p < n; p++) {
+        const struct wb_solid_point_motion *motion = &points->motion[p];
+        wb_solid_point_deviatoric(&law, motion, &before[p], &after[p], tangent, &response);
+        if (points->n == n)
+            wb_solid_point_add_volumetric(&law, motion, tangent, &response);
+        take_response(points, p, geometry->weight[p], tangent, &response, result);
     }
-    return true;
+    for (int p = n; p < points->n; p++) {
+        memset(&response, 0, sizeof response);
+        wb_solid_point_add_volumetric(&law, &points->motion[p], tangent, &response);
+        take_response(points, p, geometry->corner_weight[p - n], tangent, &response, result);
+    }
 }
 
 /* A product with zero is not a number where a factor is not finite. */
@@ -127,29 +108,29 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
                        struct wb_hex20_state *after, double *restrict force,
                        double *restrict stiffness, struct wb_hex20_result *result)
 {
-    struct wb_solid_point_law law;
-    struct wb_hex20_kernel kernel;
-    struct sums sums = {.kernel = stiffness ? &kernel : NULL};
+    struct points points;
+    double rows[3][NODES] = {{0.0}}, accumulated = 0.0;
 
-    kernel.points = 0;
-    sums.result.smallest_jacobian = (double)INFINITY;
-    wb_solid_point_law_init(&law, material);
-    take_displacements(u, sums.u);
-    if (!add_deviatoric(geometry, wb_hex20_points(integration), &law, before, after, &sums) ||
-        !add_volumetric(geometry, &law, &sums))
+    if (!find_motions(&points, geometry, integration, u))
         return false;
-
+    const int n = points.n_deviatoric;
+    respond(&points, geometry, material, before, after, stiffness != NULL, result);
+    wb_hex20_points_forces(n, geometry->gradient[0][0], points.load, points.kernel.g[0][0],
+                           rows[0]);
+    wb_hex20_points_forces(points.n - n, geometry->corner_gradient[0][0], &points.load[n],
+                           points.kernel.g[n][0], rows[0]);
     for (int a = 0; a < NODES; a++) {
         for (int i = 0; i < 3; i++)
-            force[3 * a + i] = sums.force[i][a];
+            force[3 * a + i] = rows[i][a];
     }
-    *result = sums.result;
+    for (int p = 0; p < n; p++)
+        accumulated += after[p].accumulated;
     if (!all_finite(force, UNKNOWNS) || !isfinite(result->elastic_energy) ||
-        !isfinite(result->dissipated) || !isfinite(sums.accumulated))
+        !isfinite(result->dissipated) || !isfinite(accumulated))
         return false;
     if (!stiffness)
         return true;
-    wb_hex20_kernel_multiply(&kernel, stiffness);
+    wb_hex20_kernel_multiply(&points.kernel, stiffness);
     return all_finite(stiffness, UNKNOWNS * UNKNOWNS);
 }
 
@@ -183,38 +164,33 @@ static double point_share(int points, int p, int c)
 }
 
 /* Cauchy stress and equivalent plastic strain at the corner points. */
-static bool corner_values(const struct wb_hex20_geometry *geometry, int points,
-                          const struct wb_material *material, const double *restrict u,
-                          const struct wb_hex20_state *state, double value[CORNERS][7])
+static void find_corner_values(const struct points *points, const struct wb_material *material,
+                               const struct wb_hex20_state *state, double value[CORNERS][7])
 {
     struct wb_solid_point_law law;
-    struct wb_solid_point_motion motion;
-    struct wb_solid_point_response response;
-    struct wb_hex20_state after;
-    double relative[3][NODES];
+    const int n = points->n_deviatoric;
 
     wb_solid_point_law_init(&law, material);
-    take_displacements(u, relative);
     for (int c = 0; c < CORNERS; c++) {
-        if (!find_motion(relative, geometry->corner_gradient[c][0], &motion))
-            return false;
-        wb_solid_point_volumetric(&law, &motion, false, &response);
+        const struct wb_solid_point_motion *motion = &points->motion[points->n - CORNERS + c];
+        struct wb_solid_point_response response = {{0.0}};
+        wb_solid_point_add_volumetric(&law, motion, false, &response);
         for (int a = 0; a < 6; a++)
-            value[c][a] = response.stress[a] / motion.jacobian;
+            value[c][a] = response.stress[a] / motion->jacobian;
         value[c][6] = 0.0;
     }
-    for (int p = 0; p < points; p++) {
-        if (!find_motion(relative, geometry->gradient[p][0], &motion))
-            return false;
-        wb_solid_point_deviatoric(&law, &motion, &state[p], &after, false, &response);
+    for (int p = 0; p < n; p++) {
+        const struct wb_solid_point_motion *motion = &points->motion[p];
+        struct wb_solid_point_response response;
+        struct wb_hex20_state after;
+        wb_solid_point_deviatoric(&law, motion, &state[p], &after, false, &response);
         for (int c = 0; c < CORNERS; c++) {
-            const double share = point_share(points, p, c);
+            const double share = point_share(n, p, c);
             for (int a = 0; a < 6; a++)
-                value[c][a] += share * response.stress[a] / motion.jacobian;
+                value[c][a] += share * response.stress[a] / motion->jacobian;
             value[c][6] += share * state[p].accumulated;
         }
     }
-    return true;
 }
 
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
@@ -223,9 +199,12 @@ void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
                            const struct wb_hex20_state *state, double stress[WB_HEX20_NODES][6],
                            double plastic[WB_HEX20_NODES])
 {
+    struct points points;
     double value[CORNERS][7];
-    const bool good =
-        corner_values(geometry, wb_hex20_points(integration), material, u, state, value);
+    const bool good = find_motions(&points, geometry, integration, u);
+
+    if (good)
+        find_corner_values(&points, material, state, value);
 
     for (int a = 0; a < NODES; a++) {
         double sum[7] = {0.0};

@@ -13,19 +13,6 @@ static const int column_of[6] = {0, 1, 2, 1, 2, 0};
 /* See fe/material.c. */
 static const double on_surface = 1e-12;
 
-/* Three vectors, in the rows. */
-struct basis {
-    double row[3][3];
-};
-
-/* C = sum (1 + excess_i) N_i N_i. */
-struct spectrum {
-    double excess[3];
-    struct basis vectors; /* N_i */
-    double stretch[3];    /* lambda_i */
-    double log_strain[3]; /* ln lambda_i */
-};
-
 /* A step of plastic flow: T = trial - 2 mu sqrt(3/2) increment n, and its tangent
  * 2 mu (shrink Idev - along n n). */
 struct flow {
@@ -85,96 +72,28 @@ bool wb_solid_point_motion_init(struct wb_solid_point_motion *motion, const doub
     return true;
 }
 
-void wb_solid_point_volumetric(const struct wb_solid_point_law *law,
-                               const struct wb_solid_point_motion *motion, bool tangent,
-                               struct wb_solid_point_response *response)
+void wb_solid_point_add_volumetric(const struct wb_solid_point_law *law,
+                                   const struct wb_solid_point_motion *motion, bool tangent,
+                                   struct wb_solid_point_response *response)
 {
     const double kappa = law->bulk_modulus;
     const double pressure = kappa * motion->log_jacobian;
 
-    memset(response, 0, sizeof *response);
-    response->energy = 0.5 * pressure * motion->log_jacobian;
+    response->energy += 0.5 * pressure * motion->log_jacobian;
     for (int a = 0; a < 3; a++)
-        response->stress[a] = pressure;
+        response->stress[a] += pressure;
     if (!tangent)
         return;
     for (int a = 0; a < 3; a++) {
         for (int b = 0; b < 3; b++)
-            response->tangent[a][b] = kappa;
+            response->tangent[a][b] += kappa;
         response->tangent[a][a] -= 2.0 * pressure;
-        response->tangent[3 + a][3 + a] = -pressure;
-    }
-}
-
-/* One rotation of Jacobi's method, which makes a[p][q] vanish; r is the third index. */
-static void rotate(double a[3][3], double v[3][3], int p, int q)
-{
-    const int r = 3 - p - q;
-    const double x = a[p][q];
-    if (fabs(x) < 1e-150) {
-        a[p][q] = 0.0;
-        return;
-    }
-
-    const double gap = a[q][q] - a[p][p];
-    const double root = sqrt(gap * gap + 4.0 * x * x);
-    const double t = 2.0 * x / (gap < 0.0 ? gap - root : gap + root);
-    const double c = 1.0 / sqrt(1.0 + t * t), s = t * c;
-    double *rp = r < p ? &a[r][p] : &a[p][r];
-    double *rq = r < q ? &a[r][q] : &a[q][r];
-    const double old_p = *rp, old_q = *rq;
-
-    a[p][p] -= t * x;
-    a[q][q] += t * x;
-    a[p][q] = 0.0;
-    *rp = c * old_p - s * old_q;
-    *rq = s * old_p + c * old_q;
-    for (int k = 0; k < 3; k++) {
-        const double vp = v[p][k], vq = v[q][k];
-        v[p][k] = c * vp - s * vq;
-        v[q][k] = s * vp + c * vq;
-    }
-}
-
-/* Eigenvalues on the diagonal of a (its upper triangle is used), eigenvectors in the rows of v. */
-static void diagonalise(double a[3][3], double v[3][3])
-{
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            v[i][j] = i == j;
-    }
-    for (int sweep = 0; sweep < 12; sweep++) {
-        const double off = fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]);
-        const double size = fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]);
-        if (!(off > 1e-18 * size))
-            break;
-        rotate(a, v, 0, 1);
-        rotate(a, v, 0, 2);
-        rotate(a, v, 1, 2);
-    }
-}
-
-static void find_spectrum(const struct wb_solid_point_motion *motion, struct spectrum *s)
-{
-    const double *h[3] = {motion->gradient[0], motion->gradient[1], motion->gradient[2]};
-    double a[3][3];
-
-    for (int i = 0; i < 3; i++) {
-        for (int j = i; j < 3; j++) {
-            const double product = h[0][i] * h[0][j] + h[1][i] * h[1][j] + h[2][i] * h[2][j];
-            a[i][j] = h[i][j] + h[j][i] + product;
-        }
-    }
-    diagonalise(a, s->vectors.row);
-    for (int i = 0; i < 3; i++) {
-        s->excess[i] = a[i][i];
-        s->stretch[i] = sqrt(1.0 + a[i][i]);
-        s->log_strain[i] = 0.5 * log1p(a[i][i]);
+        response->tangent[3 + a][3 + a] -= pressure;
     }
 }
 
 /* Components of t in a basis: out_ij = r_i . t r_j. */
-static void into_basis(const double t[6], const struct basis *basis, double out[6])
+static void into_basis(const double t[6], const struct wb_solid_point_basis *basis, double out[6])
 {
     const double *r[3] = {basis->row[0], basis->row[1], basis->row[2]};
     double half[3][3]; /* t r_j in row j */
@@ -192,9 +111,9 @@ static void into_basis(const double t[6], const struct basis *basis, double out[
 }
 
 /* The tensor with components t in a basis: out = sum t_ij r_i r_j. */
-static void out_of_basis(const double t[6], const struct basis *basis, double out[6])
+static void out_of_basis(const double t[6], const struct wb_solid_point_basis *basis, double out[6])
 {
-    struct basis transposed;
+    struct wb_solid_point_basis transposed;
 
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
@@ -209,6 +128,31 @@ static double squared_norm(const double t[6])
            2.0 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
 }
 
+/* The equivalent plastic strain of a step from p0, which solves q - 3 mu (p - p0) = sigma_Y + K p^n
+ * by Newton's method from the tangent at p0; `power` is K p^n, at p0 on entry, at p on return. Far
+ * from p0, above all from p0 = 0 where the law may be infinitely steep, the equation is solved in
+ * its logarithm. */
+static double find_increment(const struct wb_material *m, double q, double p0, double *power)
+{
+    const double three_mu = m->youngs_modulus, K = m->strength_coefficient;
+    const double n = m->hardening_exponent, over = q - m->yield_stress;
+
+    if (p0 > 0.0) {
+        double step = (over - *power) / (three_mu + n * *power / p0);
+        for (int iteration = 0; iteration < 6; iteration++) {
+            const double p = p0 + step;
+            *power = K * pow(p, n);
+            const double residual = over - *power - three_mu * step;
+            step += residual / (three_mu + n * *power / p);
+            if (fabs(residual) <= 4e-16 * q)
+                return fmax(0.0, step);
+        }
+    }
+    const double c = over + three_mu * p0, r = wb_hardening_ratio(m, c);
+    *power = (1.0 - r) * c;
+    return fmax(0.0, r * c / three_mu - p0);
+}
+
 /* From the trial value of T - X. False while elastic. */
 static bool find_flow(const struct wb_solid_point_law *law, const double trial[6],
                       double accumulated, struct flow *flow)
@@ -219,30 +163,24 @@ static bool find_flow(const struct wb_solid_point_law *law, const double trial[6
 
     const double three_mu = m->youngs_modulus, K = m->strength_coefficient;
     const bool isotropic = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
-    const double norm = sqrt(squared_norm(trial));
-    const double q = sqrt(1.5) * norm, p0 = accumulated;
-    double yield = m->yield_stress;
-    if (isotropic && p0 > 0.0)
-        yield += K * pow(p0, m->hardening_exponent);
-    if (!(q - yield > on_surface * yield))
+    const double n = m->hardening_exponent, p0 = accumulated;
+    const double norm = sqrt(squared_norm(trial)), q = sqrt(1.5) * norm;
+    double power = isotropic && p0 > 0.0 ? K * pow(p0, n) : 0.0; /* K p^n */
+    if (!(q - (m->yield_stress + power) > on_surface * (m->yield_stress + power)))
         return false;
 
-    double slope; /* 3 mu / (3 mu + hardening modulus) */
+    double slope = K; /* of the yield stress, or of X, over p */
     if (isotropic) {
-        const double c = q - m->yield_stress + three_mu * p0;
-        const double n = m->hardening_exponent;
-        const double r = wb_hardening_ratio(m, c);
-        flow->increment = fmax(0.0, r * c / three_mu - p0);
-        flow->dissipated = (m->yield_stress + (1.0 - r) * c) * flow->increment;
-        slope = r / (r + n * (1.0 - r));
+        flow->increment = find_increment(m, q, p0, &power);
+        slope = n * power / (p0 + flow->increment);
     } else {
-        flow->increment = (q - yield) / (three_mu + K);
-        flow->dissipated = yield * flow->increment;
-        slope = three_mu / (three_mu + K);
+        flow->increment = (q - m->yield_stress) / (three_mu + K);
     }
+    flow->dissipated = (m->yield_stress + power) * flow->increment;
+
     const double lost = three_mu * flow->increment / q;
     flow->shrink = 1.0 - lost;
-    flow->along = slope - lost;
+    flow->along = three_mu / (three_mu + slope) - lost;
     for (int a = 0; a < 6; a++)
         flow->direction[a] = trial[a] / norm;
     return true;
@@ -266,62 +204,98 @@ static double log_difference(double a, double b)
     return (x == 0.0 ? 1.0 : log1p(x) / x) / (1.0 + a);
 }
 
-/* Second divided difference of ln at 1 + a, 1 + b, 1 + c. For close arguments by the power series
- * about their mean, whose terms are the complete homogeneous symmetric polynomials. */
+/* Second divided difference of ln at 1 + a, 1 + b, 1 + c, which are not all close. */
 static double log_difference2(double a, double b, double c)
 {
-    const double mean = (a + b + c) / 3.0, scale = 1.0 / (1.0 + mean);
-    const double x = (a - mean) * scale, y = (b - mean) * scale, z = (c - mean) * scale;
-
-    if (fabs(x) + fabs(y) + fabs(z) < 0.1) {
-        const double e2 = x * y + y * z + z * x, e3 = x * y * z;
-        double h[11] = {1.0, 0.0, -e2};
-        double sum = -1.0 / 2.0 + e2 / 4.0;
-        for (int k = 3; k < 11; k++) {
-            h[k] = e3 * h[k - 3] - e2 * h[k - 2];
-            sum += (k % 2 == 0 ? -1.0 : 1.0) / (k + 2) * h[k];
-        }
-        return sum * scale * scale;
-    }
     const double low = fmin(a, fmin(b, c)), high = fmax(a, fmax(b, c));
     const double middle = fmax(fmin(a, b), fmin(fmax(a, b), c));
     return (log_difference(middle, high) - log_difference(low, middle)) / (high - low);
 }
 
+enum {
+    TRIPLES = 8 /* seven, and one that fills the vectors */
+};
+
+/* Second divided differences of ln at 1 + x[.][t]. For close arguments by the power series about
+ * their mean, whose terms are the complete homogeneous symmetric polynomials h_k; with the mean the
+ * first of these vanishes. The loops over triples are for the compiler's vectors. */
+static void log_differences2(double x[3][TRIPLES], double f3[TRIPLES])
+{
+    enum {
+        TERMS = 11
+    };
+    double spread[TRIPLES], e2[TRIPLES], e3[TRIPLES], h[TERMS][TRIPLES];
+
+    for (int t = 0; t < TRIPLES; t++) {
+        const double mean = (x[0][t] + x[1][t] + x[2][t]) / 3.0, scale = 1.0 / (1.0 + mean);
+        const double a = (x[0][t] - mean) * scale, b = (x[1][t] - mean) * scale;
+        const double c = (x[2][t] - mean) * scale;
+        spread[t] = fabs(a) + fabs(b) + fabs(c);
+        e2[t] = a * b + b * c + c * a;
+        e3[t] = a * b * c;
+        h[0][t] = scale * scale;
+        h[1][t] = 0.0;
+        h[2][t] = -e2[t] * h[0][t];
+        f3[t] = -1.0 / 2.0 * h[0][t] - 1.0 / 4.0 * h[2][t];
+    }
+    for (int k = 3; k < TERMS; k++) {
+        const double factor = (k % 2 == 0 ? -1.0 : 1.0) / (k + 2);
+        for (int t = 0; t < TRIPLES; t++) {
+            h[k][t] = e3[t] * h[k - 3][t] - e2[t] * h[k - 2][t];
+            f3[t] += factor * h[k][t];
+        }
+    }
+    for (int t = 0; t < TRIPLES; t++) {
+        if (!(spread[t] < 0.1))
+            f3[t] = log_difference2(x[0][t], x[1][t], x[2][t]);
+    }
+}
+
 /* Adds sum_ijk T_ij G_ikj (d_ik d_kj + d_ik d_kj), G_ikj = 2 f3[c_i, c_k, c_j] l_i l_k^2 l_j with
  * f3 the second divided difference of ln: the curvature of E(C). */
-static void add_curvature(const struct spectrum *s, const double T[6], double c[6][6])
+static void add_curvature(const struct wb_solid_point_spectrum *s, const double T[6],
+                          double c[6][6])
 {
+    /* The triple of c_i, c_i, c_k; that of all three is 6. */
+    static const int triple[3][3] = {{7, 0, 1}, {2, 7, 3}, {4, 5, 7}};
     const double *e = s->excess, *l = s->stretch;
-    const double all = log_difference2(e[0], e[1], e[2]);
-    double twice[3][3]; /* f3[c_i, c_i, c_k] */
+    double x[3][TRIPLES], f3[TRIPLES];
 
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++)
-            twice[i][k] = log_difference2(e[i], e[i], e[k]);
+        x[i][6] = e[i];
+        x[i][7] = 0.0;
+        for (int k = 0; k < 3; k++) {
+            if (k == i)
+                continue;
+            x[0][triple[i][k]] = x[1][triple[i][k]] = e[i];
+            x[2][triple[i][k]] = e[k];
+        }
     }
+    log_differences2(x, f3);
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            const int a = place[i][k];
-            const double weight = i == k ? 1.0 : 0.25;
-            c[a][a] += 4.0 * weight * T[i] * twice[i][k] * l[i] * l[i] * l[k] * l[k];
-        }
-        const int j = (i + 1) % 3;
-        for (int k = 0; k < 3; k++) {
-            const int a = place[i][k], b = place[k][j];
-            const double f3 = k == i ? twice[i][j] : k == j ? twice[j][i] : all;
-            const double weight = k == i || k == j ? 0.5 : 0.25;
-            const double value = 4.0 * weight * T[place[i][j]] * f3 * l[i] * l[k] * l[k] * l[j];
-            c[a][b] += value;
-            c[b][a] += value;
-        }
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double ll = l[i] * l[i], kl = l[i] * l[j];
+        const double shear = 2.0 * T[3 + i] * kl; /* T_ij with j = i + 1 */
+        c[i][i] -= 2.0 * T[i];                    /* f3[c_i, c_i, c_i] = -1/2 c_i^-2 */
+        c[3 + i][3 + i] += ll * l[j] * l[j] * (T[i] * f3[triple[i][j]] + T[j] * f3[triple[j][i]]);
+
+        /* Pairs d_ii d_ij, d_ij d_jj and d_ik d_kj. */
+        const double first = shear * ll * f3[triple[i][j]];
+        const double second = shear * l[j] * l[j] * f3[triple[j][i]];
+        const double third = 0.5 * shear * l[k] * l[k] * f3[6];
+        c[i][3 + i] += first;
+        c[3 + i][i] += first;
+        c[3 + i][j] += second;
+        c[j][3 + i] += second;
+        c[3 + k][3 + j] += third;
+        c[3 + j][3 + k] += third;
     }
 }
 
 /* c in the eigenvectors: (theta d):D:(theta d) and the curvature; D of the return mapping. */
-static void find_tangent(const struct wb_solid_point_law *law, const struct spectrum *s,
-                         const double theta[6], const double T[6], const struct flow *flow,
-                         double c[6][6])
+static void find_tangent(const struct wb_solid_point_law *law,
+                         const struct wb_solid_point_spectrum *s, const double theta[6],
+                         const double T[6], const struct flow *flow, double c[6][6])
 {
     const double two_mu = 2.0 * law->shear_modulus;
     const double isotropic = two_mu * (flow ? flow->shrink : 1.0);
@@ -343,7 +317,8 @@ static void find_tangent(const struct wb_solid_point_law *law, const struct spec
 }
 
 /* out = M c M^T, where M takes the components of a stress in the basis n (rows) to the frame's. */
-static void rotate_tangent(double c[6][6], const struct basis *basis, double out[6][6])
+static void rotate_tangent(double c[6][6], const struct wb_solid_point_basis *basis,
+                           double out[6][6])
 {
     const double *n[3] = {basis->row[0], basis->row[1], basis->row[2]};
     double M[6][6], half[6][6];
@@ -375,9 +350,10 @@ static void rotate_tangent(double c[6][6], const struct basis *basis, double out
 }
 
 /* n_i = F N_i / lambda_i. */
-static void push_vectors(const struct wb_solid_point_motion *motion, const struct spectrum *s,
-                         struct basis *n)
+static void push_vectors(const struct wb_solid_point_motion *motion, struct wb_solid_point_basis *n)
 {
+    const struct wb_solid_point_spectrum *s = &motion->spectrum;
+
     for (int i = 0; i < 3; i++) {
         const double *N = s->vectors.row[i];
         for (int k = 0; k < 3; k++) {
@@ -395,17 +371,16 @@ void wb_solid_point_deviatoric(const struct wb_solid_point_law *law,
     const double mu = law->shear_modulus;
     const bool kinematic = law->radial.hardening == WB_HARDENING_KINEMATIC_LINEAR;
     const double prager = kinematic ? 2.0 / 3.0 * law->radial.strength_coefficient : 0.0;
-    struct spectrum s;
+    const struct wb_solid_point_spectrum *s = &motion->spectrum;
     struct flow flow;
     double plastic[6], T[6], relative[6], tau[6];
 
-    find_spectrum(motion, &s);
-    into_basis(before->plastic_strain, &s.vectors, plastic);
+    into_basis(before->plastic_strain, &s->vectors, plastic);
     *after = *before;
 
-    const double mean = (s.log_strain[0] + s.log_strain[1] + s.log_strain[2]) / 3.0;
+    const double mean = (s->log_stretch[0] + s->log_stretch[1] + s->log_stretch[2]) / 3.0;
     for (int a = 0; a < 6; a++) {
-        const double total = a < 3 ? s.log_strain[a] - mean : 0.0;
+        const double total = a < 3 ? s->log_stretch[a] - mean : 0.0;
         T[a] = 2.0 * mu * (total - plastic[a]);
         relative[a] = T[a] - prager * plastic[a];
     }
@@ -416,7 +391,7 @@ void wb_solid_point_deviatoric(const struct wb_solid_point_law *law,
             step[a] = sqrt(1.5) * flow.increment * flow.direction[a];
             T[a] -= 2.0 * mu * step[a];
         }
-        out_of_basis(step, &s.vectors, turned);
+        out_of_basis(step, &s->vectors, turned);
         for (int a = 0; a < 6; a++)
             after->plastic_strain[a] += turned[a];
         after->accumulated += flow.increment;
@@ -427,16 +402,16 @@ void wb_solid_point_deviatoric(const struct wb_solid_point_law *law,
         squared_norm(T) / (4.0 * mu) + 0.5 * prager * squared_norm(after->plastic_strain);
 
     double theta[6] = {1.0, 1.0, 1.0};
-    struct basis n;
+    struct wb_solid_point_basis n;
     for (int i = 0; i < 3; i++)
-        theta[3 + i] = over_sinh(s.log_strain[i] - s.log_strain[(i + 1) % 3]);
+        theta[3 + i] = over_sinh(s->log_stretch[i] - s->log_stretch[(i + 1) % 3]);
     for (int a = 0; a < 6; a++)
         tau[a] = theta[a] * T[a];
-    push_vectors(motion, &s, &n);
+    push_vectors(motion, &n);
     out_of_basis(tau, &n, response->stress);
     if (tangent) {
         double c[6][6];
-        find_tangent(law, &s, theta, T, yields ? &flow : NULL, c);
+        find_tangent(law, s, theta, T, yields ? &flow : NULL, c);
         rotate_tangent(c, &n, response->tangent);
     }
 }

@@ -27,11 +27,25 @@ struct wb_solid_point_law {
     struct wb_material radial; /* the material, 3 mu for E: fe/hardening.h then speaks of q and p */
 };
 
+/* Three vectors, in the rows. */
+struct wb_solid_point_basis {
+    double row[3][3];
+};
+
+/* C = sum (1 + excess_i) N_i N_i. */
+struct wb_solid_point_spectrum {
+    double excess[3];
+    double stretch[3];                   /* lambda_i */
+    double log_stretch[3];               /* ln lambda_i */
+    struct wb_solid_point_basis vectors; /* N_i */
+};
+
 struct wb_solid_point_motion {
     double gradient[3][3]; /* H_iJ = du_i / dX_J */
     double inverse[3][3];  /* of F: dX_J / dx_i at [J][i] */
     double jacobian;       /* J */
     double log_jacobian;   /* ln J */
+    struct wb_solid_point_spectrum spectrum;
 };
 
 struct wb_solid_point_response {
@@ -44,16 +58,20 @@ struct wb_solid_point_response {
 
 void wb_solid_point_law_init(struct wb_solid_point_law *law, const struct wb_material *material);
 
-/* From the displacement gradient, row by row. False when J is not positive and finite. */
+/* From the displacement gradient, row by row; all but the spectrum. False when J is not positive
+ * and finite. */
 bool wb_solid_point_motion_init(struct wb_solid_point_motion *motion, const double gradient[9]);
 
-/* The volumetric part; no tangent unless asked for. */
-void wb_solid_point_volumetric(const struct wb_solid_point_law *law,
-                               const struct wb_solid_point_motion *motion, bool tangent,
-                               struct wb_solid_point_response *response);
+/* Spectra of n points; faster for eight at once. */
+void wb_solid_point_diagonalise(struct wb_solid_point_motion *motion, int n);
 
-/* The deviatoric part, from the history `before`; `after` (may alias it) receives that at the end
- * of the step. */
+/* Adds the volumetric part to a response; no tangent unless asked for. */
+void wb_solid_point_add_volumetric(const struct wb_solid_point_law *law,
+                                   const struct wb_solid_point_motion *motion, bool tangent,
+                                   struct wb_solid_point_response *response);
+
+/* The deviatoric part, from the history `before`, with the motion's spectrum; `after` (may alias
+ * `before`) receives the history at the end of the step. */
 void wb_solid_point_deviatoric(const struct wb_solid_point_law *law,
                                const struct wb_solid_point_motion *motion,
                                const struct wb_hex20_state *before, struct wb_hex20_state *after,

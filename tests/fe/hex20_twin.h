@@ -87,6 +87,7 @@ static inline bool twin_evaluate(const struct wb_hex20_geometry *geometry, int p
     for (int p = 0; p < points; p++) {
         if (!twin_motion(u, geometry->gradient[p][0], &motion))
             return false;
+        wb_solid_point_diagonalise(&motion, 1);
         wb_solid_point_deviatoric(&law, &motion, &before[p], &after[p], true, &response);
         twin_add(&motion, geometry->gradient[p][0], geometry->weight[p], &response, force,
                  stiffness);
@@ -96,7 +97,8 @@ static inline bool twin_evaluate(const struct wb_hex20_geometry *geometry, int p
         const double weight = full ? geometry->weight[p] : geometry->corner_weight[p];
         if (!twin_motion(u, gradient, &motion))
             return false;
-        wb_solid_point_volumetric(&law, &motion, true, &response);
+        memset(&response, 0, sizeof response);
+        wb_solid_point_add_volumetric(&law, &motion, true, &response);
         twin_add(&motion, gradient, weight, &response, force, stiffness);
     }
     return true;
