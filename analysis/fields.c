@@ -22,13 +22,16 @@ enum {
     COLUMNS = TEXT_COLUMNS + VALUES,
     MOST_FACES = 1000000,
     MOST_PARTS = 2,
-    DIGITS = 8
+    DIGITS = 6
 };
 
 static const char *const column_names[COLUMNS] = {
     "state", "section", "at_mm", "face", "part",          "node",      "X_mm",           "Y_mm",
     "Z_mm",  "x_mm",    "y_mm",  "z_mm", "von_mises_MPa", "axial_MPa", "plastic_strain",
 };
+/* Places nearer to zero than this are round-off, m. */
+static const double smallest_place = 1e-12;
+
 /* Decimal places from SI to the file's unit. */
 static const int value_shifts[VALUES] = {3, 3, 3, 3, 3, 3, -6, -6, 0};
 
@@ -128,8 +131,9 @@ static enum wb_status append_field(struct wb_text *text, const struct wb_field *
                 if (!isfinite(values[i]))
                     return wb_fail(WB_ERR_DATA, "state %s, face %d: %s is not a finite number",
                                    field->state, f, column_names[TEXT_COLUMNS + i]);
+                const bool is_nought = i < 6 && fabs(values[i]) < smallest_place;
                 wb_text_append_bytes(text, ",", 1);
-                append_number(text, values[i], value_shifts[i]);
+                append_number(text, is_nought ? 0.0 : values[i], value_shifts[i]);
             }
             wb_text_append_bytes(text, "\n", 1);
         }

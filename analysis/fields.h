@@ -8,7 +8,7 @@
  * `longitudinal` (the plane z = 0 of the straight wire, at_mm empty) or `cross` at at_mm along it.
  * Capital coordinates are those of the straight wire. The axial stress is the normal stress along
  * the wire. Sections of a 1D model are the fibres' cells, each with constant values. Numbers are
- * kept to 8 digits.
+ * kept to 6 digits.
  */
 #ifndef WB_ANALYSIS_FIELDS_H
 #define WB_ANALYSIS_FIELDS_H

@@ -33,6 +33,8 @@ static void fill(struct wb_field *field, double seed)
             node->von_mises = 1e8 * v / 3.0;
             node->axial = k == 3 ? 0.0 : -1e8 * v / 7.0;
             node->plastic = 1e-5 * v / 9.0;
+            if (k == 5)
+                node->position[2] = -3e-18;
         }
     }
 }
@@ -51,10 +53,10 @@ static void make_fields(struct wb_fields *fields)
     fill(field, 4.0);
 }
 
-/* To the 8 digits that are kept. */
+/* To the 6 digits that are kept. */
 static void assert_kept(double actual, double written)
 {
-    assert_close(actual, written, 5.01e-8 * fabs(written));
+    assert_close(actual, fabs(written) < 1e-15 ? 0.0 : written, 5.01e-6 * fabs(written));
 }
 
 static void fields_come_back(void **state)
@@ -110,8 +112,8 @@ static void file_is_as_documented(void **state)
     static const char begin[] =
         "state,section,at_mm,face,part,node,X_mm,Y_mm,Z_mm,x_mm,y_mm,z_mm,von_mises_MPa,axial_MPa,"
         "plastic_strain\n"
-        "unloaded,longitudinal,,0,0,0,1,1.3333333,1.6666667,-2,-1.7142857,-1.4285714,33.333333,"
-        "-14.285714,0.0000011111111\n";
+        "unloaded,longitudinal,,0,0,0,1,1.33333,1.66667,-2,-1.71429,-1.42857,33.3333,"
+        "-14.2857,0.00000111111\n";
     assert_memory_equal(text, begin, strlen(begin));
     assert_non_null(strstr(text, "\nunloaded,cross,3.26,1,1,7,3.7,"));
     free(text);
