@@ -20,8 +20,9 @@
  * Equilibrium is that of virtual motions dr, dt (t: spin) that are quadratic in space,
  * sum w (n . (dr' - dt x r') + m . dt') with n = R N, m = R M: rigid ones are among them, so forces
  * and moments balance exactly. Its tangent takes the strains' own variations from quadratic
- * motions too, which differ from the exact ones by the third order of the element's turn; Newton's
- * method then loses that part of its quadratic convergence, and nothing of its result.
+ * motions too, which in space differ from the exact ones by a small part (fourth power of the
+ * element's turn at its nodes): Newton's method then converges a little less than quadratically, to
+ * the same result.
  *
  * Unknowns of a node: increments of r and of the spin, in space.
  */

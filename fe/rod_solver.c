@@ -29,6 +29,13 @@ enum failure {
     TURNED /* farther than an increment may */
 };
 
+/* The last evaluation whose numbers were finite. */
+struct found {
+    double residual; /* relative */
+    double place;    /* m: arc length where it is largest */
+    int yielding;    /* fibres */
+};
+
 /* One equilibrium to be found. */
 struct step {
     enum wb_rod_control control;
@@ -59,6 +66,7 @@ struct wb_rod_solver {
     double tolerance;  /* absolute, of the last check, N */
     int iterations;
     enum failure failure;
+    struct found found;
 };
 
 static struct wb_rod_solver_settings complete_settings(const struct wb_rod_solver_settings *given)
@@ -194,6 +202,8 @@ static bool check_balance(struct wb_rod_solver *s, const struct step *step, stru
         s->balance.worst_place = s->model.length;
 
     s->residual = unbalanced / scale;
+    if (isfinite(s->residual))
+        s->found = (struct found){s->residual, s->balance.worst_place, s->balance.yielding};
     s->tolerance = s->settings.force_tolerance * scale + wb_rod_noise(s->model.rod);
     return unbalanced <= s->tolerance && fabs(miss(s, step)) <= 1e-11 * s->model.length;
 }
@@ -425,23 +435,18 @@ static bool are_finite(const struct wb_rod_move *move)
 static void describe_problem(const struct wb_rod_solver *s, double fraction,
                              struct wb_rod_result *result)
 {
-    const double place_mm = s->balance.worst_place * 1e3;
-    char *text = result->problem;
-    const size_t size = sizeof result->problem;
-
-    if (s->failure == NOT_FINITE)
-        snprintf(text, size, "the state is not finite with increments of %.1g of the way",
-                 fraction);
-    else if (s->failure == TURNED)
-        snprintf(text, size,
+    if (s->failure == TURNED) {
+        snprintf(result->problem, sizeof result->problem,
                  "a section turns by more than %.2g rad in an increment of %.1g of the way: no "
                  "equilibrium is near",
                  s->settings.most_rotation, fraction);
-    else
-        snprintf(text, size,
-                 "with increments of %.1g of the way the forces stay out of balance by %.1g of "
-                 "the largest, most at s = %.1f mm, where %d fibres yield in all",
-                 fraction, s->residual, place_mm, s->balance.yielding);
+        return;
+    }
+    snprintf(result->problem, sizeof result->problem,
+             "with increments of %.1g of the way the iteration %s; forces are out of balance by "
+             "%.1g of the largest, most at s = %.1f mm, and %d fibres yield",
+             fraction, s->failure == NOT_FINITE ? "diverges" : "does not converge",
+             s->found.residual, s->found.place * 1e3, s->found.yielding);
 }
 
 /* Back to the last equilibrium, evaluated. */

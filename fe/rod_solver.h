@@ -67,7 +67,7 @@ struct wb_rod_result {
     double fraction; /* of the move that was made */
     int increments, iterations, cutbacks;
     double residual;   /* relative, of the last iteration */
-    char problem[200]; /* why it did not converge; "" otherwise */
+    char problem[240]; /* why it did not converge; "" otherwise */
 };
 
 struct wb_rod_solver; /* opaque */
