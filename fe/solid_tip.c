@@ -222,7 +222,7 @@ void wb_solid_tip_forces(const double z[WB_SOLID_TIP_UNKNOWNS], const struct wb_
     for (int i = 0; i < N; i++)
         phi[i] = creal(value[i]);
     for (int j = 0; derivative && j < N; j++) {
-        at[j] = z[j] + step * I;
+        at[j] = CMPLX(z[j], step);
         sum_forces(at, loads, strand, tension, value);
         at[j] = z[j];
         for (int i = 0; i < N; i++)
