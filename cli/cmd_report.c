@@ -1,11 +1,13 @@
-/* wirebench report: a campaign's recordings become its calibration report. */
+/* wirebench report: a campaign's recordings, or its simulations, become its report. */
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "analysis/report/comparison_report.h"
 #include "analysis/report/report.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "base/units.h"
 #include "cli/command.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -41,10 +43,11 @@ static const struct argp argp = {
     .parser = parse,
     .args_doc = "CAMPAIGN.yaml",
     .doc = "Aligns the recordings of a campaign, calibrates and validates its wires and writes the "
-           "report: report.pdf, report.html, report.json and figures/ (SVG and PNG).\v"
-           "Recordings that are missing or cannot be used are named in the report (exit code 3). "
-           "Exit code 4: all is written, but a limit of the campaign is exceeded. The same "
-           "recordings and the same revision give the same bytes.",
+           "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). A campaign of "
+           "the kind `comparison` compares datasets that `solve` made of wire models.\v"
+           "What is missing or cannot be used is named in the report (exit code 3). Exit code 4: "
+           "all is written, but a limit of the campaign is exceeded. The same recordings or "
+           "datasets and the same revision give the same bytes.",
 };
 
 static void show_progress(void *context, int done, int total, const char *what)
@@ -52,6 +55,14 @@ static void show_progress(void *context, int done, int total, const char *what)
     (void)total;
     wb_progress_update(context, done, what);
 }
+
+/* A folder that may not be written should not cost the time of the calibrations. */
+static int prepare(const struct options *o)
+{
+    return wb_command_exit(wb_file_prepare_output(o->common.output, o->common.force));
+}
+
+/* --- recordings --- */
 
 static void print_rms(const char *what, enum wb_results_state state, double rms, double limit)
 {
@@ -65,7 +76,7 @@ static void print_rms(const char *what, enum wb_results_state state, double rms,
         printf("  %s RMS %.4f", what, rms);
 }
 
-static void print_summary(const struct wb_results *results, const char *folder)
+static void print_summary(const struct wb_results *results)
 {
     const struct wb_campaign *const campaign = results->campaign;
     printf("%s%s: %d of %d recordings used\n", campaign->title,
@@ -79,8 +90,6 @@ static void print_summary(const struct wb_results *results, const char *folder)
                   campaign->validation_limit);
         printf("\n");
     }
-    printf("%s/report.pdf\n%s/report.html\n%s/report.json\n%s/figures\n", folder, folder, folder,
-           folder);
 }
 
 /* The same text as the file's. */
@@ -94,51 +103,142 @@ static enum wb_status print_json(const char *folder)
     return WB_OK;
 }
 
+/* Prints what was written and tells how it ended. */
+static int deliver(const struct options *o, bool is_complete, bool exceeds_limit)
+{
+    const char *const folder = o->common.output;
+    if (o->common.json && print_json(folder) != WB_OK)
+        return WB_EXIT_FAILED;
+    if (!o->common.json)
+        printf("%s/report.pdf\n%s/report.html\n%s/report.json\n%s/figures\n", folder, folder,
+               folder, folder);
+    if (!is_complete)
+        return WB_EXIT_INCOMPLETE;
+    return exceeds_limit ? WB_EXIT_LIMIT : WB_EXIT_OK;
+}
+
+static int refuse_interrupted(void)
+{
+    wb_error("interrupted: no report is written");
+    return WB_EXIT_FAILED;
+}
+
 static int finish(const struct options *o, const struct wb_results *results)
 {
-    if (results->interrupted) {
-        wb_error("interrupted: no report is written");
-        return WB_EXIT_FAILED;
-    }
+    if (results->interrupted)
+        return refuse_interrupted();
     if (wb_report_write(results, o->common.output, o->common.force) != WB_OK)
         return WB_EXIT_FAILED;
     if (!o->common.json)
-        print_summary(results, o->common.output);
-    else if (print_json(o->common.output) != WB_OK)
+        print_summary(results);
+    return deliver(o, results->is_complete, results->exceeds_limit);
+}
+
+static int report_recordings(const struct options *o, const char *path)
+{
+    struct wb_campaign campaign;
+    struct wb_results results;
+    struct wb_progress progress;
+    int n_missing;
+    if (wb_campaign_read(&campaign, path) != WB_OK)
         return WB_EXIT_FAILED;
-    if (!results->is_complete)
-        return WB_EXIT_INCOMPLETE;
-    return results->exceeds_limit ? WB_EXIT_LIMIT : WB_EXIT_OK;
+    int code = prepare(o);
+    if (code == WB_EXIT_OK) {
+        wb_progress_start(&progress, "report", "steps",
+                          wb_campaign_count(&campaign, &n_missing) + 2.0 * campaign.n_wires);
+        code = wb_command_exit(
+            wb_results_compute(&results, &campaign, o->threads, show_progress, &progress));
+        wb_progress_finish(&progress);
+        if (code == WB_EXIT_OK) {
+            code = finish(o, &results);
+            wb_results_release(&results);
+        }
+    }
+    wb_campaign_release(&campaign);
+    return code;
+}
+
+/* --- comparisons of simulations --- */
+
+static void print_runs(const struct wb_comparison_results *results)
+{
+    const struct wb_comparison *const comparison = results->comparison;
+    printf("%s (simulations): %d of %d datasets used\n", comparison->title, results->n_usable,
+           results->n_wanted);
+    for (int i = 0; i < comparison->n_cases; i++) {
+        for (int k = 0; k < WB_COMPARISON_SOLVERS; k++) {
+            const struct wb_comparison_run *const run = &results->runs[i][k];
+            if (run->state == WB_COMPARISON_MISSING || run->state == WB_COMPARISON_REFUSED)
+                printf("  %s: %s; to make it:\n    %s\n", comparison->cases[i].datasets[k].name,
+                       wb_text_string(&run->problem), run->command);
+        }
+    }
+    if (results->fit_state == WB_COMPARISON_USABLE)
+        printf("  fitted rod: yield stress %.2f MPa, K %.4g MPa, n %.3f, RMS %.4f\n",
+               results->fit.material.yield_stress / WB_MPA,
+               results->fit.material.strength_coefficient / WB_MPA,
+               results->fit.material.hardening_exponent, results->fit.rms);
+    else
+        printf("  no fitted rod: %s\n", wb_text_string(&results->fit_problem));
+    if (results->exceeds_limit)
+        printf("  a limit of the campaign is exceeded\n");
+}
+
+static int finish_comparison(const struct options *o, const struct wb_comparison_results *results)
+{
+    if (results->interrupted)
+        return refuse_interrupted();
+    if (wb_comparison_report_write(results, o->common.output, o->common.force) != WB_OK)
+        return WB_EXIT_FAILED;
+    if (!o->common.json)
+        print_runs(results);
+    return deliver(o, results->is_complete, results->exceeds_limit);
+}
+
+static int report_comparison(const struct options *o, const char *path)
+{
+    /* Too large for the stack of a small system. */
+    struct wb_comparison *const comparison = calloc(1, sizeof *comparison);
+    struct wb_comparison_results *const results = calloc(1, sizeof *results);
+    struct wb_progress progress;
+    int code = comparison && results ? WB_EXIT_OK : WB_EXIT_FAILED;
+    if (code != WB_EXIT_OK)
+        wb_error("out of memory");
+    else
+        code = wb_command_exit(wb_comparison_read(comparison, path));
+    if (code == WB_EXIT_OK)
+        code = prepare(o);
+    if (code == WB_EXIT_OK) {
+        wb_progress_start(&progress, "report", "steps", wb_comparison_count(comparison));
+        code =
+            wb_command_exit(wb_comparison_compute(results, comparison, show_progress, &progress));
+        wb_progress_finish(&progress);
+        if (code == WB_EXIT_OK)
+            code = finish_comparison(o, results);
+    }
+    if (results)
+        wb_comparison_results_release(results);
+    if (comparison)
+        wb_comparison_release(comparison);
+    free(results);
+    free(comparison);
+    return code;
 }
 
 int wb_cmd_report(int argc, char **argv)
 {
-    char path[WB_PATH];
+    char buffer[WB_PATH];
     struct options options = {.common = {.noun = "campaign file", .destination = "report goes"}};
     wb_command_parse(&argp, argc, argv, &options);
-    struct wb_campaign campaign;
-    if (wb_campaign_read(&campaign, wb_command_find(options.common.input, path)) != WB_OK)
+    const char *const path = wb_command_find(options.common.input, buffer);
+    enum wb_campaign_kind kind;
+    if (wb_campaign_read_kind(&kind, path) != WB_OK)
         return WB_EXIT_FAILED;
-    /* A folder that may not be written should not cost the time of the calibrations. */
     const bool existed = wb_file_exists(options.common.output);
-    int code = wb_command_exit(wb_file_prepare_output(options.common.output, options.common.force));
-    if (code == WB_EXIT_OK) {
-        int n_missing;
-        wb_interrupt_install();
-        struct wb_progress progress;
-        wb_progress_start(&progress, "report", "steps",
-                          wb_campaign_count(&campaign, &n_missing) + 2.0 * campaign.n_wires);
-        struct wb_results results;
-        code = wb_command_exit(
-            wb_results_compute(&results, &campaign, options.threads, show_progress, &progress));
-        wb_progress_finish(&progress);
-        if (code == WB_EXIT_OK) {
-            code = finish(&options, &results);
-            wb_results_release(&results);
-        }
-        if (code == WB_EXIT_FAILED && !existed)
-            remove(options.common.output); /* only if it is empty */
-    }
-    wb_campaign_release(&campaign);
+    wb_interrupt_install();
+    const int code = kind == WB_CAMPAIGN_COMPARISON ? report_comparison(&options, path)
+                                                    : report_recordings(&options, path);
+    if (code == WB_EXIT_FAILED && !existed)
+        remove(options.common.output); /* only if it is empty */
     return code;
 }

@@ -131,7 +131,7 @@ static void put_fit(struct wb_json *root, const struct wb_comparison_results *re
         return;
     }
     put_material(entry, "properties", &results->fit.material);
-    wb_json_set_number(entry, "rms_over_F_max", results->fit.rms);
+    wb_json_set_number(entry, "rms_over_largest_deflection", results->fit.rms);
     wb_json_set_number(entry, "F_max_N", results->fit.max_force);
     wb_json_set_number(entry, "max_deflection_mm", results->fit.max_deflection / WB_MM);
     wb_json_set_text(entry, "stopped_because", wb_calibrate_end_text(results->fit.end));

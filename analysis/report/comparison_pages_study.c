@@ -206,9 +206,11 @@ void wb_comparison_pages_elastic(struct wb_document *document,
     if (contact && solid)
         wb_text_append(&text,
                        " Friction (<i>\xce\xbc</i> = %g) instead of a bond moves the axis by %.3f "
-                       "mm at most; core and jacket slip by %.4f mm.",
+                       "mm at most.",
                        results->comparison->cases[WB_COMPARISON_CONTACT].model->interface.friction,
-                       wb_comparison_distance(solid, contact) / WB_MM, contact->slip / WB_MM);
+                       wb_comparison_distance(solid, contact) / WB_MM);
+    if (contact && isfinite(contact->slip))
+        wb_text_append(&text, " Core and jacket slip by %.4f mm at most.", contact->slip / WB_MM);
     put_paragraph(document, &text);
 }
 
@@ -288,13 +290,14 @@ static void put_fit(struct wb_document *document, const struct wb_comparison_res
                  wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
         wb_document_item(document, WB_TONE_WARNING, item);
     }
-    snprintf(caption, sizeof caption,
-             "%s, <i>\xcf\x83</i><sub>Y</sub> of eq. 11, <i>K</i> and <i>n</i> by the search of "
-             "section 4.1 on the solid's force and deflection. Printed: %s; the materials behind "
-             "both differ, so that they need not agree.",
-             comparison->mixture ? "<i>E</i> of eq. 8" : "<i>E</i> of eq. 10",
-             wb_pages_escape(source, sizeof source,
-                             comparison->has_printed_wire ? comparison->printed_source : "none"));
+    snprintf(
+        caption, sizeof caption,
+        "%s, <i>\xcf\x83</i><sub>Y</sub> of eq. 11, <i>K</i> and <i>n</i> by the search of "
+        "section 4.1 on the solid's deflection at equal forces. Printed: %s; the materials behind "
+        "both differ, so that they need not agree.",
+        comparison->mixture ? "<i>E</i> of eq. 8" : "<i>E</i> of eq. 10",
+        wb_pages_escape(source, sizeof source,
+                        comparison->has_printed_wire ? comparison->printed_source : "none"));
     struct wb_document_table *const table = wb_document_table(document, caption, 4, columns);
     for (int i = 0; i < 4; i++)
         put_property(document, table, results, i);
@@ -302,9 +305,9 @@ static void put_fit(struct wb_document *document, const struct wb_comparison_res
         return;
     struct wb_text text = {0};
     wb_text_append(&text,
-                   "The fitted rod follows the solid's force with an RMS error of %.4f of "
-                   "<i>F</i><sub>max</sub> (%.2f N), up to a deflection of %.1f mm",
-                   results->fit.rms, results->fit.max_force, results->fit.max_deflection / WB_MM);
+                   "At equal forces the fitted rod's deflection follows the solid's with an RMS "
+                   "error of %.2f %% of the largest (%.1f mm)",
+                   results->fit.rms / WB_PERCENT, results->fit.max_deflection / WB_MM);
     if (results->fitted.reached)
         wb_text_append(&text, "; at %g N its axis is within %.2f mm of the solid's.", solid->force,
                        wb_comparison_rod_distance(solid, &results->fitted) / WB_MM);
