@@ -132,6 +132,16 @@ void wb_solid_tip_frame(const double z[WB_SOLID_TIP_UNKNOWNS], double frame[3][3
  * any loss of digits. */
 typedef double complex number;
 
+/* CMPLX() of C11, which clang does not have with this C library. */
+static number with_step(double real, double imaginary)
+{
+    const union {
+        double part[2];
+        number value;
+    } both = {.part = {real, imaginary}};
+    return both.value;
+}
+
 static number inner(const number *a, const number *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -222,7 +232,7 @@ void wb_solid_tip_forces(const double z[WB_SOLID_TIP_UNKNOWNS], const struct wb_
     for (int i = 0; i < N; i++)
         phi[i] = creal(value[i]);
     for (int j = 0; derivative && j < N; j++) {
-        at[j] = CMPLX(z[j], step);
+        at[j] = with_step(z[j], step);
         sum_forces(at, loads, strand, tension, value);
         at[j] = z[j];
         for (int i = 0; i < N; i++)
