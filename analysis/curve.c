@@ -247,6 +247,11 @@ static enum wb_status check_info(const struct wb_test_info *info)
         !isfinite(info->outer_diameter))
         return wb_fail(WB_ERR_DATA, "wire '%s': length and outer diameter must be positive",
                        info->wire);
+    if (info->is_general)
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s': its loads are not those of a bending test, of which a curve can "
+                       "be made",
+                       info->wire);
     return WB_OK;
 }
 

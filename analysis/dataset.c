@@ -18,8 +18,21 @@
 
 static const char *const phase_names[] = {"load", "unload", "slack"};
 
-/* By is_follower. */
-static const char *const loading_names[] = {"tip", "follower"};
+enum loading {
+    LOADING_TIP,
+    LOADING_FOLLOWER,
+    LOADING_GENERAL,
+    LOADINGS
+};
+
+static const char *const loading_names[LOADINGS] = {"tip", "follower", "general"};
+
+static enum loading loading_of(const struct wb_test_info *info)
+{
+    if (info->is_general)
+        return LOADING_GENERAL;
+    return info->is_follower ? LOADING_FOLLOWER : LOADING_TIP;
+}
 
 const char *wb_phase_name(enum wb_phase phase)
 {
@@ -140,7 +153,7 @@ static void set_info(struct wb_json *document, const struct wb_test_info *info)
     set_scaled(test, "outer_diameter_mm", info->outer_diameter, WB_MM);
     wb_json_set_number(test, "mass_per_length_kg_m", info->mass_per_length);
     wb_json_set_number(test, "poissons_ratio", info->poissons_ratio);
-    wb_json_set_text(test, "loading", loading_names[info->is_follower]);
+    wb_json_set_text(test, "loading", loading_names[loading_of(info)]);
     set_scaled(test, "strand_length_mm", info->strand_length, WB_MM);
     set_scaled(test, "counterweight_g", info->counterweight, WB_G);
     wb_json_set_number(test, "gravity_m_s2", info->gravity);
@@ -192,13 +205,18 @@ static enum wb_status get_shape(const struct wb_json *test, const char *path,
 static enum wb_status get_loading(const struct wb_json *test, const char *path,
                                   struct wb_test_info *info)
 {
-    const char *loading = loading_names[false];
-    if (wb_json_get(test, "loading") && !wb_json_get_text(test, "loading", &loading))
+    const char *name = loading_names[LOADING_TIP];
+    int loading = 0;
+    if (wb_json_get(test, "loading") && !wb_json_get_text(test, "loading", &name))
         return wb_fail(WB_ERR_FORMAT, "%s: test.loading: expected a text", path);
-    info->is_follower = strcmp(loading, loading_names[true]) == 0;
-    if (!info->is_follower && strcmp(loading, loading_names[false]) != 0)
-        return wb_fail(WB_ERR_FORMAT, "%s: test.loading: expected %s or %s, not '%.40s'", path,
-                       loading_names[false], loading_names[true], loading);
+    while (loading < LOADINGS && strcmp(name, loading_names[loading]) != 0)
+        loading++;
+    if (loading == LOADINGS)
+        return wb_fail(WB_ERR_FORMAT, "%s: test.loading: expected %s, %s or %s, not '%.40s'", path,
+                       loading_names[LOADING_TIP], loading_names[LOADING_FOLLOWER],
+                       loading_names[LOADING_GENERAL], name);
+    info->is_follower = loading == LOADING_FOLLOWER;
+    info->is_general = loading == LOADING_GENERAL;
     if (info->is_follower && info->strand_length != 0.0)
         return wb_fail(WB_ERR_FORMAT,
                        "%s: test.strand_length_mm: a follower force is not a strand's: expected 0",

@@ -63,6 +63,8 @@ struct wb_test_info {
     double strand_length;   /* m; 0: vertical dead force, no strand */
     bool is_follower;       /* the tip force stays normal to the wire; `force` is its size, and a
                                strand there is none */
+    bool is_general;        /* loads other than a bending test's (a simulated history in space):
+                               no curve can be made of it */
     double counterweight;   /* kg */
     double gravity;         /* m/s2 towards -y; 0 when weight is not in the data */
     double rest_level;      /* m; NaN when there was no rest below the tip */

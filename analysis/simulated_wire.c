@@ -89,7 +89,8 @@ static void set_info(struct wb_test_info *info, const struct wb_wire_model *mode
     info->mass_per_length = wb_wire_model_mass_per_length(model);
     info->poissons_ratio = wb_wire_model_poissons_ratio(model);
     info->strand_length = model->strand_length;
-    info->is_follower = wb_wire_model_is_follower(model);
+    info->is_general = !wb_wire_model_is_bending_test(model);
+    info->is_follower = !info->is_general && wb_wire_model_is_follower(model);
     info->gravity = -model->gravity[1];
     info->rest_level = (double)NAN;
     info->is_simulation = true;

@@ -21,6 +21,31 @@ bool wb_wire_model_is_follower(const struct wb_wire_model *model)
     return any;
 }
 
+/* A force to be compared over the deflection is zero at zero deflection: with the weight only a
+ * test that begins there has that. */
+static bool step_bends(const struct wb_wire_model *model, const struct wb_wire_step *step)
+{
+    const struct wb_tip_loads *const loads = &step->loads;
+    if (!is_zero(loads->moment) || !is_zero(loads->follower) || loads->force[0] != 0.0 ||
+        loads->force[2] != 0.0)
+        return false;
+    if (step->kind == WB_WIRE_STEP_LOADS)
+        return model->step[0].kind == WB_WIRE_STEP_LOADS && model->gravity[1] == 0.0;
+    return model->step[0].kind != WB_WIRE_STEP_LOADS && is_zero(loads->force);
+}
+
+bool wb_wire_model_is_bending_test(const struct wb_wire_model *model)
+{
+    if (model->gravity[0] != 0.0 || model->gravity[2] != 0.0)
+        return false;
+    if (wb_wire_model_is_follower(model))
+        return true;
+    for (int i = 0; i < model->n_steps; i++)
+        if (!step_bends(model, &model->step[i]))
+            return false;
+    return true;
+}
+
 static double area(const struct wb_wire_model_part *part)
 {
     return M_PI / 4.0 *

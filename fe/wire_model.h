@@ -135,6 +135,11 @@ WB_MUST_CHECK enum wb_status wb_wire_model_read(struct wb_wire_model *model, con
 /* Whether the only load is a follower across the wire, in its y (a test whose `force` is that). */
 bool wb_wire_model_is_follower(const struct wb_wire_model *model);
 
+/* Whether the model is a bending test like one of the bench, whose force over deflection a planar
+ * model can follow: deflections only, or a vertical force only and no weight, or a follower test;
+ * gravity upright. */
+bool wb_wire_model_is_bending_test(const struct wb_wire_model *model);
+
 /* Mass per length of all parts, kg/m. Flexural rigidity sum E I (N m2) and the homogenised
  * Young's modulus (eq. 8) and Poisson's ratio (eq. 9) over the outer diameter. */
 double wb_wire_model_mass_per_length(const struct wb_wire_model *model);

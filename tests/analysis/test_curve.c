@@ -53,6 +53,18 @@ static void a_single_curve_comes_back_on_the_grid(void **state)
     wb_dataset_release(&dataset);
 }
 
+static void loads_in_space_make_no_curve(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset;
+    struct wb_curve curve;
+    plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
+    dataset.info.is_general = true;
+    const struct wb_dataset *const datasets[] = {&dataset};
+    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
+    wb_dataset_release(&dataset);
+}
+
 static void rows_on_the_grid_are_taken_as_they_are(void **state)
 {
     (void)state;
@@ -336,6 +348,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_single_curve_comes_back_on_the_grid),
+        cmocka_unit_test(loads_in_space_make_no_curve),
         cmocka_unit_test(rows_on_the_grid_are_taken_as_they_are),
         cmocka_unit_test(coarse_rows_are_interpolated),
         cmocka_unit_test(mean_range_and_deviation_are_those_of_the_samples),

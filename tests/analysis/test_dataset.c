@@ -304,7 +304,7 @@ static void a_follower_force_is_said(void **state)
     static const struct {
         const char *old, *new, *message;
     } cases[] = {
-        {"\"follower\"", "\"sideways\"", "test.loading: expected tip or follower, not 'sideways'"},
+        {"\"follower\"", "\"sideways\"", "test.loading: expected tip, follower or general"},
         {"\"follower\"", "true", "test.loading: expected a text"},
         {"\"strand_length_mm\": 0", "\"strand_length_mm\": 760", "not a strand's"},
     };
@@ -313,7 +313,15 @@ static void a_follower_force_is_said(void **state)
         if (!strstr(last_message, cases[i].message))
             fail_msg("'%s' does not say '%s'", last_message, cases[i].message);
     }
-    /* The other word, and files from before there was one. */
+    /* The other words, and files from before there was one. */
+    assert_int_equal(read_altered(path, "\"follower\"", "\"general\"", &dataset), WB_OK);
+    assert_true(dataset.info.is_general && !dataset.info.is_follower);
+    assert_int_equal(wb_dataset_write(&dataset, path, true), WB_OK);
+    wb_dataset_release(&dataset);
+    assert_int_equal(read_altered(path, "\"general\"", "\"follower\"", &dataset), WB_OK);
+    assert_true(dataset.info.is_follower && !dataset.info.is_general);
+    assert_int_equal(wb_dataset_write(&dataset, path, true), WB_OK);
+    wb_dataset_release(&dataset);
     assert_int_equal(read_altered(path, "\"follower\"", "\"tip\"", &dataset), WB_OK);
     assert_false(dataset.info.is_follower);
     wb_dataset_release(&dataset);

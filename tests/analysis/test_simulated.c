@@ -157,7 +157,7 @@ static void history_in_space_keeps_its_z_and_its_steps(void **state)
     const struct wb_simulated_wire wire = {
         .solver = "wire1d", .model = &model, .run = &run, .wall = 2.0, .cpu = 1.0};
     write_and_read(&wire, "space", &dataset);
-    assert_false(dataset.info.is_follower);
+    assert_true(dataset.info.is_general && !dataset.info.is_follower);
     assert_close(dataset.rows[2].force, 2.0 + 5.0, 0.0);
     assert_int_equal(dataset.rows[2].phase, WB_PHASE_LOAD);
     assert_int_equal(dataset.rows[3].phase, WB_PHASE_UNLOAD);
@@ -197,7 +197,7 @@ static void raised_test_is_zeroed_and_weighs_upwards(void **state)
         .solver = "wire3d", .model = &model, .run = &run, .balance = &balance};
     write_and_read(&wire, "raised", &dataset);
     assert_close(dataset.info.gravity, -9.81, 1e-12);
-    assert_false(dataset.info.is_follower);
+    assert_false(dataset.info.is_follower || dataset.info.is_general);
     assert_close(dataset.rows[0].force, 0.0, 0.0);
     assert_close(dataset.rows[1].force, 53.0, 0.0);
     assert_close(dataset.rows[1].tension, 56.0, 0.0);

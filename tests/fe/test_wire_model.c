@@ -290,27 +290,47 @@ static void checksum_covers_all_files(void **state)
     assert_string_equal(model.sha256, hex);
 }
 
-static void follower_models_are_those_with_a_follower_only(void **state)
+static void read_history(const char *gravity, const char *history)
+{
+    char text[512];
+    snprintf(text, sizeof text,
+             "name: n\ntitle: t\nwire: type3\nlength_mm: 85\nlaw: elastoplastic\n"
+             "gravity: %s\nhistory:\n%s",
+             gravity, history);
+    read_text(text);
+}
+
+static void models_know_whether_they_are_a_bending_test(void **state)
 {
     (void)state;
     static const struct {
-        const char *history;
-        bool expected;
+        const char *gravity, *history;
+        bool follower, bends;
     } cases[] = {
-        {"  - name: a\n    follower_N: [0, 24, 0]\n", true},
-        {"  - name: a\n    follower_N: [0, 24, 0]\n  - name: b\n    unload: true\n", true},
-        {"  - name: a\n    follower_N: [0, 24, 1]\n", false},
-        {"  - name: a\n    follower_N: [1, 24, 0]\n", false},
-        {"  - name: a\n    force_N: [0, 1, 0]\n  - name: b\n    follower_N: [0, 24, 0]\n", false},
-        {"  - name: a\n    force_N: [0, 0, 0]\n", false},
-        {"  - name: a\n    deflection_mm: 5\n", false},
-        {"  - name: a\n    moment_Nm: [0, 0, 1]\n", false},
+        {"[0, -9.81, 0]", "  - name: a\n    follower_N: [0, 24, 0]\n", true, true},
+        {"[0, 0, 0]", "  - name: a\n    follower_N: [0, 24, 0]\n  - name: b\n    unload: true\n",
+         true, true},
+        {"[0, 0, 1]", "  - name: a\n    follower_N: [0, 24, 0]\n", true, false},
+        {"[0, 0, 0]", "  - name: a\n    follower_N: [0, 24, 1]\n", false, false},
+        {"[0, 0, 0]", "  - name: a\n    follower_N: [1, 24, 0]\n", false, false},
+        {"[0, 0, 0]",
+         "  - name: a\n    force_N: [0, 1, 0]\n  - name: b\n    follower_N: [0, 24, 0]\n", false,
+         false},
+        {"[0, 0, 0]", "  - name: a\n    force_N: [0, 1, 0]\n", false, true},
+        {"[0, -9.81, 0]", "  - name: a\n    force_N: [0, 1, 0]\n", false, false},
+        {"[0, 0, 0]", "  - name: a\n    force_N: [0, 1, 1]\n", false, false},
+        {"[0, 0, 0]", "  - name: a\n    force_N: [1, 1, 0]\n", false, false},
+        {"[0, 0, 0]", "  - name: a\n    moment_Nm: [0, 0, 1]\n", false, false},
+        {"[0, 9.81, 0]", "  - name: a\n    deflection_mm: 5\n  - name: b\n    release: true\n",
+         false, true},
+        {"[1, 9.81, 0]", "  - name: a\n    deflection_mm: 5\n", false, false},
+        {"[0, 0, 0]", "  - name: a\n    force_N: [0, 1, 0]\n  - name: b\n    deflection_mm: 5\n",
+         false, false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        char text[512];
-        snprintf(text, sizeof text, "%shistory:\n%s", SHORT, cases[i].history);
-        read_text(text);
-        if (wb_wire_model_is_follower(&model) != cases[i].expected)
+        read_history(cases[i].gravity, cases[i].history);
+        if (wb_wire_model_is_follower(&model) != cases[i].follower ||
+            wb_wire_model_is_bending_test(&model) != cases[i].bends)
             fail_msg("case %zu", i);
     }
 }
@@ -545,7 +565,7 @@ int main(void)
         cmocka_unit_test(elastic_law_takes_yield_from_all_parts),
         cmocka_unit_test(contact_is_as_stiff_as_the_jacket_by_default),
         cmocka_unit_test(checksum_covers_all_files),
-        cmocka_unit_test(follower_models_are_those_with_a_follower_only),
+        cmocka_unit_test(models_know_whether_they_are_a_bending_test),
         cmocka_unit_test(smaller_and_reversed_loads_unload),
         cmocka_unit_test(refusals_name_line_and_key),
         cmocka_unit_test(whole_models_are_refused_for_what_they_are),
