@@ -88,11 +88,12 @@ static ALWAYS_INLINE bool is_diagonal(const struct batch *m)
         a[k] = m->a[k];
         take_absolute(&a[k]);
     }
-    const masks more = a[3] + a[4] + a[5] > 1e-18 * (a[0] + a[1] + a[2]);
-    long long any = 0;
+    /* What is not a number is not diagonal: it spreads to all eigenvalues, where it is seen. */
+    const masks done = a[3] + a[4] + a[5] <= 1e-18 * (a[0] + a[1] + a[2]);
+    long long all = -1;
     for (int i = 0; i < LANES; i++)
-        any |= more[i];
-    return any == 0;
+        all &= done[i];
+    return all != 0;
 }
 
 static ALWAYS_INLINE void sweep_batch(struct batch *batch)
