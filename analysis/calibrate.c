@@ -44,6 +44,7 @@
 struct objective {
     struct wb_computed *computed;
     const struct wb_curve *curve;
+    int n;                       /* points of it that are compared */
     struct wb_material material; /* with K and n of the last evaluation */
     double first_strength, first_exponent;
     double *value;         /* (curve->n) */
@@ -139,16 +140,16 @@ static double evaluate(const gsl_vector *at, void *parameters)
     objective->material.hardening_exponent = exponent;
     int reached = 0;
     const enum wb_status status =
-        wb_computed_curve(objective->computed, &objective->material, curve->n, curve->step,
+        wb_computed_curve(objective->computed, &objective->material, objective->n, curve->step,
                           objective->value, &reached);
     objective->evaluations++;
     if (status != WB_OK)
         objective->status = status;
-    if (status != WB_OK || reached < curve->n) {
+    if (status != WB_OK || reached < objective->n) {
         objective->failed++;
-        return PENALTY * (2.0 - (double)reached / curve->n);
+        return PENALTY * (2.0 - (double)reached / objective->n);
     }
-    return wb_errors_relative_l2(curve->n, curve->step, curve->value, objective->value,
+    return wb_errors_relative_l2(objective->n, curve->step, curve->value, objective->value,
                                  wb_curve_scale(curve));
 }
 
@@ -314,12 +315,28 @@ static void take_optimum(struct wb_calibrate_result *result, const struct object
     result->failed_evaluations = objective->failed;
 }
 
-/* Nelder-Mead, then once more from the optimum. */
+/* Points up to the largest deflection of a follower test; all points otherwise. */
+static int rising_points(const struct wb_curve *curve)
+{
+    int n = curve->n;
+    while (curve->is_follower && n > 2 && curve->deflection[n - 1] < curve->max_deflection)
+        n--;
+    return n;
+}
+
+/* Nelder-Mead, then once more from the optimum. Where a follower test goes beyond its largest
+ * deflection, it is first sought up to there: a curled wire's tip comes down again to where a far
+ * stiffer one's still goes up, and between them the error has a ridge. */
 static enum wb_status optimise(struct wb_calibrate_result *result, struct objective *objective,
                                const struct wb_calibrate_settings *settings)
 {
     double at[2] = {1.0, 1.0};
-    WB_TRY(minimise(result, objective, at, settings));
+    objective->n = rising_points(objective->curve);
+    if (objective->n < objective->curve->n)
+        WB_TRY(minimise(result, objective, at, settings));
+    objective->n = objective->curve->n;
+    if (result->n_path == 0 || result->end != WB_CALIBRATE_STOPPED)
+        WB_TRY(minimise(result, objective, at, settings));
     result->start_of_restart = result->n_path;
     if (settings->restart && result->end != WB_CALIBRATE_STOPPED &&
         result->end != WB_CALIBRATE_ERROR) {

@@ -1,0 +1,88 @@
+/* Datasets of a stout wire under a follower force: copper core in a PVC jacket as fibres, which the
+ * homogenised wire that is calibrated on it can follow closely but not exactly. */
+#ifndef WB_TESTS_ANALYSIS_FOLLOWER_DATA_H
+#define WB_TESTS_ANALYSIS_FOLLOWER_DATA_H
+
+#include "tests/check.h"
+
+#include "analysis/dataset.h"
+#include "base/units.h"
+#include "fe/history.h"
+
+static const struct wb_material follower_core = {
+    WB_HARDENING_ISOTROPIC_POWER, 68.2e9, 0.34, 182e6, 292e6, 0.31};
+static const struct wb_material follower_jacket = {
+    WB_HARDENING_ISOTROPIC_POWER, 41e6, 0.43, 2e6, 12e6, 0.6};
+
+static inline struct wb_test_info follower_info(double length)
+{
+    return (struct wb_test_info){.wire = "8awg",
+                                 .length = length,
+                                 .outer_diameter = 4.86e-3,
+                                 .poissons_ratio = 0.39,
+                                 .is_follower = true,
+                                 .rest_level = (double)NAN,
+                                 .is_simulation = true};
+}
+
+/* Rows in equal steps of the force, and shapes of eleven positions. */
+static inline void follower_dataset(struct wb_dataset *dataset, const struct wb_test_info *info,
+                                    double force, int steps)
+{
+    enum {
+        POSITIONS = 11
+    };
+    double s[POSITIONS];
+    struct wb_section section;
+    struct wb_cantilever_model model;
+    struct wb_cantilever *cantilever;
+    struct wb_history history;
+    for (int i = 0; i < POSITIONS; i++)
+        s[i] = info->length * i / (POSITIONS - 1);
+    const struct wb_history_plan plan = {.control = WB_CONTROL_FOLLOWER_FORCE,
+                                         .maximum = force,
+                                         .steps = steps,
+                                         .n_shape = POSITIONS,
+                                         .shape_s = s};
+    wb_section_init_empty(&section);
+    assert_int_equal(wb_section_add_ring(&section, 0.0, 3.26e-3, &follower_core, 1.0, 40), WB_OK);
+    assert_int_equal(wb_section_add_ring(&section, 3.26e-3, 4.86e-3, &follower_jacket, 1.0, 40),
+                     WB_OK);
+    wb_cantilever_default_model(&model);
+    model.section = &section;
+    model.length = info->length;
+    model.mass_per_length = info->mass_per_length;
+    model.gravity_y = -info->gravity;
+    assert_int_equal(wb_cantilever_create(&cantilever, &model, NULL), WB_OK);
+    assert_int_equal(wb_history_init(&history, &plan), WB_OK);
+    assert_int_equal(wb_history_run(&history, &plan, cantilever), WB_OK);
+    assert_int_equal(history.n_rows, steps + 1);
+    assert_int_equal(wb_dataset_init(dataset), WB_OK);
+    dataset->info = *info;
+    for (int i = 0; i < history.n_rows; i++) {
+        const struct wb_cantilever_point *const point = &history.rows[i].point;
+        const struct wb_row row = {.t = i,
+                                   .cycle = 1,
+                                   .deflection = point->deflection,
+                                   .tension = (double)NAN,
+                                   .force = history.rows[i].force,
+                                   .stage = (double)NAN,
+                                   .tip_x = point->tip_x,
+                                   .tip_angle = point->tip_angle};
+        assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
+        for (int k = 0; k < POSITIONS; k++) {
+            const struct wb_shape_row shape = {.t = i,
+                                               .deflection = point->deflection,
+                                               .marker = k,
+                                               .s = s[k],
+                                               .x = history.shape_x[i * POSITIONS + k],
+                                               .y = history.shape_y[i * POSITIONS + k]};
+            assert_int_equal(wb_dataset_add_shape_row(dataset, &shape), WB_OK);
+        }
+    }
+    wb_history_release(&history);
+    wb_cantilever_destroy(cantilever);
+    wb_section_release(&section);
+}
+
+#endif
