@@ -72,18 +72,18 @@ static const double stretches[][3] = {
     {1.2, 0.85, 1.01},          {1.1, 1.1, 0.9},          {1.1, 1.1 + 1e-9, 0.9},
     {1.03, 1.03 + 1e-4, 1.029}, {1.2, 1.2, 1.2},          {1.2, 1.2 + 1e-7, 1.2 - 2e-8},
     {1.001, 1.0, 0.9991},       {1.0, 1.0, 1.0 + 2e-3},   {1.02, 0.98, 1.05},
-    {1.25, 0.8, 0.9},           {1.004, 1.004001, 0.996}, {1.6, 0.7, 1.0},
+    {1.25, 0.8, 0.9},           {1.004, 1.004001, 0.996}, {1.9, 0.2, 1.0},
 };
 enum {
     N_STRETCHES = sizeof stretches / sizeof stretches[0]
 };
 
 /* A history whose axes are not those of the deformation. */
-static void some_history(struct wb_hex20_state *state)
+static void some_history(struct wb_hex20_state *state, double size)
 {
     memset(state, 0, sizeof *state);
     for (int a = 0; a < 6; a++)
-        state->plastic_strain[a] = 2e-3 * random_number();
+        state->plastic_strain[a] = size * random_number();
     state->plastic_strain[2] = -state->plastic_strain[0] - state->plastic_strain[1];
     state->accumulated = 5e-3;
 }
@@ -99,7 +99,7 @@ static void stress_agrees_with_the_slow_twin(void **unused)
             struct wb_solid_point_response response;
             double h[9], size = 0.0;
             real tau[3][3], computed[3][3];
-            some_history(&before);
+            some_history(&before, k == N_STRETCHES - 1 ? 0.2 : 2e-3);
             deform(stretches[k], h);
             respond(materials[m], h, &before, &after, &response);
             twin_stress(materials[m], h, &before, tau);
@@ -168,7 +168,7 @@ static void check_tangent(const struct wb_material *m, const double h[9],
     struct wb_solid_point_response response;
     struct wb_solid_point_motion motion;
     struct wb_hex20_state after;
-    double B[9], error = 0.0;
+    double B[9], error = 0.0, size = m->youngs_modulus;
 
     respond(m, h, before, &after, &response);
     assert_true(wb_solid_point_motion_init(&motion, h));
@@ -181,17 +181,18 @@ static void check_tangent(const struct wb_material *m, const double h[9],
             static const int at[4] = {-2, -1, 1, 2};
             double moved[9];
             for (int j = 0; j < 9; j++)
-                moved[j] = h[j] + at[k] * 3e-6 * B[j];
+                moved[j] = h[j] + at[k] * 8e-6 * B[j];
             value[k] = power_of(m, moved, before, A);
         }
-        const double slope = (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / 36e-6;
+        const double slope = (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / 96e-6;
         error = fmax(error, fabs(slope - second_variation(&motion, &response, A, B)));
+        size = fmax(size, fabs(slope));
     }
     for (int i = 0; i < 6; i++) {
         for (int j = 0; j < 6; j++)
             assert_true(response.tangent[i][j] == response.tangent[j][i]);
     }
-    *worst = fmax(*worst, error / m->youngs_modulus);
+    *worst = fmax(*worst, error / size);
 }
 
 static void tangent_is_the_derivative_of_the_stress(void **unused)
@@ -205,14 +206,14 @@ static void tangent_is_the_derivative_of_the_stress(void **unused)
             struct wb_hex20_state before, after;
             struct wb_solid_point_response response;
             double h[9];
-            some_history(&before);
+            some_history(&before, k == N_STRETCHES - 1 ? 0.2 : 2e-3);
             deform(stretches[k], h);
             respond(materials[m], h, &before, &after, &response);
             yielding += response.yields;
             check_tangent(materials[m], h, &before, &worst);
         }
     }
-    print_message("largest error of a tangent: %.2g of E; %d of %d points yield\n", worst, yielding,
+    print_message("largest error of a tangent: %.2g; %d of %d points yield\n", worst, yielding,
                   (N_MATERIALS - 1) * N_STRETCHES);
     assert_true(worst < 1e-9);
     assert_true(yielding >= 25);
@@ -439,7 +440,7 @@ static void a_rotated_yielding_point_only_rotates(void **unused)
         struct wb_solid_point_response response, turned;
         double h[9], R[3][3], h_turned[9];
         real s[3][3], s_turned[3][3];
-        some_history(&before);
+        some_history(&before, 2e-3);
         deform(stretches[8], h);
         rotation(2.9, R);
         for (int i = 0; i < 3; i++) {
