@@ -134,18 +134,6 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
     return all_finite(stiffness, UNKNOWNS * UNKNOWNS);
 }
 
-/* Values at the corner points (the 2 x 2 x 2 rule) go to the nodes by the trilinear function
- * through them: the share of corner point c at parent coordinates x. */
-static double corner_share(int c, const double x[3])
-{
-    double share = 1.0;
-    for (int i = 0; i < 3; i++) {
-        const double sign = c >> i & 1 ? 1.0 : -1.0;
-        share *= 0.5 * (1.0 + sqrt(3.0) * sign * x[i]);
-    }
-    return share;
-}
-
 /* Values at 27 points go to the corner points by the trilinear function nearest to them in least
  * squares, weighted as by Gauss. Triquadratic functions keep their values there; and there the
  * derivatives of quadratic elements are most accurate. */
@@ -209,7 +197,7 @@ void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
     for (int a = 0; a < NODES; a++) {
         double sum[7] = {0.0};
         for (int c = 0; c < CORNERS; c++) {
-            const double share = corner_share(c, wb_hex20_node_place[a]);
+            const double share = geometry->nodal_share[a][c];
             for (int k = 0; k < 7; k++)
                 sum[k] += good ? share * value[c][k] : (double)NAN;
         }

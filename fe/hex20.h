@@ -44,7 +44,8 @@ struct wb_hex20_geometry {
     double weight[WB_HEX20_MOST_POINTS];                               /* m3 */
     double corner_gradient[WB_HEX20_CORNER_POINTS][3][WB_HEX20_NODES]; /* volumetric points */
     double corner_weight[WB_HEX20_CORNER_POINTS];
-    double volume; /* m3 */
+    double nodal_share[WB_HEX20_NODES][WB_HEX20_CORNER_POINTS]; /* of the corner points' values */
+    double volume;                                              /* m3 */
 };
 
 /* What an evaluation found, besides forces and stiffness. */
@@ -77,7 +78,8 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
                        double *restrict stiffness, struct wb_hex20_result *result);
 
 /* Cauchy stress (Pa, global frame) and equivalent plastic strain at the nodes, of a converged state
- * (its histories are `state`): values at the points extrapolated in the element.
+ * (its histories are `state`): values at the points extrapolated in the element; what is linear in
+ * the reference position stays so, on curved elements too.
  * Not a number where an element is inverted. */
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
                            enum wb_hex20_integration integration,

@@ -7,6 +7,7 @@
 enum {
     NODES = WB_HEX20_NODES,
     FACE = 8,
+    CORNERS = WB_HEX20_CORNER_POINTS,
     MOST_RULE = 4
 };
 
@@ -35,6 +36,10 @@ const double wb_hex20_node_place[NODES][3] = {
 static const double face_place[FACE][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1},
                                            {0, -1},  {1, 0},  {0, 1}, {-1, 0}};
 
+/* Shares of corner points' values at a node that are too large to trust; of a box they are at most
+ * 2.55. */
+static const double large_share = 8.0;
+
 /* Serendipity shape functions and derivatives (at [3], [0..2]) at parent coordinates x. */
 static void find_shapes(const double x[3], double shape[4][NODES])
 {
@@ -60,6 +65,20 @@ static void find_shapes(const double x[3], double shape[4][NODES])
     }
 }
 
+/* The cofactors of a 3 x 3 matrix, and its determinant. */
+static double find_cofactors(const double matrix[3][3], double cofactor[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        const double *u = matrix[(i + 1) % 3], *v = matrix[(i + 2) % 3];
+        for (int j = 0; j < 3; j++) {
+            const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            cofactor[i][j] = u[j1] * v[j2] - u[j2] * v[j1];
+        }
+    }
+    return matrix[0][0] * cofactor[0][0] + matrix[0][1] * cofactor[0][1] +
+           matrix[0][2] * cofactor[0][2];
+}
+
 /* The Jacobian's determinant at x; gradient (3 x 20, per metre) unless NULL. */
 static double find_gradient(const double x[3], const double position[NODES][3],
                             double shape[4][NODES], double gradient[3][NODES])
@@ -74,15 +93,7 @@ static double find_gradient(const double x[3], const double position[NODES][3],
                 jacobian[i][j] += shape[i][a] * (position[a][j] - position[0][j]);
         }
     }
-    for (int i = 0; i < 3; i++) {
-        const double *u = jacobian[(i + 1) % 3], *v = jacobian[(i + 2) % 3];
-        for (int j = 0; j < 3; j++) {
-            const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            cofactor[i][j] = u[j1] * v[j2] - u[j2] * v[j1];
-        }
-    }
-    const double determinant = jacobian[0][0] * cofactor[0][0] + jacobian[0][1] * cofactor[0][1] +
-                               jacobian[0][2] * cofactor[0][2];
+    const double determinant = find_cofactors((const double(*)[3])jacobian, cofactor);
     if (!gradient)
         return determinant;
     for (int j = 0; j < 3; j++) {
@@ -117,6 +128,119 @@ static bool fill_points(const struct rule *rule, const double position[NODES][3]
     return true;
 }
 
+/* Position relative to node 0 at parent coordinates x, and dX_j / dx_i. */
+static void find_place(const double x[3], const double position[NODES][3], double place[3],
+                       double jacobian[3][3])
+{
+    double shape[4][NODES];
+
+    find_shapes(x, shape);
+    memset(place, 0, 3 * sizeof *place);
+    memset(jacobian, 0, 3 * sizeof *jacobian);
+    for (int a = 1; a < NODES; a++) {
+        for (int j = 0; j < 3; j++) {
+            const double away = position[a][j] - position[0][j];
+            place[j] += shape[3][a] * away;
+            for (int i = 0; i < 3; i++)
+                jacobian[i][j] += shape[i][a] * away;
+        }
+    }
+}
+
+/* The eight functions 1, x, y, z, xy, yz, zx, xyz. */
+static void find_trilinear(const double x[3], double value[CORNERS])
+{
+    const double all[CORNERS] = {1.0,         x[0],        x[1],        x[2],
+                                 x[0] * x[1], x[1] * x[2], x[2] * x[0], x[0] * x[1] * x[2]};
+    memcpy(value, all, sizeof all);
+}
+
+/* Replaces the rows b by A^-1 b; false where A is singular. */
+static bool solve_corners(double A[CORNERS][CORNERS], double b[CORNERS][NODES])
+{
+    for (int k = 0; k < CORNERS; k++) {
+        int best = k;
+        for (int r = k + 1; r < CORNERS; r++) {
+            if (fabs(A[r][k]) > fabs(A[best][k]))
+                best = r;
+        }
+        if (!(fabs(A[best][k]) > 0.0))
+            return false;
+        for (int c = 0; c < CORNERS; c++) {
+            const double kept = A[k][c];
+            A[k][c] = A[best][c];
+            A[best][c] = kept;
+        }
+        for (int a = 0; a < NODES; a++) {
+            const double kept = b[k][a];
+            b[k][a] = b[best][a];
+            b[best][a] = kept;
+        }
+        for (int r = 0; r < CORNERS; r++) {
+            const double factor = r == k ? 0.0 : A[r][k] / A[k][k];
+            for (int c = k; factor != 0.0 && c < CORNERS; c++)
+                A[r][c] -= factor * A[k][c];
+            for (int a = 0; factor != 0.0 && a < NODES; a++)
+                b[r][a] -= factor * b[k][a];
+        }
+    }
+    for (int k = 0; k < CORNERS; k++) {
+        for (int a = 0; a < NODES; a++)
+            b[k][a] /= A[k][k];
+    }
+    return true;
+}
+
+/* Trilinear functions through the corner points' values, at the nodes: functions of the affine
+ * coordinates at the centre, so that what is linear in X stays so however the edges are curved.
+ * False where an element is so distorted that they grow far beyond the points' values. */
+static bool find_affine_shares(const double position[NODES][3], double share[NODES][CORNERS])
+{
+    double centre[3], at[3], jacobian[3][3], unused[3][3], cofactor[3][3];
+    double A[CORNERS][CORNERS], b[CORNERS][NODES]; /* function by point, function by node */
+
+    find_place((const double[3]){0.0}, position, centre, jacobian);
+    const double determinant = find_cofactors((const double(*)[3])jacobian, cofactor);
+    for (int k = 0; k < CORNERS + NODES; k++) {
+        const int a = k - CORNERS;
+        double x[3], affine[3] = {0.0}, value[CORNERS];
+        for (int i = 0; i < 3; i++)
+            x[i] = k < CORNERS ? two.place[k >> i & 1] : wb_hex20_node_place[a][i];
+        find_place(x, position, at, unused);
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++)
+                affine[i] += (at[j] - centre[j]) * cofactor[i][j] / determinant;
+        }
+        find_trilinear(affine, value);
+        for (int m = 0; m < CORNERS; m++)
+            *(k < CORNERS ? &A[m][k] : &b[m][a]) = value[m];
+    }
+    if (!solve_corners(A, b))
+        return false;
+    for (int a = 0; a < NODES; a++) {
+        for (int c = 0; c < CORNERS; c++) {
+            share[a][c] = b[c][a];
+            if (!(fabs(share[a][c]) <= large_share))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* The same in parent coordinates, which any shape has. */
+static void find_parent_shares(double share[NODES][CORNERS])
+{
+    for (int a = 0; a < NODES; a++) {
+        for (int c = 0; c < CORNERS; c++) {
+            share[a][c] = 1.0;
+            for (int i = 0; i < 3; i++) {
+                const double sign = c >> i & 1 ? 1.0 : -1.0;
+                share[a][c] *= 0.5 * (1.0 + sqrt(3.0) * sign * wb_hex20_node_place[a][i]);
+            }
+        }
+    }
+}
+
 int wb_hex20_points(enum wb_hex20_integration integration)
 {
     return integration == WB_HEX20_SELECTIVE ? WB_HEX20_MOST_POINTS : WB_HEX20_CORNER_POINTS;
@@ -133,6 +257,8 @@ bool wb_hex20_geometry_init(struct wb_hex20_geometry *geometry,
         return false;
     for (int p = 0; p < wb_hex20_points(integration); p++)
         geometry->volume += geometry->weight[p];
+    if (!find_affine_shares(position, geometry->nodal_share))
+        find_parent_shares(geometry->nodal_share);
     return true;
 }
 

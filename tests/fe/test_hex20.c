@@ -537,6 +537,62 @@ static void linear_stress_fields_reach_the_nodes(void **unused)
     }
 }
 
+/* Positions of the n x n x n points of Gauss' rule. */
+static void find_positions(int n, double position[20][3], double at[27][3])
+{
+    const double end = n == 3 ? sqrt(0.6) : sqrt(1.0 / 3.0);
+    for (int point = 0; point < n * n * n; point++) {
+        const int place[3] = {point % n, point / n % n, point / n / n};
+        double x[3];
+        for (int i = 0; i < 3; i++) {
+            x[i] = end * (2.0 * place[i] / (n - 1) - 1.0);
+            at[point][i] = 0.0;
+        }
+        for (int a = 0; a < 20; a++) {
+            const double *p = wb_hex20_node_place[a];
+            const bool corner = p[0] * p[1] * p[2] != 0.0;
+            double N = corner ? (p[0] * x[0] + p[1] * x[1] + p[2] * x[2] - 2.0) / 8.0 : 0.25;
+            for (int i = 0; i < 3; i++)
+                N *= p[i] == 0.0 ? 1.0 - x[i] * x[i] : 1.0 + p[i] * x[i];
+            for (int i = 0; i < 3; i++)
+                at[point][i] += N * position[a][i];
+        }
+    }
+}
+
+/* An eighth of a round section, 0 to 1 mm, 2 mm long: a wedge whose outer face is curved, as the
+ * elements of a wire. A plastic strain linear in y and z, put at the points, comes out at the
+ * nodes, above all at the surface. */
+static void linear_fields_reach_the_nodes_of_curved_elements(void **unused)
+{
+    (void)unused;
+    for (int k = 0; k < 2; k++) {
+        struct wb_hex20_geometry geometry;
+        struct wb_hex20_state state[27] = {{{0.0}}};
+        double position[20][3], u[60] = {0.0}, stress[20][6], plastic[20];
+        for (int a = 0; a < 20; a++) {
+            const double *p = wb_hex20_node_place[a];
+            const double angle = 0.125 * M_PI * (1.0 + p[0]);
+            const double in = 0.25 * (1.0 - p[1]), out = 0.5 * (1.0 + p[1]); /* chord and arc */
+            position[a][0] = 1e-3 * (in * (1.0 - p[0]) / 2.0 + out * cos(angle));
+            position[a][1] = 1e-3 * (in * (1.0 + p[0]) / 2.0 + out * sin(angle));
+            position[a][2] = -1e-3 * p[2];
+        }
+        assert_true(make_geometry(&geometry, integrations[k], position));
+
+        const int n = wb_hex20_points(integrations[k]);
+        double at[27][3];
+        find_positions(k == 0 ? 3 : 2, position, at);
+        for (int p = 0; p < n; p++)
+            state[p].accumulated = 1.0 + 300.0 * at[p][0] - 200.0 * at[p][1] + 100.0 * at[p][2];
+        wb_hex20_nodal_stress(&geometry, integrations[k], &elastic, u, state, stress, plastic);
+        for (int a = 0; a < 20; a++) {
+            const double *x = position[a];
+            assert_close(plastic[a], 1.0 + 300.0 * x[0] - 200.0 * x[1] + 100.0 * x[2], 1e-12);
+        }
+    }
+}
+
 /* Plastic strain at one end only: the line through the points falls below zero at the other. */
 static void plastic_strain_at_nodes_is_not_negative(void **unused)
 {
@@ -616,6 +672,7 @@ int main(void)
         cmocka_unit_test(only_rigid_modes_are_free_unless_reduced),
         cmocka_unit_test(nearly_incompressible_bending_does_not_lock),
         cmocka_unit_test(linear_stress_fields_reach_the_nodes),
+        cmocka_unit_test(linear_fields_reach_the_nodes_of_curved_elements),
         cmocka_unit_test(plastic_strain_at_nodes_is_not_negative),
         cmocka_unit_test(inverted_elements_and_nonsense_are_refused),
     };

@@ -155,6 +155,87 @@ static void both_rules_integrate_gradients_alike_between_straight_edges(void **u
     }
 }
 
+/* Position at parent coordinates x, by the textbook's shape functions. */
+static void find_position(const double x[3], double position[20][3], double at[3])
+{
+    at[0] = at[1] = at[2] = 0.0;
+    for (int a = 0; a < 20; a++) {
+        const double *p = wb_hex20_node_place[a];
+        const bool corner = p[0] * p[1] * p[2] != 0.0;
+        double N = corner ? (p[0] * x[0] + p[1] * x[1] + p[2] * x[2] - 2.0) / 8.0 : 0.25;
+        for (int i = 0; i < 3; i++)
+            N *= p[i] == 0.0 ? 1.0 - x[i] * x[i] : 1.0 + p[i] * x[i];
+        for (int i = 0; i < 3; i++)
+            at[i] += N * position[a][i];
+    }
+}
+
+static void find_corner_points(double position[20][3], double at[8][3])
+{
+    for (int c = 0; c < 8; c++) {
+        double x[3];
+        for (int i = 0; i < 3; i++)
+            x[i] = (c >> i & 1 ? 1.0 : -1.0) / sqrt(3.0);
+        find_position(x, position, at[c]);
+    }
+}
+
+/* What is linear in the position at the corner points is so at the nodes, on any shape. */
+static void linear_values_reach_the_nodes_of_curved_elements(void **unused)
+{
+    (void)unused;
+    srand(9);
+    for (int k = 0; k < 30; k++) {
+        struct wb_hex20_geometry geometry;
+        double position[20][3], point[8][3];
+        if (k < 3)
+            make_vault(0.4 * k, position);
+        else
+            make_nodes(0.2, position);
+        assert_true(make_geometry(&geometry, integrations[k % 2], position));
+        find_corner_points(position, point);
+        for (int a = 0; a < 20; a++) {
+            double sum[4] = {0.0};
+            for (int c = 0; c < 8; c++) {
+                sum[3] += geometry.nodal_share[a][c];
+                for (int i = 0; i < 3; i++)
+                    sum[i] += geometry.nodal_share[a][c] * point[c][i];
+            }
+            assert_close(sum[3], 1.0, 1e-12);
+            for (int i = 0; i < 3; i++)
+                assert_close(sum[i], position[a][i], k < 3 ? 1e-12 : 1e-14);
+        }
+    }
+}
+
+/* Bent so far that functions of the affine coordinates through the points grow between them: the
+ * parent's serve. Constants stay what they are, and nothing grows beyond measure. */
+static void far_distorted_elements_keep_moderate_shares(void **unused)
+{
+    (void)unused;
+    for (int k = 0; k <= 40; k++) {
+        struct wb_hex20_geometry geometry;
+        double position[20][3];
+        for (int a = 0; a < 20; a++) { /* a sector of a ring, thick and wide */
+            const double *p = wb_hex20_node_place[a];
+            const double angle = 0.06 * k * p[0], radius = 2.0 + p[1];
+            position[a][0] = radius * sin(angle) + 1e-6 * p[0];
+            position[a][1] = radius * cos(angle);
+            position[a][2] = p[2];
+        }
+        if (k == 0 || !make_geometry(&geometry, integrations[k % 2], position))
+            continue;
+        for (int a = 0; a < 20; a++) {
+            double sum = 0.0;
+            for (int c = 0; c < 8; c++) {
+                sum += geometry.nodal_share[a][c];
+                assert_true(fabs(geometry.nodal_share[a][c]) <= 8.0);
+            }
+            assert_close(sum, 1.0, 1e-12);
+        }
+    }
+}
+
 static void impossible_shapes_are_refused(void **unused)
 {
     (void)unused;
@@ -182,6 +263,8 @@ int main(void)
         cmocka_unit_test(volumes_of_curved_elements_are_exact),
         cmocka_unit_test(face_integrals_are_exact),
         cmocka_unit_test(both_rules_integrate_gradients_alike_between_straight_edges),
+        cmocka_unit_test(linear_values_reach_the_nodes_of_curved_elements),
+        cmocka_unit_test(far_distorted_elements_keep_moderate_shares),
         cmocka_unit_test(impossible_shapes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
