@@ -51,7 +51,6 @@ struct wb_rod_solver {
 
     /* The last equilibrium. */
     struct wb_rod_loads loads;
-    double earlier_tension;
     double deflection; /* the control's value, also where the strand is slack */
     bool slack;
     double way[N_CONTROLS]; /* of the last increment; see way_of() */
@@ -125,7 +124,7 @@ void wb_rod_solver_reset(struct wb_rod_solver *solver)
     solver->loads = solver->trial = (struct wb_rod_loads){0};
     memset(solver->way, 0, sizeof solver->way);
     solver->turn = 0.0;
-    solver->earlier_tension = solver->deflection = 0.0;
+    solver->deflection = 0.0;
     solver->slack = false;
     solver->fraction = 1.0;
 }
@@ -339,8 +338,6 @@ static bool solve_mode(struct wb_rod_solver *s, const struct step *step)
     if (ratio > 0.0) {
         start_loads(s, step);
         wb_rod_extrapolate(s->model.rod, ratio);
-        if (is_held(step))
-            s->trial.tension += ratio * (s->loads.tension - s->earlier_tension);
         if (iterate(s, step))
             return is_near(s);
     }
@@ -379,7 +376,6 @@ static void accept(struct wb_rod_solver *s, const struct step *step)
     if (step->slack != s->slack)
         memset(s->way, 0, sizeof s->way);
     s->turn = s->trial_turn;
-    s->earlier_tension = s->loads.tension;
     s->loads = s->trial;
     s->slack = step->slack;
     s->deflection = step->control == WB_ROD_DEFLECTION ? step->deflection

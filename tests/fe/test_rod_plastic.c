@@ -287,6 +287,43 @@ static void work_is_stored_or_dissipated(void **unused)
     assert_close(2.0 * error[1], error[0], 1e-3);
 }
 
+/* A stubby elastic rod, in which shear stores a share: what is stored is the work, to second order
+ * of the increments. */
+static void elastic_work_is_stored(void **unused)
+{
+    (void)unused;
+    struct wb_material m = copper;
+    m.hardening = WB_HARDENING_NONE_ELASTIC;
+    double error[2];
+    for (int fine = 0; fine < 2; fine++) {
+        const int parts = fine ? 80 : 40;
+        struct test_rod t = test_rod_make(&(struct test_rod_plan){
+            .diameter = 2e-3, .length = 6e-3, .material = m, .n_elements = 20});
+        struct account account = {.t = &t, .tip = *wb_rod_tip(t.rod)};
+        double stored, dissipated;
+        for (int k = 1; k <= parts; k++) {
+            const double share = (double)k / parts;
+            struct wb_rod_result result;
+            const struct wb_rod_move move = {
+                .target.tip = {.force = {500.0 * share, 600.0 * share, 2500.0 * share},
+                               .moment = {2.0 * share, 0.0, 1.0 * share}},
+                .observer = add_work,
+                .context = &account,
+            };
+            assert_int_equal(wb_rod_solver_move(t.solver, &move, &result), WB_OK);
+            assert_int_equal(result.end, WB_ROD_CONVERGED);
+        }
+        wb_rod_energy(t.rod, &stored, &dissipated);
+        error[fine] = fabs(stored / account.work - 1.0);
+        print_message("elastic: work %.6f J, stored %.6f: missing %.2g\n", account.work, stored,
+                      error[fine]);
+        assert_close(dissipated, 0.0, 0.0);
+        test_rod_release(&t);
+    }
+    assert_true(error[1] < 2e-4);
+    assert_true(error[1] < 0.3 * error[0] || error[1] < 1e-7);
+}
+
 /* A perfectly plastic cantilever carries Mp / L, before its lever grows shorter. */
 static void beyond_the_limit_load_it_says_so(void **unused)
 {
@@ -382,6 +419,7 @@ int main(void)
         cmocka_unit_test(follower_of_the_mixed_section_as_the_planar_cantilever),
         cmocka_unit_test(every_direction_gives_the_same_curve),
         cmocka_unit_test(work_is_stored_or_dissipated),
+        cmocka_unit_test(elastic_work_is_stored),
         cmocka_unit_test(beyond_the_limit_load_it_says_so),
         cmocka_unit_test(what_is_not_finite_is_refused),
         cmocka_unit_test(the_observer_stops_it),

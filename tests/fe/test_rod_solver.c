@@ -377,6 +377,62 @@ static void paper_follower_of_24_newtons(void **unused)
     test_rod_release(&t);
 }
 
+/* The tension of a strand points at its upper end, also out of the plane. */
+static void strand_pulls_towards_its_upper_end(void **unused)
+{
+    (void)unused;
+    const double L = 0.1, S = 0.12;
+    struct test_rod t = test_rod_make(&(struct test_rod_plan){
+        .diameter = 2e-3, .length = L, .material = elastic, .strand_length = S});
+    const struct wb_tip_loads aside = {.force = {0.0, 0.0, 1.5}, .moment = {0.01, 0.02, 0.0}};
+    test_rod_load(&t, &aside);
+    struct wb_rod_result result;
+    const struct wb_rod_move up = {
+        .control = WB_ROD_DEFLECTION, .target = {.weight = 1.0, .tip = aside}, .deflection = 0.05};
+    assert_int_equal(wb_rod_solver_move(t.solver, &up, &result), WB_OK);
+    assert_int_equal(result.end, WB_ROD_CONVERGED);
+
+    const double *tip = wb_rod_tip(t.rod)->position;
+    const double T = wb_rod_solver_loads(t.solver)->tension;
+    const double p = (L - tip[0]) / S, q = -tip[2] / S;
+    struct wb_rod_balance balance;
+    wb_rod_evaluate(t.rod, 1.0, &balance);
+    assert_close(tip[1], 0.05, 1e-12);
+    assert_true(T > 0.5 && fabs(q) > 0.02 && p > 0.1);
+    assert_close(-balance.clamp[0], T * p, 1e-7);
+    assert_close(-balance.clamp[1], T * sqrt(1.0 - p * p - q * q), 1e-7);
+    assert_close(-balance.clamp[2], T * q + 1.5, 1e-7);
+    assert_close(wb_rod_solver_vertical_force(t.solver), -balance.clamp[1], 1e-7);
+
+    /* All tangents of the loads are right: a small change elsewhere takes few iterations. */
+    const struct wb_rod_move other = {
+        .control = WB_ROD_DEFLECTION,
+        .target = {.weight = 1.0,
+                   .tip = {.force = {0.1, 0.0, 1.5}, .moment = {0.01, 0.018, 0.001}}},
+        .deflection = 0.0495};
+    assert_int_equal(wb_rod_solver_move(t.solver, &other, &result), WB_OK);
+    assert_int_equal(result.end, WB_ROD_CONVERGED);
+    print_message("strand in space: %.3f N, leaning %.3f and %.3f; %d iterations\n", T, p, q,
+                  result.iterations);
+    assert_in_range(result.iterations, 1, 3 * result.increments);
+    test_rod_release(&t);
+}
+
+static void followers_and_moments_take_few_iterations(void **unused)
+{
+    (void)unused;
+    struct test_rod t = test_rod_make(
+        &(struct test_rod_plan){.diameter = 2e-3, .length = 0.1, .material = elastic});
+    struct wb_tip_loads loads = {.moment = {0.04, 0.05, 0.06}, .follower = {-0.5, 2.0, 1.0}};
+    test_rod_load(&t, &loads);
+    loads.moment[1] += 2e-3;
+    loads.follower[2] -= 0.05;
+    const struct wb_rod_result result = test_rod_load(&t, &loads);
+    print_message("follower and moment: %d iterations\n", result.iterations);
+    assert_in_range(result.iterations, 1, 3 * result.increments);
+    test_rod_release(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -386,6 +442,8 @@ int main(void)
         cmocka_unit_test(loads_in_space_match_shooting),
         cmocka_unit_test(bend_of_45_degrees_leaves_its_plane),
         cmocka_unit_test(helix_under_force_and_moment_matches_shooting),
+        cmocka_unit_test(strand_pulls_towards_its_upper_end),
+        cmocka_unit_test(followers_and_moments_take_few_iterations),
         cmocka_unit_test(paper_follower_of_24_newtons),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
