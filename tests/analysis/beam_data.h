@@ -92,7 +92,12 @@ static inline void beam_dataset(struct wb_dataset *dataset, const struct wb_test
         assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
         wb_computed_shape(computed, 7, s, x, y, NULL);
         for (int i = 0; i < 7; i++) {
-            const struct wb_shape_row shape = {row.t, row.deflection, i, s[i], x[i], y[i]};
+            const struct wb_shape_row shape = {.t = row.t,
+                                               .deflection = row.deflection,
+                                               .marker = i,
+                                               .s = s[i],
+                                               .x = x[i],
+                                               .y = y[i]};
             assert_int_equal(wb_dataset_add_shape_row(dataset, &shape), WB_OK);
         }
     }
