@@ -14,7 +14,7 @@ void wb_interface_default_law(struct wb_interface_law *law, double youngs_modulu
 {
     const double nu = poissons_ratio;
     const double confined = youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-    law->normal_stiffness = 10.0 * confined / thickness;
+    law->normal_stiffness = confined / thickness;
     law->tangential_stiffness = law->normal_stiffness / 3.0;
     law->friction = friction;
 }

@@ -24,11 +24,12 @@ struct wb_interface_law {
     double friction;             /* mu, 1 */
 };
 
-/* Stiffnesses for an outer part of such a material and thickness (m). Normal: ten times that of
- * this layer when it is pressed between plates, M / thickness with
- * M = E (1 - nu) / ((1 + nu) (1 - 2 nu)); the penetration is then p / (10 M) of the thickness, 1 %
- * at a pressure that would squeeze the layer itself by 10 %. Tangential: a third of it; before it
- * slips, a point moves by 3 mu times its penetration. */
+/* Stiffnesses for an outer part of such a material and thickness (m). Normal: that of this layer
+ * when it is pressed between plates, M / thickness with M = E (1 - nu) / ((1 + nu) (1 - 2 nu)); the
+ * penetration is then what the layer itself is squeezed by, p / M of its thickness (1 % at 1 MPa
+ * for a jacket of PVC, whose pressures are a tenth of that). Stiffer ones make Newton's method
+ * wander among points that open and close. Tangential: a third of it; before it slips, a point
+ * moves by 3 mu times its penetration. */
 void wb_interface_default_law(struct wb_interface_law *law, double youngs_modulus,
                               double poissons_ratio, double thickness, double friction);
 

@@ -24,10 +24,6 @@ enum {
 static const double pa_per_m = 1e9; /* of one N/mm3 */
 /* Beyond this a solid is as good as incompressible. */
 static const double largest_poisson = 0.499;
-/* Penalty over the jacket's own radial stiffness, E over its thickness. */
-static const double penalty_factor = 10.0;
-/* Tangential over normal stiffness, as the paper has it for the interfaces of bundles. */
-static const double tangential_share = 1.0 / 3.0;
 
 static const char *const laws[] = {"elastic", "elastoplastic", NULL};
 static const char *const clamps[] = {"plane", "fixed", NULL};
@@ -178,12 +174,11 @@ static enum wb_status take_homogenised(struct reader *reader)
 static enum wb_status read_interface(struct reader *reader, const struct wb_config_node *map)
 {
     struct wb_wire_model *const m = reader->model;
-    struct wb_interface_law *const law = &m->interface;
+    double friction = 0.0, normal_stiffness = 0.0;
     bool has_stiffness = false;
     struct wb_config_key keys[] = {
-        WB_CONFIG_NUMBER("friction", &law->friction, 1.0, 0.0, 10.0),
-        WB_CONFIG_OPTIONAL_NUMBER("normal_stiffness_N_mm3", &law->normal_stiffness, pa_per_m, 1e-3,
-                                  1e9),
+        WB_CONFIG_NUMBER("friction", &friction, 1.0, 0.0, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("normal_stiffness_N_mm3", &normal_stiffness, pa_per_m, 1e-3, 1e9),
     };
     keys[1].present = &has_stiffness;
 
@@ -191,10 +186,13 @@ static enum wb_status read_interface(struct reader *reader, const struct wb_conf
     if (m->n_parts != 2)
         return wb_config_refuse(reader->root, "interface", "there is none in a wire of one part");
     const struct wb_wire_model_part *const jacket = &m->part[1];
-    if (!has_stiffness)
-        law->normal_stiffness = penalty_factor * jacket->material.youngs_modulus /
-                                (0.5 * (jacket->outer_diameter - jacket->inner_diameter));
-    law->tangential_stiffness = tangential_share * law->normal_stiffness;
+    wb_interface_default_law(&m->interface, jacket->material.youngs_modulus,
+                             jacket->material.poissons_ratio,
+                             0.5 * (jacket->outer_diameter - jacket->inner_diameter), friction);
+    if (has_stiffness) {
+        m->interface.tangential_stiffness *= normal_stiffness / m->interface.normal_stiffness;
+        m->interface.normal_stiffness = normal_stiffness;
+    }
     m->has_contact = true;
     return WB_OK;
 }
