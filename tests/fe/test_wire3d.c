@@ -197,6 +197,82 @@ static void elastic_wire_under_a_follower_force_is_the_exact_rod(void **state)
     end(c);
 }
 
+static double von_mises(const double s[6])
+{
+    const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+    return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+/* Von Mises stress of part 0 at a node's reference position. */
+static double stress_at(const struct computed *c, double x, double y, double z)
+{
+    const struct wb_solid_mesh *mesh = wb_wire3d_mesh(c->wire);
+    struct wb_wire3d_fields fields;
+    double stress = (double)NAN;
+
+    assert_int_equal(wb_wire3d_fields(c->wire, &fields), WB_OK);
+    for (int e = 0; e < mesh->n_elements; e++)
+        for (int a = 0; a < WB_SOLID_MESH_NODES; a++) {
+            const double *X = mesh->node[mesh->element[e][a]];
+            if (mesh->part[e] == 0 &&
+                fabs(X[0] - x) + fabs(X[1] - y) + fabs(X[2] - z) < 1e-6 * c->model.length)
+                stress = von_mises(fields.stress[e][a]);
+        }
+    wb_wire3d_fields_release(&fields);
+    return stress;
+}
+
+/* One core diameter from the clamp, whose corner is singular. The stress of the rod, E_Cu kappa r,
+ * is 696.93 MPa at the root and 675.08 MPa there. Logarithmic strain and Cauchy's stress make it
+ * larger on the pressed side than on the pulled one. */
+static void stress_in_the_coppers_outer_fibre_is_that_of_the_rod(void **state)
+{
+    (void)state;
+    struct computed *c = begin_from_file("follower-8awg-elastic");
+    const double radius = 0.5 * c->model.part[0].outer_diameter;
+
+    assert_int_equal(c->model.section_density, 1);
+    c->model.step[0].rows = 2;
+    c->model.elements_along = 46; /* a node at 3.2609 mm */
+    compute(c, NULL);
+    assert_true(c->run.converged);
+    const double x = 3.0 / 92.0 * c->model.length;
+    const double low = stress_at(c, x, -radius, 0.0), high = stress_at(c, x, radius, 0.0);
+    print_message("copper's outer fibre at %.3f mm: %.2f MPa pulled, %.2f MPa pressed, mean %.2f\n",
+                  x / WB_MM, low / WB_MPA, high / WB_MPA, 0.5 * (low + high) / WB_MPA);
+    assert_close_relative(0.5 * (low + high), 675.08e6, 0.01);
+    assert_close_relative(low, high, 0.02);
+    end(c);
+}
+
+static void contact_with_friction_hardly_changes_the_elastic_wire(void **state)
+{
+    (void)state;
+    static const char *const names[2] = {"follower-8awg-elastic", "follower-8awg-elastic-contact"};
+    struct computed *both[2];
+    struct wb_wire3d_balance balance;
+
+    for (int k = 0; k < 2; k++) {
+        both[k] = begin_from_file(names[k]);
+        both[k]->model.step[0].rows = 2;
+        both[k]->model.elements_along = 25;
+        compute(both[k], NULL);
+        assert_true(both[k]->run.converged);
+    }
+    const struct wb_wire_run *bonded = &both[0]->run, *sliding = &both[1]->run;
+    double apart = 0.0;
+    for (int i = 0; i < bonded->n_rows * bonded->n_shape; i++)
+        for (int k = 0; k < 3; k++)
+            apart = fmax(apart, fabs(bonded->shape[i][k] - sliding->shape[i][k]));
+    wb_wire3d_balance(both[1]->wire, &balance);
+    print_message("bonded and with friction: shapes within %.5f mm, slip of %.2f um\n",
+                  apart / WB_MM, 1e6 * balance.slip);
+    assert_true(apart > 0.0 && apart < 1e-3 * last_row(both[0])->tip[1]);
+    assert_true(balance.slip > 0.1e-6 && balance.slip < 0.1 * balance.slip_limit);
+    end(both[0]);
+    end(both[1]);
+}
+
 /* a = F L^2 / EI and x/L, y/L, angle: exact follower solution. */
 static void far_curled_elastic_wire_keeps_to_the_exact_rod(void **state)
 {
@@ -461,6 +537,8 @@ int main(void)
         cmocka_unit_test(solid_cylinder_follows_the_rod_and_springs_back_like_it),
         cmocka_unit_test(energies_balance_as_the_increments_shrink),
         cmocka_unit_test(elastic_wire_under_a_follower_force_is_the_exact_rod),
+        cmocka_unit_test(stress_in_the_coppers_outer_fibre_is_that_of_the_rod),
+        cmocka_unit_test(contact_with_friction_hardly_changes_the_elastic_wire),
         cmocka_unit_test(far_curled_elastic_wire_keeps_to_the_exact_rod),
         cmocka_unit_test(end_moment_rolls_the_wire_up_into_a_circle),
         cmocka_unit_test(tip_moment_twists_by_torsional_rigidity),
