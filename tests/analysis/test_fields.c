@@ -265,12 +265,15 @@ static void refusals_name_line_and_column(void **state)
     }
 }
 
-static void fields_that_come_twice_are_refused(void **state)
+static void fields_cut_short_or_given_twice_are_refused(void **state)
 {
     (void)state;
     char text[4096] = HEADER;
     struct wb_fields fields;
     append_face(text, sizeof text, "a,cross,5", 0, 0);
+    assert_int_equal(read_bytes(text, (size_t)(strstr(text, "a,cross,5,0,0,7") - text), &fields),
+                     WB_ERR_FORMAT);
+    assert_non_null(strstr(message, ":8: node: the last face ends before node 7"));
     append_face(text, sizeof text, "a,longitudinal,", 0, 0);
     append_face(text, sizeof text, "a,cross,6", 0, 0);
     assert_int_equal(read_bytes(text, strlen(text), &fields), WB_OK);
@@ -329,7 +332,7 @@ int main(void)
         cmocka_unit_test(no_fields_is_no_file),
         cmocka_unit_test(impossible_fields_are_refused),
         cmocka_unit_test(refusals_name_line_and_column),
-        cmocka_unit_test(fields_that_come_twice_are_refused),
+        cmocka_unit_test(fields_cut_short_or_given_twice_are_refused),
         cmocka_unit_test(broken_files_are_read_or_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

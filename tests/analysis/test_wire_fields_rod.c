@@ -107,8 +107,9 @@ static void longitudinal_section_lies_in_the_plane(void **state)
             assert_close(node[k].reference[2], 0.0, 0.0);
             assert_close(node[k].position[2], 0.0, 1e-12);
             wb_wire1d_frame(rod, node[k].reference[0], at, frame);
-            assert_close(hypot(node[k].position[0] - at[0], node[k].position[1] - at[1]),
-                         fabs(node[k].reference[1]), 1e-12);
+            for (int i = 0; i < 3; i++)
+                assert_close(node[k].position[i], at[i] + node[k].reference[1] * frame[1][i],
+                             1e-12);
             highest = fmax(highest, node[k].reference[1]);
         }
         /* Bent upwards: compression above. */
@@ -135,12 +136,53 @@ static void core_yields_beside_the_clamp(void **state)
     assert_close_relative(stress, 182e6 + 292e6 * pow(plastic, 0.31), 1e-6);
 }
 
+/* G r theta' of the elastic composite, theta' = T / sum G J. */
+static void torsion_counts_in_the_von_mises_stress(void **state)
+{
+    (void)state;
+    static const double T = 0.05;
+    char path[WB_PATH];
+    struct wb_wire_model twisted;
+    struct wb_wire1d *wire;
+    struct wb_wire_run twisting;
+    struct wb_fields kept = {0};
+    assert_int_equal(wb_file_find_fixture(path, "models", "follower-8awg-elastic", NULL), WB_OK);
+    assert_int_equal(wb_wire_model_read(&twisted, path), WB_OK);
+    twisted.step[0].loads = (struct wb_tip_loads){.moment = {T, 0.0, 0.0}};
+    assert_int_equal(wb_wire_run_init(&twisting, &twisted, 0), WB_OK);
+    assert_int_equal(wb_wire1d_create(&wire, &twisted, NULL), WB_OK);
+    assert_int_equal(wb_wire1d_run(wire, &twisting, NULL), WB_OK);
+    assert_int_equal(wb_wire_fields_rod(&kept, &twisted, "twisted", wire, 2), WB_OK);
+
+    double G[2], rigidity = 0.0;
+    for (int i = 0; i < 2; i++) {
+        const struct wb_wire_model_part *const part = &twisted.part[i];
+        G[i] = 0.5 * part->material.youngs_modulus / (1.0 + part->material.poissons_ratio);
+        rigidity +=
+            G[i] * M_PI / 32.0 * (pow(part->outer_diameter, 4.0) - pow(part->inner_diameter, 4.0));
+    }
+    const struct wb_field *const cross = wb_fields_find(&kept, "twisted", 50e-3);
+    for (int f = 0; f < cross->n_faces; f++) {
+        const struct wb_field_face *const face = &cross->faces[f];
+        const double inner = hypot(face->node[0].reference[1], face->node[0].reference[2]);
+        const double outer = hypot(face->node[1].reference[1], face->node[1].reference[2]);
+        const double per_radius = sqrt(3.0) * G[face->part] * T / rigidity;
+        assert_in_range((long)face->node[0].von_mises, (long)(per_radius * inner),
+                        (long)(per_radius * outer) + 1);
+        assert_close(face->node[0].axial, 0.0, 1e-3 * face->node[0].von_mises);
+    }
+    wb_fields_release(&kept);
+    wb_wire1d_destroy(wire);
+    wb_wire_run_release(&twisting);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_fill_the_section_and_carry_the_moment),
         cmocka_unit_test(longitudinal_section_lies_in_the_plane),
         cmocka_unit_test(core_yields_beside_the_clamp),
+        cmocka_unit_test(torsion_counts_in_the_von_mises_stress),
     };
     return cmocka_run_group_tests(tests, make, release);
 }
