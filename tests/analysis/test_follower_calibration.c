@@ -283,7 +283,7 @@ static void composite_wire_is_followed_to_the_end(void **state)
         struct wb_properties properties;
         settings.yield_point = cases[i].yield_point;
         settings.largest_deflection = cases[i].end;
-        settings.n_elements = 25;
+        settings.n_elements = 16;
         settings.restart = false;
         assert_int_equal(calibrate_one(&result, &composite, &settings), WB_OK);
         wb_properties_from_result(&result, &properties);
@@ -445,7 +445,6 @@ static void shapes_of_the_model_itself_have_no_distance(void **state)
     struct wb_validate_result result;
     double x[11], y[11];
     const struct wb_validate_points points = {11, x, y, NULL};
-    assert_int_equal(wb_dataset_init(&dataset), WB_OK);
     homogenised_dataset(&dataset, &composite.info, &properties.material);
     for (int i = 8; i <= STEPS; i += 8) {
         const struct wb_row *const row = &dataset.rows[i];
