@@ -11,7 +11,21 @@ static const double on_surface = 1e-12;
 
 /* Newton's method converges quadratically: after a step of this size (relative) only round-off is
  * left. */
-static const double last_step = 1e-9;
+static const double last_step = 1e-7;
+
+void wb_rod_fibre_law_init(struct wb_rod_fibre_law *law, const struct wb_material *material,
+                           const struct wb_hardening_table *table)
+{
+    const bool kinematic = material->hardening == WB_HARDENING_KINEMATIC_LINEAR;
+    *law = (struct wb_rod_fibre_law){
+        .material = *material,
+        .table = table,
+        .shear_modulus = 0.5 * material->youngs_modulus / (1.0 + material->poissons_ratio),
+        .back = kinematic ? material->strength_coefficient : 0.0,
+        .per_E = 1.0 / material->youngs_modulus,
+        .per_yield = 1.0 / material->yield_stress,
+    };
+}
 
 /* The return to the surface: what its equation needs, and its solution. */
 struct mapping {
@@ -22,160 +36,165 @@ struct mapping {
     double A, B;
 };
 
-static double ratio_at(const struct wb_material *m, const struct wb_hardening_table *table,
-                       double c)
+/* What is returned to the surface: the direction of flow (s, t) / q, and how stresses depend on
+ * strains. They keep own / A and own / B of the elastic moduli where l stays, and lose as l changes
+ * by (u d(strain) + v d(angle)) / slope. */
+struct returned {
+    double flow[2], per_A, per_B;
+    double own, loss, slope;
+};
+
+static inline double ratio_at(const struct wb_rod_fibre_law *law, double c)
 {
-    const double scaled = c / m->yield_stress;
-    if (table && wb_hardening_covers(scaled))
-        return wb_hardening_lookup(table, scaled);
-    return wb_hardening_ratio(m, c);
+    const double scaled = c * law->per_yield;
+    if (law->table && wb_hardening_covers(scaled))
+        return wb_hardening_lookup(law->table, scaled);
+    return wb_hardening_ratio(&law->material, c);
 }
 
 /* E dp/dc, which is E / (E + H') with the slope H' of the law, finite also where H' is not. */
-static double share_of_plastic(const struct wb_material *m, double r)
+static inline double share_of_plastic(const struct wb_rod_fibre_law *law, double r)
 {
-    return r / (r + m->hardening_exponent * (1.0 - r));
+    return r / (r + law->material.hardening_exponent * (1.0 - r));
 }
 
-/* (s/A)^2 + 3 (t/B)^2 and its derivative from those of A and B. */
-static double surface(const struct mapping *map, double dA, double dB, double *derivative)
+/* Newton's step for 1/sqrt((s/A)^2 + 3 (t/B)^2) = 1 from the derivatives of A and B; *S is the
+ * present sum of squares. */
+static inline double newton_step(const struct mapping *map, double dA, double dB, double *S)
 {
-    const double a = map->s / map->A, b = map->t / map->B;
-    *derivative = -2.0 * (a * a * dA / map->A + 3.0 * b * b * dB / map->B);
-    return a * a + 3.0 * b * b;
+    const double A = 1.0 / map->A, B = 1.0 / map->B;
+    const double aa = map->s * A * map->s * A, bb = 3.0 * map->t * B * map->t * B;
+    *S = aa + bb;
+    return (*S * sqrt(*S) - *S) / (aa * A * dA + bb * B * dB);
 }
 
-static void place_isotropic(const struct wb_material *m, const struct wb_rod_fibre_state *before,
-                            double c, double r, struct mapping *map)
+static inline void place_isotropic(const struct wb_rod_fibre_law *law, double accumulated, double c,
+                                   double r, struct mapping *map)
 {
-    map->length = r * c / m->youngs_modulus - before->accumulated;
-    map->q = m->yield_stress + (1.0 - r) * c;
-    map->A = c + m->yield_stress - m->youngs_modulus * before->accumulated;
-    map->B = map->A + (map->shear3 - map->E) * map->length;
+    const double E = law->material.youngs_modulus, yield = law->material.yield_stress;
+    map->length = r * c * law->per_E - accumulated;
+    map->q = yield + (1.0 - r) * c;
+    map->A = c + yield - E * accumulated;
+    map->B = map->A + (map->shear3 - E) * map->length;
 }
 
-/* Newton's method for 1/sqrt(surface) = 1, which is nearly linear in c, within a bracket: at c =
- * high the stress would be returned as far as without shear, at c = low not at all. */
-static double return_isotropic(const struct wb_material *m, const struct wb_hardening_table *table,
+/* Newton's method within a bracket: at c = high the stress would be returned as far as without
+ * shear, at c = low not at all. Returns r. */
+static double return_isotropic(const struct wb_rod_fibre_law *law,
                                const struct wb_rod_fibre_state *before, struct mapping *map)
 {
-    const double E = m->youngs_modulus;
-    const double shift = E * before->accumulated - m->yield_stress;
+    const double E = law->material.youngs_modulus;
+    const double shift = E * before->accumulated - law->material.yield_stress;
     double low = before->yield + shift;
-    double high = sqrt(map->s * map->s + 3.0 * map->t * map->t) + shift;
+    double high =
+        (map->t == 0.0 ? fabs(map->s) : sqrt(map->s * map->s + 3.0 * map->t * map->t)) + shift;
     double c = high;
-    double r = ratio_at(m, table, c);
+    double r = ratio_at(law, c);
 
-    place_isotropic(m, before, c, r, map);
+    place_isotropic(law, before->accumulated, c, r, map);
     if (map->t == 0.0)
         return r;
+    const double excess = (map->shear3 - E) * law->per_E;
     for (int i = 0; i < MOST_ITERATIONS; i++) {
-        double slope;
-        const double dB = 1.0 + (map->shear3 - E) * share_of_plastic(m, r) / E;
-        const double S = surface(map, 1.0, dB, &slope);
+        double S;
+        double next = c + newton_step(map, 1.0, 1.0 + excess * share_of_plastic(law, r), &S);
         if (S > 1.0)
             low = c;
         else
             high = c;
-        double next = c + 2.0 * (S - S * sqrt(S)) / slope;
         if (!(next >= low && next <= high))
             next = 0.5 * (low + high);
         const double step = next - c;
         c = next;
-        r = ratio_at(m, table, c);
-        place_isotropic(m, before, c, r, map);
+        r = ratio_at(law, c);
+        place_isotropic(law, before->accumulated, c, r, map);
         if (!(fabs(step) > last_step * c))
             break;
     }
     return r;
 }
 
-/* 1/sqrt(surface) is concave in the increment, and this start is not beyond the solution: Newton's
- * steps never pass it. */
-static void return_kinematic(const struct wb_material *m, struct mapping *map)
+static void place_kinematic(struct mapping *map)
+{
+    map->A = map->q + map->E * map->length;
+    map->B = map->q + map->shear3 * map->length;
+}
+
+/* 1/sqrt of the sum is concave in the increment, and this start is not beyond the solution:
+ * Newton's steps never pass it. */
+static void return_kinematic(const struct wb_rod_fibre_law *law, struct mapping *map)
 {
     const double size = sqrt(map->s * map->s + 3.0 * map->t * map->t);
 
-    map->q = m->yield_stress;
+    map->q = law->material.yield_stress;
     map->length = (size - map->q) / (map->t == 0.0 ? map->E : map->shear3);
-    for (int i = 0;; i++) {
-        map->A = map->q + map->E * map->length;
-        map->B = map->q + map->shear3 * map->length;
-        if (map->t == 0.0 || i == MOST_ITERATIONS)
-            return;
-        double slope;
-        const double S = surface(map, map->E, map->shear3, &slope);
-        const double step = 2.0 * (S - S * sqrt(S)) / slope;
+    place_kinematic(map);
+    for (int i = 0; i < MOST_ITERATIONS && map->t != 0.0; i++) {
+        double S;
+        const double step = newton_step(map, map->E, map->shear3, &S);
         map->length += step;
-        if (!(fabs(step) > last_step * map->length)) {
-            map->A = map->q + map->E * map->length;
-            map->B = map->q + map->shear3 * map->length;
-            return;
-        }
+        place_kinematic(map);
+        if (!(fabs(step) > last_step * map->length))
+            break;
     }
 }
 
-/* Stresses that are returned: what they keep of the elastic moduli where l stays, and what they
- * lose as l changes by (u d(strain) + v d(angle)) / slope. */
-struct share {
-    double own, loss, slope;
-};
-
-static void tangent_of(const struct share *share, const double moduli[2], const double flow[2],
-                       struct wb_rod_fibre_response *response)
-{
-    const double u = flow[0] * moduli[0], v = 3.0 * flow[1] * moduli[1];
-    const double loss = share->loss / share->slope;
-
-    response->D11 = share->own * moduli[0] - loss * u * u;
-    response->D12 = -loss * u * v;
-    response->D22 = share->own * moduli[1] - loss * v * v;
-}
-
-static void return_to_surface(const struct wb_material *m, const struct wb_hardening_table *table,
+static void return_to_surface(const struct wb_rod_fibre_law *law,
                               const struct wb_rod_fibre_state *was, struct mapping *map,
-                              struct share *share, double flow[2])
+                              struct returned *back)
 {
-    const double E = m->youngs_modulus;
+    const double E = law->material.youngs_modulus;
+    double r = 0.0;
 
-    if (m->hardening == WB_HARDENING_KINEMATIC_LINEAR) {
-        return_kinematic(m, map);
-        flow[0] = map->s / map->A;
-        flow[1] = map->t / map->B;
-        *share = (struct share){
-            .own = map->q + m->strength_coefficient * map->length,
-            .loss = map->q,
-            .slope = flow[0] * flow[0] * map->E / map->A +
-                     3.0 * flow[1] * flow[1] * map->shear3 / map->B,
-        };
+    if (law->material.hardening == WB_HARDENING_KINEMATIC_LINEAR)
+        return_kinematic(law, map);
+    else
+        r = return_isotropic(law, was, map);
+    back->per_A = 1.0 / map->A;
+    back->per_B = 1.0 / map->B;
+    back->flow[0] = map->s * back->per_A;
+    back->flow[1] = map->t * back->per_B;
+    const double aa = back->flow[0] * back->flow[0] * back->per_A;
+    const double bb = 3.0 * back->flow[1] * back->flow[1] * back->per_B;
+    if (law->material.hardening == WB_HARDENING_KINEMATIC_LINEAR) {
+        back->own = map->q + law->back * map->length;
+        back->loss = map->q;
+        back->slope = aa * map->E + bb * map->shear3;
         return;
     }
     /* The slope H' = E (1 - f) / f of the law is multiplied by f throughout. */
-    const double f = share_of_plastic(m, return_isotropic(m, table, was, map));
-    flow[0] = map->s / map->A;
-    flow[1] = map->t / map->B;
-    *share = (struct share){
-        .own = map->q,
-        .loss = f * map->q - map->length * E * (1.0 - f),
-        .slope = flow[0] * flow[0] * E / map->A +
-                 3.0 * flow[1] * flow[1] * (E * (1.0 - f) + map->shear3 * f) / map->B,
-    };
+    const double f = share_of_plastic(law, r);
+    back->own = map->q;
+    back->loss = f * map->q - map->length * E * (1.0 - f);
+    back->slope = aa * E + bb * (E * (1.0 - f) + map->shear3 * f);
 }
 
-void wb_rod_fibre_respond(const struct wb_material *m, const struct wb_hardening_table *table,
-                          const double strain[2], const struct wb_rod_fibre_state *before,
-                          struct wb_rod_fibre_state *after, struct wb_rod_fibre_response *response)
+static void tangent_of(const struct wb_rod_fibre_law *law, const struct returned *back,
+                       struct wb_rod_fibre_response *response)
 {
-    const double E = m->youngs_modulus, G = wb_rod_fibre_shear_modulus(m);
+    const double E = law->material.youngs_modulus * back->per_A;
+    const double G = law->shear_modulus * back->per_B;
+    const double u = back->flow[0] * E, v = 3.0 * back->flow[1] * G;
+    const double loss = back->loss / back->slope;
+
+    response->D11 = back->own * E - loss * u * u;
+    response->D12 = -loss * u * v;
+    response->D22 = back->own * G - loss * v * v;
+}
+
+void wb_rod_fibre_respond(const struct wb_rod_fibre_law *law, const double strain[2],
+                          const struct wb_rod_fibre_state *before, struct wb_rod_fibre_state *after,
+                          struct wb_rod_fibre_response *response)
+{
+    const double E = law->material.youngs_modulus, G = law->shear_modulus, K = law->back;
     const struct wb_rod_fibre_state was = *before;
     const double axial = E * (strain[0] - was.plastic);
     const double shear = G * (strain[1] - was.plastic_shear);
 
     *after = was;
     *response = (struct wb_rod_fibre_response){axial, shear, E, 0.0, G, false};
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
+    if (law->material.hardening == WB_HARDENING_NONE_ELASTIC)
         return;
-    const double K = m->hardening == WB_HARDENING_KINEMATIC_LINEAR ? m->strength_coefficient : 0.0;
     struct mapping map = {
         .E = E + K,
         .shear3 = 3.0 * G + K,
@@ -186,27 +205,24 @@ void wb_rod_fibre_respond(const struct wb_material *m, const struct wb_hardening
     if (!(map.s * map.s + 3.0 * map.t * map.t > reach * reach))
         return;
 
-    struct share share;
-    double flow[2];
-    return_to_surface(m, table, &was, &map, &share, flow);
-    const double moduli[2] = {E / map.A, G / map.B};
-    after->plastic = was.plastic + map.length * flow[0];
-    after->plastic_shear = was.plastic_shear + 3.0 * map.length * flow[1];
+    struct returned back;
+    return_to_surface(law, &was, &map, &back);
+    after->plastic = was.plastic + map.length * back.flow[0];
+    after->plastic_shear = was.plastic_shear + 3.0 * map.length * back.flow[1];
     after->accumulated = was.accumulated + map.length;
     after->yield = map.q;
     response->yields = true;
-    response->axial = map.q * flow[0] + K * after->plastic;
-    response->shear = map.q * flow[1] + K / 3.0 * after->plastic_shear;
-    tangent_of(&share, moduli, flow, response);
+    response->axial = map.q * back.flow[0] + K * after->plastic;
+    response->shear = map.q * back.flow[1] + K / 3.0 * after->plastic_shear;
+    tangent_of(law, &back, response);
 }
 
-double wb_rod_fibre_energy(const struct wb_material *m, const double strain[2],
+double wb_rod_fibre_energy(const struct wb_rod_fibre_law *law, const double strain[2],
                            const struct wb_rod_fibre_state *state)
 {
     const double axial = strain[0] - state->plastic, shear = strain[1] - state->plastic_shear;
-    const double K = m->hardening == WB_HARDENING_KINEMATIC_LINEAR ? m->strength_coefficient : 0.0;
-    return 0.5 *
-           (m->youngs_modulus * axial * axial + wb_rod_fibre_shear_modulus(m) * shear * shear +
-            K * (state->plastic * state->plastic +
-                 state->plastic_shear * state->plastic_shear / 3.0));
+    const double back =
+        state->plastic * state->plastic + state->plastic_shear * state->plastic_shear / 3.0;
+    return 0.5 * (law->material.youngs_modulus * axial * axial +
+                  law->shear_modulus * shear * shear + law->back * back);
 }

@@ -37,21 +37,26 @@ struct wb_rod_fibre_response {
     bool yields;
 };
 
-/* Response to axial strain and shear angle from the history `before` (may be `after`). `table` is
- * that of an isotropic material; NULL solves the law instead (the slow twin). Pure. */
-void wb_rod_fibre_respond(const struct wb_material *material,
-                          const struct wb_hardening_table *table, const double strain[2],
+/* A material made ready. */
+struct wb_rod_fibre_law {
+    struct wb_material material;
+    const struct wb_hardening_table *table; /* of an isotropic material, borrowed; NULL solves the
+                                               law instead (the slow twin) */
+    double shear_modulus;                   /* E / 2 (1 + nu), Pa */
+    double back;                            /* K of kinematic hardening, Pa; 0 otherwise */
+    double per_E, per_yield;                /* 1 / E, 1 / sigma_Y, 1/Pa */
+};
+
+void wb_rod_fibre_law_init(struct wb_rod_fibre_law *law, const struct wb_material *material,
+                           const struct wb_hardening_table *table);
+
+/* Response to axial strain and shear angle from the history `before` (may be `after`). Pure. */
+void wb_rod_fibre_respond(const struct wb_rod_fibre_law *law, const double strain[2],
                           const struct wb_rod_fibre_state *before, struct wb_rod_fibre_state *after,
                           struct wb_rod_fibre_response *response);
 
 /* Elastic energy of a fibre per volume, J/m3, with that in the back stress. */
-double wb_rod_fibre_energy(const struct wb_material *material, const double strain[2],
+double wb_rod_fibre_energy(const struct wb_rod_fibre_law *law, const double strain[2],
                            const struct wb_rod_fibre_state *state);
-
-/* E / 2 (1 + nu), Pa. */
-static inline double wb_rod_fibre_shear_modulus(const struct wb_material *material)
-{
-    return 0.5 * material->youngs_modulus / (1.0 + material->poissons_ratio);
-}
 
 #endif

@@ -15,7 +15,9 @@ enum {
     MOST_PARTS = 16,
     MOST_RINGS = 64,
     MOST_AROUND = 256,
-    HISTORY_HEAD = 8, /* the first double says whether the point ever yielded; rest is padding */
+    HISTORY_HEAD = MOST_PARTS, /* a double for each part: whether it ever yielded at this point */
+    HISTORY_ROWS = 4,          /* plastic, plastic_shear, accumulated, yield of a part's fibres */
+    LANES = 4,                 /* fibres of a ring are a multiple of this */
     N_STRAINS = WB_ROD_SECTION_STRAINS
 };
 
@@ -25,20 +27,16 @@ struct stiffness {
 };
 
 struct wb_rod_section {
-    int n_parts, n;        /* parts, fibres; those of a part are contiguous */
-    int n_rings, n_around; /* in each part, in each ring */
-    struct wb_material *materials;
+    int n_parts, n;                    /* parts, fibres; those of a part are contiguous */
+    int n_rings, n_around;             /* in each part, in each ring */
+    struct wb_rod_fibre_law *laws;     /* (n_parts) */
     struct wb_hardening_table *tables; /* (n_parts) */
     struct stiffness *stiffness;       /* (n_parts) */
     double *y, *z, *area;              /* (n) */
     double *radius;                    /* (n_parts n_rings) of the rings */
     double *edge;                      /* (n_parts (n_rings + 1)) radii between the rings' cells */
-    double outermost;                  /* of the radii of fibres that can yield */
-    double yield_strain; /* no fibre yields while |strain| and sqrt(3) G/E |angle| add to less */
-    double shear_weight; /* the largest sqrt(3) G/E */
     struct stiffness total;
     double shear_stiffness;
-    bool slow;
 };
 
 /* Gauss-Legendre points and weights of [0, 1], by Newton's method on the Legendre polynomials. */
@@ -108,8 +106,8 @@ static void fill_part(struct wb_rod_section *section, int part, double Ri, doubl
 
 static void add_stiffness(struct wb_rod_section *section, int part)
 {
-    const struct wb_material *m = &section->materials[part];
-    const double E = m->youngs_modulus, G = wb_rod_fibre_shear_modulus(m);
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const double E = law->material.youngs_modulus, G = law->shear_modulus;
     const int n_rings = section->n_rings, n_around = section->n_around;
     struct stiffness *own = &section->stiffness[part];
     double area = 0.0, second_moment = 0.0;
@@ -123,14 +121,9 @@ static void add_stiffness(struct wb_rod_section *section, int part)
     section->total.EA += own->EA;
     section->total.EI += own->EI;
     section->total.GJ += own->GJ;
-    section->shear_stiffness += wb_section_shear_modulus(m) * area;
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
-        return;
-    section->outermost = fmax(section->outermost, section->radius[(part + 1) * n_rings - 1]);
-    section->yield_strain = fmin(section->yield_strain, m->yield_stress / E);
-    section->shear_weight = fmax(section->shear_weight, sqrt(3.0) * G / E);
-    if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
-        wb_hardening_tabulate(&section->tables[part], m);
+    section->shear_stiffness += wb_section_shear_modulus(&law->material) * area;
+    if (law->material.hardening == WB_HARDENING_ISOTROPIC_POWER)
+        wb_hardening_tabulate(&section->tables[part], &law->material);
 }
 
 static enum wb_status check_parts(int n_parts, const struct wb_rod_section_part *parts,
@@ -162,7 +155,7 @@ static bool take_memory(struct wb_rod_section *s)
 {
     const size_t parts = (size_t)s->n_parts, n = (size_t)s->n, rings = (size_t)s->n_rings;
 
-    s->materials = calloc(parts, sizeof *s->materials);
+    s->laws = calloc(parts, sizeof *s->laws);
     s->tables = calloc(parts, sizeof *s->tables);
     s->stiffness = calloc(parts, sizeof *s->stiffness);
     s->y = calloc(n, sizeof *s->y);
@@ -170,8 +163,7 @@ static bool take_memory(struct wb_rod_section *s)
     s->area = calloc(n, sizeof *s->area);
     s->radius = calloc(parts * rings, sizeof *s->radius);
     s->edge = calloc(parts * (rings + 1), sizeof *s->edge);
-    return s->materials && s->tables && s->stiffness && s->y && s->z && s->area && s->radius &&
-           s->edge;
+    return s->laws && s->tables && s->stiffness && s->y && s->z && s->area && s->radius && s->edge;
 }
 
 enum wb_status wb_rod_section_create(struct wb_rod_section **out, int n_parts,
@@ -195,14 +187,13 @@ enum wb_status wb_rod_section_create(struct wb_rod_section **out, int n_parts,
     s->n_rings = complete.n_rings;
     s->n_around = complete.n_around;
     s->n = n_parts * s->n_rings * s->n_around;
-    s->yield_strain = (double)INFINITY;
     if (!take_memory(s)) {
         const int n = s->n;
         wb_rod_section_destroy(s);
         return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
     }
     for (int i = 0; i < n_parts; i++) {
-        s->materials[i] = parts[i].material;
+        wb_rod_fibre_law_init(&s->laws[i], &parts[i].material, &s->tables[i]);
         fill_part(s, i, 0.5 * parts[i].inner_diameter, 0.5 * parts[i].outer_diameter);
         add_stiffness(s, i);
     }
@@ -214,7 +205,7 @@ void wb_rod_section_destroy(struct wb_rod_section *section)
 {
     if (!section)
         return;
-    free(section->materials);
+    free(section->laws);
     free(section->tables);
     free(section->stiffness);
     free(section->y);
@@ -227,7 +218,8 @@ void wb_rod_section_destroy(struct wb_rod_section *section)
 
 void wb_rod_section_set_slow(struct wb_rod_section *section, bool slow)
 {
-    section->slow = slow;
+    for (int i = 0; i < section->n_parts; i++)
+        section->laws[i].table = slow ? NULL : &section->tables[i];
 }
 
 int wb_rod_section_fibres(const struct wb_rod_section *section)
@@ -258,7 +250,7 @@ void wb_rod_section_fibre(const struct wb_rod_section *section, int i,
 
 size_t wb_rod_section_history_size(const struct wb_rod_section *section)
 {
-    return HISTORY_HEAD + (size_t)section->n * (sizeof(struct wb_rod_fibre_state) / sizeof(double));
+    return HISTORY_HEAD + HISTORY_ROWS * (size_t)section->n;
 }
 
 double wb_rod_section_axial_stiffness(const struct wb_rod_section *section)
@@ -291,43 +283,49 @@ static void add_elastic(const struct stiffness *own, const double *strain,
     }
 }
 
-/* Adds a fibre's forces and stiffness; tangent: the lower triangle only. */
-static void add_fibre(const struct wb_rod_fibre_response *f, double area, const double place[3],
-                      struct wb_rod_section_response *response)
-{
-    const double y = place[0], z = place[1], r = place[2];
-    const double N = area * f->axial;
-    const double D = area * f->D11, C = area * r * f->D12;
-    double(*K)[N_STRAINS] = response->tangent;
+/* Rows of a part's histories, for as many fibres as a part has. */
+struct rows {
+    double *plastic, *plastic_shear, *accumulated, *yield;
+};
 
-    response->force[0] += N;
-    response->force[1] += area * r * f->shear;
-    response->force[2] += z * N;
-    response->force[3] -= y * N;
-    K[0][0] += D;
-    K[1][0] += C;
-    K[1][1] += area * r * r * f->D22;
-    K[2][0] += z * D;
-    K[2][1] += z * C;
-    K[2][2] += z * z * D;
-    K[3][0] -= y * D;
-    K[3][1] -= y * C;
-    K[3][2] -= y * z * D;
-    K[3][3] += y * y * D;
-    response->yielding += f->yields;
+static int fibres_of_part(const struct wb_rod_section *section)
+{
+    return section->n_rings * section->n_around;
 }
 
-/* The history of fibre i at a point that yielded before, or a virgin one. */
-static struct wb_rod_fibre_state state_of(const struct wb_rod_section *section, int part, int i,
+static struct rows rows_of(const struct wb_rod_section *section, int part, double *history)
+{
+    const size_t n = (size_t)fibres_of_part(section);
+    double *first = history + HISTORY_HEAD + (size_t)part * HISTORY_ROWS * n;
+    return (struct rows){first, first + n, first + 2 * n, first + 3 * n};
+}
+
+/* The history of fibre i, which is that of a virgin one in a part that never yielded. */
+static struct wb_rod_fibre_state state_of(const struct wb_rod_section *section, int i,
                                           const double *history)
 {
-    if (history[0] != 0.0) {
-        struct wb_rod_fibre_state state;
-        memcpy(&state, history + HISTORY_HEAD + (size_t)i * (sizeof state / sizeof(double)),
-               sizeof state);
-        return state;
+    const int n = fibres_of_part(section), part = i / n;
+    const double *at = history + HISTORY_HEAD + part * HISTORY_ROWS * n + i % n;
+    if (history[part] == 0.0)
+        return (struct wb_rod_fibre_state){.yield = section->laws[part].material.yield_stress};
+    return (struct wb_rod_fibre_state){at[0], at[n], at[2 * n], at[3 * n]};
+}
+
+/* Histories of a part at the end of a step in which no fibre yields. */
+static void carry_over(const struct wb_rod_section *section, int part, const double *before,
+                       double *after)
+{
+    const size_t n = (size_t)fibres_of_part(section);
+    const size_t first = HISTORY_HEAD + (size_t)part * HISTORY_ROWS * n;
+
+    after[part] = 1.0;
+    if (before[part] != 0.0) {
+        memcpy(after + first, before + first, HISTORY_ROWS * n * sizeof *after);
+        return;
     }
-    return (struct wb_rod_fibre_state){.yield = section->materials[part].yield_stress};
+    memset(after + first, 0, (HISTORY_ROWS - 1) * n * sizeof *after);
+    for (size_t i = 0; i < n; i++)
+        after[first + (HISTORY_ROWS - 1) * n + i] = section->laws[part].material.yield_stress;
 }
 
 static double axial_strain(const struct wb_rod_section *section, int i, const double *strain)
@@ -335,38 +333,147 @@ static double axial_strain(const struct wb_rod_section *section, int i, const do
     return strain[0] + section->z[i] * strain[2] - section->y[i] * strain[3];
 }
 
-static bool stays_elastic(const struct wb_rod_section *s, const double *strain)
+/* Whether no fibre of a virgin part yields: sqrt(s^2 + 3 t^2) is at most |s| + sqrt(3) |t|. */
+static bool stays_elastic(const struct wb_rod_section *section, int part, const double *strain)
 {
-    /* sqrt(s^2 + 3 t^2) is at most |s| + sqrt(3) |t|. */
-    return fabs(strain[0]) +
-               s->outermost * (hypot(strain[2], strain[3]) + s->shear_weight * fabs(strain[1])) <=
-           s->yield_strain;
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const double outermost = section->radius[(part + 1) * section->n_rings - 1];
+    const double axial = fabs(strain[0]) + outermost * hypot(strain[2], strain[3]);
+    const double shear = outermost * fabs(strain[1]);
+    return law->material.youngs_modulus * axial + sqrt(3.0) * law->shear_modulus * shear <=
+           law->material.yield_stress;
 }
 
-/* Elastic parts need no fibres. */
+/* A ring under way: its stresses, and by how much each fibre is beyond its yield surface. */
+struct ring {
+    int first; /* fibre, of all */
+    double radius, area;
+    double axial[MOST_AROUND], shear[MOST_AROUND], beyond[MOST_AROUND];
+};
+
+/* Trial stresses; `rows` begin at the ring. This is where the time goes for fibres that do not
+ * yield, so it has no branches. */
+static void try_ring(const struct wb_rod_section *section, const struct wb_rod_fibre_law *law,
+                     const double *strain, const struct rows *rows, struct ring *ring)
+{
+    const double E = law->material.youngs_modulus, G = law->shear_modulus, K = law->back;
+    const double *restrict y = section->y + ring->first, *restrict z = section->z + ring->first;
+    const double *restrict plastic = rows->plastic, *restrict yield = rows->yield;
+    const double *restrict plastic_shear = rows->plastic_shear;
+    const double angle = ring->radius * strain[1];
+
+    for (int i = 0; i < section->n_around; i++) {
+        const double s = E * (strain[0] + z[i] * strain[2] - y[i] * strain[3] - plastic[i]);
+        const double t = G * (angle - plastic_shear[i]);
+        const double x = s - K * plastic[i], w = t - K / 3.0 * plastic_shear[i];
+        ring->axial[i] = s;
+        ring->shear[i] = t;
+        ring->beyond[i] = x * x + 3.0 * w * w - yield[i] * yield[i];
+    }
+}
+
+/* Subtracts from the tangent (lower triangle) what a yielding fibre has less than an elastic one.
+ */
+static void soften(const struct wb_rod_fibre_response *f, const double moduli[2],
+                   const double place[3], double area, struct wb_rod_section_response *response)
+{
+    const double y = place[0], z = place[1], r = place[2];
+    const double D = area * (moduli[0] - f->D11), C = -area * r * f->D12;
+    double(*K)[N_STRAINS] = response->tangent;
+
+    K[0][0] -= D;
+    K[1][0] -= C;
+    K[1][1] -= area * r * r * (moduli[1] - f->D22);
+    K[2][0] -= z * D;
+    K[2][1] -= z * C;
+    K[2][2] -= z * z * D;
+    K[3][0] += y * D;
+    K[3][1] += y * C;
+    K[3][2] += y * z * D;
+    K[3][3] -= y * y * D;
+    response->yielding += f->yields;
+}
+
+/* The fibres that are beyond their surface, or not finite. `rows` are those at the end of the step,
+ * so far as they were at its beginning. */
+static void return_ring(const struct wb_rod_section *section, int part, const double *strain,
+                        const struct rows *rows, struct ring *ring,
+                        struct wb_rod_section_response *response)
+{
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const double moduli[2] = {law->material.youngs_modulus, law->shear_modulus};
+
+    for (int i = 0; i < section->n_around; i++) {
+        if (ring->beyond[i] <= 0.0)
+            continue;
+        const int fibre = ring->first + i;
+        const double place[3] = {section->y[fibre], section->z[fibre], ring->radius};
+        const double at[2] = {axial_strain(section, fibre, strain), ring->radius * strain[1]};
+        struct wb_rod_fibre_state state = {rows->plastic[i], rows->plastic_shear[i],
+                                           rows->accumulated[i], rows->yield[i]};
+        struct wb_rod_fibre_response f;
+        wb_rod_fibre_respond(law, at, &state, &state, &f);
+        rows->plastic[i] = state.plastic;
+        rows->plastic_shear[i] = state.plastic_shear;
+        rows->accumulated[i] = state.accumulated;
+        rows->yield[i] = state.yield;
+        ring->axial[i] = f.axial;
+        ring->shear[i] = f.shear;
+        soften(&f, moduli, place, ring->area, response);
+    }
+}
+
+static void add_forces(const struct wb_rod_section *section, const struct ring *ring,
+                       struct wb_rod_section_response *response)
+{
+    const double *y = section->y + ring->first, *z = section->z + ring->first;
+    double sum[N_STRAINS][LANES] = {{0}};
+
+    for (int i = 0; i < section->n_around; i += LANES) {
+        for (int k = 0; k < LANES; k++) {
+            const double s = ring->axial[i + k];
+            sum[0][k] += s;
+            sum[1][k] += ring->shear[i + k];
+            sum[2][k] += z[i + k] * s;
+            sum[3][k] -= y[i + k] * s;
+        }
+    }
+    for (int j = 0; j < N_STRAINS; j++) {
+        const double weight = ring->area * (j == 1 ? ring->radius : 1.0);
+        response->force[j] += weight * (sum[j][0] + sum[j][2] + (sum[j][1] + sum[j][3]));
+    }
+}
+
 static void respond_part(const struct wb_rod_section *section, int part, const double *strain,
                          const double *before, double *after,
                          struct wb_rod_section_response *response)
 {
-    const struct wb_material *m = &section->materials[part];
-    const struct wb_hardening_table *table = section->slow ? NULL : &section->tables[part];
-    struct wb_rod_fibre_state *states = (struct wb_rod_fibre_state *)(after + HISTORY_HEAD);
-    const int n_rings = section->n_rings, n_around = section->n_around;
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const struct stiffness *own = &section->stiffness[part];
 
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC) {
-        add_elastic(&section->stiffness[part], strain, response);
+    if (law->material.hardening == WB_HARDENING_NONE_ELASTIC ||
+        (before[part] == 0.0 && stays_elastic(section, part, strain))) {
+        after[part] = 0.0;
+        add_elastic(own, strain, response);
         return;
     }
-    for (int ring = part * n_rings; ring < (part + 1) * n_rings; ring++) {
-        const double r = section->radius[ring];
-        for (int i = ring * n_around; i < (ring + 1) * n_around; i++) {
-            const double at[2] = {axial_strain(section, i, strain), r * strain[1]};
-            const double place[3] = {section->y[i], section->z[i], r};
-            const struct wb_rod_fibre_state was = state_of(section, part, i, before);
-            struct wb_rod_fibre_response fibre;
-            wb_rod_fibre_respond(m, table, at, &was, &states[i], &fibre);
-            add_fibre(&fibre, section->area[i], place, response);
-        }
+    carry_over(section, part, before, after);
+    const double elastic[N_STRAINS] = {own->EA, own->GJ, own->EI, own->EI};
+    for (int i = 0; i < N_STRAINS; i++)
+        response->tangent[i][i] += elastic[i];
+
+    struct rows rows = rows_of(section, part, after);
+    for (int r = part * section->n_rings; r < (part + 1) * section->n_rings; r++) {
+        const int n = section->n_around;
+        struct ring ring;
+        ring.first = r * n;
+        ring.radius = section->radius[r];
+        ring.area = section->area[ring.first];
+        try_ring(section, law, strain, &rows, &ring);
+        return_ring(section, part, strain, &rows, &ring, response);
+        add_forces(section, &ring, response);
+        rows = (struct rows){rows.plastic + n, rows.plastic_shear + n, rows.accumulated + n,
+                             rows.yield + n};
     }
 }
 
@@ -375,12 +482,6 @@ void wb_rod_section_respond(const struct wb_rod_section *section, const double *
                             struct wb_rod_section_response *restrict response)
 {
     *response = (struct wb_rod_section_response){0};
-    if (before[0] == 0.0 && stays_elastic(section, strain)) {
-        after[0] = 0.0;
-        add_elastic(&section->total, strain, response);
-        return;
-    }
-    after[0] = 1.0;
     for (int part = 0; part < section->n_parts; part++)
         respond_part(section, part, strain, before, after, response);
     for (int i = 0; i < N_STRAINS; i++) {
@@ -396,11 +497,10 @@ void wb_rod_section_energy(const struct wb_rod_section *section, const double *s
     double energy = 0.0, loss = 0.0;
     for (int i = 0; i < section->n; i++) {
         const int ring = i / section->n_around, part = ring / section->n_rings;
-        const struct wb_material *m = &section->materials[part];
         const double at[2] = {axial_strain(section, i, strain), section->radius[ring] * strain[1]};
-        const struct wb_rod_fibre_state was = state_of(section, part, i, before);
-        const struct wb_rod_fibre_state is = state_of(section, part, i, after);
-        energy += section->area[i] * wb_rod_fibre_energy(m, at, &is);
+        const struct wb_rod_fibre_state was = state_of(section, i, before);
+        const struct wb_rod_fibre_state is = state_of(section, i, after);
+        energy += section->area[i] * wb_rod_fibre_energy(&section->laws[part], at, &is);
         loss += section->area[i] * is.yield * (is.accumulated - was.accumulated);
     }
     *stored = energy;
@@ -411,12 +511,11 @@ void wb_rod_section_stress(const struct wb_rod_section *section, int i, const do
                            const double *history, double *axial, double *shear, double *plastic)
 {
     const int ring = i / section->n_around, part = ring / section->n_rings;
-    const struct wb_material *m = &section->materials[part];
-    const struct wb_rod_fibre_state state = state_of(section, part, i, history);
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const struct wb_rod_fibre_state state = state_of(section, i, history);
 
-    *axial = m->youngs_modulus * (axial_strain(section, i, strain) - state.plastic);
-    *shear =
-        wb_rod_fibre_shear_modulus(m) * (section->radius[ring] * strain[1] - state.plastic_shear);
+    *axial = law->material.youngs_modulus * (axial_strain(section, i, strain) - state.plastic);
+    *shear = law->shear_modulus * (section->radius[ring] * strain[1] - state.plastic_shear);
     *plastic = state.accumulated;
 }
 
@@ -425,6 +524,6 @@ double wb_rod_section_largest_plastic_strain(const struct wb_rod_section *sectio
 {
     double largest = 0.0;
     for (int i = 0; i < section->n; i++)
-        largest = fmax(largest, state_of(section, 0, i, history).accumulated);
+        largest = fmax(largest, state_of(section, i, history).accumulated);
     return largest;
 }
