@@ -170,6 +170,23 @@ static void draw_text(cairo_t *cairo, const struct wb_layout_panel *layout,
                     wb_layout_y(layout, series->y[0]) - 0.5 * height, series->label, &style);
 }
 
+/* The fields, below all else. */
+static enum wb_status draw_fields(cairo_t *cairo, const struct wb_layout_panel *layout)
+{
+    const struct wb_panel *const panel = layout->panel;
+    const struct wb_place_box *const plot = &layout->plot;
+    enum wb_status status = WB_OK;
+    cairo_save(cairo);
+    cairo_rectangle(cairo, plot->x, plot->y, plot->width, plot->height);
+    cairo_clip(cairo);
+    for (int i = 0; i < panel->n_series && status == WB_OK; i++) {
+        if (panel->series[i].kind == WB_SERIES_FIELD)
+            status = wb_shading_draw_field(cairo, layout, &panel->series[i]);
+    }
+    cairo_restore(cairo);
+    return status;
+}
+
 static void draw_series(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_panel *const panel = layout->panel;
@@ -177,10 +194,6 @@ static void draw_series(cairo_t *cairo, const struct wb_layout_panel *layout)
     cairo_save(cairo);
     cairo_rectangle(cairo, plot->x, plot->y, plot->width, plot->height);
     cairo_clip(cairo);
-    for (int i = 0; i < panel->n_series; i++) {
-        if (panel->series[i].kind == WB_SERIES_FIELD)
-            wb_shading_draw_field(cairo, layout, &panel->series[i]);
-    }
     for (int i = 0; i < panel->n_series; i++) {
         if (panel->series[i].kind == WB_SERIES_BAND && panel->series[i].n > 0)
             draw_band(cairo, layout, &panel->series[i]);
@@ -356,17 +369,18 @@ static void clear_behind(cairo_t *cairo, const struct wb_layout_panel *layout)
     cairo_fill(cairo);
 }
 
-static void draw_panel(cairo_t *cairo, const struct wb_layout_panel *layout)
+static enum wb_status draw_panel(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_panel *const panel = layout->panel;
     if (panel->is_bar) {
         wb_shading_draw_bar(cairo, layout);
-        return;
+        return WB_OK;
     }
     if (panel->is_inset)
         clear_behind(cairo, layout);
     if (!panel->hidden_axes)
         draw_grid(cairo, layout);
+    WB_TRY(draw_fields(cairo, layout));
     draw_series(cairo, layout);
     if (!panel->hidden_axes)
         draw_axes(cairo, layout);
@@ -376,6 +390,7 @@ static void draw_panel(cairo_t *cairo, const struct wb_layout_panel *layout)
     }
     if (layout->has_legend)
         draw_legend(cairo, layout);
+    return WB_OK;
 }
 
 enum wb_status wb_canvas_draw_figure(cairo_t *cairo, const struct wb_figure *figure, double x,
@@ -386,11 +401,11 @@ enum wb_status wb_canvas_draw_figure(cairo_t *cairo, const struct wb_figure *fig
     cairo_save(cairo);
     cairo_translate(cairo, x, y);
     struct wb_layout layout;
-    const enum wb_status status = wb_layout_compute(&layout, figure, cairo);
+    enum wb_status status = wb_layout_compute(&layout, figure, cairo);
     for (int i = 0; status == WB_OK && i < layout.n_panels; i++) {
-        draw_panel(cairo, &layout.panels[i]);
-        if (layout.insets[i].panel)
-            draw_panel(cairo, &layout.insets[i]);
+        status = draw_panel(cairo, &layout.panels[i]);
+        if (status == WB_OK && layout.insets[i].panel)
+            status = draw_panel(cairo, &layout.insets[i]);
     }
     if (status == WB_OK && figure->footer) {
         const struct wb_typeset_style style = wb_layout_footer_style();

@@ -19,6 +19,8 @@
 #define CUTS 8
 #define ACROSS (CUTS + 1)
 #define POINTS (ACROSS * ACROSS)
+/* Points that are left out in a row. */
+#define LONGEST_SKIP 64
 
 /* Points nearer than this part of the extent are the same, and values than this part of a scale. */
 static const double same_place = 1e-7, same_value = 1e-7;
@@ -419,14 +421,13 @@ static enum wb_status chain(struct work *work, int first, int end, int start)
     return WB_OK;
 }
 
-/* Whether all points between two of the loop lie near the line that joins them. */
-static bool is_straight(const struct work *work, int from, int to)
+/* Whether all points between two of a loop lie near the line that joins them. */
+static bool is_straight(double (*const points)[2], int n, int from, int to, double most)
 {
-    const double *const a = work->loop[from], *const b = work->loop[to % work->n_loop];
+    const double *const a = points[from], *const b = points[to % n];
     const double dx = b[0] - a[0], dy = b[1] - a[1], length = hypot(dx, dy);
-    const double most = stray / same_place * work->grid;
     for (int i = from + 1; i < to; i++) {
-        const double x = work->loop[i][0] - a[0], y = work->loop[i][1] - a[1];
+        const double x = points[i][0] - a[0], y = points[i][1] - a[1];
         const double along = length > 0.0 ? (x * dx + y * dy) / length : 0.0;
         const double off = length > 0.0 ? fabs(x * dy - y * dx) / length : hypot(x, y);
         if (off > most || along < -most || along > length + most)
@@ -435,18 +436,17 @@ static bool is_straight(const struct work *work, int from, int to)
     return true;
 }
 
-/* Keeps of the loop what its line needs. */
-static void simplify(struct work *work)
+int wb_contour_thin(double (*points)[2], int n, double most)
 {
     int kept = 0;
-    for (int from = 0; from < work->n_loop;) {
+    for (int from = 0; from < n;) {
         int to = from + 1;
-        while (to < work->n_loop && to - from < 64 && is_straight(work, from, to + 1))
+        while (to < n && to - from < LONGEST_SKIP && is_straight(points, n, from, to + 1, most))
             to++;
-        memmove(work->loop[kept++], work->loop[from], sizeof *work->loop);
+        memmove(points[kept++], points[from], sizeof *points);
         from = to;
     }
-    work->n_loop = kept;
+    return kept;
 }
 
 static enum wb_status take_loop(struct wb_contour *contour, const struct work *work, int level)
@@ -481,7 +481,8 @@ static enum wb_status chain_all(struct wb_contour *contour, struct work *work)
             if (work->segments[i].used)
                 continue;
             WB_TRY(chain(work, first, end, i));
-            simplify(work);
+            work->n_loop =
+                wb_contour_thin(work->loop, work->n_loop, stray / same_place * work->grid);
             WB_TRY(take_loop(contour, work, level));
         }
     }

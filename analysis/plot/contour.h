@@ -38,6 +38,10 @@ struct wb_contour {
 WB_MUST_CHECK enum wb_status wb_contour_create(struct wb_contour *contour, int n_faces,
                                                const struct wb_contour_face *faces,
                                                const struct wb_contour_levels *levels);
+/* Leaves points of a closed line out as long as it strays by less than `most`; returns how many
+ * stay, at the begin of `points`. */
+int wb_contour_thin(double (*points)[2], int n, double most);
+
 void wb_contour_release(struct wb_contour *contour); /* accepts a zeroed one */
 
 #endif

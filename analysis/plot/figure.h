@@ -58,12 +58,19 @@ struct wb_figure_style {
     double marker_size; /* 0: 4 */
 };
 
+/* The line around all faces of a field; where faces do not share their nodes, also between them. */
+enum wb_figure_outline {
+    WB_OUTLINE_INK,
+    WB_OUTLINE_LIGHT, /* for a field that lies within another */
+    WB_OUTLINE_NONE
+};
+
 /* How the values of a field become colours. Values beyond the ends have the end's colour. */
 struct wb_figure_colours {
     enum wb_palette_map map;
-    double low, high;   /* low < high */
-    int n;              /* of different colours; 0: 48 */
-    bool light_outline; /* of the faces: white, for a field that lies within another */
+    double low, high; /* low < high */
+    int n;            /* of different colours; 0: 48 */
+    enum wb_figure_outline outline;
 };
 
 /* `name` is a file name without ending: letters, digits, '-' and '_'. Size in points. */

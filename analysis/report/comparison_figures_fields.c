@@ -54,7 +54,8 @@ static enum wb_status add_part(struct wb_panel *panel, const struct wb_field *fi
     }
     struct wb_figure_colours colours = drawing->colours;
     /* The core lies within the jacket. */
-    colours.light_outline = part == 0 && drawing->view == FROM_THE_SIDE;
+    colours.outline =
+        part == 0 && drawing->view == FROM_THE_SIDE ? WB_OUTLINE_LIGHT : WB_OUTLINE_INK;
     if (n > 0)
         wb_figure_add_field(panel, n, faces, &colours);
     free(faces);

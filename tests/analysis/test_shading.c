@@ -95,7 +95,7 @@ static struct wb_figure *draw(const struct wb_contour_face *faces, int n,
     return figure;
 }
 
-static const struct wb_figure_colours four = {WB_PALETTE_SEQUENTIAL, 0.0, 4.0, 4, false};
+static const struct wb_figure_colours four = {WB_PALETTE_SEQUENTIAL, 0.0, 4.0, 4, WB_OUTLINE_INK};
 
 static void an_even_field_has_one_colour_without_seams(void **state)
 {
@@ -206,7 +206,7 @@ static void colours_without_extent_fail_when_drawn(void **state)
     struct wb_contour_face faces[64];
     make_faces(faces, 8, one);
     wb_log_set_sink(discard_message, NULL);
-    const struct wb_figure_colours none = {WB_PALETTE_SEQUENTIAL, 1.0, 1.0, 4, false};
+    const struct wb_figure_colours none = {WB_PALETTE_SEQUENTIAL, 1.0, 1.0, 4, WB_OUTLINE_INK};
     struct wb_figure *const figure = draw(faces, 64, &none);
     struct wb_text svg = {0};
     assert_true(wb_figure_svg(figure, &svg) != WB_OK);
