@@ -58,11 +58,10 @@ struct wb_figure_style {
     double marker_size; /* 0: 4 */
 };
 
-/* The line around all faces of a field; where faces do not share their nodes, also between them. */
+/* The line around the faces of a field, also between those that do not share their nodes. */
 enum wb_figure_outline {
     WB_OUTLINE_INK,
-    WB_OUTLINE_LIGHT, /* for a field that lies within another */
-    WB_OUTLINE_NONE
+    WB_OUTLINE_LIGHT /* for a field that lies within another */
 };
 
 /* How the values of a field become colours. Values beyond the ends have the end's colour. */

@@ -48,8 +48,6 @@ static int trace_level(cairo_t *cairo, const struct wb_layout_panel *layout,
 static void draw_outline(cairo_t *cairo, enum wb_figure_outline outline)
 {
     const struct wb_colour white = {1.0, 1.0, 1.0, 0.75};
-    if (outline == WB_OUTLINE_NONE)
-        return;
     wb_typeset_set_colour(cairo, outline == WB_OUTLINE_LIGHT ? white : wb_palette_ink());
     cairo_set_line_width(cairo, 0.45);
     cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);

@@ -78,31 +78,92 @@ static struct wb_panel *add_shape_panel(struct wb_figure *figure, const char *ti
 
 /* --- Fig. 4 --- */
 
-static enum wb_status draw_shapes(struct wb_figure **figure,
-                                  const struct wb_comparison_results *results)
+/* Distance from the solid along the wire. */
+static void add_distance(struct wb_panel *panel, const struct wb_comparison_run *solid,
+                         const struct wb_comparison_run *run, const struct wb_figure_style *style)
+{
+    double s[MOST_POINTS], distance[MOST_POINTS];
+    size_t n = 0;
+    if (!solid || !run)
+        return;
+    for (int i = 0; i < run->n_shape && n < MOST_POINTS; i++, n++) {
+        s[n] = run->s[i] / WB_MM;
+        distance[n] = wb_comparison_distance_at(solid, run->s[i], run->shape[i]) / WB_MM;
+    }
+    wb_figure_add_line(panel, NULL, n, s, distance, style);
+}
+
+static void add_rod_distance(struct wb_panel *panel, const struct wb_comparison_run *solid,
+                             const struct wb_comparison_rod *rod,
+                             const struct wb_figure_style *style)
+{
+    double s[WB_COMPARISON_POINTS], distance[WB_COMPARISON_POINTS];
+    if (!solid || !rod->reached)
+        return;
+    for (int i = 0; i < WB_COMPARISON_POINTS; i++) {
+        const double point[3] = {rod->x[i], rod->y[i], 0.0};
+        s[i] = rod->s[i] / WB_MM;
+        distance[i] = wb_comparison_distance_at(solid, rod->s[i], point) / WB_MM;
+    }
+    wb_figure_add_line(panel, NULL, WB_COMPARISON_POINTS, s, distance, style);
+}
+
+static struct wb_panel *add_distance_panel(struct wb_figure *figure, const char *title)
+{
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    wb_figure_set_title(panel, title);
+    wb_figure_set_axes(panel, "Arc length (mm)", "Distance (mm)");
+    wb_figure_set_y_range(panel, 0.0, (double)NAN);
+    return panel;
+}
+
+static enum wb_status draw_elastic_shapes(struct wb_figure **figure,
+                                          const struct wb_comparison_results *results)
 {
     const struct wb_comparison_run *const bonded =
         wb_comparison_usable(results, WB_COMPARISON_ELASTIC, WB_COMPARISON_SOLID);
     const struct wb_comparison_run *const contact =
         wb_comparison_usable(results, WB_COMPARISON_CONTACT, WB_COMPARISON_SOLID);
-    const struct wb_comparison_run *const elastic =
+    const struct wb_comparison_run *const rod =
         wb_comparison_usable(results, WB_COMPARISON_ELASTIC, WB_COMPARISON_ROD);
+    if (!bonded && !contact && !rod)
+        return WB_OK;
+    WB_TRY(wb_comparison_figures_start(figure, "shapes-elastic", 160.0));
+    struct wb_panel *panel = add_shape_panel(*figure, "Linear elastic", "<i>y</i> (mm)");
+    add_axis(panel, "3D, bonded", bonded, 1, &solid_style);
+    add_axis(panel, "3D, friction", contact, 1, &contact_style);
+    add_axis(panel, "1D", rod, 1, &rod_style);
+    add_rod_axis(panel, "1D, exact", &results->exact, &fitted_style);
+    panel = add_distance_panel(*figure, "From the bonded solid");
+    add_distance(panel, bonded, contact, &contact_style);
+    add_distance(panel, bonded, rod, &rod_style);
+    add_rod_distance(panel, bonded, &results->exact, &fitted_style);
+    return WB_OK;
+}
+
+static enum wb_status draw_shapes(struct wb_figure **figure,
+                                  const struct wb_comparison_results *results)
+{
     const struct wb_comparison_run *const solid =
         wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_SOLID);
     const struct wb_comparison_run *const rod =
         wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_ROD);
-    if (!bonded && !contact && !elastic && !solid && !rod)
+    const struct wb_comparison_run *const elastic =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTIC, WB_COMPARISON_SOLID);
+    const bool fitted = results->fit_state == WB_COMPARISON_USABLE;
+    if (!solid && !rod)
         return WB_OK;
-    WB_TRY(wb_comparison_figures_start(figure, "shapes", 230.0));
-    struct wb_panel *panel = add_shape_panel(*figure, "Linear elastic", "<i>y</i> (mm)");
-    add_axis(panel, "3D, bonded", bonded, 1, &solid_style);
-    add_axis(panel, "3D, friction", contact, 1, &contact_style);
-    add_axis(panel, "1D", elastic, 1, &rod_style);
-    panel = add_shape_panel(*figure, "Elastoplastic", "<i>y</i> (mm)");
+    WB_TRY(wb_comparison_figures_start(figure, "shapes-elastoplastic", 200.0));
+    struct wb_panel *panel = add_shape_panel(*figure, "Elastoplastic", "<i>y</i> (mm)");
     add_axis(panel, "3D", solid, 1, &solid_style);
     add_axis(panel, "1D fibres", rod, 1, &rod_style);
-    if (results->fit_state == WB_COMPARISON_USABLE)
+    if (fitted)
         add_rod_axis(panel, "1D fitted", &results->fitted, &fitted_style);
+    add_axis(panel, "3D, linear elastic", elastic, 1, &printed_style);
+    panel = add_distance_panel(*figure, "From the solid");
+    add_distance(panel, solid, rod, &rod_style);
+    if (fitted)
+        add_rod_distance(panel, solid, &results->fitted, &fitted_style);
     return WB_OK;
 }
 
@@ -163,39 +224,62 @@ static enum wb_status draw_loading(struct wb_figure **figure,
 
 /* --- shapes with residual stresses --- */
 
-static enum wb_status draw_residual_shapes(struct wb_figure **figure,
-                                           const struct wb_comparison_results *results)
+/* By how much a residual stress moves the tip, over the force. */
+static void add_effect(struct wb_panel *panel, const struct wb_comparison_run *run,
+                       const struct wb_comparison_run *without, const struct wb_figure_style *style)
 {
-    const struct wb_comparison *const comparison = results->comparison;
+    double force[MOST_POINTS], distance[MOST_POINTS];
+    size_t n = 0;
+    if (!run || !without || run == without)
+        return;
+    for (int i = 0; i < run->n_loading && n < MOST_POINTS; i++, n++) {
+        force[n] = run->loading[i];
+        distance[n] = wb_comparison_tip_distance(run, i, without) / WB_MM;
+    }
+    wb_figure_add_line(panel, NULL, n, force, distance, style);
+}
+
+static bool any_residual(const struct wb_comparison_results *results)
+{
     bool any = false;
-    for (int i = 0; i < comparison->n_residual; i++) {
-        for (int k = 0; k < 2; k++)
+    for (int i = 0; i < results->comparison->n_residual; i++) {
+        for (int k = 0; k < WB_COMPARISON_SOLVERS; k++)
             any |= wb_comparison_usable(results, WB_COMPARISON_RESIDUAL + i,
                                         (enum wb_comparison_solver)k) != NULL;
     }
-    if (!any)
+    return any;
+}
+
+static enum wb_status draw_residual_shapes(struct wb_figure **figure,
+                                           const struct wb_comparison_results *results)
+{
+    static const char *const models[] = {"3D", "1D fibres"};
+    const struct wb_comparison *const comparison = results->comparison;
+    if (!any_residual(results))
         return WB_OK;
-    WB_TRY(wb_comparison_figures_start(figure, "residual-shapes", 215.0));
+    WB_TRY(wb_comparison_figures_start(figure, "residual-shapes", 200.0));
     struct wb_panel *const side = add_shape_panel(*figure, "From the side", "<i>y</i> (mm)");
-    struct wb_panel *const above = add_shape_panel(*figure, "From above", "<i>z</i> (mm)");
+    struct wb_panel *const effect = wb_figure_add_panel(*figure);
+    wb_figure_set_title(effect, "Tip from that without residual stress");
+    wb_figure_set_axes(effect, "Follower force (N)", "Distance (mm)");
+    wb_figure_set_y_range(effect, 0.0, (double)NAN);
     for (int i = 0; i <= comparison->n_residual; i++) {
         const int index = WB_COMPARISON_ELASTOPLASTIC + i;
-        const char *const name = i == 0 ? "None" : comparison->cases[index].label;
-        const struct wb_comparison_run *const solid =
-            wb_comparison_usable(results, index, WB_COMPARISON_SOLID);
-        const struct wb_comparison_run *const rod =
-            wb_comparison_usable(results, index, WB_COMPARISON_ROD);
-        const struct wb_figure_style broad = {.colour = wb_palette_fade(wb_palette_wire(i), 0.4),
-                                              .width = 3.4};
-        const struct wb_figure_style thin = {
-            .colour = wb_palette_wire(i), .width = 1.2, .dash = WB_DASH_DASHED};
-        char label[100];
-        snprintf(label, sizeof label, "%s, 3D", name);
-        add_axis(side, label, solid, 1, &broad);
-        add_axis(above, NULL, solid, 2, &broad);
-        snprintf(label, sizeof label, "%s, 1D", name);
-        add_axis(side, label, rod, 1, &thin);
-        add_axis(above, NULL, rod, 2, &thin);
+        const struct wb_figure_style styles[] = {
+            {.colour = wb_palette_fade(wb_palette_wire(i), 0.4), .width = 3.4},
+            {.colour = wb_palette_wire(i), .width = 1.2, .dash = WB_DASH_DASHED}};
+        for (int k = 0; k < WB_COMPARISON_SOLVERS; k++) {
+            const enum wb_comparison_solver solver = (enum wb_comparison_solver)k;
+            const struct wb_comparison_run *const run =
+                wb_comparison_usable(results, index, solver);
+            char label[100];
+            snprintf(label, sizeof label, "%s, %s",
+                     i == 0 ? "None" : comparison->cases[index].label, models[k]);
+            add_axis(side, label, run, 1, &styles[k]);
+            add_effect(effect, run,
+                       wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, solver),
+                       &styles[k]);
+        }
     }
     return WB_OK;
 }
@@ -208,6 +292,7 @@ static enum wb_status draw_all(struct wb_comparison_figures *figures,
     WB_TRY(wb_comparison_figures_draw_stress(&figures->elastic, results, WB_COMPARISON_ELASTIC));
     WB_TRY(wb_comparison_figures_draw_stress(&figures->elastoplastic, results,
                                              WB_COMPARISON_ELASTOPLASTIC));
+    WB_TRY(draw_elastic_shapes(&figures->elastic_shapes, results));
     WB_TRY(draw_shapes(&figures->shapes, results));
     WB_TRY(draw_loading(&figures->loading, results));
     for (int i = 0; i < results->comparison->n_residual; i++)
@@ -232,6 +317,7 @@ int wb_comparison_figures_list(const struct wb_comparison_figures *figures,
     const struct wb_figure *all[WB_COMPARISON_FIGURES];
     int n_all = 0, n = 0;
     all[n_all++] = figures->elastic;
+    all[n_all++] = figures->elastic_shapes;
     all[n_all++] = figures->elastoplastic;
     all[n_all++] = figures->shapes;
     all[n_all++] = figures->loading;
@@ -250,6 +336,7 @@ void wb_comparison_figures_release(struct wb_comparison_figures *figures)
 {
     wb_figure_destroy(figures->elastic);
     wb_figure_destroy(figures->elastoplastic);
+    wb_figure_destroy(figures->elastic_shapes);
     wb_figure_destroy(figures->shapes);
     wb_figure_destroy(figures->loading);
     for (int i = 0; i < WB_COMPARISON_RESIDUALS; i++)

@@ -10,11 +10,11 @@
 
 struct wb_comparison_figures {
     struct wb_figure *elastic, *elastoplastic;           /* Fig. 3: stress on two sections */
-    struct wb_figure *shapes;                            /* Fig. 4 */
+    struct wb_figure *elastic_shapes, *shapes;           /* Fig. 4, with distances along the wire */
     struct wb_figure *loading;                           /* force against deflection and angle */
     struct wb_figure *residual[WB_COMPARISON_RESIDUALS]; /* Fig. 5a: residual stress */
     struct wb_figure *residual_stress;                   /* Fig. 5b: stress under the force */
-    struct wb_figure *residual_shapes;                   /* Fig. 5b: axes of solid and rod */
+    struct wb_figure *residual_shapes;                   /* Fig. 5b: axes, and how tips differ */
 };
 
 /* Draws all figures that the results give; on a failure nothing needs a release. */
@@ -24,7 +24,7 @@ wb_comparison_figures_create(struct wb_comparison_figures *figures,
 void wb_comparison_figures_release(
     struct wb_comparison_figures *figures); /* accepts a zeroed one */
 
-#define WB_COMPARISON_FIGURES (6 + WB_COMPARISON_RESIDUALS)
+#define WB_COMPARISON_FIGURES (7 + WB_COMPARISON_RESIDUALS)
 
 /* All figures there are, in the report's order; returns how many. */
 int wb_comparison_figures_list(const struct wb_comparison_figures *figures,

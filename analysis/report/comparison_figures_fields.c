@@ -10,6 +10,9 @@
 
 #define WB_LOG_DOMAIN "report"
 
+static const double full_turn = 2.0 * 3.14159265358979323846;
+static const double same_radius = 1e-3; /* mm */
+
 enum quantity {
     VON_MISES,
     AXIAL
@@ -35,22 +38,76 @@ static struct wb_contour_face face_of(const struct wb_field_face *from, enum vie
     return face;
 }
 
+/* A rod's cells are parts of rings, and every second ring is turned by half a cell. Halves of them
+ * share their nodes with all neighbours, so that they join without a seam. Files keep few digits:
+ * radii that are nearly equal, and angles that nearly are parts of a cell, are made so. */
+struct rings {
+    int n;
+    double radius[64];
+};
+
+static double snap_radius(struct rings *rings, double radius)
+{
+    int i = 0;
+    while (i < rings->n && fabs(rings->radius[i] - radius) > same_radius)
+        i++;
+    if (i < rings->n)
+        return rings->radius[i];
+    if (rings->n < 64)
+        rings->radius[rings->n++] = radius;
+    return radius;
+}
+
+static void halve_cell(const struct wb_contour_face *cell, struct rings *rings,
+                       struct wb_contour_face halves[2])
+{
+    static const double at[8][2] = {{0, 0},   {1, 0},   {1, 1},   {0, 1},
+                                    {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
+    const double inner = snap_radius(rings, hypot(cell->x[0], cell->y[0]));
+    const double outer = snap_radius(rings, hypot(cell->x[1], cell->y[1]));
+    const double begin = atan2(cell->y[1], cell->x[1]);
+    double turn = atan2(cell->y[2], cell->x[2]) - begin;
+    turn -= full_turn * round(turn / full_turn);
+    const double n_around = fmax(1.0, round(full_turn / fabs(turn)));
+    for (int h = 0; h < 2; h++) {
+        for (int k = 0; k < 8; k++) {
+            const double r = inner + at[k][0] * (outer - inner);
+            const double angle = begin + 0.5 * (h + at[k][1]) * turn;
+            const double quarters = round(angle / full_turn * 4.0 * n_around);
+            const double same = fmod(quarters + 4.0 * n_around, 4.0 * n_around);
+            halves[h].x[k] = r * cos(full_turn * same / (4.0 * n_around));
+            halves[h].y[k] = r * sin(full_turn * same / (4.0 * n_around));
+            halves[h].value[k] = cell->value[k];
+        }
+    }
+}
+
+/* What is drawn of a field, and how. */
 struct drawing {
     enum view view;
     enum quantity quantity;
+    bool cells; /* a cross section of a rod */
     struct wb_figure_colours colours;
 };
 
 static enum wb_status add_part(struct wb_panel *panel, const struct wb_field *field, int part,
                                const struct drawing *drawing)
 {
-    struct wb_contour_face *const faces = malloc(((size_t)field->n_faces + 1) * sizeof *faces);
+    struct wb_contour_face *const faces = malloc((2 * (size_t)field->n_faces + 1) * sizeof *faces);
+    struct rings rings = {.n = 0};
     int n = 0;
     if (!faces)
         return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
     for (int i = 0; i < field->n_faces; i++) {
-        if (field->faces[i].part == part)
-            faces[n++] = face_of(&field->faces[i], drawing->view, drawing->quantity);
+        const struct wb_contour_face face =
+            face_of(&field->faces[i], drawing->view, drawing->quantity);
+        if (field->faces[i].part != part)
+            continue;
+        if (drawing->cells)
+            halve_cell(&face, &rings, &faces[n]);
+        else
+            faces[n] = face;
+        n += drawing->cells ? 2 : 1;
     }
     struct wb_figure_colours colours = drawing->colours;
     /* The core lies within the jacket. */
@@ -187,6 +244,7 @@ static enum wb_status add_pair(struct wb_figure *figure, const struct wb_field *
         snprintf(title, sizeof title, "%s, %s", quantity == AXIAL ? "Axial" : "von Mises",
                  models[i]);
         wb_figure_set_title(panel, title);
+        drawing.cells = i == WB_COMPARISON_ROD;
         if (fields[i])
             WB_TRY(add_part(panel, fields[i], 0, &drawing));
         else
@@ -242,30 +300,34 @@ static enum wb_status add_loaded(struct wb_figure *figure, const char *label,
                                  const struct wb_field *field, const struct extent *extent,
                                  const struct wb_figure_colours *colours)
 {
-    const struct drawing drawing = {FROM_THE_SIDE, VON_MISES, *colours};
+    const struct drawing drawing = {
+        .view = FROM_THE_SIDE, .quantity = VON_MISES, .colours = *colours};
     struct wb_panel *const panel = wb_figure_add_panel(figure);
     char title[120];
     snprintf(title, sizeof title, "%s: %.0f MPa", label, largest_of(field, 0, VON_MISES));
     wb_figure_set_title(panel, title);
-    wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
+    wb_figure_hide_axes(panel);
     wb_figure_set_equal_aspect(panel);
-    wb_figure_set_x_range(panel, extent->low[0] - 3.0, extent->high[0] + 3.0);
-    wb_figure_set_y_range(panel, extent->low[1] - 3.0, extent->high[1] + 3.0);
+    wb_figure_set_x_range(panel, extent->low[0], extent->high[0]);
+    wb_figure_set_y_range(panel, extent->low[1], extent->high[1]);
     return add_field(panel, field, &drawing);
 }
 
-enum wb_status
-wb_comparison_figures_draw_residual_stress(struct wb_figure **figure,
-                                           const struct wb_comparison_results *results)
+/* Longitudinal sections under the force, without and with residual stresses: as many as are
+ * readable beside each other. */
+struct loaded {
+    int n;
+    const struct wb_field *fields[3];
+    const char *labels[3];
+    struct extent extent;
+    double largest; /* MPa */
+};
+
+static void find_loaded(struct loaded *loaded, const struct wb_comparison_results *results)
 {
     const struct wb_comparison *const comparison = results->comparison;
-    const struct wb_field *fields[1 + WB_COMPARISON_RESIDUALS];
-    const char *labels[1 + WB_COMPARISON_RESIDUALS];
-    struct extent extent = {{0.0, 0.0}, {0.0, 0.0}};
-    double largest = 0.0;
-    int n = 0;
-    /* As many as are readable beside each other. */
-    for (int i = 0; i <= comparison->n_residual && n < 3; i++) {
+    *loaded = (struct loaded){.n = 0};
+    for (int i = 0; i <= comparison->n_residual && loaded->n < 3; i++) {
         const int index = WB_COMPARISON_ELASTOPLASTIC + i;
         const struct wb_comparison_run *const run =
             wb_comparison_usable(results, index, WB_COMPARISON_SOLID);
@@ -273,21 +335,29 @@ wb_comparison_figures_draw_residual_stress(struct wb_figure **figure,
             run ? wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN) : NULL;
         if (!field)
             continue;
-        extend(&extent, field);
-        largest = fmax(largest, largest_of(field, 0, VON_MISES));
-        labels[n] = i == 0 ? "None" : comparison->cases[index].label;
-        fields[n++] = field;
+        extend(&loaded->extent, field);
+        loaded->largest = fmax(loaded->largest, largest_of(field, 0, VON_MISES));
+        loaded->labels[loaded->n] = i == 0 ? "No residual stress" : comparison->cases[index].label;
+        loaded->fields[loaded->n++] = field;
     }
-    if (n == 0 || comparison->n_residual == 0)
+}
+
+enum wb_status
+wb_comparison_figures_draw_residual_stress(struct wb_figure **figure,
+                                           const struct wb_comparison_results *results)
+{
+    struct loaded loaded;
+    find_loaded(&loaded, results);
+    if (loaded.n == 0 || results->comparison->n_residual == 0)
         return WB_OK;
-    const struct wb_figure_colours colours = colours_of(VON_MISES, largest);
-    const double width = (WB_REPORT_WIDTH - 46.0 - 10.0 * n) / n - 32.0;
-    const double ratio =
-        (extent.high[1] - extent.low[1] + 6.0) / (extent.high[0] - extent.low[0] + 6.0);
+    const struct wb_figure_colours colours = colours_of(VON_MISES, loaded.largest);
+    const struct extent *const extent = &loaded.extent;
+    const double width = (WB_REPORT_WIDTH - 46.0 - 10.0 * loaded.n) / loaded.n;
+    const double ratio = (extent->high[1] - extent->low[1]) / (extent->high[0] - extent->low[0]);
     WB_TRY(wb_comparison_figures_start(figure, "residual-stress",
-                                       fmin(fmax(width * ratio, 60.0), 260.0) + 55.0));
-    for (int i = 0; i < n; i++)
-        WB_TRY(add_loaded(*figure, labels[i], fields[i], &extent, &colours));
+                                       fmin(fmax(width * ratio, 60.0), 260.0) + 30.0));
+    for (int i = 0; i < loaded.n; i++)
+        WB_TRY(add_loaded(*figure, loaded.labels[i], loaded.fields[i], extent, &colours));
     wb_figure_add_colour_bar(*figure, &colours, "MPa");
     return WB_OK;
 }

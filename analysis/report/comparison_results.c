@@ -5,158 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/report/reasons.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
-
-/* --- what a failure says --- */
-
-struct listener {
-    struct wb_text *text;
-    const char *path, *name; /* no path of this machine may reach the report */
-};
-
-static void listen(void *context, enum wb_log_level level, const char *domain, const char *message)
-{
-    const struct listener *const listener = context;
-    (void)domain;
-    if (level != WB_LOG_ERROR)
-        return;
-    if (listener->text->length > 0)
-        wb_text_append(listener->text, "; ");
-    const size_t length = strlen(listener->path);
-    for (const char *found; length > 0 && (found = strstr(message, listener->path));) {
-        wb_text_append_bytes(listener->text, message, (size_t)(found - message));
-        wb_text_append(listener->text, "%s", listener->name);
-        message = found + length;
-    }
-    wb_text_append(listener->text, "%s", message);
-}
-
-/* --- one dataset --- */
-
-static double number_of(const struct wb_json *object, const char *key)
-{
-    double value;
-    return wb_json_get_number(object, key, &value) ? value : (double)NAN;
-}
-
-static void read_simulation(struct wb_comparison_run *run)
-{
-    const struct wb_json *const document = run->dataset.document;
-    const struct wb_json *const simulation = wb_json_get(document, "simulation");
-    const char *revision = "";
-    run->elements = number_of(simulation, "elements");
-    run->unknowns = number_of(simulation, "degrees_of_freedom");
-    run->iterations = number_of(simulation, "iterations");
-    run->cpu_s = number_of(simulation, "cpu_s");
-    run->memory_MB = number_of(simulation, "peak_memory_MB");
-    const struct wb_json *const interface = wb_json_get(simulation, "interface");
-    run->slip = number_of(interface, "slip_mm") * WB_MM;
-    run->slip_limit = number_of(interface, "slip_limit_mm") * WB_MM;
-    run->opening = number_of(interface, "opening_mm") * WB_MM;
-    (void)wb_json_get_text(wb_json_get(document, "tool"), "revision", &revision);
-    snprintf(run->revision, sizeof run->revision, "%s", revision);
-}
-
-/* Whether the dataset is of this model as it is now, and whole. */
-static enum wb_status check_simulation(struct wb_comparison_run *run,
-                                       const struct wb_comparison_case *item,
-                                       enum wb_comparison_solver solver)
-{
-    const struct wb_json *const simulation = wb_json_get(run->dataset.document, "simulation");
-    const struct wb_test_info *const info = &run->dataset.info;
-    const char *sha256 = "", *made_by = "", *problem = "";
-    if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "model", &made_by) ||
-        !wb_json_get_text(simulation, "sha256", &sha256))
-        return wb_fail(WB_ERR_DATA, "it does not say of which model it is a simulation");
-    if (strcmp(made_by, wb_comparison_command(solver)) != 0)
-        return wb_fail(WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
-                       wb_comparison_command(solver));
-    run->is_stale = strcmp(sha256, item->model->sha256) != 0;
-    if (run->is_stale)
-        return wb_fail(WB_ERR_DATA, "the model, its wire or its materials have changed since");
-    (void)wb_json_get_text(simulation, "problem", &problem);
-    run->is_cut_short = !wb_dataset_is_complete(&run->dataset);
-    if (run->is_cut_short)
-        return wb_fail(WB_ERR_DATA, "it did not converge to its end%s%s", problem[0] ? ": " : "",
-                       problem);
-    return WB_OK;
-}
-
-/* State and axis at the end of the history. */
-static enum wb_status take_end(struct wb_comparison_run *run, const struct wb_wire_model *model)
-{
-    const struct wb_dataset *const dataset = &run->dataset;
-    const double force = model->step[model->n_steps - 1].loads.follower[1];
-    if (dataset->n_rows == 0 || dataset->n_shape_rows < 2)
-        return wb_fail(WB_ERR_DATA, "it has no rows or no shapes");
-    const struct wb_row *const last = &dataset->rows[dataset->n_rows - 1];
-    size_t first = dataset->n_shape_rows;
-    while (first > 0 && dataset->shape_rows[first - 1].t == last->t)
-        first--;
-    const size_t n = dataset->n_shape_rows - first;
-    if (n < 2)
-        return wb_fail(WB_ERR_DATA, "it has no shape of its last row");
-    run->s = malloc(n * sizeof *run->s);
-    run->shape = malloc(n * sizeof *run->shape);
-    if (!run->s || !run->shape)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a dataset");
-    for (size_t i = 0; i < n; i++) {
-        const struct wb_shape_row *const row = &dataset->shape_rows[first + i];
-        const double z = isfinite(row->z) ? row->z : 0.0;
-        run->s[i] = row->s;
-        memcpy(run->shape[i], (double[3]){row->x, row->y, z}, sizeof run->shape[i]);
-    }
-    run->n_shape = (int)n;
-    memcpy(run->tip, run->shape[n - 1], sizeof run->tip);
-    run->force = force;
-    run->tip_angle = last->tip_angle;
-    if (fabs(run->s[n - 1] - model->length) > 1e-6 * model->length)
-        return wb_fail(WB_ERR_DATA, "its shapes end at %g mm, not at the wire's tip",
-                       run->s[n - 1] / WB_MM);
-    return WB_OK;
-}
-
-static enum wb_status read_run(struct wb_comparison_run *run, const struct wb_comparison_case *item,
-                               enum wb_comparison_solver solver)
-{
-    const char *const path = item->datasets[solver].path;
-    char rows[WB_PATH];
-    WB_TRY(wb_dataset_read(&run->dataset, path));
-    read_simulation(run);
-    WB_TRY(check_simulation(run, item, solver));
-    WB_TRY(take_end(run, item->model));
-    WB_TRY(wb_file_join(rows, path, "force_deflection.csv"));
-    WB_TRY(wb_hash_file(rows, run->sha256));
-    return wb_fields_read(&run->fields, path);
-}
-
-static void load_run(struct wb_comparison_run *run, const struct wb_comparison_case *item,
-                     enum wb_comparison_solver solver)
-{
-    const struct wb_comparison_dataset *const wanted = &item->datasets[solver];
-    char folder[WB_PATH];
-    run->elements = run->unknowns = run->iterations = (double)NAN;
-    run->cpu_s = run->memory_MB = run->slip = run->slip_limit = run->opening = (double)NAN;
-    if (!wanted->wanted)
-        return;
-    snprintf(run->command, sizeof run->command, "wirebench solve %s %s -o %s",
-             wb_comparison_command(solver), item->model_name, wanted->name);
-    run->state = WB_COMPARISON_MISSING;
-    if (wb_file_join(folder, wanted->path, "dataset.json") != WB_OK || !wb_file_exists(folder)) {
-        wb_text_append(&run->problem, "there is no such dataset");
-        return;
-    }
-    struct listener listener = {&run->problem, wanted->path, wanted->name};
-    wb_log_set_tap(listen, &listener);
-    const enum wb_status status = read_run(run, item, solver);
-    wb_log_set_tap(NULL, NULL);
-    run->state = status == WB_OK ? WB_COMPARISON_USABLE : WB_COMPARISON_REFUSED;
-    if (status != WB_OK && run->problem.length == 0)
-        wb_text_append(&run->problem, "%s", wb_status_text(status));
-}
 
 const struct wb_comparison_run *wb_comparison_usable(const struct wb_comparison_results *results,
                                                      int index, enum wb_comparison_solver solver)
@@ -270,10 +123,10 @@ static void fit(struct wb_comparison_results *results)
         wb_text_append(&results->fit_problem, "the solid's dataset that it builds on is missing");
         return;
     }
-    struct listener listener = {&results->fit_problem, "", ""};
-    wb_log_set_tap(listen, &listener);
+    struct wb_reasons reasons = {&results->fit_problem, NULL, NULL};
+    wb_reasons_begin(&reasons);
     const enum wb_status status = calibrate(results, run);
-    wb_log_set_tap(NULL, NULL);
+    wb_reasons_end();
     results->fit_state = status == WB_OK ? WB_COMPARISON_USABLE : WB_COMPARISON_REFUSED;
     if (status == WB_OK)
         wb_text_release(&results->fit_problem);
@@ -290,48 +143,6 @@ double wb_comparison_split(const struct wb_wire_model *model, double change)
 }
 
 /* --- comparing --- */
-
-/* A point of an axis at an arc length, on the straight line between its neighbours. */
-static void point_at(const struct wb_comparison_run *run, double s, double point[3])
-{
-    int i = 1;
-    while (i + 1 < run->n_shape && run->s[i] < s)
-        i++;
-    const double part = (s - run->s[i - 1]) / (run->s[i] - run->s[i - 1]);
-    for (int k = 0; k < 3; k++)
-        point[k] = run->shape[i - 1][k] + part * (run->shape[i][k] - run->shape[i - 1][k]);
-}
-
-double wb_comparison_distance(const struct wb_comparison_run *run,
-                              const struct wb_comparison_run *other)
-{
-    double largest = 0.0;
-    for (int i = 0; i < other->n_shape; i++) {
-        double point[3];
-        point_at(run, other->s[i], point);
-        largest =
-            fmax(largest, hypot(hypot(point[0] - other->shape[i][0], point[1] - other->shape[i][1]),
-                                point[2] - other->shape[i][2]));
-    }
-    return largest;
-}
-
-double wb_comparison_rod_distance(const struct wb_comparison_run *run,
-                                  const struct wb_comparison_rod *rod)
-{
-    const int last = WB_COMPARISON_POINTS - 1;
-    double largest = 0.0;
-    for (int i = 0; i < run->n_shape; i++) {
-        const double place = fmin(fmax(run->s[i] / rod->s[last], 0.0), 1.0) * last;
-        const int below = place < last ? (int)place : last - 1;
-        const double part = place - below;
-        const double x = rod->x[below] + part * (rod->x[below + 1] - rod->x[below]);
-        const double y = rod->y[below] + part * (rod->y[below + 1] - rod->y[below]);
-        largest = fmax(largest,
-                       hypot(hypot(run->shape[i][0] - x, run->shape[i][1] - y), run->shape[i][2]));
-    }
-    return largest;
-}
 
 double wb_comparison_cost(const struct wb_comparison_results *results, int index)
 {
@@ -414,7 +225,7 @@ static enum wb_status compute(struct wb_comparison_results *results, struct tell
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_COMPARISON_SOLVERS; k++) {
             const struct wb_comparison_case *const item = &comparison->cases[i];
-            load_run(&results->runs[i][k], item, (enum wb_comparison_solver)k);
+            wb_comparison_run_load(&results->runs[i][k], item, (enum wb_comparison_solver)k);
             if (item->datasets[k].wanted)
                 tell(teller, "read", item->datasets[k].name);
         }
@@ -449,14 +260,8 @@ enum wb_status wb_comparison_compute(struct wb_comparison_results *results,
 void wb_comparison_results_release(struct wb_comparison_results *results)
 {
     for (int i = 0; i < WB_COMPARISON_CASES; i++) {
-        for (int k = 0; k < WB_COMPARISON_SOLVERS; k++) {
-            struct wb_comparison_run *const run = &results->runs[i][k];
-            wb_text_release(&run->problem);
-            wb_dataset_release(&run->dataset);
-            wb_fields_release(&run->fields);
-            free(run->s);
-            free(run->shape);
-        }
+        for (int k = 0; k < WB_COMPARISON_SOLVERS; k++)
+            wb_comparison_run_release(&results->runs[i][k]);
     }
     wb_text_release(&results->fit_problem);
     if (results->fit_state == WB_COMPARISON_USABLE)

@@ -7,39 +7,11 @@
 #include <stdbool.h>
 
 #include "analysis/calibrate.h"
-#include "analysis/dataset.h"
-#include "analysis/fields.h"
 #include "analysis/report/comparison.h"
 #include "analysis/report/comparison_rod.h"
+#include "analysis/report/comparison_run.h"
 #include "base/status.h"
 #include "base/text.h"
-
-enum wb_comparison_state {
-    WB_COMPARISON_NOT_WANTED,
-    WB_COMPARISON_MISSING, /* there is no such dataset */
-    WB_COMPARISON_REFUSED, /* of a model that has changed, not converged, damaged, ... */
-    WB_COMPARISON_USABLE
-};
-
-/* A dataset, and what it says of its simulation; numbers are NaN where it does not. */
-struct wb_comparison_run {
-    enum wb_comparison_state state;
-    struct wb_text problem; /* why it cannot be used */
-    char command[800];      /* that makes it */
-    bool is_stale;          /* the model has changed since */
-    bool is_cut_short;      /* it did not converge, or was stopped */
-    double elements, unknowns, iterations, cpu_s, memory_MB;
-    double slip, slip_limit, opening; /* m, of an interface with friction */
-    char revision[64];                /* of the program that made it */
-    char sha256[WB_SHA256_TEXT];      /* of its force_deflection.csv */
-    struct wb_dataset dataset;        /* of a usable one, as all that follows */
-    struct wb_fields fields;
-    double force, tip_angle; /* N, rad: at its end */
-    double tip[3];           /* m */
-    int n_shape;
-    double *s;          /* (n_shape) m, owned */
-    double (*shape)[3]; /* (n_shape) m, owned */
-};
 
 /* Largest von Mises stress of a part on a section. */
 struct wb_comparison_peak {
@@ -94,12 +66,6 @@ void wb_comparison_results_release(
 /* A run that is usable, else NULL. */
 const struct wb_comparison_run *wb_comparison_usable(const struct wb_comparison_results *results,
                                                      int index, enum wb_comparison_solver solver);
-
-/* Largest distance of two axes at the same arc length, m, over the second one's points. */
-double wb_comparison_distance(const struct wb_comparison_run *run,
-                              const struct wb_comparison_run *other);
-double wb_comparison_rod_distance(const struct wb_comparison_run *run,
-                                  const struct wb_comparison_rod *rod);
 
 /* CPU seconds of the rod over the solid's; NaN when one is not known. */
 double wb_comparison_cost(const struct wb_comparison_results *results, int index);

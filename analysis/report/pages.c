@@ -73,8 +73,10 @@ void wb_pages_cell_plain(struct wb_pages_row *row, enum wb_document_tone tone, c
 
 void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals)
 {
+    /* What rounds to zero has no sign. */
+    const bool negative = value < 0.0 && -value * pow(10.0, decimals) >= 0.5;
     if (isfinite(value))
-        wb_pages_cell(row, WB_TONE_PLAIN, "%s%.*f", value < 0.0 ? "\xe2\x88\x92" : "", decimals,
+        wb_pages_cell(row, WB_TONE_PLAIN, "%s%.*f", negative ? "\xe2\x88\x92" : "", decimals,
                       fabs(value));
     else
         wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "analysis/align.h"
+#include "analysis/report/reasons.h"
 #include "base/interrupt.h"
 #include "daq/recording.h"
 
@@ -44,39 +45,6 @@ struct schedule {
 };
 
 /* --- one job --- */
-
-struct listener {
-    struct wb_text *text;
-    const char *path; /* replaced by `name`: no path of this machine may reach the report */
-    const char *name;
-};
-
-static void append_replaced(struct wb_text *text, const char *message, const char *path,
-                            const char *name)
-{
-    const size_t length = path ? strlen(path) : 0;
-    while (length > 0) {
-        const char *const found = strstr(message, path);
-        if (!found)
-            break;
-        wb_text_append_bytes(text, message, (size_t)(found - message));
-        wb_text_append(text, "%s", name);
-        message = found + length;
-    }
-    wb_text_append(text, "%s", message);
-}
-
-/* Keeps the reason of a failure beside showing it. */
-static void listen(void *context, enum wb_log_level level, const char *domain, const char *message)
-{
-    const struct listener *const listener = context;
-    (void)domain;
-    if (level != WB_LOG_ERROR)
-        return;
-    if (listener->text->length > 0)
-        wb_text_append(listener->text, "; ");
-    append_replaced(listener->text, message, listener->path, listener->name);
-}
 
 static void read_meta(struct wb_recording *recording, const char *key, char *text, size_t size)
 {
@@ -148,12 +116,12 @@ static void run_align(const struct wb_campaign *campaign, const struct job *job)
         wb_text_append(&test->problem, "%s", test->wanted->missing);
         return;
     }
-    struct listener listener = {&test->problem, test->wanted->path, test->wanted->name};
-    wb_log_set_tap(listen, &listener);
+    struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
+    wb_reasons_begin(&reasons);
     const enum wb_status status =
         align(test, job->wire,
               job->calibrates ? campaign->calibration_length : campaign->validation_length);
-    wb_log_set_tap(NULL, NULL);
+    wb_reasons_end();
     test->usable = status == WB_OK;
     if (test->usable)
         wb_text_release(&test->problem);
@@ -210,12 +178,12 @@ static enum wb_results_state run_step(const struct wb_campaign *campaign, const 
         free(datasets);
         return WB_RESULTS_MISSING;
     }
-    struct listener listener = {problem, NULL, NULL};
-    wb_log_set_tap(listen, &listener);
+    struct wb_reasons reasons = {problem, NULL, NULL};
+    wb_reasons_begin(&reasons);
     const enum wb_status status = calibrates ? calibrate(campaign, wire, datasets, n)
                                              : wb_validate_run(&wire->validation, &wire->properties,
                                                                datasets, n, &campaign->validate);
-    wb_log_set_tap(NULL, NULL);
+    wb_reasons_end();
     free(datasets);
     if (status == WB_OK) {
         wb_text_release(problem);

@@ -1,0 +1,17 @@
+/* Why a step of a report failed: the errors of the calling thread, kept beside being shown. */
+#ifndef WB_ANALYSIS_REPORT_REASONS_H
+#define WB_ANALYSIS_REPORT_REASONS_H
+
+#include "base/text.h"
+
+struct wb_reasons {
+    struct wb_text *text; /* errors are appended, with "; " between them */
+    const char *path;     /* replaced by `name`: no path of this machine may reach the report; */
+    const char *name;     /* NULL: nothing is replaced */
+};
+
+/* From begin to end, which follow each other in one thread; `reasons` must live as long. */
+void wb_reasons_begin(struct wb_reasons *reasons);
+void wb_reasons_end(void);
+
+#endif
