@@ -100,14 +100,14 @@ struct wb_solid_point {
     double residual;     /* relative, of the last equilibrium */
     int negative_pivots; /* of the last factorisation */
     bool unstable;       /* the equilibrium cannot stand under its control: it is on a path past a
-                            critical       point (a limit load, buckling). Moves by loads or deflection never
-                            step over       such a point: they end before it, not converged */
+                            critical point (a limit load, buckling). Moves by loads or deflection
+                            never step over such a point: they end before it, not converged */
     char problem[240];   /* why it did not converge; "" otherwise */
 };
 
 struct wb_solid_balance {
     double work;       /* J by all loads since the virgin state (trapezoidal over increments) */
-    double elastic;    /* J stored */
+    double elastic;    /* J stored, in the interface's springs too */
     double dissipated; /* J plastic */
     double friction;   /* J */
     struct wb_interface_result interface; /* of the last equilibrium */

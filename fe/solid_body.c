@@ -241,6 +241,7 @@ static void collect_interface(struct wb_interface_result *all,
     all->slip = fmax(all->slip, one->slip);
     all->pressure = fmax(all->pressure, one->pressure);
     all->dissipated += one->dissipated;
+    all->stored += one->stored;
     all->touching += one->touching;
     all->slipping += one->slipping;
 }
@@ -270,6 +271,7 @@ static void add_pair(const struct assembly *a, int p)
                           a->stiffness ? body->element_stiffness : NULL, &result);
     scatter(a, 2 * HALF, node, force, body->element_stiffness);
     collect_interface(&a->result->interface, &result);
+    a->result->elastic += result.stored;
 }
 
 static void assemble(const struct assembly *a)
