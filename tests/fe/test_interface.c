@@ -612,7 +612,7 @@ static void sticking_forces_have_a_potential(void **unused)
 static void not_a_number_in_gives_not_a_number_out(void **unused)
 {
     (void)unused;
-    const double bad[] = {NAN, INFINITY, -INFINITY};
+    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
     for (int b = 0; b < 3; b++) {
         for (int i = 0; i < ALL; i++) {
             struct contact contact;

@@ -407,7 +407,7 @@ static void singular_systems_are_refused(void **unused)
 {
     (void)unused;
     const int sizes[] = {6, 7, 5};
-    const double bad[] = {0.0, NAN, INFINITY, 0.0};
+    const double bad[] = {0.0, (double)NAN, (double)INFINITY, 0.0};
     for (int kind = 0; kind < 8; kind++) {
         const bool symmetric = kind % 2 == 0;
         for (int place = 0; place < 18; place++) {
@@ -426,7 +426,7 @@ static void singular_systems_are_refused(void **unused)
                 }
             } else if (kind / 2 == 3) { /* a NaN beside the diagonal */
                 const int index[2] = {place, place == 17 ? 16 : 17};
-                const double matrix[4] = {0.0, NAN, NAN, 0.0};
+                const double matrix[4] = {0.0, (double)NAN, (double)NAN, 0.0};
                 if (place < twin.first[2])
                     wb_layered_add(twin.layered, 1, &place, matrix + 1);
                 else

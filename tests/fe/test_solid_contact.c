@@ -447,6 +447,13 @@ static void sliding_parts_bend_like_bonded_ones_but_for_shear(void **unused)
     assert_true(rubbing.deflection < sliding.deflection);
     assert_true(rubbing.deflection > bonded.deflection);
 
+    print_message(
+        "sliding parts: %.2f %% further than bonded ones, by beam theory %.2f %%; slip %.2g "
+        "um\n",
+        100.0 * (sliding.deflection / bonded.deflection - 1.0),
+        100.0 * (rod.sliding_shear - rod.bonded_shear) / bonded.deflection,
+        1e6 * sliding.balance.slip);
+
     /* Slip is that of the sections' different angles and warping, far below the limit. */
     assert_in_range((int)(100.0 * sliding.balance.slip / rod.slip), 100, 250);
     assert_true(rubbing.balance.slip < sliding.balance.slip);
@@ -468,6 +475,10 @@ static void pressed_jacket_with_much_friction_is_as_if_bonded(void **unused)
     const struct bent sliding = bend(0.0, different, pull, force, 1.0);
     const double error = sticking.deflection / bonded.deflection - 1.0;
 
+    print_message("sticking parts: %.3f %% further than bonded ones, %.4f %% with ten times the "
+                  "stiffness; sliding ones %.2f %%\n",
+                  100.0 * error, 100.0 * (stiffer.deflection / bonded.deflection - 1.0),
+                  100.0 * (sliding.deflection / bonded.deflection - 1.0));
     assert_true(sticking.balance.slip == 0.0 && sticking.balance.opening == 0.0);
     assert_true(error > 0.0 && error < 1e-3);
     assert_close_relative(stiffer.deflection / bonded.deflection - 1.0, 0.1 * error, 0.3);
