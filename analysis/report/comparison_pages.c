@@ -88,8 +88,9 @@ static void put_limits(struct wb_document *document, const struct wb_comparison_
 
 struct fact {
     const char *what, *unit;
-    double ours, paper;
-    int decimals, paper_decimals;
+    double ours;
+    int decimals;
+    const char *paper; /* NULL or "": nothing */
 };
 
 static void put_fact(struct wb_document *document, struct wb_document_table *table,
@@ -99,7 +100,10 @@ static void put_fact(struct wb_document *document, struct wb_document_table *tab
     wb_pages_cell(&row, WB_TONE_PLAIN, "%s", fact->what);
     wb_pages_cell(&row, WB_TONE_QUIET, "%s", fact->unit);
     wb_pages_cell_number(&row, fact->ours, fact->decimals);
-    wb_pages_cell_number(&row, fact->paper, fact->paper_decimals);
+    if (fact->paper && fact->paper[0])
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, fact->paper);
+    else
+        wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
     wb_pages_put_row(document, table, false, &row);
 }
 
@@ -141,33 +145,35 @@ static void put_facts(struct wb_document *document, const struct wb_comparison_r
     const struct wb_comparison_run *const plastic = runs[WB_COMPARISON_ELASTOPLASTIC][0];
     const bool fitted = results->fit_state == WB_COMPARISON_USABLE && results->fitted.reached;
     const double none = (double)NAN;
+    char stress[40] = "", cost[40] = "";
+    if (comparison->printed_stress > 0.0)
+        snprintf(stress, sizeof stress, "%.0f", comparison->printed_stress / WB_MPA);
+    if (comparison->printed_cost > 0.0)
+        snprintf(cost, sizeof cost, "below %g", comparison->printed_cost / WB_PERCENT);
     const struct fact facts[] = {
         {"Elastic: largest von Mises stress of the core, 3D", "MPa",
-         largest_stress(results, WB_COMPARISON_ELASTIC),
-         comparison->printed_stress > 0.0 ? comparison->printed_stress / WB_MPA : none, 0, 0},
+         largest_stress(results, WB_COMPARISON_ELASTIC), 0, stress},
         {"Elastic: largest distance of the axes, 1D from 3D", "mm",
-         distance_between(elastic, runs[WB_COMPARISON_ELASTIC][1]), none, 3, 0},
+         distance_between(elastic, runs[WB_COMPARISON_ELASTIC][1]), 3, NULL},
         {"Elastic: largest distance of the axes, friction from bond", "mm",
-         distance_between(elastic, runs[WB_COMPARISON_CONTACT][0]), none, 3, 0},
-        {"Elastic: angle of the tip, 3D", "degrees", angle_of(elastic), none, 2, 0},
-        {"Elastoplastic: angle of the tip, 3D", "degrees", angle_of(plastic), none, 1, 0},
+         distance_between(elastic, runs[WB_COMPARISON_CONTACT][0]), 3, NULL},
+        {"Elastic: angle of the tip, 3D", "degrees", angle_of(elastic), 2, NULL},
+        {"Elastoplastic: angle of the tip, 3D", "degrees", angle_of(plastic), 1, NULL},
         {"Elastoplastic: largest distance of the axes, 1D fibres from 3D", "mm",
-         distance_between(plastic, runs[WB_COMPARISON_ELASTOPLASTIC][1]), none, 2, 0},
+         distance_between(plastic, runs[WB_COMPARISON_ELASTOPLASTIC][1]), 2, NULL},
         {"Elastoplastic: largest distance of the axes, 1D fitted from 3D", "mm",
          fitted && plastic ? wb_comparison_rod_distance(plastic, &results->fitted) / WB_MM : none,
-         none, 2, 0},
+         2, NULL},
         {"Elastoplastic: angle of the tip, 1D with the printed properties", "degrees",
-         results->printed.reached ? results->printed.tip_angle * degrees : none, none, 0, 0},
+         results->printed.reached ? results->printed.tip_angle * degrees : none, 0, NULL},
         {"Cost of the elastic rod over the solid's", "%",
-         wb_comparison_cost(results, WB_COMPARISON_ELASTIC) / WB_PERCENT,
-         comparison->printed_cost > 0.0 ? comparison->printed_cost / WB_PERCENT : none, 2, 0},
+         wb_comparison_cost(results, WB_COMPARISON_ELASTIC) / WB_PERCENT, 2, cost},
     };
     wb_document_heading(document, 2, "facts", "What came out");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Paper: what it prints, of the cost an upper bound. It has no numbers for the rest: its "
-        "figures are lost.",
-        4, columns);
+        "Paper: what it prints. It has no numbers for the rest, and its figures are lost.", 4,
+        columns);
     for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
         put_fact(document, table, &facts[i]);
 }
@@ -254,40 +260,50 @@ void wb_comparison_pages_cost(struct wb_document *document,
 
 /* --- provenance --- */
 
+static void put_material(struct wb_document *document, struct wb_document_table *table,
+                         const struct wb_wire_model_part *part)
+{
+    const struct wb_material *const m = &part->material;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, part->name);
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, part->material_name);
+    wb_pages_cell_number(&row, part->outer_diameter / WB_MM, 2);
+    wb_pages_cell_number(&row, m->youngs_modulus / WB_MPA, 0);
+    wb_pages_cell_number(&row, m->poissons_ratio, 2);
+    wb_pages_cell_number(&row, m->yield_stress / WB_MPA, 1);
+    wb_pages_cell_number(&row, m->strength_coefficient / WB_MPA, 1);
+    wb_pages_cell_number(&row, m->hardening_exponent, 2);
+    wb_pages_cell(&row, part->is_substitute ? WB_TONE_WARNING : WB_TONE_PLAIN, "%s",
+                  part->is_substitute ? "substitute" : "given");
+    wb_pages_put_row(document, table, false, &row);
+}
+
 static void put_materials(struct wb_document *document, const struct wb_comparison *comparison)
 {
     static const struct wb_document_column columns[] = {
         {"Part"},
         {"Material"},
-        {.heading = "<i>E</i> (MPa)", .right = true, .wraps = true},
+        {.heading = "Outside (mm)", .right = true},
+        {.heading = "<i>E</i> (MPa)", .right = true},
         {.heading = "<i>\xce\xbd</i>", .right = true},
-        {.heading = "<i>\xcf\x83</i><sub>Y</sub> (MPa)", .right = true, .wraps = true},
-        {.heading = "<i>K</i> (MPa)", .right = true, .wraps = true},
+        {.heading = "<i>\xcf\x83</i><sub>Y</sub> (MPa)", .right = true},
+        {.heading = "<i>K</i> (MPa)", .right = true},
         {.heading = "<i>n</i>", .right = true},
-        {.heading = "Source", .wraps = true},
+        {"Values"},
     };
     const struct wb_wire_model *const model = comparison->cases[WB_COMPARISON_ELASTOPLASTIC].model;
     wb_document_heading(document, 2, "materials", "Materials");
     struct wb_document_table *const table = wb_document_table(
-        document, "Substitute: stands in for a value of the paper's Table 1, which is lost.", 8,
+        document, "Substitute: stands in for a value of the paper's Table 1, which is lost.", 9,
         columns);
+    for (int i = 0; i < model->n_parts; i++)
+        put_material(document, table, &model->part[i]);
     for (int i = 0; i < model->n_parts; i++) {
-        const struct wb_wire_model_part *const part = &model->part[i];
-        const struct wb_material *const m = &part->material;
-        struct wb_pages_row row = {.n = 0};
-        char source[WB_PAGES_CELL], name[100];
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, part->name);
-        wb_pages_cell(&row, WB_TONE_PLAIN, "%s%s",
-                      wb_pages_escape(name, sizeof name, part->material_name),
-                      part->is_substitute ? " (substitute)" : "");
-        wb_pages_cell_number(&row, m->youngs_modulus / WB_MPA, 0);
-        wb_pages_cell_number(&row, m->poissons_ratio, 2);
-        wb_pages_cell_number(&row, m->yield_stress / WB_MPA, 1);
-        wb_pages_cell_number(&row, m->strength_coefficient / WB_MPA, 1);
-        wb_pages_cell_number(&row, m->hardening_exponent, 2);
-        wb_pages_cell(&row, WB_TONE_QUIET, "%s",
-                      wb_pages_escape(source, sizeof source, part->source));
-        wb_pages_put_row(document, table, false, &row);
+        char name[300], source[1200], item[1600];
+        snprintf(item, sizeof item, "<b>%s</b>: %s",
+                 wb_pages_escape(name, sizeof name, model->part[i].material_name),
+                 wb_pages_escape(source, sizeof source, model->part[i].source));
+        wb_document_item(document, WB_TONE_PLAIN, item);
     }
 }
 
@@ -312,12 +328,13 @@ static void put_datasets(struct wb_document *document, const struct wb_compariso
 {
     static const struct wb_document_column columns[] = {
         {.heading = "Dataset", .wraps = true},
-        {"Made with revision"},
+        {"Revision"},
         {.heading = "SHA-256 of force_deflection.csv", .monospace = true},
     };
     const struct wb_comparison *const comparison = results->comparison;
     wb_document_heading(document, 2, "datasets", "Datasets");
-    struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
+    struct wb_document_table *const table =
+        wb_document_table(document, "Revision: of the program that made it.", 3, columns);
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_COMPARISON_SOLVERS; k++) {
             const struct wb_comparison_run *const run = &results->runs[i][k];

@@ -30,4 +30,13 @@ void wb_comparison_pages_cost(struct wb_document *document,
 void wb_comparison_pages_provenance(struct wb_document *document,
                                     const struct wb_comparison_results *results);
 
+/* What they share: the follower force at the end, N; a table of tips (`caption` NULL: a usual one),
+ * and a row of it, with distances from the solid. Runs that are NULL are left out. */
+double wb_comparison_pages_force(const struct wb_comparison_results *results);
+struct wb_document_table *wb_comparison_pages_start_tips(struct wb_document *document,
+                                                         const char *caption);
+void wb_comparison_pages_put_tip(struct wb_document *document, struct wb_document_table *table,
+                                 const char *label, const struct wb_comparison_run *run,
+                                 const struct wb_comparison_run *solid);
+
 #endif

@@ -17,7 +17,7 @@ static void put_paragraph(struct wb_document *document, struct wb_text *text)
     wb_text_release(text);
 }
 
-static double force_of(const struct wb_comparison_results *results)
+double wb_comparison_pages_force(const struct wb_comparison_results *results)
 {
     const struct wb_wire_model *const model =
         results->comparison->cases[WB_COMPARISON_ELASTIC].model;
@@ -26,7 +26,11 @@ static double force_of(const struct wb_comparison_results *results)
 
 /* --- tips --- */
 
-static struct wb_document_table *start_tips(struct wb_document *document, const char *caption)
+static const char distances[] =
+    "Tip from 3D: distance of the tips. Largest distance: of points at the same arc length.";
+
+struct wb_document_table *wb_comparison_pages_start_tips(struct wb_document *document,
+                                                         const char *caption)
 {
     static const struct wb_document_column columns[] = {
         {"Model"},
@@ -37,7 +41,7 @@ static struct wb_document_table *start_tips(struct wb_document *document, const 
         {.heading = "Tip from 3D (mm)", .right = true, .wraps = true},
         {.heading = "Largest distance (mm)", .right = true, .wraps = true},
     };
-    return wb_document_table(document, caption, 7, columns);
+    return wb_document_table(document, caption ? caption : distances, 7, columns);
 }
 
 struct tip {
@@ -63,9 +67,9 @@ static void put_tip(struct wb_document *document, struct wb_document_table *tabl
     wb_pages_put_row(document, table, begins, &row);
 }
 
-static void put_run(struct wb_document *document, struct wb_document_table *table,
-                    const char *label, const struct wb_comparison_run *run,
-                    const struct wb_comparison_run *solid)
+void wb_comparison_pages_put_tip(struct wb_document *document, struct wb_document_table *table,
+                                 const char *label, const struct wb_comparison_run *run,
+                                 const struct wb_comparison_run *solid)
 {
     if (!run)
         return;
@@ -90,9 +94,6 @@ static void put_rod(struct wb_document *document, struct wb_document_table *tabl
                                 solid ? wb_comparison_rod_distance(solid, rod) : (double)NAN};
     put_tip(document, table, &tip, solid, false);
 }
-
-static const char distances[] =
-    "Tip from 3D: distance of the tips. Largest distance: of points at the same arc length.";
 
 /* --- linear elastic --- */
 
@@ -185,18 +186,28 @@ void wb_comparison_pages_elastic(struct wb_document *document,
             "Simulated wire of linear elastic materials under a follower force of %g N (the "
             "paper's Fig. 3a): von Mises stress on the longitudinal section as it is deformed, "
             "and on a cross section, seen from the clamp. Ring: the largest value.",
-            force_of(results));
+            wb_comparison_pages_force(results));
         wb_document_figures(document, figures->elastic, caption, NULL, NULL);
     }
     if (solid)
         put_largest(document, results, solid);
     put_stresses(document, results);
     wb_document_heading(document, 2, "elastic-shapes", "Shapes");
-    struct wb_document_table *const table = start_tips(document, distances);
-    put_run(document, table, "3D, bonded", solid, solid);
-    put_run(document, table, "3D, friction", contact, solid);
-    put_run(document, table, "1D", rod, solid);
-    put_rod(document, table, "1D, exact (no shear, no stretch)", &results->exact, solid);
+    if (figures->elastic_shapes) {
+        snprintf(caption, sizeof caption,
+                 "Simulated shapes of the axis at %g N (the paper's Fig. 4, linear elastic), and "
+                 "how far they lie from that of the bonded solid.",
+                 wb_comparison_pages_force(results));
+        wb_document_figures(document, figures->elastic_shapes, caption, NULL, NULL);
+    }
+    struct wb_document_table *const table = wb_comparison_pages_start_tips(
+        document, "Tip from 3D: distance of the tips. Largest distance: of points at the same arc "
+                  "length. Exact: the elastica under the follower force, which neither shears nor "
+                  "stretches.");
+    wb_comparison_pages_put_tip(document, table, "3D, bonded", solid, solid);
+    wb_comparison_pages_put_tip(document, table, "3D, friction", contact, solid);
+    wb_comparison_pages_put_tip(document, table, "1D", rod, solid);
+    put_rod(document, table, "1D, exact", &results->exact, solid);
     struct wb_text text = {0};
     wb_text_append(&text,
                    "The rod's effective Young's modulus is %.2f GPa (eq. 8), its Poisson's ratio "
@@ -256,6 +267,7 @@ static void put_property(struct wb_document *document, struct wb_document_table 
                          const struct wb_comparison_results *results, int i)
 {
     const struct wb_pages_property *const property = &wb_pages_properties[i];
+    const int decimals = i == 2 ? 1 : property->decimals; /* K is small here */
     const bool fitted = results->fit_state == WB_COMPARISON_USABLE;
     const bool printed = results->comparison->has_printed_wire;
     struct wb_pages_row row = {.n = 0};
@@ -263,12 +275,12 @@ static void put_property(struct wb_document *document, struct wb_document_table 
     wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
     wb_pages_cell_number(
         &row, fitted ? wb_pages_value(&results->fit.material, i) / property->factor : (double)NAN,
-        property->decimals);
+        decimals);
     wb_pages_cell_number(&row,
                          printed ? wb_pages_value(&results->comparison->printed_wire.material, i) /
                                        property->factor
                                  : (double)NAN,
-                         property->decimals);
+                         decimals);
     wb_pages_put_row(document, table, false, &row);
 }
 
@@ -361,21 +373,22 @@ void wb_comparison_pages_elastoplastic(struct wb_document *document,
         snprintf(caption, sizeof caption,
                  "The same wire of elastoplastic materials at %g N (the paper's Fig. 3b): von "
                  "Mises stress, simulated. The colours have another scale than the elastic ones.",
-                 force_of(results));
+                 wb_comparison_pages_force(results));
         wb_document_figures(document, figures->elastoplastic, caption, NULL, NULL);
     }
     if (figures->shapes) {
-        snprintf(caption, sizeof caption,
-                 "Simulated shapes of the axis at %g N (the paper's Fig. 4). 1D fibres: each "
-                 "material with its own law; 1D fitted: one homogenised material, fitted to the "
-                 "solid.",
-                 force_of(results));
+        snprintf(
+            caption, sizeof caption,
+            "Simulated shapes of the axis at %g N (the paper's Fig. 4, elastoplastic), and how "
+            "far they lie from that of the solid. 1D fibres: each material with its own law; "
+            "1D fitted: one homogenised material, fitted to the solid.",
+            wb_comparison_pages_force(results));
         wb_document_figures(document, figures->shapes, caption, NULL, NULL);
     }
     wb_document_heading(document, 2, "elastoplastic-shapes", "Shapes");
-    struct wb_document_table *const table = start_tips(document, distances);
-    put_run(document, table, "3D", solid, solid);
-    put_run(document, table, "1D fibres", rod, solid);
+    struct wb_document_table *const table = wb_comparison_pages_start_tips(document, NULL);
+    wb_comparison_pages_put_tip(document, table, "3D", solid, solid);
+    wb_comparison_pages_put_tip(document, table, "1D fibres", rod, solid);
     if (results->fit_state == WB_COMPARISON_USABLE)
         put_rod(document, table, "1D fitted", &results->fitted, solid);
     put_rod(document, table, "1D as printed", &results->printed, solid);
@@ -386,86 +399,4 @@ void wb_comparison_pages_elastoplastic(struct wb_document *document,
                             "As printed: with the paper's effective properties.",
                             NULL, NULL);
     put_split(document, results);
-}
-
-/* --- residual stresses --- */
-
-static void put_preloads(struct wb_document *document, const struct wb_comparison_results *results)
-{
-    const struct wb_comparison *const comparison = results->comparison;
-    for (int i = 0; i < comparison->n_residual; i++) {
-        const struct wb_comparison_case *const item =
-            &comparison->cases[WB_COMPARISON_RESIDUAL + i];
-        const struct wb_wire_model *const model = item->model;
-        char label[200];
-        struct wb_text text = {0};
-        wb_text_append(&text, "<b>%s</b>:", wb_pages_escape(label, sizeof label, item->label));
-        for (int k = 0; k < model->n_steps; k++) {
-            const struct wb_tip_loads *const loads = &model->step[k].loads;
-            wb_text_append(
-                &text, "%s force (%g, %g, %g) N, moment (%g, %g, %g) N m, follower force %g N",
-                k > 0 ? "; then" : "", loads->force[0], loads->force[1], loads->force[2],
-                loads->moment[0], loads->moment[1], loads->moment[2], loads->follower[1]);
-        }
-        wb_text_append(&text, ".");
-        wb_document_item(document, WB_TONE_PLAIN, wb_text_string(&text));
-        document->failed |= text.failed;
-        wb_text_release(&text);
-    }
-}
-
-void wb_comparison_pages_residual(struct wb_document *document,
-                                  const struct wb_comparison_results *results,
-                                  const struct wb_comparison_figures *figures)
-{
-    const struct wb_comparison *const comparison = results->comparison;
-    char caption[700];
-    if (comparison->n_residual == 0)
-        return;
-    wb_document_new_page(document);
-    wb_document_heading(document, 1, "residual", "Residual stresses");
-    wb_document_paragraph(document,
-                          "Loads at the tip, one after the other, bend and twist the wire out of "
-                          "the plane, and are taken off; what stays is the residual stress, with "
-                          "which the follower force is then applied. All of it is simulated.");
-    put_preloads(document, results);
-    for (int i = 0; i < comparison->n_residual; i++) {
-        char label[200];
-        if (!figures->residual[i])
-            continue;
-        snprintf(caption, sizeof caption,
-                 "%s (the paper's Fig. 5a): simulated residual stress in the core %.3g mm from the "
-                 "clamp, seen from it: axial stress, tension positive, and von Mises stress, of "
-                 "the solid and of the rod's fibres.",
-                 wb_pages_escape(label, sizeof label,
-                                 comparison->cases[WB_COMPARISON_RESIDUAL + i].label),
-                 comparison->section / WB_MM);
-        wb_document_figures(document, figures->residual[i], caption, NULL, NULL);
-    }
-    if (figures->residual_stress) {
-        snprintf(caption, sizeof caption,
-                 "Von Mises stress at %g N without and with residual stresses (the paper's Fig. "
-                 "5b), simulated: longitudinal sections as they are deformed, seen from the side, "
-                 "with the largest value of the core.",
-                 force_of(results));
-        wb_document_figures(document, figures->residual_stress, caption, NULL, NULL);
-    }
-    if (figures->residual_shapes)
-        wb_document_figures(document, figures->residual_shapes,
-                            "The same shapes of solid and rod as lines, from two sides.", NULL,
-                            NULL);
-    wb_document_heading(document, 2, "residual-shapes", "Shapes");
-    struct wb_document_table *const table = start_tips(document, distances);
-    for (int i = 0; i <= comparison->n_residual; i++) {
-        const int index = WB_COMPARISON_ELASTOPLASTIC + i;
-        const char *const name = i == 0 ? "None" : comparison->cases[index].label;
-        const struct wb_comparison_run *const solid =
-            wb_comparison_usable(results, index, WB_COMPARISON_SOLID);
-        char label[100];
-        snprintf(label, sizeof label, "%s, 3D", name);
-        put_run(document, table, label, solid, solid);
-        snprintf(label, sizeof label, "%s, 1D fibres", name);
-        put_run(document, table, label, wb_comparison_usable(results, index, WB_COMPARISON_ROD),
-                solid);
-    }
 }
