@@ -35,20 +35,25 @@ static const struct wb_figure_style printed_style = {
     .colour = {0.365, 0.408, 0.459, 1.0}, .width = 1.0, .dash = WB_DASH_MIXED};
 
 enum {
-    MOST_POINTS = 512
+    MOST_POINTS = 1024
 };
 
-/* The axis of a run; `plane` 1: x and y, 2: x and z. */
+/* The axis of a run from the side, smooth between its points. */
 static void add_axis(struct wb_panel *panel, const char *label, const struct wb_comparison_run *run,
-                     int plane, const struct wb_figure_style *style)
+                     const struct wb_figure_style *style)
 {
-    double x[MOST_POINTS], y[MOST_POINTS];
+    double x[MOST_POINTS], y[MOST_POINTS], point[3];
     size_t n = 0;
     if (!run)
         return;
-    for (int i = 0; i < run->n_shape && n < MOST_POINTS; i++, n++) {
-        x[n] = run->shape[i][0] / WB_MM;
-        y[n] = run->shape[i][plane] / WB_MM;
+    const int last = (run->n_shape - 1) * 4;
+    for (int i = 0; i <= last && n < MOST_POINTS; i++, n++) {
+        const int below = i < last ? i / 4 : run->n_shape - 2;
+        const double part = 0.25 * (i - 4 * below);
+        wb_comparison_axis_point(run, run->s[below] + part * (run->s[below + 1] - run->s[below]),
+                                 point);
+        x[n] = point[0] / WB_MM;
+        y[n] = point[1] / WB_MM;
     }
     wb_figure_add_line(panel, label, n, x, y, style);
 }
@@ -73,6 +78,7 @@ static struct wb_panel *add_shape_panel(struct wb_figure *figure, const char *ti
     wb_figure_set_axes(panel, "<i>x</i> (mm)", y_label);
     wb_figure_set_equal_aspect(panel);
     wb_figure_set_title(panel, title);
+    wb_figure_set_width(panel, 290.0);
     return panel;
 }
 
@@ -128,11 +134,11 @@ static enum wb_status draw_elastic_shapes(struct wb_figure **figure,
         wb_comparison_usable(results, WB_COMPARISON_ELASTIC, WB_COMPARISON_ROD);
     if (!bonded && !contact && !rod)
         return WB_OK;
-    WB_TRY(wb_comparison_figures_start(figure, "shapes-elastic", 160.0));
+    WB_TRY(wb_comparison_figures_start(figure, "shapes-elastic", 150.0));
     struct wb_panel *panel = add_shape_panel(*figure, "Linear elastic", "<i>y</i> (mm)");
-    add_axis(panel, "3D, bonded", bonded, 1, &solid_style);
-    add_axis(panel, "3D, friction", contact, 1, &contact_style);
-    add_axis(panel, "1D", rod, 1, &rod_style);
+    add_axis(panel, "3D, bonded", bonded, &solid_style);
+    add_axis(panel, "3D, friction", contact, &contact_style);
+    add_axis(panel, "1D", rod, &rod_style);
     add_rod_axis(panel, "1D, exact", &results->exact, &fitted_style);
     panel = add_distance_panel(*figure, "From the bonded solid");
     add_distance(panel, bonded, contact, &contact_style);
@@ -153,13 +159,13 @@ static enum wb_status draw_shapes(struct wb_figure **figure,
     const bool fitted = results->fit_state == WB_COMPARISON_USABLE;
     if (!solid && !rod)
         return WB_OK;
-    WB_TRY(wb_comparison_figures_start(figure, "shapes-elastoplastic", 200.0));
+    WB_TRY(wb_comparison_figures_start(figure, "shapes-elastoplastic", 170.0));
     struct wb_panel *panel = add_shape_panel(*figure, "Elastoplastic", "<i>y</i> (mm)");
-    add_axis(panel, "3D", solid, 1, &solid_style);
-    add_axis(panel, "1D fibres", rod, 1, &rod_style);
+    add_axis(panel, "3D", solid, &solid_style);
+    add_axis(panel, "1D fibres", rod, &rod_style);
     if (fitted)
         add_rod_axis(panel, "1D fitted", &results->fitted, &fitted_style);
-    add_axis(panel, "3D, linear elastic", elastic, 1, &printed_style);
+    add_axis(panel, "3D, linear elastic", elastic, &printed_style);
     panel = add_distance_panel(*figure, "From the solid");
     add_distance(panel, solid, rod, &rod_style);
     if (fitted)
@@ -257,11 +263,11 @@ static enum wb_status draw_residual_shapes(struct wb_figure **figure,
     const struct wb_comparison *const comparison = results->comparison;
     if (!any_residual(results))
         return WB_OK;
-    WB_TRY(wb_comparison_figures_start(figure, "residual-shapes", 200.0));
+    WB_TRY(wb_comparison_figures_start(figure, "residual-shapes", 190.0));
     struct wb_panel *const side = add_shape_panel(*figure, "From the side", "<i>y</i> (mm)");
     struct wb_panel *const effect = wb_figure_add_panel(*figure);
-    wb_figure_set_title(effect, "Tip from that without residual stress");
-    wb_figure_set_axes(effect, "Follower force (N)", "Distance (mm)");
+    wb_figure_set_title(effect, "Effect on the tip");
+    wb_figure_set_axes(effect, "Follower force (N)", "Tip moved (mm)");
     wb_figure_set_y_range(effect, 0.0, (double)NAN);
     for (int i = 0; i <= comparison->n_residual; i++) {
         const int index = WB_COMPARISON_ELASTOPLASTIC + i;
@@ -275,7 +281,7 @@ static enum wb_status draw_residual_shapes(struct wb_figure **figure,
             char label[100];
             snprintf(label, sizeof label, "%s, %s",
                      i == 0 ? "None" : comparison->cases[index].label, models[k]);
-            add_axis(side, label, run, 1, &styles[k]);
+            add_axis(side, label, run, &styles[k]);
             add_effect(effect, run,
                        wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, solver),
                        &styles[k]);

@@ -207,7 +207,7 @@ static void put_simulation(struct wb_document *document, struct wb_document_tabl
     wb_pages_cell_number(&row, run->elements, 0);
     wb_pages_cell_number(&row, run->unknowns, 0);
     wb_pages_cell_number(&row, run->iterations, 0);
-    wb_pages_cell_number(&row, run->cpu_s, run->cpu_s < 10.0 ? 2 : 0);
+    wb_pages_cell_number(&row, run->cpu_s, run->cpu_s < 0.1 ? 3 : run->cpu_s < 10.0 ? 2 : 0);
     wb_pages_cell_number(&row, run->memory_MB, 0);
     if (run->state == WB_COMPARISON_USABLE)
         wb_pages_cell(&row, WB_TONE_GOOD, "converged");

@@ -105,7 +105,6 @@ static void put_residual_stresses(struct wb_document *document,
         {.heading = "Axis moved at the end (mm)", .right = true, .wraps = true},
     };
     const struct wb_comparison *const comparison = results->comparison;
-    wb_document_heading(document, 2, "residual-stresses", "Residual stress and its effect");
     struct wb_document_table *const table = wb_document_table(
         document,
         "Stresses of the core on the section that is drawn, without load. Moved: distance from the "
@@ -127,13 +126,13 @@ void wb_comparison_pages_residual(struct wb_document *document,
     char caption[700];
     if (comparison->n_residual == 0)
         return;
-    wb_document_new_page(document);
     wb_document_heading(document, 1, "residual", "Residual stresses");
     wb_document_paragraph(document,
                           "Loads at the tip bend and twist the wire out of the plane, and are "
                           "taken off. What stays is the residual stress; with it the follower "
                           "force is applied. All of it is simulated.");
     put_preloads(document, comparison);
+    wb_document_heading(document, 2, "residual-stresses", "Residual stress and its effect");
     for (int i = 0; i < comparison->n_residual; i++) {
         char label[200];
         if (!figures->residual[i])

@@ -216,7 +216,7 @@ void wb_comparison_pages_elastic(struct wb_document *document,
                    wb_wire_model_poissons_ratio(model));
     if (contact && solid)
         wb_text_append(&text,
-                       " Friction (<i>\xce\xbc</i> = %g) instead of a bond moves the axis by %.3f "
+                       " Friction (<i>\xce\xbc</i> = %g) instead of a bond moves the axis by %.4f "
                        "mm at most.",
                        results->comparison->cases[WB_COMPARISON_CONTACT].model->interface.friction,
                        wb_comparison_distance(solid, contact) / WB_MM);
@@ -255,8 +255,14 @@ static void put_curl(struct wb_document *document, const struct wb_comparison_re
         if (!results->printed.reached)
             wb_text_append(&text, " at %.1f N, where its computation ended",
                            results->printed.force[results->printed.n_curve - 1]);
-        wb_text_append(&text, "; without hardening it would give way at %.1f N.",
+        wb_text_append(&text,
+                       "; without hardening it would give way at %.1f N. The paper's text suggests "
+                       "no such curl, so its <i>K</i> is taken for a misprint",
                        results->collapse_force);
+        if (results->tenfold.reached)
+            wb_text_append(&text, " (ten times as much gives %.0f degrees)",
+                           results->tenfold.tip_angle * degrees);
+        wb_text_append(&text, ".");
     }
     wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
     document->failed |= text.failed;
@@ -365,7 +371,6 @@ void wb_comparison_pages_elastoplastic(struct wb_document *document,
     const struct wb_comparison_run *const rod =
         wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_ROD);
     char caption[700];
-    wb_document_new_page(document);
     wb_document_heading(document, 1, "elastoplastic", "Elastoplastic: solid and rod");
     if (solid)
         put_curl(document, results, solid);

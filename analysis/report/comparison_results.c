@@ -87,7 +87,9 @@ static enum wb_status compute_printed(struct wb_comparison_results *results)
     /* Plastic moment sigma_Y d^3 / 6 of a full circle at the clamp. */
     results->collapse_force =
         wire.material.yield_stress * pow(wire.diameter, 3.0) / 6.0 / wire.length;
-    return wb_comparison_rod_compute(&results->printed, &wire);
+    WB_TRY(wb_comparison_rod_compute(&results->printed, &wire));
+    wire.material.strength_coefficient *= 10.0;
+    return wb_comparison_rod_compute(&results->tenfold, &wire);
 }
 
 static bool go_on(void *context, int evaluation, double error, double size)

@@ -43,6 +43,7 @@ struct wb_comparison_results {
     struct wb_calibrate_result fit;
     struct wb_comparison_rod fitted;  /* the rod with the fitted properties */
     struct wb_comparison_rod printed; /* with the printed ones; not done: none are */
+    struct wb_comparison_rod tenfold; /* with ten times the printed strength coefficient */
     double collapse_force;            /* N: of the printed yield stress, without hardening */
 
     int n_wanted, n_usable; /* datasets */

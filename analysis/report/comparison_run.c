@@ -191,15 +191,23 @@ void wb_comparison_run_release(struct wb_comparison_run *run)
 
 /* --- comparing --- */
 
-/* A point of an axis at an arc length, on the straight line between its neighbours. */
-static void point_at(const struct wb_comparison_run *run, double s, double point[3])
+void wb_comparison_axis_point(const struct wb_comparison_run *run, double s, double point[3])
 {
-    int i = 1;
-    while (i + 1 < run->n_shape && run->s[i] < s)
-        i++;
-    const double part = (s - run->s[i - 1]) / (run->s[i] - run->s[i - 1]);
-    for (int k = 0; k < 3; k++)
-        point[k] = run->shape[i - 1][k] + part * (run->shape[i][k] - run->shape[i - 1][k]);
+    /* The cubic (or less) through the nearest points. */
+    const int n = run->n_shape < 4 ? run->n_shape : 4;
+    int first = 0;
+    while (first + n < run->n_shape && run->s[first + n / 2] < s)
+        first++;
+    point[0] = point[1] = point[2] = 0.0;
+    for (int i = first; i < first + n; i++) {
+        double weight = 1.0;
+        for (int k = first; k < first + n; k++) {
+            if (k != i)
+                weight *= (s - run->s[k]) / (run->s[i] - run->s[k]);
+        }
+        for (int k = 0; k < 3; k++)
+            point[k] += weight * run->shape[i][k];
+    }
 }
 
 static double apart(const double a[3], const double b[3])
@@ -211,7 +219,7 @@ double wb_comparison_distance_at(const struct wb_comparison_run *run, double s,
                                  const double point[3])
 {
     double own[3];
-    point_at(run, s, own);
+    wb_comparison_axis_point(run, s, own);
     return apart(own, point);
 }
 

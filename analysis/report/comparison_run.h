@@ -48,6 +48,9 @@ void wb_comparison_run_load(struct wb_comparison_run *run, const struct wb_compa
                             enum wb_comparison_solver solver);
 void wb_comparison_run_release(struct wb_comparison_run *run); /* accepts a zeroed one */
 
+/* A point of a run's axis at an arc length within it, m; smooth between those that it holds. */
+void wb_comparison_axis_point(const struct wb_comparison_run *run, double s, double point[3]);
+
 /* Distance of a point from that of a run's axis at an arc length, m. */
 double wb_comparison_distance_at(const struct wb_comparison_run *run, double s,
                                  const double point[3]);
