@@ -1,0 +1,80 @@
+#!/bin/bash
+# `wirebench report` of a comparison as a user meets it: what is missing and how to make it, what has
+# changed, limits. Solids take long to solve, so rods stand in for them: the same files, but for the
+# solver's name.
+# Usage: report-comparison.sh WIREBENCH
+set -u
+
+wirebench=$(realpath "$1")
+folder=$(mktemp -d /tmp/wb-comparison-XXXXXX)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
+    local expected=$1 code
+    shift
+    "$wirebench" report "$@" >"$folder/out" 2>"$folder/err"
+    code=$?
+    [ $code -eq "$expected" ] || fail "report $*: exit code $code, expected $expected"
+}
+
+cat >"$folder/c.yaml" <<'YAML'
+kind: comparison
+title: Solid and rod
+simulations: sim
+elastic: {model: follower-8awg-elastic}
+elastoplastic: {model: follower-8awg}
+fit: {elements: 10, fibres: 12}
+YAML
+
+sed 's/^kind: .*/kind: novel/' "$folder/c.yaml" >"$folder/novel.yaml"
+run 1 "$folder/novel.yaml" -o "$folder/r"
+grep -q 'novel.yaml:1: kind' "$folder/err" || fail 'an unknown kind is not named with its line'
+[ -e "$folder/r" ] && fail 'a bad campaign made a folder'
+
+# Without datasets all is written, and everybody is told how to make them.
+run 3 "$folder/c.yaml" -o "$folder/r"
+for file in report.pdf report.html report.json; do
+    [ -s "$folder/r/$file" ] || fail "no $file"
+done
+grep -qF 'wirebench solve wire3d fixtures/models/follower-8awg.yaml -o simulations/follower-8awg' \
+    "$folder/out" || fail 'it is not told how to make a dataset'
+cp "$folder/out" "$folder/before"
+run 1 "$folder/c.yaml" -o "$folder/r"
+grep -q -- '--force' "$folder/err" || fail 'the message does not name --force'
+
+for model in follower-8awg-elastic follower-8awg; do
+    "$wirebench" solve wire1d $model -o "$folder/sim/$model-1d" >/dev/null 2>&1 ||
+        fail "cannot solve $model"
+    cp -r "$folder/sim/$model-1d" "$folder/sim/$model"
+    sed -i 's/"model": "wire1d"/"model": "wire3d"/' "$folder/sim/$model/dataset.json"
+done
+run 0 "$folder/c.yaml" -o "$folder/r" --force
+grep -q '4 of 4 datasets used' "$folder/out" || fail 'not all datasets are used'
+grep -q 'fitted rod: yield stress' "$folder/out" || fail 'the fitted rod is not told'
+run 0 "$folder/c.yaml" -o "$folder/again" --json
+cmp -s "$folder/r/report.json" "$folder/again/report.json" || fail 'another run gave other bytes'
+cmp -s "$folder/out" "$folder/again/report.json" || fail '--json does not print report.json'
+diff -r "$folder/r" "$folder/again" >/dev/null || fail 'another run gave other files'
+grep -qiE "experiment|$folder" "$folder/r/report.html" "$folder/r/report.json" &&
+    fail 'a word or path that must not be there'
+
+# A rod that costs as much as a solid.
+(cat "$folder/c.yaml" && echo 'limits: {cost_max: 0.02}') >"$folder/strict.yaml"
+run 4 "$folder/strict.yaml" -o "$folder/strict"
+grep -q 'limit of the campaign is exceeded' "$folder/out" || fail 'the exceeded limit is not told'
+
+# A dataset of a model that has changed since is left out.
+sed -i 's/"sha256": "./"sha256": "x/' "$folder/sim/follower-8awg/dataset.json"
+run 3 "$folder/c.yaml" -o "$folder/r" --force
+grep -q 'have changed since' "$folder/out" || fail 'the changed model is not told'
+grep -q 'have changed since' "$folder/r/report.html" || fail 'the report hides the changed model'
+grep -q 'no fitted rod' "$folder/out" || fail 'the missing fit is not told'
+
+[ $failures -eq 0 ] && echo 'report of a comparison: all good'
+exit $((failures > 0))
