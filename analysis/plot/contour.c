@@ -471,6 +471,8 @@ static enum wb_status take_loop(struct wb_contour *contour, const struct work *w
 
 static enum wb_status chain_all(struct wb_contour *contour, struct work *work)
 {
+    if (work->n_segments == 0)
+        return WB_OK;
     qsort_r(work->segments, (size_t)work->n_segments, sizeof *work->segments, by_level_and_start,
             work);
     for (int first = 0, end; first < work->n_segments; first = end) {
