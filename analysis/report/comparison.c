@@ -79,7 +79,7 @@ static enum wb_status read_case(const struct reading *reading, const struct wb_c
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     WB_TRY(read_model(reading, node, model, item));
     if (!solid[0])
-        snprintf(solid, sizeof solid, "%s", item->model->name);
+        snprintf(solid, sizeof solid, "%.240s-3d", item->model->name);
     WB_TRY(find_dataset(reading, solid, &item->datasets[WB_COMPARISON_SOLID]));
     if (!has_rod && rod[0])
         return wb_config_refuse(node, "rod", "a rod knows no contact");

@@ -5,27 +5,29 @@
  *
  *     kind: comparison
  *     title: A wire as a solid and as a rod
- *     notes: what a reader should know               # optional
- *     simulations: ../../simulations                 # optional, the shipped ones by default
- *     elastic: {model: follower-8awg-elastic}        # name in fixtures/models, or a path
- *     contact: {model: follower-8awg-elastic-contact}    # optional; the solid only
+ *     notes: what a reader should know            # optional
+ *     simulations: ../../simulations              # optional, the shipped ones by default
+ *     elastic: {model: follower-8awg-elastic}     # name in fixtures/models, or a path
+ *     contact:                                    # optional; the solid only
+ *       model: follower-8awg-elastic-contact
  *     elastoplastic:
  *       model: follower-8awg
- *       solid: my-solid                              # optional; dataset in `simulations`, or a
- * path rod: my-rod                                  # relative to this file; MODEL and MODEL-1d
- *     residual:                                      # optional
+ *       solid: my-solid                           # optional: MODEL-3d and MODEL-1d; names in
+ *       rod: ../my-rod                            # `simulations`, with a '/' paths from this file
+ *     residual:                                   # optional, at most four
  *       - {label: Residual 1, model: residual-1-8awg}
- *     section_mm: 3.26                               # of the stresses that are drawn; optional,
- * the # core's diameter by default states: {loaded: loaded, residual: unloaded}   # optional: steps
- * at whose ends fields are kept fit_modulus: mixture                           # of the fitted rod:
- * of eq. 8 (default), or # `curve`: of eq. 10 fit: {step_mm: 0.5}                            #
- * optional, as a campaign's `settings` limits:                                        # optional,
- * absent: none tip_max: 0.003                               # elastic tips over the length
- *       stress_max: 0.01                             # elastic stress over E kappa r, less 1
- *       cost_max: 0.02                               # CPU seconds of the rod over the solid's
- *     printed:                                       # optional: the paper's own values
- *       wire: 8awg                                   # its homogenised properties
+ *     section_mm: 3.26                            # optional: whose stresses are drawn; the core's
+ *                                                 # diameter by default
+ *     states: {loaded: loaded, residual: unloaded}    # optional: steps at whose ends fields are
+ * kept fit_modulus: mixture                        # optional: E of eq. 8, or `curve`: of eq. 10
+ *     fit: {step_mm: 0.5}                         # optional, as a campaign's `settings`
+ *     limits:                                     # optional, absent: none
+ *       tip_max: 0.003                            # elastic tips from the exact one
+ *       stress_max: 0.01                          # elastic stress from E kappa r
+ *       cost_max: 0.02                            # CPU seconds of the rod over the solid's
+ *     printed:                                    # optional: the paper's own values
  *       source: section 2 of the paper
+ *       wire: 8awg                                # its homogenised properties
  *       stress_MPa: 697
  *       cost: 0.02
  *
@@ -88,7 +90,9 @@ struct wb_comparison {
     char loaded_state[32], residual_state[32]; /* names of steps */
     bool mixture;                              /* E of eq. 8 for the fit */
     struct wb_calibrate_settings fit;
-    double tip_limit, stress_limit, cost_limit; /* 0: none */
+    double tip_limit; /* distance over the exact tip's displacement, 1; 0: none, as all of them */
+    double stress_limit; /* of the ratio from 1 */
+    double cost_limit;   /* 1 */
     char printed_source[160];
     bool has_printed_wire;
     struct wb_wire printed_wire;

@@ -96,7 +96,7 @@ static void a_campaign_names_models_and_their_datasets(void **state)
     assert_int_equal(comparison.n_residual, 2);
     const struct wb_comparison_case *const elastic = &comparison.cases[WB_COMPARISON_ELASTIC];
     assert_string_equal(elastic->model_name, "fixtures/models/follower-8awg-elastic.yaml");
-    assert_string_equal(elastic->datasets[0].name, "simulations/follower-8awg-elastic");
+    assert_string_equal(elastic->datasets[0].name, "simulations/follower-8awg-elastic-3d");
     assert_string_equal(elastic->datasets[1].name, "simulations/follower-8awg-elastic-1d");
     assert_false(comparison.cases[WB_COMPARISON_CONTACT].datasets[1].wanted);
     const struct wb_comparison_case *const plastic = &comparison.cases[WB_COMPARISON_ELASTOPLASTIC];
@@ -403,7 +403,7 @@ static void a_missing_dataset_is_told_with_the_command_that_makes_it(void **stat
         &results.runs[WB_COMPARISON_ELASTOPLASTIC][WB_COMPARISON_SOLID];
     assert_int_equal(run->state, WB_COMPARISON_MISSING);
     assert_string_equal(run->command,
-                        "wirebench solve wire3d plastic.yaml -o simulations/follower-8awg");
+                        "wirebench solve wire3d plastic.yaml -o simulations/follower-8awg-3d");
     assert_int_equal(results.fit_state, WB_COMPARISON_MISSING);
     release();
 }
@@ -466,13 +466,13 @@ static void a_damaged_dataset_is_refused_without_this_machines_paths(void **stat
     assert_int_equal(read_campaign(own), WB_OK);
     write_dataset(WB_COMPARISON_ELASTIC, WB_COMPARISON_SOLID);
     wb_comparison_release(&comparison);
-    write_text("own/follower-8awg-elastic/fields.csv", "nonsense\n");
+    write_text("own/follower-8awg-elastic-3d/fields.csv", "nonsense\n");
     compute(own);
     const struct wb_comparison_run *const run =
         &results.runs[WB_COMPARISON_ELASTIC][WB_COMPARISON_SOLID];
     assert_int_equal(run->state, WB_COMPARISON_REFUSED);
     assert_non_null(
-        strstr(wb_text_string(&run->problem), "simulations/follower-8awg-elastic/fields.csv:1"));
+        strstr(wb_text_string(&run->problem), "simulations/follower-8awg-elastic-3d/fields.csv:1"));
     assert_null(strstr(wb_text_string(&run->problem), folder));
     release();
 }
@@ -564,7 +564,7 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     release();
     assert_true(says("none/report.html", "<b>Incomplete.</b> 4 of 4 datasets are missing"));
     assert_true(says("none/report.html", "wirebench solve wire3d plastic.yaml -o "
-                                         "simulations/follower-8awg"));
+                                         "simulations/follower-8awg-3d"));
     assert_true(says("none/report.html", "wirebench solve wire1d plastic.yaml -o "
                                          "simulations/follower-8awg-1d"));
     assert_false(says("none/report.html", ">nan") || says("none/report.html", " nan"));

@@ -42,7 +42,7 @@ run 3 "$folder/c.yaml" -o "$folder/r"
 for file in report.pdf report.html report.json; do
     [ -s "$folder/r/$file" ] || fail "no $file"
 done
-grep -qF 'wirebench solve wire3d fixtures/models/follower-8awg.yaml -o simulations/follower-8awg' \
+grep -qF 'wirebench solve wire3d fixtures/models/follower-8awg.yaml -o simulations/follower-8awg-3d' \
     "$folder/out" || fail 'it is not told how to make a dataset'
 cp "$folder/out" "$folder/before"
 run 1 "$folder/c.yaml" -o "$folder/r"
@@ -51,8 +51,8 @@ grep -q -- '--force' "$folder/err" || fail 'the message does not name --force'
 for model in follower-8awg-elastic follower-8awg; do
     "$wirebench" solve wire1d $model -o "$folder/sim/$model-1d" >/dev/null 2>&1 ||
         fail "cannot solve $model"
-    cp -r "$folder/sim/$model-1d" "$folder/sim/$model"
-    sed -i 's/"model": "wire1d"/"model": "wire3d"/' "$folder/sim/$model/dataset.json"
+    cp -r "$folder/sim/$model-1d" "$folder/sim/$model-3d"
+    sed -i 's/"model": "wire1d"/"model": "wire3d"/' "$folder/sim/$model-3d/dataset.json"
 done
 run 0 "$folder/c.yaml" -o "$folder/r" --force
 grep -q '4 of 4 datasets used' "$folder/out" || fail 'not all datasets are used'
@@ -70,7 +70,7 @@ run 4 "$folder/strict.yaml" -o "$folder/strict"
 grep -q 'limit of the campaign is exceeded' "$folder/out" || fail 'the exceeded limit is not told'
 
 # A dataset of a model that has changed since is left out.
-sed -i 's/"sha256": "./"sha256": "x/' "$folder/sim/follower-8awg/dataset.json"
+sed -i 's/"sha256": "./"sha256": "x/' "$folder/sim/follower-8awg-3d/dataset.json"
 run 3 "$folder/c.yaml" -o "$folder/r" --force
 grep -q 'have changed since' "$folder/out" || fail 'the changed model is not told'
 grep -q 'have changed since' "$folder/r/report.html" || fail 'the report hides the changed model'
