@@ -18,8 +18,8 @@
  *       - {label: Residual 1, model: residual-1-8awg}
  *     section_mm: 3.26                            # optional: whose stresses are drawn; the core's
  *                                                 # diameter by default
- *     states: {loaded: loaded, residual: unloaded}    # optional: steps at whose ends fields are
- * kept fit_modulus: mixture                        # optional: E of eq. 8, or `curve`: of eq. 10
+ *     states: {loaded: loaded, residual: unloaded}    # optional: steps at whose end fields are
+ *     fit_modulus: mixture                        # optional: E of eq. 8, or `curve`: of eq. 10
  *     fit: {step_mm: 0.5}                         # optional, as a campaign's `settings`
  *     limits:                                     # optional, absent: none
  *       tip_max: 0.003                            # elastic tips from the exact one
