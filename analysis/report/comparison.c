@@ -116,6 +116,19 @@ static enum wb_status check_case(const struct wb_config_node *node, const struct
     return WB_OK;
 }
 
+/* The exact rod is loaded by the follower force alone, and so is the wire that a rod is fitted to.
+ */
+static enum wb_status check_alone(const struct wb_config_node *node,
+                                  const struct wb_wire_model *model)
+{
+    const bool has_weight =
+        model->gravity[0] != 0.0 || model->gravity[1] != 0.0 || model->gravity[2] != 0.0;
+    if (!wb_wire_model_is_follower(model) || has_weight)
+        return wb_config_refuse(node, "model", "'%s' is not loaded by a follower force alone",
+                                model->name);
+    return WB_OK;
+}
+
 static enum wb_status read_one(const struct reading *reading, const struct wb_config_node *node,
                                int index)
 {
@@ -126,6 +139,7 @@ static enum wb_status read_one(const struct reading *reading, const struct wb_co
     snprintf(item->label, sizeof item->label, "%s", labels[index]);
     WB_TRY(read_case(reading, node, !is_contact, item));
     WB_TRY(check_case(node, comparison, item, index != WB_COMPARISON_ELASTOPLASTIC));
+    WB_TRY(check_alone(node, item->model));
     if (item->model->has_contact != is_contact)
         return wb_config_refuse(node, "model",
                                 is_contact ? "'%s' has no interface" : "'%s' is not bonded",
@@ -264,4 +278,13 @@ void wb_comparison_release(struct wb_comparison *comparison)
     for (int i = 0; i < WB_COMPARISON_CASES; i++)
         free(comparison->cases[i].model);
     memset(comparison, 0, sizeof *comparison);
+}
+
+bool wb_comparison_has_substitutes(const struct wb_comparison *comparison)
+{
+    const struct wb_wire_model *const model = comparison->cases[WB_COMPARISON_ELASTOPLASTIC].model;
+    bool any = false;
+    for (int i = 0; i < model->n_parts; i++)
+        any |= model->part[i].is_substitute;
+    return any;
 }

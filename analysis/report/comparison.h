@@ -104,4 +104,7 @@ struct wb_comparison {
 WB_MUST_CHECK enum wb_status wb_comparison_read(struct wb_comparison *comparison, const char *path);
 void wb_comparison_release(struct wb_comparison *comparison); /* accepts a zeroed one */
 
+/* Whether a material of the elastoplastic solid stands in for one that the paper lost. */
+bool wb_comparison_has_substitutes(const struct wb_comparison *comparison);
+
 #endif

@@ -184,10 +184,13 @@ void wb_comparison_pages_summary(struct wb_document *document,
     wb_document_heading(document, 1, "summary", "Summary");
     wb_document_notice(
         document, WB_TONE_ORIGIN,
-        "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and as a "
-        "1D rod. No wire was tested. The materials of the solid stand in for the paper's Table 1, "
-        "which is lost, so its numbers cannot be had again; what can be shown is how solid and rod "
-        "compare.");
+        wb_comparison_has_substitutes(results->comparison)
+            ? "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and "
+              "as a 1D rod. No wire was tested. The materials of the solid stand in for the "
+              "paper's Table 1, which is lost, so its numbers cannot be had again; what can be "
+              "shown is how solid and rod compare."
+            : "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and "
+              "as a 1D rod. No wire was tested.");
     put_missing(document, results);
     put_limits(document, results);
     put_facts(document, results);

@@ -159,10 +159,11 @@ static void put_largest(struct wb_document *document, const struct wb_comparison
                    peak.stress / plastic->part[0].material.yield_stress,
                    plastic->part[0].material.yield_stress / WB_MPA, root / WB_MPA);
     if (comparison->printed_stress > 0.0)
+        wb_text_append(&text, " The paper prints %.0f MPa.", comparison->printed_stress / WB_MPA);
+    if (comparison->printed_stress > 0.0 && wb_comparison_has_substitutes(comparison))
         wb_text_append(&text,
-                       " The paper prints %.0f MPa; its Young's modulus of copper is lost, and "
-                       "ours was chosen so that beam theory gives that stress.",
-                       comparison->printed_stress / WB_MPA);
+                       " Its Young's modulus of copper is lost, and the core's was chosen so "
+                       "that beam theory gives that stress.");
     put_paragraph(document, &text);
 }
 
@@ -227,6 +228,19 @@ void wb_comparison_pages_elastic(struct wb_document *document,
 
 /* --- elastoplastic --- */
 
+/* Printed properties under which the wire curls up. */
+static void append_misprint(struct wb_text *text, const struct wb_comparison_results *results)
+{
+    if (!(results->printed.tip_angle * degrees > 90.0))
+        return;
+    wb_text_append(text, " The paper's text suggests no such curl, so its <i>K</i> is taken for a "
+                         "misprint");
+    if (results->tenfold.reached)
+        wb_text_append(text, " (ten times as much gives %.0f degrees)",
+                       results->tenfold.tip_angle * degrees);
+    wb_text_append(text, ".");
+}
+
 /* What the reader must know before comparing with the paper. */
 static void put_curl(struct wb_document *document, const struct wb_comparison_results *results,
                      const struct wb_comparison_run *solid)
@@ -235,15 +249,17 @@ static void put_curl(struct wb_document *document, const struct wb_comparison_re
     const struct wb_material *const copper =
         &comparison->cases[WB_COMPARISON_ELASTOPLASTIC].model->part[0].material;
     struct wb_text text = {0};
+    if (wb_comparison_has_substitutes(comparison))
+        wb_text_append(&text, "<b>The materials are substitutes</b> for the paper's Table 1, which "
+                              "is lost; their hardening is that of the literature. ");
     wb_text_append(&text,
-                   "<b>The materials are substitutes</b> for the paper's Table 1, which is lost. "
-                   "With <i>\xcf\x83</i><sub>Y</sub> = %.0f MPa and the hardening of annealed "
-                   "copper from the literature (<i>K</i> = %.0f MPa, <i>n</i> = %.2f) the solid "
-                   "itself curls up: at %g N its tip has turned by <b>%.0f degrees</b>, where the "
-                   "elastic one turns by %.0f.",
+                   "With <i>\xcf\x83</i><sub>Y</sub> = %.0f MPa, <i>K</i> = %.0f MPa and <i>n</i> "
+                   "= %.2f of the core the solid%s: at %g N its tip has turned by <b>%.0f "
+                   "degrees</b>, where the elastic one turns by %.0f.",
                    copper->yield_stress / WB_MPA, copper->strength_coefficient / WB_MPA,
-                   copper->hardening_exponent, solid->force, solid->tip_angle * degrees,
-                   results->exact.tip_angle * degrees);
+                   copper->hardening_exponent,
+                   solid->tip_angle * degrees > 90.0 ? " itself curls up" : " yields", solid->force,
+                   solid->tip_angle * degrees, results->exact.tip_angle * degrees);
     if (results->printed.done) {
         const struct wb_material *const printed = &comparison->printed_wire.material;
         wb_text_append(
@@ -255,14 +271,9 @@ static void put_curl(struct wb_document *document, const struct wb_comparison_re
         if (!results->printed.reached)
             wb_text_append(&text, " at %.1f N, where its computation ended",
                            results->printed.force[results->printed.n_curve - 1]);
-        wb_text_append(&text,
-                       "; without hardening it would give way at %.1f N. The paper's text suggests "
-                       "no such curl, so its <i>K</i> is taken for a misprint",
+        wb_text_append(&text, "; without hardening it would give way at %.1f N.",
                        results->collapse_force);
-        if (results->tenfold.reached)
-            wb_text_append(&text, " (ten times as much gives %.0f degrees)",
-                           results->tenfold.tip_angle * degrees);
-        wb_text_append(&text, ".");
+        append_misprint(&text, results);
     }
     wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
     document->failed |= text.failed;

@@ -139,6 +139,9 @@ static void a_campaign_that_cannot_be_compared_is_refused_with_its_line(void **s
         {"kind: comparison\ntitle: x\nelastic: {model: follower-8awg-elastic}\n"
          "contact: {model: follower-8awg-elastic}\nelastoplastic: {model: follower-8awg}\n",
          "has no interface"},
+        {"kind: comparison\ntitle: x\nelastic: {model: follower-8awg-elastic}\n"
+         "elastoplastic: {model: residual-1-8awg}\n",
+         "c.yaml:4: model: 'residual-1-8awg' is not loaded by a follower force alone"},
         {"kind: comparison\ntitle: x\nelastic: {model: solid-cylinder-type3}\n"
          "elastoplastic: {model: follower-8awg}\n",
          "solid-cylinder-type3"},
