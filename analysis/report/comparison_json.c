@@ -56,6 +56,17 @@ static void put_usable(struct wb_json *entry, const struct wb_comparison_results
     put_fields(entry, &run->fields);
 }
 
+/* Of a case with residual stress: how far its tip is from that of the same model without. */
+static void put_effect(struct wb_json *entry, const struct wb_comparison_results *results,
+                       const struct wb_comparison_run *run, int index, int solver)
+{
+    const struct wb_comparison_run *const without = wb_comparison_usable(
+        results, WB_COMPARISON_ELASTOPLASTIC, (enum wb_comparison_solver)solver);
+    if (index >= WB_COMPARISON_RESIDUAL && without)
+        wb_json_set_number(entry, "tip_moved_at_most_mm",
+                           wb_comparison_effect(run, without) / WB_MM);
+}
+
 static void put_run(struct wb_json *object, const struct wb_comparison_results *results, int index,
                     int solver)
 {
@@ -82,8 +93,10 @@ static void put_run(struct wb_json *object, const struct wb_comparison_results *
         wb_json_set_number(entry, "slip_limit_mm", run->slip_limit / WB_MM);
         wb_json_set_number(entry, "opening_mm", run->opening / WB_MM);
     }
-    if (run->state == WB_COMPARISON_USABLE)
-        put_usable(entry, results, run, index);
+    if (run->state != WB_COMPARISON_USABLE)
+        return;
+    put_usable(entry, results, run, index);
+    put_effect(entry, results, run, index, solver);
 }
 
 static void put_rod(struct wb_json *root, const char *key, const struct wb_comparison_rod *rod,

@@ -72,12 +72,10 @@ static void put_residual_row(struct wb_document *document, struct wb_document_ta
         wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, solver);
     const struct wb_field *const field =
         run ? wb_fields_find(&run->fields, comparison->residual_state, comparison->section) : NULL;
-    double axial[2], furthest = (double)NAN;
+    double axial[2];
     if (!run)
         return;
     find_axial(field, axial);
-    for (int i = 0; without && i < run->n_loading; i++)
-        furthest = fmax(furthest, wb_comparison_tip_distance(run, i, without));
     struct wb_pages_row row = {.n = 0};
     wb_pages_cell_plain(&row, WB_TONE_PLAIN, comparison->cases[index].label);
     wb_pages_cell(&row, WB_TONE_PLAIN, solver == WB_COMPARISON_SOLID ? "3D" : "1D fibres");
@@ -85,7 +83,8 @@ static void put_residual_row(struct wb_document *document, struct wb_document_ta
     wb_pages_cell_number(&row, axial[1] / WB_MPA, 1);
     wb_pages_cell_number(&row, axial[0] / WB_MPA, 1);
     wb_pages_cell_number(&row, wb_comparison_find_peak(field, 0).stress / WB_MPA, 1);
-    wb_pages_cell_number(&row, furthest / WB_MM, 3);
+    wb_pages_cell_number(&row, without ? wb_comparison_effect(run, without) / WB_MM : (double)NAN,
+                         3);
     wb_pages_cell_number(&row, without ? wb_comparison_distance(without, run) / WB_MM : (double)NAN,
                          3);
     wb_pages_put_row(document, table, solver == WB_COMPARISON_SOLID, &row);
@@ -118,6 +117,36 @@ static void put_residual_stresses(struct wb_document *document,
     }
 }
 
+/* The paper's finding beside ours. */
+static void put_finding(struct wb_document *document, const struct wb_comparison_results *results)
+{
+    const struct wb_comparison *const comparison = results->comparison;
+    const struct wb_comparison_run *const without =
+        wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_SOLID);
+    double moved = (double)NAN, stress = (double)NAN;
+    char text[500];
+    for (int i = 0; i < comparison->n_residual; i++) {
+        const struct wb_comparison_run *const run =
+            wb_comparison_usable(results, WB_COMPARISON_RESIDUAL + i, WB_COMPARISON_SOLID);
+        if (!run || !without)
+            continue;
+        moved = fmax(moved, wb_comparison_effect(run, without));
+        stress = fmax(
+            stress,
+            wb_comparison_find_peak(
+                wb_fields_find(&run->fields, comparison->residual_state, comparison->section), 0)
+                .stress);
+    }
+    if (!isfinite(moved) || !isfinite(stress))
+        return;
+    snprintf(text, sizeof text,
+             "The paper finds the shapes notably different. Here the pre-loads leave at most "
+             "<b>%.0f MPa</b> in the solid's core on that section, and move its tip by at most "
+             "<b>%.2f mm</b> while the follower force grows.",
+             stress / WB_MPA, moved / WB_MM);
+    wb_document_paragraph(document, text);
+}
+
 void wb_comparison_pages_residual(struct wb_document *document,
                                   const struct wb_comparison_results *results,
                                   const struct wb_comparison_figures *figures)
@@ -146,6 +175,7 @@ void wb_comparison_pages_residual(struct wb_document *document,
         wb_document_figures(document, figures->residual[i], caption, NULL, NULL);
     }
     put_residual_stresses(document, results);
+    put_finding(document, results);
     if (figures->residual_stress) {
         snprintf(caption, sizeof caption,
                  "Von Mises stress at %g N without and with residual stresses (the paper's Fig. "

@@ -260,3 +260,12 @@ double wb_comparison_tip_distance(const struct wb_comparison_run *run, int row,
     }
     return (double)NAN;
 }
+
+double wb_comparison_effect(const struct wb_comparison_run *run,
+                            const struct wb_comparison_run *other)
+{
+    double largest = (double)NAN;
+    for (int i = 0; i < run->n_loading; i++)
+        largest = fmax(largest, wb_comparison_tip_distance(run, i, other));
+    return largest;
+}

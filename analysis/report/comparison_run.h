@@ -60,6 +60,10 @@ double wb_comparison_distance_at(const struct wb_comparison_run *run, double s,
 double wb_comparison_tip_distance(const struct wb_comparison_run *run, int row,
                                   const struct wb_comparison_run *other);
 
+/* The largest of them over all rows; NaN without any. */
+double wb_comparison_effect(const struct wb_comparison_run *run,
+                            const struct wb_comparison_run *other);
+
 /* Largest distance of two axes at the same arc length, m, over the second one's points. */
 double wb_comparison_distance(const struct wb_comparison_run *run,
                               const struct wb_comparison_run *other);
