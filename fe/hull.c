@@ -205,6 +205,47 @@ double wb_hull_area(const struct wb_hull *hull, double offset)
     return 0.5 * sum;
 }
 
+static void add_arc_moments(struct wb_hull_moments *sum, const struct wb_packing_circle *centre,
+                            double R, const struct wb_hull_arc *arc)
+{
+    const double turn = arc->to - arc->from;
+    const double s = cos(arc->from) - cos(arc->to), c = sin(arc->to) - sin(arc->from);
+    const double twice = 0.25 * (sin(2.0 * arc->to) - sin(2.0 * arc->from));
+    const double y = centre->y, z = centre->z;
+    sum->length += R * turn;
+    sum->y += R * (y * turn + R * s);
+    sum->z += R * (z * turn + R * c);
+    sum->yy += R * (y * y * turn + 2.0 * y * R * s + R * R * (0.5 * turn - twice));
+    sum->zz += R * (z * z * turn + 2.0 * z * R * c + R * R * (0.5 * turn + twice));
+}
+
+static void add_straight_moments(struct wb_hull_moments *sum, const struct wb_packing_circle *from,
+                                 const struct wb_packing_circle *to)
+{
+    const double length = hypot(to->y - from->y, to->z - from->z);
+    sum->length += length;
+    sum->y += 0.5 * length * (from->y + to->y);
+    sum->z += 0.5 * length * (from->z + to->z);
+    sum->yy += length / 3.0 * (from->y * from->y + from->y * to->y + to->y * to->y);
+    sum->zz += length / 3.0 * (from->z * from->z + from->z * to->z + to->z * to->z);
+}
+
+struct wb_hull_moments wb_hull_moments(const struct wb_hull *hull, double offset)
+{
+    struct wb_hull_moments sum = {0};
+    for (int k = 0; k < hull->n_arcs; k++) {
+        const struct wb_hull_arc *const arc = &hull->arc[k];
+        struct wb_packing_circle wire = hull->packing.wire[arc->wire];
+        wire.radius += offset;
+        const struct wb_packing_circle from = tangent_point(&wire, arc->to);
+        const struct wb_packing_circle to = {from.y + arc->straight * cos(arc->to),
+                                             from.z - arc->straight * sin(arc->to), 0.0};
+        add_arc_moments(&sum, &wire, wire.radius, arc);
+        add_straight_moments(&sum, &from, &to);
+    }
+    return sum;
+}
+
 double wb_hull_contact(const struct wb_hull *hull, int wire, bool *touches)
 {
     double angle = 0.0;

@@ -40,6 +40,12 @@ WB_MUST_CHECK enum wb_status wb_hull_find(struct wb_hull *hull, const struct wb_
 double wb_hull_length(const struct wb_hull *hull, double offset);
 double wb_hull_area(const struct wb_hull *hull, double offset);
 
+/* Integrals over the outline: of 1, y, z, y^2, z^2 (m, m2, m3). */
+struct wb_hull_moments {
+    double length, y, z, yy, zz;
+};
+struct wb_hull_moments wb_hull_moments(const struct wb_hull *hull, double offset);
+
 /* The angle over which the outline lies on a wire, rad, and whether it touches it at all. */
 double wb_hull_contact(const struct wb_hull *hull, int wire, bool *touches);
 

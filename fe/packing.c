@@ -41,18 +41,10 @@ static void unit_step(int sixth, double step[2])
     step[1] = half_root_3 * y[sixth % 6];
 }
 
-static enum wb_status fill_hexagon(struct wb_packing *packing, double pitch)
+static void fill_hexagon(struct wb_packing *packing, double pitch)
 {
-    int rings = 0;
-    while (1 + 3 * rings * (rings + 1) < packing->n)
-        rings++;
-    const int whole = 1 + 3 * rings * (rings + 1), less = whole - 6 * rings;
-    if (whole != packing->n)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "%d wires are no centred hexagon; the nearest have %d and %d", packing->n,
-                       less, whole);
     int at = 1;
-    for (int ring = 1; ring <= rings; ring++) {
+    for (int ring = 1; at < packing->n; ring++) {
         for (int side = 0; side < 6; side++) {
             double corner[2], along[2];
             unit_step(side, corner);
@@ -63,7 +55,6 @@ static enum wb_status fill_hexagon(struct wb_packing *packing, double pitch)
             }
         }
     }
-    return WB_OK;
 }
 
 /* A site of the lattice; its squared distance from the triangle's centre is norm / 9. */
@@ -104,27 +95,33 @@ static void list_sites(struct site sites[SITES])
     qsort(sites, SITES, sizeof *sites, nearer);
 }
 
-static enum wb_status fill_triangle(struct wb_packing *packing, double pitch)
+static void fill_triangle(struct wb_packing *packing, double pitch)
 {
     struct site sites[SITES];
-    int less = 0, whole = 0;
     list_sites(sites);
-    while (whole < packing->n) {
-        less = whole;
-        for (whole++; sites[whole].norm == sites[whole - 1].norm;)
-            whole++;
-    }
-    if (whole != packing->n)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "%d wires are no patch of the lattice round a triangle's centre; the "
-                       "nearest have %d and "
-                       "%d",
-                       packing->n, less, whole);
     for (int i = 0; i < packing->n; i++) {
         packing->wire[i].z = pitch * sites[i].z;
         packing->wire[i].y = pitch * sites[i].y;
     }
-    return WB_OK;
+}
+
+int wb_packing_whole(enum wb_packing_lattice lattice, int n, int *less)
+{
+    struct site sites[SITES];
+    int whole = 0;
+    *less = 0;
+    if (lattice == WB_PACKING_TRIANGLE)
+        list_sites(sites);
+    for (int shell = 0; whole < n; shell++) {
+        *less = whole;
+        if (lattice == WB_PACKING_HEXAGON) {
+            whole = 1 + 3 * shell * (shell + 1);
+            continue;
+        }
+        for (whole++; sites[whole].norm == sites[whole - 1].norm;)
+            whole++;
+    }
+    return whole;
 }
 
 enum wb_status wb_packing_on_lattice(struct wb_packing *packing, int n, const double *diameter,
@@ -132,13 +129,18 @@ enum wb_status wb_packing_on_lattice(struct wb_packing *packing, int n, const do
 {
     struct wb_packing filled = {0};
     double pitch = 0.0;
+    int less;
     WB_TRY(wb_packing_take(&filled, n, diameter));
     for (int i = 0; i < n; i++)
         pitch = fmax(pitch, diameter[i]);
+    const int whole = wb_packing_whole(lattice, n, &less);
+    if (whole != n)
+        return wb_fail(WB_ERR_ARGUMENT, "%d wires are no whole patch of the lattice: %d or %d are",
+                       n, less, whole);
     if (lattice == WB_PACKING_HEXAGON)
-        WB_TRY(fill_hexagon(&filled, pitch));
+        fill_hexagon(&filled, pitch);
     else
-        WB_TRY(fill_triangle(&filled, pitch));
+        fill_triangle(&filled, pitch);
     *packing = filled;
     return WB_OK;
 }

@@ -38,6 +38,10 @@ WB_MUST_CHECK enum wb_status wb_packing_on_lattice(struct wb_packing *packing, i
                                                    const double *diameter,
                                                    enum wb_packing_lattice lattice);
 
+/* Whole patches of a lattice, n at most WB_PACKING_MOST: the smallest of at least n wires, and the
+ * largest of fewer (0: none). */
+int wb_packing_whole(enum wb_packing_lattice lattice, int n, int *less);
+
 struct wb_packing_search {
     unsigned int seed; /* of the random starts; the same seed gives the same packing */
     int trials;        /* packings tried, at least 1; 0: 40 for each wire */

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "daq/rig.h"
 #include "daq/specimen.h"
+#include "fe/bundle_model.h"
 #include "fe/material_file.h"
 #include "fe/wire.h"
 #include "fe/wire_model.h"
@@ -97,57 +98,23 @@ static void rigs_read(void **state)
     each_file("fixtures/rigs/*.yaml", 2, look_at_rig);
 }
 
-struct member {
-    char wire[64];
-    int count;
-};
-
-static void read_member(const struct wb_config_node *node, struct member *member)
-{
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_TEXT("wire", member->wire),
-        WB_CONFIG_INTEGER("count", &member->count, 1, 1000),
-    };
-    assert_int_equal(wb_config_map(node, keys, WB_COUNT(keys)), WB_OK);
-}
-
-/* Mass of the wires and of 0.25 kg/m2 of tape, over the printed circle, is the printed density. */
+/* Table 4 by eq. 30, and the beam of the same name. */
 static void look_at_bundle(const char *path)
 {
-    struct wb_config *config;
-    const struct wb_config_node *wires, *published;
-    char name[64], packing[32], tape[32], length_source[32];
-    double length, diameter, density;
-    assert_int_equal(wb_config_read(&config, path), WB_OK);
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_TEXT("name", name),
-        WB_CONFIG_NODE("wires", &wires),
-        WB_CONFIG_TEXT("packing", packing),
-        WB_CONFIG_TEXT("tape", tape),
-        WB_CONFIG_NUMBER("length_mm", &length, WB_MM, 1, 1e4),
-        WB_CONFIG_TEXT("length_source", length_source),
-        WB_CONFIG_IGNORED("interface"),
-        WB_CONFIG_NODE("published", &published),
-    };
-    assert_int_equal(wb_config_map(wb_config_root(config), keys, WB_COUNT(keys)), WB_OK);
-    const struct wb_config_key published_keys[] = {
-        WB_CONFIG_NUMBER("outer_diameter_mm", &diameter, WB_MM, 0.1, 100),
-        WB_CONFIG_NUMBER("density_g_cm3", &density, WB_G_PER_CM3, 0.1, 20),
-    };
-    assert_int_equal(wb_config_map(published, published_keys, WB_COUNT(published_keys)), WB_OK);
-
-    double mass = M_PI * (diameter - 0.2 * WB_MM) * 0.25;
-    for (int i = 0; i < wb_config_length(wires); i++) {
-        struct member member;
-        char file[WB_PATH];
-        struct wb_wire wire;
-        read_member(wb_config_item(wires, i), &member);
-        assert_int_equal(wb_file_find_fixture(file, "wires", member.wire, NULL), WB_OK);
-        assert_int_equal(wb_wire_read(file, &wire), WB_OK);
-        mass += member.count * wb_wire_mass_per_length(&wire);
-    }
-    assert_close_relative(mass / (M_PI * diameter * diameter / 4.0), density, 0.01);
-    wb_config_destroy(config);
+    struct wb_bundle_model *const bundle = test_malloc(sizeof *bundle);
+    char file[WB_PATH];
+    assert_int_equal(wb_bundle_model_read(bundle, path), WB_OK);
+    snprintf(file, sizeof file, "%s.yaml", bundle->name);
+    assert_string_equal(wb_file_name(path), file);
+    assert_true(strlen(bundle->title) > 0);
+    assert_close(bundle->length, 0.114, 1e-12);
+    assert_true(bundle->length_source != WB_BUNDLE_LENGTH_OWN);
+    assert_true(bundle->has_tape && bundle->has_published && bundle->published.has_beam);
+    assert_close_relative(wb_bundle_model_density(bundle, bundle->published.outer_diameter),
+                          bundle->published.density, 0.005);
+    assert_close(bundle->published.beam.outer_diameter, bundle->published.outer_diameter, 1e-12);
+    assert_close(bundle->published.beam.density, bundle->published.density, 1e-9);
+    test_free(bundle);
 }
 
 static void bundles_weigh_what_table_4_says(void **state)

@@ -178,7 +178,9 @@ static void check_points(const struct wb_packing *packing, double offset)
     const int n = 4000;
     const double length = wb_hull_length(&hull, offset);
     struct wb_hull_point before = wb_hull_at(&hull, offset, 0.0);
-    double area = 0.0, walked = 0.0;
+    const struct wb_hull_moments moments = wb_hull_moments(&hull, offset);
+    double area = 0.0, walked = 0.0, y = 0.0, z = 0.0, yy = 0.0, zz = 0.0;
+    assert_close_relative(moments.length, length, 1e-12);
     for (int i = 1; i <= n; i++) {
         const struct wb_hull_point at = wb_hull_at(&hull, offset, length * i / n);
         area += 0.5 * (before.z * at.y - at.z * before.y);
@@ -191,8 +193,17 @@ static void check_points(const struct wb_packing *packing, double offset)
         if (at.wire >= 0)
             assert_close(hypot(at.y - packing->wire[at.wire].y, at.z - packing->wire[at.wire].z),
                          packing->wire[at.wire].radius + offset, 1e-12);
+        const struct wb_hull_point middle = wb_hull_at(&hull, offset, length * (i - 0.5) / n);
+        y += middle.y * length / n;
+        z += middle.z * length / n;
+        yy += middle.y * middle.y * length / n;
+        zz += middle.z * middle.z * length / n;
         before = at;
     }
+    assert_close_relative(moments.y, y, 1e-5);
+    assert_close_relative(moments.z, z, 1e-5);
+    assert_close_relative(moments.yy, yy, 1e-5);
+    assert_close_relative(moments.zz, zz, 1e-5);
     assert_close_relative(walked, length, 1e-5);
     assert_close_relative(area, wb_hull_area(&hull, offset), 1e-5);
 }

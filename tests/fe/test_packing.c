@@ -183,9 +183,9 @@ static void what_is_no_whole_patch_is_refused(void **state)
     (void)state;
     double diameter[WB_PACKING_MOST + 1];
     fill(diameter);
-    refuse(8, diameter, WB_PACKING_HEXAGON, "7 and 19");
-    refuse(128, diameter, WB_PACKING_HEXAGON, "127 and 169");
-    refuse(13, diameter, WB_PACKING_TRIANGLE, "12 and 18");
+    refuse(8, diameter, WB_PACKING_HEXAGON, "7 or 19");
+    refuse(128, diameter, WB_PACKING_HEXAGON, "127 or 169");
+    refuse(13, diameter, WB_PACKING_TRIANGLE, "12 or 18");
     refuse(1, diameter, WB_PACKING_TRIANGLE, "3");
     refuse(0, diameter, WB_PACKING_HEXAGON, "0 wires");
     refuse(WB_PACKING_MOST + 1, diameter, WB_PACKING_HEXAGON, "129 wires");
