@@ -229,7 +229,8 @@ void wb_comparison_pages_elastic(struct wb_document *document,
 /* --- elastoplastic --- */
 
 /* Printed properties under which the wire curls up. */
-static void append_misprint(struct wb_text *text, const struct wb_comparison_results *results)
+static void append_misprint(struct wb_text *text, const struct wb_comparison_results *results,
+                            bool solid_curls)
 {
     if (!(results->printed.tip_angle * degrees > 90.0))
         return;
@@ -239,6 +240,11 @@ static void append_misprint(struct wb_text *text, const struct wb_comparison_res
         wb_text_append(text, " (ten times as much gives %.0f degrees)",
                        results->tenfold.tip_angle * degrees);
     wb_text_append(text, ".");
+    if (solid_curls)
+        wb_text_append(text, " That the solid of copper as soft as the literature has it curls up "
+                             "too says that the paper's figures need a harder copper than this, or "
+                             "show a curl that its text does not mention; without its Table 1 "
+                             "neither can be told.");
 }
 
 /* What the reader must know before comparing with the paper. */
@@ -273,7 +279,7 @@ static void put_curl(struct wb_document *document, const struct wb_comparison_re
                            results->printed.force[results->printed.n_curve - 1]);
         wb_text_append(&text, "; without hardening it would give way at %.1f N.",
                        results->collapse_force);
-        append_misprint(&text, results);
+        append_misprint(&text, results, solid->tip_angle * degrees > 90.0);
     }
     wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
     document->failed |= text.failed;
