@@ -20,6 +20,17 @@ static const char *const hands[] = {"right", "left", NULL};
 
 /* --- wires --- */
 
+static bool are_same(const struct wb_wire *a, const struct wb_wire *b)
+{
+    const struct wb_material *const p = &a->material, *const q = &b->material;
+    return a->conductor_diameter == b->conductor_diameter &&
+           a->outer_diameter == b->outer_diameter && a->density == b->density &&
+           p->youngs_modulus == q->youngs_modulus && p->poissons_ratio == q->poissons_ratio &&
+           p->yield_stress == q->yield_stress &&
+           p->strength_coefficient == q->strength_coefficient &&
+           p->hardening_exponent == q->hardening_exponent;
+}
+
 /* The type of that file's wire: one there is, or a new one. */
 static enum wb_status take_type(struct wb_bundle_model_reader *reader,
                                 const struct wb_config_node *map, const char *name, int *type)
@@ -28,9 +39,12 @@ static enum wb_status take_type(struct wb_bundle_model_reader *reader,
     struct wb_wire wire;
     WB_TRY(wb_bundle_model_find_wire(reader, map, "wire", name, &wire));
     for (*type = 0; *type < m->n_types; (*type)++) {
-        if (strcmp(m->type[*type].name, wire.name) == 0 &&
-            m->type[*type].outer_diameter == wire.outer_diameter)
-            return WB_OK;
+        if (strcmp(m->type[*type].name, wire.name) != 0)
+            continue;
+        if (!are_same(&m->type[*type], &wire))
+            return wb_config_refuse(map, "wire", "another, different wire is called %s, too",
+                                    wire.name);
+        return WB_OK;
     }
     if (m->n_types == WB_BUNDLE_MODEL_TYPES)
         return wb_config_refuse(map, "wire", "more than %d different wires", WB_BUNDLE_MODEL_TYPES);

@@ -50,6 +50,15 @@ static void read_text(const char *text)
         fail_msg("refused: %s", message);
 }
 
+/* A copy with one part changed; `text` has room for 4096 bytes. */
+static void replace(char *text, const char *source, const char *old, const char *new_text)
+{
+    const char *const at = strstr(source, old);
+    if (!at)
+        fail_msg("no '%s'", old);
+    snprintf(text, 4096, "%.*s%s%s", (int)(at - source), source, new_text, at + strlen(old));
+}
+
 static void read_shipped(const char *name)
 {
     char path[WB_PATH];
@@ -238,14 +247,6 @@ static void gaps_widen_the_lattice_and_the_tape(void **state)
     assert_close(wb_bundle_model_diameter(&model), (2 * 1.42 + 1.4 + 2 * 0.43) * 1e-3, 1e-12);
 }
 
-static void replace(char text[4096], const char *source, const char *old, const char *new_text)
-{
-    const char *const at = strstr(source, old);
-    if (!at)
-        fail_msg("no '%s'", old);
-    snprintf(text, 4096, "%.*s%s%s", (int)(at - source), source, new_text, at + strlen(old));
-}
-
 static void read_changed(const char *source, const char *old, const char *new_text)
 {
     char text[4096];
@@ -291,6 +292,30 @@ static void a_lopsided_hexagon_is_put_on_its_axis(void **state)
     const struct wb_packing_circle e = wb_packing_enclosing(7, model.packing.wire);
     assert_close(e.y, 0.0, 1e-15);
     assert_close(e.z, 0.0, 1e-15);
+}
+
+static const char stretchy[] = "name: stretchy\nsource: a test\nyoungs_modulus_MPa: 100\n"
+                               "poissons_ratio: 0.45\nyield_stress_MPa: 2\nhardening: kinematic\n"
+                               "strength_coefficient_MPa: 10\ndensity_g_cm3: 1.2\n"
+                               "thickness_of_two_layers_mm: 0.3\n";
+
+static void a_tape_of_ones_own_has_its_poissons_ratio(void **state)
+{
+    (void)state;
+    char isotropic[4096];
+    replace(isotropic, stretchy, "hardening: kinematic\nstrength_coefficient_MPa: 10\n", "");
+    write_beside("plain.yaml", isotropic);
+    read_changed(bare, "packing: hexagon", "packing: hexagon\ntape: ./plain.yaml");
+    assert_close(model.tape.material.material.poissons_ratio, 0.45, 0.0);
+    assert_close(wb_taping_thickness(&model.tape.taping), 0.3e-3, 1e-15);
+    assert_close(model.tape.taping.circumference, M_PI * 1.7e-3, 1e-12);
+}
+
+static void shear_is_as_strong_unless_said_otherwise(void **state)
+{
+    (void)state;
+    read_changed(full, "shear_strength_MPa: 1, ", "");
+    assert_close_relative(model.interface.damage.shear_strength, 2e6, 1e-12);
 }
 
 static void a_helix_is_half_lapped(void **state)
@@ -484,6 +509,11 @@ static void wrong_wires_are_refused(void **state)
     write_beside("plain.yaml", "name: plain\nconductor_diameter_mm: 0.5\nouter_diameter_mm: 1\n"
                                "density_g_cm3: 2\n");
     refuse(full, "./thin.yaml", "./plain.yaml", ":6: wire: wire plain has no properties");
+    char other[4096];
+    replace(other, thin, "name: thin", "name: type3");
+    write_beside("plain.yaml", other);
+    refuse(full, "./thin.yaml", "./plain.yaml",
+           ":6: wire: another, different wire is called type3");
 }
 
 static void wrong_packings_are_refused(void **state)
@@ -514,6 +544,8 @@ static void wrong_tapes_are_refused(void **state)
 {
     (void)state;
     refuse(full, "tape: tape\n", "tape: pvc\n", ":11: tape: material pvc has no thickness");
+    write_beside("plain.yaml", stretchy);
+    refuse(full, "tape: tape\n", "tape: ./plain.yaml\n", ":11: tape: material stretchy hardens");
     refuse(full, "tape: tape\n", "tape: nothing\n", ":11: tape: ");
     refuse(full, "tape: tape\n", "", ":11: taping: there is no tape");
     refuse(bare, "packing: hexagon", "packing: hexagon\ngaps: {tape_mm: 0.1}", ":4: gaps: ");
@@ -578,10 +610,8 @@ static void the_checksum_covers_the_files_it_names(void **state)
     assert_int_equal(strlen(first), 64);
     read_text(full);
     assert_string_equal(first, model.sha256);
-    char heavier[1024];
-    const char *const at = strstr(thin, "density_g_cm3: 2");
-    snprintf(heavier, sizeof heavier, "%.*sdensity_g_cm3: 3%s", (int)(at - thin), thin,
-             at + strlen("density_g_cm3: 2"));
+    char heavier[4096];
+    replace(heavier, thin, "density_g_cm3: 2", "density_g_cm3: 3");
     write_beside("thin.yaml", heavier);
     read_text(full);
     assert_string_not_equal(first, model.sha256);
@@ -621,6 +651,8 @@ int main(void)
         cmocka_unit_test(listed_places_are_kept_round_their_circle),
         cmocka_unit_test(the_densest_packing_is_by_seed),
         cmocka_unit_test(a_lopsided_hexagon_is_put_on_its_axis),
+        cmocka_unit_test(a_tape_of_ones_own_has_its_poissons_ratio),
+        cmocka_unit_test(shear_is_as_strong_unless_said_otherwise),
         cmocka_unit_test(a_helix_is_half_lapped),
         cmocka_unit_test(densities_are_those_of_table_4),
         cmocka_unit_test(diameters_are_those_of_the_notes),
