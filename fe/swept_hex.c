@@ -223,6 +223,23 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
     return WB_OK;
 }
 
+/* From the central node. */
+static int farthest_node(const struct wb_swept_section *section)
+{
+    const double *centre = section->node[section->centre];
+    int farthest = section->centre;
+    double distance = 0.0;
+
+    for (int k = 0; k < section->n_nodes; k++) {
+        const double off = hypot(section->node[k][0] - centre[0], section->node[k][1] - centre[1]);
+        if (off > distance) {
+            distance = off;
+            farthest = k;
+        }
+    }
+    return farthest;
+}
+
 static enum wb_status fill(struct wb_swept_hex *hex)
 {
     const struct wb_swept_hex_model *m = &hex->model;
@@ -240,6 +257,7 @@ static enum wb_status fill(struct wb_swept_hex *hex)
         .n_quads = m->section->n_quads,
         .n_elements = m->n_elements,
         .centre = m->section->centre,
+        .beside = farthest_node(m->section),
         .quad = (const int(*)[4])m->section->quad,
         .node = (const double(*)[2])m->section->node,
         .length = m->element_length,
@@ -411,24 +429,42 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
     return work;
 }
 
+/* Sum of weight (y - mean)^2 over the points, and its like for the three hourglass fields of one
+ * point: xi^2 and eta^2 are 1/3 in the mean, (xi eta)^2 is 1/9. */
+static double varying_moment(const struct wb_swept_section *section, int e,
+                             const struct wb_swept_quad *quad, double mean,
+                             enum wb_swept_hex_formulation formulation)
+{
+    double points = 0.0, y[4];
+
+    for (int a = 0; a < 4; a++) {
+        points += quad->weight[a] * (quad->at[a][0] - mean) * (quad->at[a][0] - mean);
+        y[a] = 0.25 * section->node[section->quad[e][a]][0];
+    }
+    if (formulation == WB_SWEPT_HEX_FOUR_POINTS)
+        return points;
+    const double xi = y[1] + y[2] - y[0] - y[3], eta = y[2] + y[3] - y[0] - y[1];
+    const double both = y[0] + y[2] - y[1] - y[3];
+    return (xi * xi + eta * eta) / 3.0 + both * both / 9.0;
+}
+
 double wb_swept_hex_second_moment(const struct wb_swept_section *section,
                                   enum wb_swept_hex_formulation formulation,
                                   const struct wb_material *material)
 {
-    const double stiffer = 3.0 * shear_modulus(material) / material->youngs_modulus;
+    const double factor = formulation == WB_SWEPT_HEX_FOUR_POINTS
+                              ? 3.0 * shear_modulus(material) / material->youngs_modulus
+                              : default_hourglass;
     double moment = 0.0;
 
     for (int e = 0; e < section->n_quads; e++) {
         struct wb_swept_quad quad;
-        double mean = 0.0, varying = 0.0;
+        double mean = 0.0;
         wb_swept_section_quad(section, e, &quad);
         for (int q = 0; q < 4; q++)
             mean += quad.weight[q] * quad.at[q][0];
-        for (int q = 0; q < 4; q++)
-            varying += quad.weight[q] * (quad.at[q][0] - mean) * (quad.at[q][0] - mean);
-        moment += quad.area * mean * mean;
-        if (formulation == WB_SWEPT_HEX_FOUR_POINTS)
-            moment += quad.area * stiffer * varying;
+        moment += quad.area *
+                  (mean * mean + factor * varying_moment(section, e, &quad, mean, formulation));
     }
     return moment;
 }

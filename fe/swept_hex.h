@@ -105,14 +105,16 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);
 double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
                                    int point);
 
-/* The second moment of area, m4, with which elements of this section bend about the z axis: of one
- * point, sum A y^2 of the centres; of four points, what these vary adds 3 mu / E of it. */
+/* The second moment of area, m4, with which elements of this section bend elastically about the z
+ * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
+ * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
 double wb_swept_hex_second_moment(const struct wb_swept_section *section,
                                   enum wb_swept_hex_formulation formulation,
                                   const struct wb_material *material);
 
-/* Scales a circle's section so that its second moment is pi d^4 / 64. Its area is then not
- * pi d^2 / 4 (12 elements, four points: 2.1 % less). */
+/* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not
+ * pi d^2 / 4: of four points 1.2 % less with 4 elements, 0.5 % less with 12, 0.1 % less with 84; of
+ * one point 16, 4.5 and 0.6 % more. Masses are whoever makes them to correct. */
 void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
                              enum wb_swept_hex_formulation formulation,
                              const struct wb_material *material);

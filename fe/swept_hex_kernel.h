@@ -45,7 +45,7 @@ struct wb_swept_hex_kernel_model {
     struct wb_swept_layout layout;
     int n_quads;
     int n_elements;          /* along */
-    int centre;              /* node to which positions are taken relative */
+    int centre, beside;      /* two nodes whose line turns with the section */
     const int (*quad)[4];    /* (n_quads) */
     const double (*node)[2]; /* (layout.n_nodes) */
     double length;           /* h, m */
