@@ -145,6 +145,25 @@ static void draw_band(cairo_t *cairo, const struct wb_layout_panel *layout,
     cairo_fill(cairo);
 }
 
+static void draw_area(cairo_t *cairo, const struct wb_layout_panel *layout,
+                      const struct wb_series *series)
+{
+    cairo_new_path(cairo);
+    for (size_t i = 0; i < series->n; i++) {
+        const double x = wb_layout_x(layout, series->x[i]), y = wb_layout_y(layout, series->y[i]);
+        if (!isfinite(x) || !isfinite(y)) {
+            cairo_new_sub_path(cairo);
+            continue;
+        }
+        /* Far points are kept within Cairo's numbers. */
+        cairo_line_to(cairo, fmin(fmax(x, -1e4), 1e4), fmin(fmax(y, -1e4), 1e4));
+    }
+    cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_EVEN_ODD);
+    wb_typeset_set_colour(cairo, series->style.colour);
+    cairo_fill(cairo);
+    cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_WINDING);
+}
+
 static void draw_points(cairo_t *cairo, const struct wb_layout_panel *layout,
                         const struct wb_series *series)
 {
@@ -197,6 +216,10 @@ static void draw_series(cairo_t *cairo, const struct wb_layout_panel *layout)
     for (int i = 0; i < panel->n_series; i++) {
         if (panel->series[i].kind == WB_SERIES_BAND && panel->series[i].n > 0)
             draw_band(cairo, layout, &panel->series[i]);
+    }
+    for (int i = 0; i < panel->n_series; i++) {
+        if (panel->series[i].kind == WB_SERIES_AREA)
+            draw_area(cairo, layout, &panel->series[i]);
     }
     for (int i = 0; i < panel->n_series; i++) {
         const struct wb_series *const series = &panel->series[i];
@@ -316,7 +339,7 @@ static void draw_entry(void *context, const struct wb_series *series, double x, 
     style.colour = wb_palette_ink();
     const double height = wb_typeset_measure(pen->cairo, series->label, &style).height;
     const double middle = y + 0.5 * height;
-    if (series->kind == WB_SERIES_BAND) {
+    if (series->kind == WB_SERIES_BAND || series->kind == WB_SERIES_AREA) {
         cairo_rectangle(pen->cairo, x, middle - 3.0, WB_LAYOUT_SWATCH, 6.0);
         wb_typeset_set_colour(pen->cairo, series->style.colour);
         cairo_fill(pen->cairo);

@@ -279,6 +279,18 @@ void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, con
     series->n = series->x && series->y && series->high ? n : 0;
 }
 
+void wb_figure_add_area(struct wb_panel *panel, const char *label, size_t n, const double *x,
+                        const double *y, struct wb_colour colour)
+{
+    struct wb_series *const series = add_series(panel, WB_SERIES_AREA, label);
+    if (!series)
+        return;
+    series->style.colour = colour;
+    series->x = copy_values(panel->figure, x, n);
+    series->y = copy_values(panel->figure, y, n);
+    series->n = series->x && series->y ? n : 0;
+}
+
 void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_contour_face *faces,
                          const struct wb_figure_colours *colours)
 {

@@ -109,12 +109,17 @@ void wb_figure_set_right_axis(struct wb_panel *panel, const char *label, double 
 /* No frame, ticks and labels: a drawing. */
 void wb_figure_hide_axes(struct wb_panel *panel);
 
-/* Series, drawn in the order fields, bands, lines, points. `label` NULL: not in the legend. */
+/* Series, drawn in the order fields, bands, areas, lines, points. `label` NULL: not in the legend.
+ */
 void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *y, const struct wb_figure_style *style);
 /* `edges`: the lower and the upper one, each of n values. */
 void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *const edges[2], struct wb_colour colour);
+/* The inside of an outline, which closes itself. A NaN begins another; what lies within two of them
+ * is outside again (a ring). */
+void wb_figure_add_area(struct wb_panel *panel, const char *label, size_t n, const double *x,
+                        const double *y, struct wb_colour colour);
 /* A field with the outline of its faces; copied. Faces that are not finite are left out. */
 void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_contour_face *faces,
                          const struct wb_figure_colours *colours);

@@ -12,6 +12,7 @@
 enum wb_series_kind {
     WB_SERIES_FIELD,
     WB_SERIES_BAND,
+    WB_SERIES_AREA,
     WB_SERIES_LINE, /* and points */
     WB_SERIES_TEXT
 };

@@ -222,6 +222,31 @@ static void mark_field(struct wb_place *place, const struct wb_layout_panel *lay
     }
 }
 
+/* The outline, and lines from it to its middle: areas are round enough to have no room in them. */
+static void mark_area(struct wb_place *place, const struct wb_layout_panel *layout,
+                      const struct wb_series *series)
+{
+    double middle[2] = {0.0, 0.0}, last[2] = {(double)NAN, (double)NAN};
+    size_t n = 0;
+    for (size_t i = 0; i < series->n; i++) {
+        const double x = wb_layout_x(layout, series->x[i]) - layout->plot.x;
+        const double y = wb_layout_y(layout, series->y[i]) - layout->plot.y;
+        if (isfinite(x + y)) {
+            middle[0] += x;
+            middle[1] += y;
+            n++;
+        }
+    }
+    for (size_t i = 0; n > 0 && i < series->n; i++) {
+        const double x = wb_layout_x(layout, series->x[i]) - layout->plot.x;
+        const double y = wb_layout_y(layout, series->y[i]) - layout->plot.y;
+        wb_place_mark_segment(place, last[0], last[1], x, y, 1.0);
+        wb_place_mark_segment(place, x, y, middle[0] / (double)n, middle[1] / (double)n, 1.0);
+        last[0] = x;
+        last[1] = y;
+    }
+}
+
 static void mark_text(struct wb_place *place, const struct wb_layout_panel *layout,
                       const struct wb_series *series, cairo_t *cairo)
 {
@@ -250,6 +275,9 @@ static void mark_series(struct wb_place *place, const struct wb_layout_panel *la
             break;
         case WB_SERIES_BAND:
             mark_band(place, layout, series);
+            break;
+        case WB_SERIES_AREA:
+            mark_area(place, layout, series);
             break;
         case WB_SERIES_TEXT:
             if (series->label)

@@ -215,6 +215,36 @@ static void colours_without_extent_fail_when_drawn(void **state)
     wb_figure_destroy(figure);
 }
 
+/* A square with a square hole: filled between the two, and nowhere else. Lines are drawn on it. */
+static void an_area_is_filled_up_to_its_hole(void **state)
+{
+    (void)state;
+    static const double x[] = {-4, 4, 4, -4, (double)NAN, -2, 2, 2, -2};
+    static const double y[] = {-4, -4, 4, 4, (double)NAN, -2, -2, 2, 2};
+    static const double line_x[] = {-3, -3}, line_y[] = {-3, 3};
+    const struct wb_colour blue = {0.0, 0.0, 1.0, 1.0}, red = {1.0, 0.0, 0.0, 1.0};
+    const struct wb_colour white = {1.0, 1.0, 1.0, 1.0};
+    const struct wb_figure_style style = {.colour = red, .width = 3.0};
+    struct wb_figure *figure;
+    assert_int_equal(wb_figure_create(&figure, "area", SIZE, SIZE), WB_OK);
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    wb_figure_hide_axes(panel);
+    wb_figure_set_equal_aspect(panel);
+    wb_figure_set_x_range(panel, -5.0, 5.0);
+    wb_figure_set_y_range(panel, -5.0, 5.0);
+    wb_figure_add_line(panel, NULL, 2, line_x, line_y, &style);
+    wb_figure_add_area(panel, NULL, 9, x, y, blue);
+    cairo_surface_t *const surface = pixels_of(figure);
+    const double middle = 0.5 * SIZE, unit = (SIZE - 5.0) / 10.0; /* with the margins */
+    assert_close(distance(surface, middle, middle, white), 0.0, 1.0);
+    assert_close(distance(surface, middle + 3.0 * unit, middle, blue), 0.0, 1.0);
+    assert_close(distance(surface, middle, middle - 3.0 * unit, blue), 0.0, 1.0);
+    assert_close(distance(surface, middle + 4.5 * unit, middle, white), 0.0, 1.0);
+    assert_close(distance(surface, middle - 3.0 * unit, middle, red), 0.0, 1.0);
+    cairo_surface_destroy(surface);
+    wb_figure_destroy(figure);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,6 +254,7 @@ int main(void)
         cmocka_unit_test(a_bar_goes_from_the_lowest_colour_to_the_highest),
         cmocka_unit_test(the_same_field_gives_the_same_bytes),
         cmocka_unit_test(colours_without_extent_fail_when_drawn),
+        cmocka_unit_test(an_area_is_filled_up_to_its_hole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
