@@ -12,6 +12,15 @@
 /* Iterations that an increment should take: it grows below, shrinks above. */
 static const double wanted_iterations = 6.0;
 
+/* Share of the largest force at any node below which a strand's tension is none. */
+static const double no_tension = 1e-6;
+
+/* Arcs shorter than this share of the wanted length lead nowhere. */
+static const double shortest_arc = 1.0 / 256.0;
+
+/* Share of a move that an arc may go beyond its end. */
+static const double most_overshoot = 1e-3;
+
 /* Arc increments allowed in a move that names no number. */
 static const int usual_arc_increments = 1;
 
@@ -288,6 +297,28 @@ static void finish(const struct wb_solid *solid, struct wb_solid_point *point,
         snprintf(point->problem, sizeof point->problem, "%s", solid->problem);
 }
 
+/* Whether a strand would have to push at the equilibrium just found. */
+static bool pushes(const struct wb_solid *solid, const struct wb_solid_increment *increment)
+{
+    double largest = solid->largest_force;
+
+    if (increment->move->control != WB_SOLID_DEFLECTION || solid->strand.length == 0.0 ||
+        !(solid->loads.tension < 0.0))
+        return false;
+    for (int i = 0; i < 3 * solid->body.mesh->n_nodes; i++)
+        largest = fmax(largest, fabs(solid->body.force[i]));
+    return solid->loads.tension < -no_tension * largest;
+}
+
+/* The increment after which the strand would carry nothing, by the straight line through the
+ * tensions of both ends. */
+static double pace_to_slack(const struct wb_solid *solid,
+                            const struct wb_solid_increment *increment)
+{
+    const double from = fmax(0.0, solid->committed_loads.tension), to = solid->loads.tension;
+    return (increment->share - increment->from) * from / (from - to);
+}
+
 static void move_by_shares(struct wb_solid *solid, struct wb_solid_increment *increment,
                            struct wb_solid_point *point)
 {
@@ -323,8 +354,25 @@ static void move_by_shares(struct wb_solid *solid, struct wb_solid_increment *in
             /* Too far for the path of a plastic material. */
             pace = (increment->share - increment->from) * solid->settings.most_rotation /
                    turned(increment);
+            snprintf(solid->problem, sizeof solid->problem,
+                     "the end turns by %.2g rad between %.6g and %.6g of the way: no equilibrium "
+                     "is near",
+                     turned(increment), increment->from, increment->share);
             revert(solid);
             point->cutbacks++;
+            if (pace < smallest) {
+                finish(solid, point, WB_SOLID_NOT_CONVERGED);
+                return;
+            }
+            continue;
+        }
+        if (pushes(solid, increment)) {
+            pace = pace_to_slack(solid, increment);
+            revert(solid);
+            if (pace < smallest) {
+                finish(solid, point, WB_SOLID_SLACK);
+                return;
+            }
             continue;
         }
         accept(solid, increment);
@@ -348,8 +396,10 @@ static void move_by_arc(struct wb_solid *solid, struct wb_solid_increment *incre
     double length = move->arc_length;
 
     /* A path goes on as it went; towards new loads it begins with their growth. */
-    if (solid->on_arc && memcmp(&solid->arc_target, &move->target, sizeof move->target) == 0)
+    if (solid->on_arc && memcmp(&solid->arc_target, &move->target, sizeof move->target) == 0) {
         increment->last_direction = solid->last_change;
+        length = fmin(length, 2.0 * solid->arc_pace);
+    }
     for (int done = 0; done < most && point->fraction < 1.0;) {
         increment->from = increment->share = point->fraction;
         increment->arc_length = length;
@@ -361,18 +411,28 @@ static void move_by_arc(struct wb_solid *solid, struct wb_solid_increment *incre
             revert(solid);
             point->cutbacks++;
             length *= 0.5;
-            if (length < solid->settings.smallest_increment * move->arc_length) {
+            if (length < shortest_arc * move->arc_length) {
                 finish(solid, point, WB_SOLID_NOT_CONVERGED);
                 return;
             }
             continue;
         }
-        solid->unstable = wb_solid_newton_unstable(solid, increment);
+        const bool unstable = wb_solid_newton_unstable(solid, increment);
+        if (!unstable && increment->share > 1.0 + most_overshoot &&
+            length >= shortest_arc * move->arc_length) {
+            /* Not past the loads that are wanted, from which a plastic body would return otherwise.
+             */
+            length *= fmax(0.1, (1.0 - increment->from) / (increment->share - increment->from));
+            revert(solid);
+            continue;
+        }
+        solid->unstable = unstable;
         accept(solid, increment);
         increment->last_direction = solid->last_change;
         point->fraction = increment->share;
         point->increments++;
         done++;
+        solid->arc_pace = length;
         length = fmin(move->arc_length, 2.0 * length);
         solid->on_arc = true;
         solid->arc_target = move->target;

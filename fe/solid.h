@@ -78,7 +78,9 @@ enum wb_solid_control {
 enum wb_solid_end {
     WB_SOLID_CONVERGED,
     WB_SOLID_NOT_CONVERGED,
-    WB_SOLID_STOPPED /* by the observer */
+    WB_SOLID_STOPPED, /* by the observer */
+    WB_SOLID_SLACK    /* a strand only pulls: its tension came down to zero before the deflection
+                         was reached. The state is that at which it did */
 };
 
 struct wb_solid_move {

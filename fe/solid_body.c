@@ -87,6 +87,37 @@ static enum wb_status prepare_elements(struct wb_solid_body *body,
     return WB_OK;
 }
 
+/* Whether the numbers of yielding are possible ones. */
+static bool is_plasticity_possible(const struct wb_material *m)
+{
+    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
+        return true;
+    const bool power = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
+    return isfinite(m->yield_stress) && m->yield_stress > 0.0 &&
+           isfinite(m->strength_coefficient) && m->strength_coefficient >= 0.0 &&
+           (!power || (m->hardening_exponent > 0.0 && m->hardening_exponent <= 2.0));
+}
+
+static bool are_finite(const double *x, size_t n)
+{
+    bool finite = true;
+    for (size_t i = 0; i < n; i++)
+        finite = finite && isfinite(x[i]);
+    return finite;
+}
+
+static enum wb_status check_loads(const struct wb_solid_model *model)
+{
+    bool finite = are_finite(model->gravity, 3);
+    for (int i = 0; i < model->n_supports; i++)
+        finite = finite && isfinite(model->supports[i].displacement);
+    if (model->nodal_force)
+        finite = finite && are_finite(model->nodal_force[0], 3 * (size_t)model->mesh->n_nodes);
+    return finite ? WB_OK
+                  : wb_fail(WB_ERR_ARGUMENT, "gravity, a support or a nodal force is not a finite "
+                                             "number");
+}
+
 static enum wb_status check_model(const struct wb_solid_model *model)
 {
     const struct wb_solid_mesh *mesh = model->mesh;
@@ -96,16 +127,22 @@ static enum wb_status check_model(const struct wb_solid_model *model)
     for (int p = 0; p < mesh->n_parts; p++) {
         const struct wb_material *m = &model->parts[p].material;
         if (!(m->youngs_modulus > 0.0 && m->poissons_ratio > -1.0 && m->poissons_ratio < 0.5 &&
-              isfinite(m->youngs_modulus) && model->parts[p].density >= 0.0))
+              isfinite(m->youngs_modulus) && model->parts[p].density >= 0.0 &&
+              isfinite(model->parts[p].density)))
             return wb_fail(WB_ERR_ARGUMENT,
                            "part %d: Young's modulus %g Pa, Poisson's ratio %g, density %g kg/m3: "
                            "expected above 0, between -1 and 0.5, 0 or more",
                            p, m->youngs_modulus, m->poissons_ratio, model->parts[p].density);
+        if (!is_plasticity_possible(m))
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "part %d: yield stress %g Pa, strength coefficient %g Pa, exponent %g: "
+                           "expected above 0, 0 or more, above 0 and at most 2",
+                           p, m->yield_stress, m->strength_coefficient, m->hardening_exponent);
     }
     for (int e = 0; e < mesh->n_elements; e++)
         if (mesh->part[e] < 0 || mesh->part[e] >= mesh->n_parts)
             return wb_fail(WB_ERR_ARGUMENT, "element %d belongs to no part", e);
-    return WB_OK;
+    return check_loads(model);
 }
 
 enum wb_status wb_solid_body_init(struct wb_solid_body *body, const struct wb_solid_model *model)

@@ -17,6 +17,9 @@ enum {
 static const double close_by = 1e-2;
 static const double good_reduction = 0.2;
 
+/* Share of the tolerance that a state is within before the first iteration. */
+static const double at_start = 1e-3;
+
 /* An iteration turns the tip by no more than this. */
 static const double most_turn = 0.5;
 
@@ -129,7 +132,7 @@ static void unbalance(struct wb_solid *solid)
             continue;
         largest = fmax(largest, fabs(right[q])); /* a first step's loads, not yet carried */
         right[q] -= body->force[i];
-        if (!(fabs(right[q]) <= worst)) {
+        if (!(fabs(right[q]) <= worst) && !isnan(worst)) {
             worst = fabs(right[q]);
             solid->worst_node = i / 3;
         }
@@ -280,7 +283,12 @@ static bool solve_step(struct wb_solid *solid, const struct wb_solid_increment *
     double *x = column(solid, WB_SOLID_COLUMN_RESIDUAL);
     double coefficient[WB_SOLID_COLUMNS] = {1.0};
 
-    wb_layered_solve(body->tangent, 1, x);
+    /* An arc sets out along the path alone: next to a critical point what is left of the residual
+     * would lead far away, and it is not scaled to the arc's length. */
+    if (increment->move->control == WB_SOLID_ARC && first)
+        memset(x, 0, (size_t)body->n_equations * sizeof *x);
+    else
+        wb_layered_solve(body->tangent, 1, x);
     *step = (struct step){0};
     if (solid->tip.n_nodes > 0) {
         double A[ALL * ALL], b[ALL];
@@ -467,7 +475,11 @@ bool wb_solid_newton(struct wb_solid *solid, struct wb_solid_increment *incremen
         describe(solid, "the tangent stiffness is singular");
         return false;
     }
-    while (!has_converged(solid, increment) || move_supports || (arc && solid->iterations == 0)) {
+    /* Many small imbalances of one sign are a load: a start is not taken for the end unless it is
+     * far below the tolerance, as an iteration is cheap there. */
+    const bool at_once =
+        !arc && !move_supports && solid->residual <= at_start * solid->settings.force_tolerance;
+    while (!has_converged(solid, increment) || (solid->iterations == 0 && !at_once)) {
         struct step step;
         const double before = solid->residual;
         if (solid->iterations++ == solid->settings.max_iterations) {

@@ -48,7 +48,8 @@ struct wb_solid {
     double drive[WB_SOLID_DRIVES];
     bool can_continue; /* `before` and `drive` belong to the last equilibrium's own increment */
     double last_change[WB_SOLID_TIP_UNKNOWNS]; /* of z, in the last increment */
-    bool on_arc; /* the last increment was one of an arc towards arc_target */
+    bool on_arc;     /* the last increment was one of an arc towards arc_target */
+    double arc_pace; /* m: that increment's length */
     struct wb_solid_loads arc_target;
     double largest_force; /* N: ever met at a node */
     double pace;          /* share of a move that the last increment took */

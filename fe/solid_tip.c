@@ -204,8 +204,9 @@ static void pull(const number *z, const struct wb_solid_tip_strand *strand, numb
         return;
     }
     const number x = (strand->x - z[0]) / strand->length, w = -z[2] / strand->length;
+    const number up = 1.0 - x * x - w * w;
     phi[0] += tension * x;
-    phi[1] += tension * csqrt(1.0 - x * x - w * w);
+    phi[1] += creal(up) > 0.0 ? tension * csqrt(up) : (double)NAN; /* out of its reach */
     phi[2] += tension * w;
 }
 

@@ -19,8 +19,8 @@ static double inner(const double *a, const double *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* v turned by the rotation vector w (Rodrigues); out may be v. */
-static void turn(const double w[3], const double v[3], double out[3])
+/* What turning by the rotation vector w (Rodrigues) changes in v; `change` may be v. */
+static void find_turn(const double w[3], const double v[3], double change[3])
 {
     const double angle2 = inner(w, w), angle = sqrt(angle2);
     /* sin a / a and (1 - cos a) / a^2 */
@@ -32,7 +32,17 @@ static void turn(const double w[3], const double v[3], double out[3])
     cross(w, v, once);
     cross(w, once, twice);
     for (int i = 0; i < 3; i++)
-        out[i] = v[i] + s * once[i] + c * twice[i];
+        change[i] = s * once[i] + c * twice[i];
+}
+
+/* v turned by w; out may be v. */
+static void turn(const double w[3], const double v[3], double out[3])
+{
+    double change[3];
+
+    find_turn(w, v, change);
+    for (int i = 0; i < 3; i++)
+        out[i] = v[i] + change[i];
 }
 
 enum wb_status wb_solid_update_init(struct wb_solid_update *update,
@@ -125,6 +135,22 @@ static void add_inertia(const double r[3], double J[6])
     J[5] -= r[2] * r[0];
 }
 
+/* How a vector v changes that turns by w and grows by `growth`, of which the turn's linear part is
+ * already a part. Changes alone are summed up: next to positions a small one would lose its digits.
+ */
+static void change_vector(const double w[3], const double v[3], const double growth[3],
+                          double change[3])
+{
+    double linear[3], stretched[3], turned[3];
+
+    cross(w, v, linear);
+    for (int i = 0; i < 3; i++)
+        stretched[i] = v[i] + growth[i] - linear[i];
+    find_turn(w, stretched, turned);
+    for (int i = 0; i < 3; i++)
+        change[i] = growth[i] - linear[i] + turned[i];
+}
+
 void wb_solid_update_advance(struct wb_solid_update *update, double *u, const double *increment,
                              double scale)
 {
@@ -155,33 +181,30 @@ void wb_solid_update_advance(struct wb_solid_update *update, double *u, const do
 
         /* The chord from the section before turns by the mean rotation of its two ends. */
         for (int i = 0; i < 3; i++)
-            section->moved[i] = section->centre[i] + scale * step[i];
+            section->shift[i] = scale * step[i];
         if (s > 0) {
             const struct wb_solid_update_section *before = section - 1;
-            double w[3], chord[3], turned[3];
+            double w[3], chord[3], growth[3];
             for (int i = 0; i < 3; i++) {
                 w[i] = 0.5 * (before->rotation[i] + section->rotation[i]);
                 chord[i] = section->centre[i] - before->centre[i];
+                growth[i] = scale * (step[i] - mean_before[i]);
             }
-            cross(w, chord, turned);
+            change_vector(w, chord, growth, section->shift);
             for (int i = 0; i < 3; i++)
-                chord[i] += scale * (step[i] - mean_before[i]) - turned[i];
-            turn(w, chord, chord);
-            for (int i = 0; i < 3; i++)
-                section->moved[i] = before->moved[i] + chord[i];
+                section->shift[i] += before->shift[i];
         }
         memcpy(mean_before, step, sizeof mean_before);
 
         for (int k = update->first[s]; k < update->first[s + 1]; k++) {
             const int a = update->node[k];
-            double r[3], turned[3];
+            double r[3], growth[3], change[3];
             offset(update, a, u, section->centre, r);
-            cross(section->rotation, r, turned);
             for (int i = 0; i < 3; i++)
-                r[i] += scale * (increment[3 * a + i] - step[i]) - turned[i];
-            turn(section->rotation, r, r);
+                growth[i] = scale * (increment[3 * a + i] - step[i]);
+            change_vector(section->rotation, r, growth, change);
             for (int i = 0; i < 3; i++)
-                u[3 * a + i] = section->moved[i] + r[i] - mesh->node[a][i];
+                u[3 * a + i] += section->shift[i] + change[i];
         }
     }
 }

@@ -16,7 +16,8 @@
 struct wb_solid_update_section {
     double centre[3];   /* m */
     double rotation[3]; /* rad */
-    double moved[3];    /* m: the centre after the update */
+    double moved[3];    /* m: the centre after an extrapolation */
+    double shift[3];    /* m: of the centre, in an update */
 };
 
 struct wb_solid_update {

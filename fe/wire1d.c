@@ -178,6 +178,9 @@ static bool observe(void *context, double fraction, int iterations)
     r->increments++;
     r->iterations += iterations;
     r->run->increments++;
+    double tip[3], frame[3][3];
+    wb_wire1d_frame(r->wire, model->length, tip, frame);
+    wb_wire_run_turn(r->run, frame[0]);
     return !r->observer || !r->observer->increment ||
            r->observer->increment(r->observer->context, r->run, r->step,
                                   fmin(fmax(of_step, 0.0), 1.0), iterations, fmin(1.0, done));

@@ -35,7 +35,8 @@ struct run {
     double (*shape)[3]; /* (n_shape) workspace */
     int step, row;      /* under way; row from 1 */
     int increments, iterations;
-    bool slack;
+    bool slack;            /* the strand carries nothing */
+    double held;           /* m: the deflection at which it would hold the tip */
     enum wb_status status; /* of the observer */
 };
 
@@ -204,9 +205,12 @@ static bool observe(void *context, double fraction, int iterations)
     r->increments++;
     r->iterations += iterations;
     r->run->increments++;
+    struct wb_solid_tip tip;
+    wb_solid_tip(r->wire->solid, &tip);
+    wb_wire_run_turn(r->run, tip.frame[0]);
     return !r->observer || !r->observer->increment ||
            r->observer->increment(r->observer->context, r->run, r->step,
-                                  fmin(1.0, (r->row - 1 + fraction) / rows), iterations,
+                                  fmin(fmax((r->row - 1 + fraction) / rows, 0.0), 1.0), iterations,
                                   fmin(1.0, done));
 }
 
@@ -224,13 +228,18 @@ static bool move(struct run *r, struct wb_solid_move *move, struct wb_solid_poin
     return point->end == WB_SOLID_CONVERGED;
 }
 
+static double between(double a, double b, double share)
+{
+    return share == 1.0 ? b : a + share * (b - a);
+}
+
 static void blend(const struct wb_tip_loads *a, const struct wb_tip_loads *b, double share,
                   struct wb_tip_loads *out)
 {
     for (int i = 0; i < 3; i++) {
-        out->force[i] = a->force[i] + share * (b->force[i] - a->force[i]);
-        out->moment[i] = a->moment[i] + share * (b->moment[i] - a->moment[i]);
-        out->follower[i] = a->follower[i] + share * (b->follower[i] - a->follower[i]);
+        out->force[i] = between(a->force[i], b->force[i], share);
+        out->moment[i] = between(a->moment[i], b->moment[i], share);
+        out->follower[i] = between(a->follower[i], b->follower[i], share);
     }
 }
 
@@ -249,7 +258,7 @@ static struct wb_solid_move plan_row(const struct run *r, const struct wb_solid_
         move.target.tension = (1.0 - share) * start->tension;
     if (step->kind == WB_WIRE_STEP_DEFLECTION) {
         move.control = WB_SOLID_DEFLECTION;
-        move.deflection = start_deflection + share * (step->deflection - start_deflection);
+        move.deflection = between(start_deflection, step->deflection, share);
     }
     return move;
 }
@@ -261,69 +270,118 @@ static double tip_y(const struct run *r)
     return tip.position[1];
 }
 
-/* Follows the path past a limit point of the load, with a row for each increment, until the row's
- * loads can be reached again. */
-static bool follow_arc(struct run *r, const struct wb_solid_move *row, double from, double to)
+/* Room for another row of a path beside those that are still planned. */
+static bool has_room(struct run *r)
 {
+    int planned = 0;
+
+    for (int i = r->step; i < r->wire->model->n_steps; i++)
+        planned += r->wire->model->step[i].rows - (i == r->step ? r->row - 1 : 0);
+    if (r->run->n_rows + planned < r->run->capacity)
+        return true;
+    snprintf(r->run->problem, sizeof r->run->problem,
+             "step '%s', row %d: paths past limit points take more than %d rows",
+             r->wire->model->step[r->step].name, r->row, WB_WIRE_RUN_SPARE);
+    return false;
+}
+
+/* A path past a limit point, on the way of one row. */
+struct path {
+    double share;      /* of the way to the row's loads at which it stands */
+    int next_try;      /* to reach them directly */
+    int until_another; /* arcs from a try that failed to the next one; each costs many */
+};
+
+/* Tries to reach the row's loads from where the path stands. */
+static bool reach_from_path(struct run *r, const struct wb_solid_move *row, struct path *path,
+                            int arc)
+{
+    struct wb_solid_move rest = *row;
+    struct wb_solid_point point;
+
+    if (move(r, &rest, &point))
+        return true;
+    path->share += point.fraction * (1.0 - path->share);
+    path->next_try = arc + path->until_another;
+    path->until_another *= 2;
+    return false;
+}
+
+/* Follows the path past a limit point of the load, with a row for each increment, until the row's
+ * loads can be reached again. `share` of the way to them was made before. */
+static bool follow_arc(struct run *r, const struct wb_solid_move *row, double from, double to,
+                       double share)
+{
+    struct path path = {.share = share, .until_another = 2};
     struct wb_solid_move arc = *row;
     struct wb_solid_point point;
-    double length = arc_share * r->wire->model->length;
 
     arc.control = WB_SOLID_ARC;
-    arc.arc_length = length;
+    arc.arc_length = arc_share * r->wire->model->length;
     for (int i = 0; i < MOST_ARC_INCREMENTS; i++) {
         if (!move(r, &arc, &point))
             return false;
-        add_row(r, fmin(from + point.fraction * (to - from), 0.999999));
+        /* What is left of the way is an arc's whole. */
+        path.share += point.fraction * (1.0 - path.share);
+        add_row(r, fmin(between(from, to, path.share), 0.999999));
         if (r->status != WB_OK || r->run->stopped)
             return false;
-        if (point.fraction > 0.0 && !point.unstable) {
-            struct wb_solid_move rest = *row;
-            if (move(r, &rest, &point))
-                return true;
-        }
+        const bool near = path.share >= 1.0 || (point.fraction > 0.0 && i >= path.next_try);
+        if (near && !point.unstable && reach_from_path(r, row, &path, i))
+            return true;
+        if (r->status != WB_OK || r->run->stopped)
+            return false;
+        /* Loads that are reached on an unstable branch are never reached in truth. */
+        if (path.share >= 1.0 || !has_room(r))
+            return false;
     }
     return false;
+}
+
+/* Lets go of a strand that would have to push. */
+static bool let_go(struct run *r, const struct wb_solid_move *row)
+{
+    struct wb_solid_move release = *row;
+    struct wb_solid_point point;
+
+    release.control = WB_SOLID_LOADS;
+    release.target.tension = 0.0;
+    r->slack = true;
+    return move(r, &release, &point);
 }
 
 /* Moves to the end of a row; a slack strand waits until the tip comes to it again. */
 static bool reach_row(struct run *r, struct wb_solid_move *row, double from, double to)
 {
     struct wb_solid_point point = {0};
-    const bool strand = r->wire->model->strand_length > 0.0;
+    const bool held = row->control == WB_SOLID_DEFLECTION;
 
-    if (r->slack && row->control == WB_SOLID_DEFLECTION && row->deflection <= tip_y(r))
+    if (r->slack && held && row->deflection <= tip_y(r))
         return true;
-    r->slack = false;
-    if (!move(r, row, &point)) {
-        snprintf(r->run->problem, sizeof r->run->problem, "step '%s', row %d (%.3g of the way): %s",
-                 r->wire->model->step[r->step].name, r->row, point.fraction, point.problem);
-        if (r->status != WB_OK || r->run->stopped || row->control != WB_SOLID_LOADS)
-            return false;
-        return follow_arc(r, row, from, to);
-    }
-    if (strand && row->control == WB_SOLID_DEFLECTION &&
-        wb_solid_loads(r->wire->solid)->tension < 0.0) {
-        struct wb_solid_move release = *row;
-        release.control = WB_SOLID_LOADS;
-        release.target.tension = 0.0;
-        r->slack = true;
-        return move(r, &release, &point);
-    }
-    return true;
+    r->slack = r->slack && !held && row->target.tension == 0.0;
+    if (move(r, row, &point))
+        return true;
+    if (point.end == WB_SOLID_SLACK && let_go(r, row))
+        return true;
+    snprintf(r->run->problem, sizeof r->run->problem, "step '%s', row %d (%.3g of the way): %s",
+             r->wire->model->step[r->step].name, r->row, point.fraction, point.problem);
+    if (r->status != WB_OK || r->run->stopped || held)
+        return false;
+    return follow_arc(r, row, from, to, point.fraction);
 }
 
 static bool run_step(struct run *r)
 {
     const struct wb_wire_step *step = &r->wire->model->step[r->step];
     const struct wb_solid_loads start = *wb_solid_loads(r->wire->solid);
-    const double start_deflection = tip_y(r);
+    const double start_deflection = r->slack ? r->held : tip_y(r);
 
     for (r->row = 1; r->row <= step->rows; r->row++) {
         const double from = (r->row - 1.0) / step->rows, to = (double)r->row / step->rows;
         struct wb_solid_move row = plan_row(r, &start, start_deflection, to);
         if (!reach_row(r, &row, from, to))
             return false;
+        r->held = step->kind == WB_WIRE_STEP_DEFLECTION ? row.deflection : tip_y(r);
         r->run->problem[0] = '\0';
         add_row(r, r->row == step->rows ? 1.0 : to);
         if (r->status != WB_OK || r->run->stopped)
@@ -342,7 +400,7 @@ static bool begin(struct run *r)
     };
     struct wb_solid_point point = {0};
 
-    if (!move(r, &first, &point)) {
+    if (!move(r, &first, &point) && !(point.end == WB_SOLID_SLACK && let_go(r, &first))) {
         snprintf(r->run->problem, sizeof r->run->problem, "under its weight: %s", point.problem);
         return false;
     }

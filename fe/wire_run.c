@@ -64,14 +64,11 @@ static int cycle_of(const struct wb_wire_run *run, const struct wb_wire_model *m
     return before->cycle + (begins ? 1 : 0);
 }
 
-/* The angle's branch nearest to the row before. */
-static double angle_of(const struct wb_wire_run *run, const double tangent[3])
+/* To the angle's branch nearest to where it was. */
+void wb_wire_run_turn(struct wb_wire_run *run, const double tangent[3])
 {
     const double angle = atan2(tangent[1], tangent[0]);
-    if (run->n_rows == 0)
-        return angle;
-    const double before = run->rows[run->n_rows - 1].tip_angle;
-    return angle + 2.0 * M_PI * round((before - angle) / (2.0 * M_PI));
+    run->tip_angle = angle + 2.0 * M_PI * round((run->tip_angle - angle) / (2.0 * M_PI));
 }
 
 void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
@@ -86,7 +83,8 @@ void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
     out->phase = slack                            ? WB_HISTORY_SLACK
                  : model->step[row->step].unloads ? WB_HISTORY_UNLOAD
                                                   : WB_HISTORY_LOAD;
-    out->tip_angle = angle_of(run, row->tangent);
+    wb_wire_run_turn(run, row->tangent);
+    out->tip_angle = run->tip_angle;
     /* A deflection as the first step begins at zero, with the weight on. */
     if (run->n_rows == 0)
         run->zero_force =

@@ -41,6 +41,7 @@ struct wb_wire_run {
     int increments, iterations, cutbacks; /* in all */
     int n_elements, n_unknowns;
     double zero_force; /* N: subtracted from `force` */
+    double tip_angle;  /* rad: where the tip's tangent points to, followed through all increments */
 };
 
 /* Told during a run; each may be NULL. */
@@ -67,6 +68,9 @@ void wb_wire_run_release(struct wb_wire_run *run); /* accepts a zeroed one */
 
 /* Rows that a model gives when it runs through: one at the start and those of every step. */
 int wb_wire_run_planned_rows(const struct wb_wire_model *model);
+
+/* Told of the tip's tangent after every increment: in one row it may turn past pi. */
+void wb_wire_run_turn(struct wb_wire_run *run, const double tangent[3]);
 
 /* Appends a row that has step, fraction, loads, tip, tangent, tension, vertical_force, increments
  * and iterations, and completes it: cycle, phase, angle, force. `slack`: the strand carries
