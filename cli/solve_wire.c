@@ -256,6 +256,18 @@ static void print_csv(const struct run *run)
     }
 }
 
+static void warn_of_sliding(const struct run *run)
+{
+    struct wb_wire3d_balance balance;
+    if (!run->solid)
+        return;
+    wb_wire3d_balance(run->solid, &balance);
+    if (balance.sliding > balance.slip_limit)
+        wb_warn("%s: core and jacket slide by %.3g mm; contact is computed for small sliding, up "
+                "to %.3g mm with this mesh: do not trust what depends on the interface",
+                run->model.name, balance.sliding / WB_MM, balance.slip_limit / WB_MM);
+}
+
 static int deliver(const struct run *run)
 {
     const struct wb_command_common *const common = &run->options->common;
@@ -274,6 +286,7 @@ static int deliver(const struct run *run)
                 run->run.problem, run->run.n_rows, wb_wire_run_planned_rows(&run->model));
     if (run->run.stopped)
         wb_warn("stopped after %d rows", run->run.n_rows);
+    warn_of_sliding(run);
     return run->run.converged && !run->run.stopped ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 

@@ -349,6 +349,7 @@ static void collect(struct wb_interface_result *result, const struct frame *fram
                     const struct response *response, double slip, double weight)
 {
     keep_largest(&result->slip, slip);
+    keep_largest(&result->sliding, hypot(frame->gap[0], frame->gap[1]));
     if (!response->touching) {
         keep_largest(&result->opening, frame->gap[2]);
         return;

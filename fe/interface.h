@@ -45,6 +45,7 @@ struct wb_interface_result {
     double penetration;     /* m, largest */
     double opening;         /* m, largest */
     double slip;            /* m, largest accumulated */
+    double sliding;         /* m, largest distance of partners along the face, open ones too */
     double pressure;        /* Pa, largest */
     double dissipated;      /* J, by friction in this step, backward Euler */
     double stored;          /* J, in the springs of penetration and of sticking */

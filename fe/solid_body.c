@@ -276,6 +276,7 @@ static void collect_interface(struct wb_interface_result *all,
     all->penetration = fmax(all->penetration, one->penetration);
     all->opening = fmax(all->opening, one->opening);
     all->slip = fmax(all->slip, one->slip);
+    all->sliding = fmax(all->sliding, one->sliding);
     all->pressure = fmax(all->pressure, one->pressure);
     all->dissipated += one->dissipated;
     all->stored += one->stored;

@@ -18,13 +18,15 @@ enum {
     MOST_ARC_INCREMENTS = 100
 };
 
-/* Small sliding holds up to this share of an element's length. */
+/* Small sliding holds up to this share of an element's shorter side on the interface. */
 static const double slip_share = 0.25;
 
 struct wb_wire3d {
     const struct wb_wire_model *model; /* borrowed */
     struct wb_solid_mesh mesh;
     struct wb_solid *solid;
+    double sliding; /* m: largest of the run, over the interface */
+    bool has_run;
 };
 
 /* A run under way. */
@@ -206,8 +208,11 @@ static bool observe(void *context, double fraction, int iterations)
     r->iterations += iterations;
     r->run->increments++;
     struct wb_solid_tip tip;
+    struct wb_solid_balance balance;
     wb_solid_tip(r->wire->solid, &tip);
     wb_wire_run_turn(r->run, tip.frame[0]);
+    wb_solid_balance(r->wire->solid, &balance);
+    r->wire->sliding = fmax(r->wire->sliding, balance.interface.sliding);
     return !r->observer || !r->observer->increment ||
            r->observer->increment(r->observer->context, r->run, r->step,
                                   fmin(fmax((r->row - 1 + fraction) / rows, 0.0), 1.0), iterations,
@@ -413,6 +418,13 @@ enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
 {
     struct run r = {.wire = wire, .run = run, .observer = observer, .status = WB_OK};
 
+    if (wire->has_run) { /* virgin again */
+        wb_solid_destroy(wire->solid);
+        wire->solid = NULL;
+        wire->sliding = 0.0;
+        WB_TRY(make_solid(wire));
+    }
+    wire->has_run = true;
     r.shape = calloc((size_t)run->n_shape + 1, sizeof *r.shape);
     if (!r.shape)
         return wb_fail(WB_ERR_MEMORY, "out of memory for %d positions", run->n_shape);
@@ -496,6 +508,13 @@ void wb_wire3d_fields_release(struct wb_wire3d_fields *fields)
     *fields = (struct wb_wire3d_fields){0};
 }
 
+/* Of an element's face on the interface, m. */
+static double shorter_side(const struct wb_wire_model *model)
+{
+    const double around = M_PI * model->part[0].outer_diameter / (8 * model->section_density);
+    return fmin(model->length / model->elements_along, around);
+}
+
 void wb_wire3d_balance(const struct wb_wire3d *wire, struct wb_wire3d_balance *balance)
 {
     struct wb_solid_balance b;
@@ -505,7 +524,8 @@ void wb_wire3d_balance(const struct wb_wire3d *wire, struct wb_wire3d_balance *b
         .penetration = b.interface.penetration,
         .opening = b.interface.opening,
         .slip = b.interface.slip,
-        .slip_limit = slip_share * wire->model->length / wire->model->elements_along,
+        .sliding = wire->sliding,
+        .slip_limit = slip_share * shorter_side(wire->model),
         .work = b.work,
         .elastic = b.elastic,
         .dissipated = b.dissipated,

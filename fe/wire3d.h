@@ -38,12 +38,14 @@ WB_MUST_CHECK enum wb_status wb_wire3d_fields(const struct wb_wire3d *wire,
                                               struct wb_wire3d_fields *fields);
 void wb_wire3d_fields_release(struct wb_wire3d_fields *fields);
 
-/* Of the last converged state: largest penetration, opening and slip of the interface (m), zero
- * when bonded; work done by the loads, stored elastic and dissipated energy (J), and the largest
- * share of iterations' residual at convergence. For reports and tests. */
+/* Of the last converged state: largest penetration, opening and accumulated slip of the interface
+ * (m), zero when bonded; work done by the loads, stored elastic and dissipated energy (J). Of the
+ * whole run: how far points of both parts that lay upon each other slid apart. For reports and
+ * tests. */
 struct wb_wire3d_balance {
-    double penetration, opening, slip, slip_limit; /* m; beyond the limit small sliding is void */
-    double work, elastic, dissipated, friction;    /* J */
+    double penetration, opening, slip;          /* m */
+    double sliding, slip_limit;                 /* m; beyond the limit small sliding is void */
+    double work, elastic, dissipated, friction; /* J */
 };
 void wb_wire3d_balance(const struct wb_wire3d *wire, struct wb_wire3d_balance *balance);
 

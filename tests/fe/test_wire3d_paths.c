@@ -249,6 +249,66 @@ static void arc_sets_out_along_the_path_next_to_buckling(void **state)
     wb_solid_mesh_release(&mesh);
 }
 
+static void a_second_run_begins_anew(void **state)
+{
+    (void)state;
+    struct computed *c = begin_rod(0.02, 1.4e-3, type3, 4);
+    struct wb_wire_run again;
+
+    c->model.n_steps = 1;
+    c->model.step[0] = to_deflection(6e-3, 2, false);
+    compute(c, NULL);
+    assert_int_equal(wb_wire_run_init(&again, &c->model, 7), WB_OK);
+    assert_int_equal(wb_wire3d_run(c->wire, &again, NULL), WB_OK);
+    assert_int_equal(again.n_rows, c->run.n_rows);
+    for (int i = 0; i < again.n_rows; i++) {
+        assert_true(again.rows[i].tension == c->run.rows[i].tension);
+        assert_true(again.rows[i].tip[0] == c->run.rows[i].tip[0]);
+    }
+    wb_wire_run_release(&again);
+    end(c);
+}
+
+/* The core of a pulled wire yields, its jacket, half as stiff, does not: the core comes out at the
+ * end, by the difference of both strains over the length, without friction. */
+static void sliding_beyond_what_contact_is_made_for_is_told(void **state)
+{
+    (void)state;
+    static const double strains[2] = {0.002, 0.05};
+    for (int k = 0; k < 2; k++) {
+        struct computed *c = begin_rod(10e-3, 1e-3, soft, 5);
+        struct wb_wire_model *m = &c->model;
+        struct wb_wire3d_balance balance;
+        m->part[0].material.hardening = WB_HARDENING_KINEMATIC_LINEAR;
+        m->part[0].material.yield_stress = 1e6;
+        m->part[0].material.strength_coefficient = 50e6;
+        m->n_parts = 2;
+        m->part[1] = m->part[0];
+        m->part[1].inner_diameter = 1e-3;
+        m->part[1].outer_diameter = m->wire.outer_diameter = 1.4e-3;
+        m->part[1].material = soft;
+        m->has_contact = true;
+        wb_interface_default_law(&m->interface, 1e9, 0.3, 0.2e-3, 0.0);
+        /* Each part carries a share of the force as large as its share of sum E A. */
+        const double area = M_PI * 1.96e-6 / 4.0;
+        const double stress = 1e6 + 50e6 * strains[k];
+        m->n_steps = 1;
+        m->step[0] = (struct wb_wire_step){
+            .name = "pull", .loads.force = {stress * area, 0.0, 0.0}, .rows = 4};
+        compute(c, NULL);
+        assert_true(c->run.converged);
+        wb_wire3d_balance(c->wire, &balance);
+        print_message("strain %.3f: sliding of %.1f um, good up to %.1f um\n", strains[k],
+                      1e6 * balance.sliding, 1e6 * balance.slip_limit);
+        assert_close_relative(balance.sliding, strains[k] * m->length,
+                              k == 0 ? 0.03 : 0.12); /* the core becomes thinner */
+        ;
+        assert_true((balance.sliding > balance.slip_limit) == (k == 1));
+        assert_close_relative(balance.slip_limit, 0.25 * M_PI * 1e-3 / 8.0, 1e-12);
+        end(c);
+    }
+}
+
 /* Numbers that are none are refused; NaN in every other unknown hid behind finite ones. */
 static void impossible_solids_are_refused(void **state)
 {
@@ -280,6 +340,8 @@ int main(void)
         cmocka_unit_test(weight_of_a_short_stiff_wire_is_carried),
         cmocka_unit_test(small_loads_after_large_ones_are_carried),
         cmocka_unit_test(arc_sets_out_along_the_path_next_to_buckling),
+        cmocka_unit_test(a_second_run_begins_anew),
+        cmocka_unit_test(sliding_beyond_what_contact_is_made_for_is_told),
         cmocka_unit_test(impossible_solids_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
