@@ -1,4 +1,4 @@
-/* wirebench info: what a recording is. */
+/* wirebench info: what a recording is, or a bundle (info_bundle.c). */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/info.h"
 #include "daq/check_log.h"
 #include "daq/replay.h"
 #include "daq/specimen.h"
@@ -13,22 +14,51 @@
 
 #define WB_LOG_DOMAIN "info"
 
+enum {
+    KEY_FIGURE = WB_KEY_OWN,
+    KEY_MESH
+};
+
 static const struct argp_option option_table[] = {
+    {"figure", KEY_FIGURE, "FILE", 0, "Draw a bundle's section: .svg, .png or .pdf", 0},
+    {"mesh", KEY_MESH, "NAME", 0, "With the lines of this mesh (that of the bundle's run)", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the figure", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    return wb_command_parse_common(key, argument, state, state->input);
+    struct wb_info_options *const options = state->input;
+    switch (key) {
+    case KEY_FIGURE:
+        if (!wb_info_is_figure(argument))
+            argp_error(state, "--figure: expected a file that ends in .svg, .png or .pdf, not '%s'",
+                       argument);
+        options->figure = argument;
+        return 0;
+    case KEY_MESH:
+        options->mesh = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (options->mesh && !options->figure)
+            argp_error(state, "--mesh goes with --figure");
+        if (options->figure && options->common.input && !wb_info_is_bundle(options->common.input))
+            argp_error(state, "--figure is of a bundle, and '%s' is none", options->common.input);
+        break;
+    default:
+        break;
+    }
+    return wb_command_parse_common(key, argument, state, &options->common);
 }
 
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .args_doc = "REC.wbr",
+    .args_doc = "REC.wbr|BUNDLE.yaml",
     .doc = "Tells what a recording (.wbr or .wbr.zst) holds: specimen, rig, operator, streams with "
-           "their rates, events.\v"
+           "their rates, events. Or what a bundle is: wires, packing, tape, diameters, density and "
+           "bounds of its flexural rigidity beside the published ones, meshes.\v"
            "Exit code 3: something is missing or damaged; 'wirebench verify' says what.",
 };
 
@@ -244,8 +274,11 @@ static int print_json(struct facts *facts, const char *path)
 
 int wb_cmd_info(int argc, char **argv)
 {
-    struct wb_command_common options = {.noun = "recording"};
-    wb_command_parse(&argp, argc, argv, &options);
+    struct wb_info_options all = {.common = {.noun = "recording or bundle file"}};
+    wb_command_parse(&argp, argc, argv, &all);
+    const struct wb_command_common options = all.common;
+    if (wb_info_is_bundle(options.input))
+        return wb_info_bundle(&all);
     struct facts facts = {.recording = NULL};
     enum wb_status status = gather(&facts, options.input);
     int code = wb_command_exit(status);

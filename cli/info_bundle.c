@@ -1,0 +1,210 @@
+/* wirebench info BUNDLE.yaml: what a bundle is. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/figures_bundle.h"
+#include "base/units.h"
+#include "cli/info.h"
+#include "fe/bundle_model.h"
+
+#define WB_LOG_DOMAIN "info"
+
+static const double pixels_of_a_point = 3.0;
+
+static bool ends_in(const char *name, const char *ending)
+{
+    const size_t n = strlen(name), k = strlen(ending);
+    return n >= k && strcmp(name + n - k, ending) == 0;
+}
+
+bool wb_info_is_bundle(const char *name)
+{
+    return ends_in(name, ".yaml") || ends_in(name, ".yml");
+}
+
+bool wb_info_is_figure(const char *name)
+{
+    return ends_in(name, ".svg") || ends_in(name, ".png") || ends_in(name, ".pdf");
+}
+
+static const char *length_source(const struct wb_bundle_model *model)
+{
+    static const char *const names[] = {"own", "printed", "inferred"};
+    return names[model->length_source];
+}
+
+static const char *formulation(const struct wb_bundle_mesh *mesh)
+{
+    return mesh->formulation == WB_BUNDLE_ONE_POINT ? "one-point" : "2x2x1";
+}
+
+static double contact(const struct wb_bundle_model *model, int wire, bool *touches)
+{
+    *touches = false;
+    return model->has_tape ? wb_hull_contact(&model->tape.hull, wire, touches) / WB_DEGREE : 0.0;
+}
+
+/* --- as text --- */
+
+static void print_section(const struct wb_bundle_model *model)
+{
+    const char *before = "wires";
+    for (int i = 0; i < model->n_types; i++, before = "")
+        printf("  %-10s %d x %s, %g mm\n", before, wb_bundle_model_count(model, i),
+               model->type[i].name, model->type[i].outer_diameter / WB_MM);
+    printf("  %-10s %s%s\n", "packing", wb_bundle_model_arrangement(model),
+           model->settled ? ", settled" : "");
+    if (model->wire_gap > 0.0)
+        printf("  %-10s %g mm between wires\n", "gap", model->wire_gap / WB_MM);
+    if (model->has_tape)
+        printf("  %-10s %s, %s\n", "tape", model->tape.material.name,
+               model->tape.taping.kind == WB_TAPING_SLEEVE ? "sleeve" : "helix");
+    printf("  %-10s %g mm (%s)\n", "length", model->length / WB_MM, length_source(model));
+}
+
+static void print_facts(const struct wb_bundle_model *model)
+{
+    struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS];
+    const int n = wb_bundle_model_facts(model, facts);
+    for (int i = 0; i < n; i++)
+        printf(facts[i].value < 1000.0 ? "  %-42s %8.4g%s%s\n" : "  %-42s %8.0f%s%s\n",
+               facts[i].text, facts[i].value, facts[i].unit[0] ? " " : "", facts[i].unit);
+}
+
+static void print_meshes(const struct wb_bundle_model *model)
+{
+    printf("  meshes\n");
+    for (int i = 0; i < model->n_meshes; i++) {
+        const struct wb_bundle_mesh *const mesh = &model->mesh[i];
+        printf("    %-14s %d quadrilaterals a wire, %d elements along, %ld hexahedra, %s",
+               mesh->name, wb_bundle_model_section_quads(mesh), mesh->elements_along,
+               wb_bundle_model_hexahedra(model, mesh), formulation(mesh));
+        if (model->has_tape)
+            printf(", %d shells round the tape", wb_bundle_model_tape_quads(model, mesh));
+        printf("%s\n", strcmp(mesh->name, model->run.mesh) == 0 ? " (of the run)" : "");
+    }
+}
+
+static void print_text(const struct wb_bundle_model *model, const char *figure)
+{
+    printf("%s: bundle %s\n", model->path, model->name);
+    if (model->title[0])
+        printf("  %-10s %s\n", "title", model->title);
+    if (model->notes[0])
+        printf("  %-10s %s\n", "notes", model->notes);
+    print_section(model);
+    printf("  %-10s %s\n", "sha256", model->sha256);
+    if (figure)
+        printf("  %-10s %s\n", "figure", figure);
+    print_facts(model);
+    print_meshes(model);
+}
+
+/* --- as JSON --- */
+
+static void set_wires(struct wb_json *root, const struct wb_bundle_model *model)
+{
+    struct wb_json *const types = wb_json_set_array(root, "types");
+    for (int i = 0; i < model->n_types; i++) {
+        struct wb_json *const type = wb_json_append_object(types);
+        wb_json_set_text(type, "wire", model->type[i].name);
+        wb_json_set_integer(type, "count", wb_bundle_model_count(model, i));
+        wb_json_set_number(type, "outer_diameter_mm", model->type[i].outer_diameter / WB_MM);
+    }
+    struct wb_json *const wires = wb_json_set_array(root, "wires");
+    for (int i = 0; i < model->packing.n; i++) {
+        struct wb_json *const wire = wb_json_append_object(wires);
+        bool touches;
+        const double degrees = contact(model, i, &touches);
+        wb_json_set_text(wire, "wire", model->type[model->type_of[i]].name);
+        wb_json_set_number(wire, "y_mm", model->packing.wire[i].y / WB_MM);
+        wb_json_set_number(wire, "z_mm", model->packing.wire[i].z / WB_MM);
+        wb_json_set_boolean(wire, "touches_tape", touches);
+        wb_json_set_number(wire, "tape_contact_degrees", degrees);
+    }
+}
+
+static void set_meshes(struct wb_json *root, const struct wb_bundle_model *model)
+{
+    struct wb_json *const meshes = wb_json_set_array(root, "meshes");
+    for (int i = 0; i < model->n_meshes; i++) {
+        const struct wb_bundle_mesh *const mesh = &model->mesh[i];
+        struct wb_json *const item = wb_json_append_object(meshes);
+        wb_json_set_text(item, "name", mesh->name);
+        wb_json_set_text(item, "formulation", formulation(mesh));
+        wb_json_set_integer(item, "section_quadrilaterals", wb_bundle_model_section_quads(mesh));
+        wb_json_set_integer(item, "elements_along", mesh->elements_along);
+        wb_json_set_integer(item, "hexahedra", wb_bundle_model_hexahedra(model, mesh));
+        wb_json_set_integer(item, "tape_quadrilaterals_round",
+                            wb_bundle_model_tape_quads(model, mesh));
+    }
+}
+
+static int print_json(const struct wb_bundle_model *model, const char *figure)
+{
+    struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS];
+    const int n = wb_bundle_model_facts(model, facts);
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "bundle", model->path);
+    wb_json_set_text(root, "name", model->name);
+    wb_json_set_text(root, "title", model->title);
+    wb_json_set_text(root, "sha256", model->sha256);
+    wb_json_set_text(root, "packing", wb_bundle_model_arrangement(model));
+    wb_json_set_boolean(root, "settled", model->settled);
+    wb_json_set_number(root, "length_mm", model->length / WB_MM);
+    wb_json_set_text(root, "length_source", length_source(model));
+    wb_json_set_text(root, "figure", figure);
+    for (int i = 0; i < n; i++)
+        wb_json_set_number(root, facts[i].key, facts[i].value);
+    set_wires(root, model);
+    set_meshes(root, model);
+    return wb_command_print_json(root);
+}
+
+/* --- as a drawing --- */
+
+static enum wb_status write_figure(const struct wb_figure *figure, const char *path)
+{
+    if (ends_in(path, ".svg"))
+        return wb_figure_write_svg(figure, path);
+    if (ends_in(path, ".pdf"))
+        return wb_figure_write_pdf(figure, NULL, path);
+    return wb_figure_write_png(figure, pixels_of_a_point, path);
+}
+
+static enum wb_status draw(const struct wb_info_options *options,
+                           const struct wb_bundle_model *model)
+{
+    const char *const mesh = options->mesh ? options->mesh : model->run.mesh;
+    struct wb_figure *figure;
+    if (!options->common.force && wb_file_exists(options->figure))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", options->figure);
+    WB_TRY(wb_figures_bundle_draw(&figure, "section", 1, &model, mesh));
+    const enum wb_status status = write_figure(figure, options->figure);
+    wb_figure_destroy(figure);
+    return status;
+}
+
+static int tell(const struct wb_info_options *options, const struct wb_bundle_model *model)
+{
+    if (options->figure && draw(options, model) != WB_OK)
+        return WB_EXIT_FAILED;
+    if (options->common.json)
+        return print_json(model, options->figure);
+    print_text(model, options->figure);
+    return WB_EXIT_OK;
+}
+
+int wb_info_bundle(const struct wb_info_options *options)
+{
+    char path[WB_PATH];
+    struct wb_bundle_model *const model = malloc(sizeof *model);
+    if (!model)
+        return wb_command_exit(wb_fail(WB_ERR_MEMORY, "no memory for a bundle"));
+    enum wb_status status =
+        wb_bundle_model_read(model, wb_command_find(options->common.input, path));
+    const int code = status == WB_OK ? tell(options, model) : wb_command_exit(status);
+    free(model);
+    return code;
+}

@@ -1,0 +1,167 @@
+/* The tool itself: `wirebench info` of bundles. WIREBENCH_BINARY names it. */
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "tests/check.h"
+
+struct outcome {
+    int code;
+    char out[65536], err[16384];
+};
+
+static struct outcome o;
+static char folder[] = "/tmp/wirebench-info-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    char command[128];
+    (void)state;
+    snprintf(command, sizeof command, "rm -r '%s'", folder);
+    return system(command);
+}
+
+static const char *path_of(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static void read_all(const char *name, char *text, size_t size)
+{
+    FILE *const file = fopen(path_of(name), "r");
+    assert_non_null(file);
+    text[fread(text, 1, size - 1, file)] = '\0';
+    fclose(file);
+}
+
+static void tool(const char *arguments)
+{
+    const char *const binary = getenv("WIREBENCH_BINARY");
+    char command[1024];
+    if (!binary)
+        fail_msg("WIREBENCH_BINARY is not set: run this test through meson");
+    snprintf(command, sizeof command, "cd %s && { %s %s\n} > out 2> err", folder, binary,
+             arguments);
+    const int status = system(command);
+    assert_true(WIFEXITED(status));
+    o.code = WEXITSTATUS(status);
+    read_all("out", o.out, sizeof o.out);
+    read_all("err", o.err, sizeof o.err);
+}
+
+static void expect(const char *arguments, int code, const char *part_of_err)
+{
+    tool(arguments);
+    if (o.code != code || !strstr(o.err, part_of_err))
+        fail_msg("%s: exit %d, %s", arguments, o.code, o.err);
+}
+
+static void a_bundle_is_described(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "bundle 19-mixed\n", "10 x type3, 1.4 mm\n", "9 x type2, 1.25 mm\n", "hexagon\n",
+        "tape, sleeve\n",    "114 mm (inferred)\n",  "outer diameter",       "engineering",
+        "612864 hexahedra",  "E I, wires bonded",
+    };
+    /* A shipped file from any folder. */
+    expect("info fixtures/bundles/19-mixed.yaml", 0, "");
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        if (!strstr(o.out, lines[i]))
+            fail_msg("no '%s' in %s", lines[i], o.out);
+    }
+    assert_string_equal(o.err, "");
+}
+
+static double number(const struct wb_json *object, const char *key)
+{
+    double value = (double)NAN;
+    if (!wb_json_get_number(object, key, &value))
+        fail_msg("no number '%s'", key);
+    return value;
+}
+
+static void json_has_the_numbers(void **state)
+{
+    (void)state;
+    struct wb_json *root;
+    expect("info fixtures/bundles/7-type3.yaml --json", 0, "");
+    assert_int_equal(wb_json_parse(&root, o.out, "info"), WB_OK);
+    assert_close(number(root, "outer_diameter_mm"), 4.6, 1e-9);
+    assert_close_relative(number(root, "density_at_published_diameter_g_cm3"),
+                          number(root, "published_density_g_cm3"), 0.005);
+    assert_true(number(root, "sliding_EI_N_mm2") < number(root, "published_EI_N_mm2"));
+    assert_true(number(root, "published_EI_N_mm2") < number(root, "bonded_EI_N_mm2"));
+    const struct wb_json *const wires = wb_json_get(root, "wires");
+    assert_int_equal(wb_json_length(wires), 7);
+    assert_close(number(wb_json_item(wires, 0), "tape_contact_degrees"), 0.0, 0.0);
+    assert_close(number(wb_json_item(wires, 3), "tape_contact_degrees"), 60.0, 1e-9);
+    assert_close(
+        hypot(number(wb_json_item(wires, 3), "y_mm"), number(wb_json_item(wires, 3), "z_mm")), 1.4,
+        1e-9);
+    const struct wb_json *const meshes = wb_json_get(root, "meshes");
+    assert_int_equal(wb_json_length(meshes), 2);
+    assert_close(number(wb_json_item(meshes, 1), "hexahedra"), 225792.0, 0.0);
+    wb_json_destroy(root);
+}
+
+static void a_section_is_drawn(void **state)
+{
+    (void)state;
+    static const char *const beginnings[] = {"<?xml", "\x89PNG", "%PDF"};
+    static const char *const names[] = {"a.svg", "a.png", "a.pdf"};
+    for (int i = 0; i < 3; i++) {
+        char arguments[128], text[4096];
+        snprintf(arguments, sizeof arguments, "info fixtures/bundles/12-type3.yaml --figure %s",
+                 names[i]);
+        expect(arguments, 0, "");
+        assert_non_null(strstr(o.out, names[i]));
+        read_all(names[i], text, sizeof text);
+        assert_memory_equal(text, beginnings[i], 4);
+    }
+    /* Only with --force again; another mesh is another drawing. */
+    char *first, *second;
+    size_t n_first, n_second;
+    assert_int_equal(wb_file_read(path_of("a.svg"), &first, &n_first), WB_OK);
+    expect("info fixtures/bundles/12-type3.yaml --figure a.svg --mesh paper", 1, "--force");
+    expect("info fixtures/bundles/12-type3.yaml --figure a.svg --mesh paper --force", 0, "");
+    assert_int_equal(wb_file_read(path_of("a.svg"), &second, &n_second), WB_OK);
+    assert_true(n_second > n_first);
+    free(first);
+    free(second);
+}
+
+static void wrong_usage_and_files_are_refused(void **state)
+{
+    (void)state;
+    expect("info fixtures/bundles/12-type3.yaml --figure a.gif", 2, "--figure");
+    expect("info fixtures/bundles/12-type3.yaml --mesh paper", 2, "--mesh goes with --figure");
+    expect("info a.wbr --figure b.svg", 2, "'a.wbr' is none");
+    expect("info", 2, "name a recording or bundle file");
+    expect("info none.yaml", 1, "none.yaml");
+    expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh none", 1, "no mesh none");
+    assert_false(wb_file_exists(path_of("b.svg")));
+    expect("info fixtures/wires/type1.yaml", 1, "type1.yaml:3: conductor_diameter_mm");
+    expect("info fixtures/bundles/12-type3.yaml --figure none/b.svg", 1, "none/b.svg");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_bundle_is_described),
+        cmocka_unit_test(json_has_the_numbers),
+        cmocka_unit_test(a_section_is_drawn),
+        cmocka_unit_test(wrong_usage_and_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
