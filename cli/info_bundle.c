@@ -60,7 +60,10 @@ static void print_section(const struct wb_bundle_model *model)
     if (model->has_tape)
         printf("  %-10s %s, %s\n", "tape", model->tape.material.name,
                model->tape.taping.kind == WB_TAPING_SLEEVE ? "sleeve" : "helix");
-    printf("  %-10s %g mm (%s)\n", "length", model->length / WB_MM, length_source(model));
+    printf("  %-10s %g mm", "length", model->length / WB_MM);
+    if (model->length_source != WB_BUNDLE_LENGTH_OWN)
+        printf(" (%s)", length_source(model));
+    printf("\n");
 }
 
 static void print_facts(const struct wb_bundle_model *model)

@@ -217,6 +217,8 @@ static void draw_tape(struct pen *pen, const struct wb_bundle_mesh *mesh)
         add(pen, x + half * cos(p.normal), y + half * sin(p.normal));
     }
     stroke(pen, paler(tape_colour, 0.75), 0.35);
+    if (tape->gap > 0.0)
+        return;
     add_contacts(pen, &tape->hull);
     stroke(pen, (struct wb_colour){0.84, 0.15, 0.16, 1.0}, 1.1);
 }
@@ -272,12 +274,18 @@ static void add_dimension(struct pen *pen, double y, double point)
     wb_figure_add_text(pen->panel, 0.0, y - 9.0 * point, 0, text);
 }
 
-static void add_scale_bar(struct pen *pen, double x, double y, double point)
+/* Its length is 1, 2 or 5 of a power of ten, at most a sixth of the largest cylinder. */
+static void add_scale_bar(struct pen *pen, const struct drawing *drawing, double x, double y)
 {
+    const double most = drawing->reach / 3.0;
+    double length = pow(10.0, floor(log10(most)));
+    length *= most >= 5.0 * length ? 5.0 : most >= 2.0 * length ? 2.0 : 1.0;
+    char text[32];
+    snprintf(text, sizeof text, "%g mm", length);
     add(pen, x, y);
-    add(pen, x + 1.0, y);
+    add(pen, x + length, y);
     stroke(pen, wb_palette_ink(), 1.8);
-    wb_figure_add_text(pen->panel, x + 0.5, y + 7.0 * point, 0, "1 mm");
+    wb_figure_add_text(pen->panel, x, y + 7.0 * drawing->point, -1, text);
 }
 
 static void set_title(struct wb_panel *panel, const struct wb_bundle_model *model)
@@ -315,7 +323,7 @@ static const double gap = 10.0, margin = 6.0, above = 16.0, below = 42.0, footer
 
 static double figure_width(int n)
 {
-    return n == 1 ? 250.0 : n == 2 ? 400.0 : WB_REPORT_WIDTH;
+    return n == 1 ? 280.0 : n == 2 ? 400.0 : WB_REPORT_WIDTH;
 }
 
 /* Sections stand on one line; the scale is the same in all. */
@@ -337,7 +345,7 @@ static enum wb_status draw_panels(struct wb_figure *figure, struct pen *pen,
         set_title(pen->panel, models[i]);
         WB_TRY(draw_section(pen, drawing));
         if (i == 0)
-            add_scale_bar(pen, -half + 2.0 * point, head - 12.0 * point, point);
+            add_scale_bar(pen, drawing, -half + 2.0 * point, head - 12.0 * point);
     }
     return WB_OK;
 }
@@ -347,9 +355,9 @@ static void set_footer(struct wb_figure *figure, const struct wb_bundle_model *m
 {
     const struct wb_bundle_mesh *const mesh = wb_bundle_model_mesh(model, mesh_name);
     char text[160];
-    snprintf(text, sizeof text, "mesh '%s': %d quadrilaterals a wire%s", mesh_name,
+    snprintf(text, sizeof text, "mesh %s: %d quadrilaterals a wire%s", mesh_name,
              wb_bundle_model_section_quads(mesh),
-             model->has_tape ? "; red: where the tape lies on wires" : "");
+             model->has_tape && model->tape.gap == 0.0 ? "; red: tape on wires" : "");
     wb_figure_set_footer(figure, text);
 }
 
