@@ -198,6 +198,8 @@ static void fill_reference(struct wb_swept_tape *tape, int k, int j,
         element->area * tape->model.thickness);
 }
 
+/* Directors lie in the plane of their section: so that what they face does (fe/swept_cohesion.h).
+ */
 static enum wb_status normalise_directors(struct wb_swept_tape *tape)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
@@ -206,12 +208,14 @@ static enum wb_status normalise_directors(struct wb_swept_tape *tape)
     for (int k = 0; k < layout->n_nodes; k++) {
         for (int j = 0; j < layout->n_stations; j++) {
             double *d = tape->director + 3 * (size_t)k * stride + (size_t)j;
-            const double length =
-                sqrt(d[0] * d[0] + d[stride] * d[stride] + d[2 * stride] * d[2 * stride]);
+            const double length = hypot(d[stride], d[2 * stride]);
             if (!(length > 0.1))
-                return wb_fail(WB_ERR_ARGUMENT, "the tape is folded at node %d, station %d", k, j);
-            for (int i = 0; i < 3; i++)
-                d[(size_t)i * stride] /= length;
+                return wb_fail(WB_ERR_ARGUMENT,
+                               "the tape is folded, or not along the axis, at node %d, station %d",
+                               k, j);
+            d[0] = 0.0;
+            d[stride] /= length;
+            d[2 * stride] /= length;
         }
     }
     return WB_OK;

@@ -76,7 +76,8 @@ int wb_swept_tape_blocks(const struct wb_swept_tape *tape);   /* of WB_SWEPT_LAN
 int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* round the ring */
 const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
 
-/* Directors of the reference state (a field): the mean of the adjoining elements' normals. */
+/* Directors of the reference state (a field): the mean of the adjoining elements' normals, in the
+ * plane of the section. */
 const double *wb_swept_tape_directors(const struct wb_swept_tape *tape);
 
 /* Area of the middle surface that goes with a node, m2. */

@@ -1,0 +1,177 @@
+/* What a shell of the tape costs on one core: a closed sleeve of 32 x 80 elements, bent as a
+ * bundle's, all points elastic or all yielding, with and without what integrates it. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "fe/swept_step.h"
+#include "fe/swept_tape.h"
+
+enum {
+    NODES = 32,
+    ALONG = 80,
+    STEPS = 200,
+    REPEATS = 15
+};
+
+static const double radius = 2.2e-3, spacing = 114e-3 / ALONG;
+
+struct sleeve {
+    struct wb_swept_layout layout;
+    struct wb_swept_tape *tape;
+    struct wb_swept_tape_state *state;
+    struct wb_swept_step *step[2]; /* of positions, of directors */
+    double *position, *director, *velocity, *turning;
+    void *force, *moment;
+};
+
+static double cpu_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void destroy(struct sleeve *s)
+{
+    wb_swept_tape_state_destroy(s->state);
+    wb_swept_tape_destroy(s->tape);
+    for (int i = 0; i < 2; i++)
+        wb_swept_step_destroy(s->step[i]);
+    free(s->position);
+    free(s->director);
+    free(s->velocity);
+    free(s->turning);
+    free(s->force);
+    free(s->moment);
+}
+
+static enum wb_status make_steps(struct sleeve *s, bool is_double)
+{
+    double mass[2][NODES];
+
+    wb_swept_tape_masses(s->tape, mass[0], mass[1]);
+    for (int i = 0; i < 2; i++) {
+        const struct wb_swept_step_model model = {.layout = s->layout,
+                                                  .node_mass = mass[i],
+                                                  .spacing = spacing,
+                                                  .double_precision = is_double};
+        WB_TRY(wb_swept_step_create(&s->step[i], &model));
+    }
+    return WB_OK;
+}
+
+static enum wb_status create(struct sleeve *s, enum wb_swept_tape_instructions instructions,
+                             int points, bool is_double)
+{
+    struct wb_swept_tape_model model = {
+        .material = {WB_HARDENING_ISOTROPIC_POWER, 119e6, 0.3, 2.4e6, 16.3e6, 0.73},
+        .density = 1250.0,
+        .thickness = 0.2e-3,
+        .points = points,
+        .layout = wb_swept_layout(NODES, ALONG + 1),
+        .spacing = spacing,
+        .closed = true,
+        .double_precision = is_double,
+        .instructions = instructions};
+    void **fields[] = {(void **)&s->position,
+                       (void **)&s->director,
+                       (void **)&s->velocity,
+                       (void **)&s->turning,
+                       &s->force,
+                       &s->moment};
+
+    *s = (struct sleeve){.layout = model.layout};
+    for (int i = 0; i < 6; i++)
+        WB_TRY(wb_swept_allocate(fields[i], wb_swept_size(&s->layout), sizeof(double)));
+    for (int k = 0; k < NODES; k++) {
+        for (int j = 0; j <= ALONG; j++) {
+            double *at = s->position + 3 * k * s->layout.stride + j;
+            at[0] = j * spacing;
+            at[s->layout.stride] = radius * sin(2.0 * M_PI * k / NODES);
+            at[2 * s->layout.stride] = radius * cos(2.0 * M_PI * k / NODES);
+        }
+    }
+    model.position = s->position;
+    WB_TRY(wb_swept_tape_create(&s->tape, &model));
+    WB_TRY(wb_swept_tape_state_create(&s->state, s->tape));
+    memcpy(s->director, wb_swept_tape_directors(s->tape),
+           wb_swept_size(&s->layout) * sizeof(double));
+    return make_steps(s, is_double);
+}
+
+/* Stretches all positions along the axis. */
+static void stretch(struct sleeve *s, double factor)
+{
+    for (int k = 0; k < NODES; k++) {
+        for (int j = 0; j <= ALONG; j++)
+            s->position[3 * k * s->layout.stride + j] *= factor;
+    }
+}
+
+/* Least ns an element and step. The tape is stretched a little in each step when it yields. */
+static double time_sleeve(struct sleeve *s, bool yielding, bool whole)
+{
+    const struct wb_swept_tape_fields fields = {s->position, s->director, s->force, s->moment};
+    const struct wb_swept_step_fields own = {s->position, s->velocity, s->force};
+    const struct wb_swept_step_fields turns = {s->director, s->turning, s->moment};
+    const double times[2] = {1e-9, 1e-9};
+    const int blocks = wb_swept_tape_blocks(s->tape);
+    double best = 1e9, stretching = 0.0;
+
+    for (int repeat = 0; repeat < REPEATS; repeat++) {
+        const double start = cpu_seconds();
+        stretching = 0.0;
+        for (int i = 0; i < STEPS; i++) {
+            if (yielding) {
+                const double before = cpu_seconds();
+                stretch(s, 1.0 + 1e-6);
+                stretching += cpu_seconds() - before;
+            }
+            for (int b = 0; b < blocks; b++) {
+                wb_swept_tape_forces(s->state, &fields, b, b + 1, NULL);
+                if (whole) {
+                    wb_swept_step_update(s->step[0], &own, times, b, b + 1, NULL);
+                    wb_swept_step_update(s->step[1], &turns, times, b, b + 1, NULL);
+                }
+            }
+        }
+        const double spent = cpu_seconds() - start - stretching;
+        best = fmin(best, spent * 1e9 / (STEPS * NODES * ALONG));
+    }
+    return best;
+}
+
+int main(void)
+{
+    static const char *const names[] = {"best", "baseline", "avx2", "avx512"};
+
+    printf("a shell of the tape, ns an element and step on one core\n\n"
+           "                 points   elastic   yielding   elastic, with update\n");
+    for (int is_double = 0; is_double < 2; is_double++) {
+        for (int way = WB_SWEPT_TAPE_BASELINE; way <= WB_SWEPT_TAPE_AVX512; way++) {
+            for (int points = 3; points <= 5; points += 2) {
+                struct sleeve s;
+                if (create(&s, way, points, is_double) != WB_OK) {
+                    destroy(&s);
+                    continue;
+                }
+                const double elastic = time_sleeve(&s, false, false);
+                const double whole = time_sleeve(&s, false, true);
+                stretch(&s, 1.03);
+                const double yielding = time_sleeve(&s, true, false);
+                printf("%-8s %-6s %6d %9.2f %10.2f %22.2f\n", names[way],
+                       is_double ? "double" : "float", points, elastic, yielding, whole);
+                if (!(wb_swept_tape_plastic_work(s.state) > 0.0)) {
+                    fprintf(stderr, "the tape did not yield\n");
+                    return EXIT_FAILURE;
+                }
+                destroy(&s);
+            }
+        }
+    }
+    printf("\ngoal, float and avx512, 3 points: about 10\n");
+    return EXIT_SUCCESS;
+}
