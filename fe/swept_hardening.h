@@ -17,7 +17,7 @@ enum {
     WB_SWEPT_HARDENING_LOWEST_OCTAVE = -31
 };
 
-/* WB_ERR_UNSUPPORTED when it is not as good as 1e-5 of the stress (exponents below about 0.1). Of
+/* WB_ERR_UNSUPPORTED when it is not as good as 1e-5 of the stress (some exponents below 0.4). Of
  * an elastic material it is zero. */
 WB_MUST_CHECK enum wb_status
 wb_swept_hardening_tabulate(const struct wb_material *material,
