@@ -18,7 +18,7 @@ enum {
     MOST_ELEMENTS = 1 << 20
 };
 
-static const double default_hourglass = 0.1;
+static const double default_hourglass = 0.05;
 static const double table_tolerance = 1e-5;
 
 struct wb_swept_hex {

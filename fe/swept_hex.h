@@ -51,7 +51,7 @@ struct wb_swept_hex_model {
     int n_elements;                         /* along the axis */
     double element_length;                  /* m */
     enum wb_swept_hex_formulation formulation;
-    double hourglass; /* coefficient, 1; 0: 0.1. Of one point, 1 gives the fields that bend an
+    double hourglass; /* coefficient, 1; 0: 0.05. Of one point, 1 gives the fields that bend an
                          element their elastic stiffness */
     bool double_precision;
     enum wb_swept_hex_instructions instructions;
@@ -114,7 +114,7 @@ double wb_swept_hex_second_moment(const struct wb_swept_section *section,
 
 /* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not
  * pi d^2 / 4: of four points 1.2 % less with 4 elements, 0.5 % less with 12, 0.1 % less with 84; of
- * one point 16, 4.5 and 0.6 % more. Masses are whoever makes them to correct. */
+ * one point 17, 4.8 and 0.6 % more. Masses are whoever makes them to correct. */
 void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
                              enum wb_swept_hex_formulation formulation,
                              const struct wb_material *material);

@@ -6,157 +6,151 @@
 
 #define WB_LOG_DOMAIN "swept"
 
+/* Vectors wider than the target's are passed between inlined functions only. */
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
 enum {
-    LANES = WB_SWEPT_LANES
+    LANES = WB_SWEPT_LANES,
+    WIDE = 8 /* lanes of a vector of double */
 };
+
+typedef double wide __attribute__((vector_size(WIDE * sizeof(double)), may_alias));
+typedef float narrow __attribute__((vector_size(WIDE * sizeof(float)), may_alias));
 
 struct wb_swept_step {
     struct wb_swept_step_model model;
     double *node_mass, *inverse_node; /* (n_nodes) */
     double total;                     /* kg/m, of the section */
-    double *length;                   /* (stride) of a station, m */
-    double *extra;                    /* (stride) mass added, kg */
-    bool *held;                       /* (3 stride) */
-    double *inverse;                  /* (3 stride): 1 / scaled length, 1/m; 0: held or padding */
-    double *weight;                   /* (3 stride): acceleration by gravity, m/s2 */
+    double *length;  /* (stride) of a station, m; extra, inverse and weight follow */
+    double *extra;   /* (stride) mass added, kg */
+    bool *held;      /* (3 stride) */
+    double *inverse; /* (3 stride): 1 / scaled length, 1/m; 0: held or padding */
+    double *weight;  /* (3 stride): acceleration by gravity, m/s2 */
     void (*advance)(const struct wb_swept_step *step, const struct wb_swept_step_fields *fields,
-                    const double times[2], int first, int end, struct wb_swept_step_sums *sums);
+                    const double times[2], const int range[2], struct wb_swept_step_sums *sums);
 };
 
-/* What one component of a block of stations adds to the sums. */
-struct block_sums {
-    double both[LANES], half[LANES]; /* sum m v- v+, sum m v+ v+ */
-    double before[LANES], after[LANES], work[LANES];
+/* What one component adds to the sums at a vector of stations. */
+struct partial {
+    wide both, half; /* sum m v- v+, sum m v+ v+ */
+    wide before, after;
 };
 
-static ALWAYS_INLINE void read_force(const struct wb_swept_step *step, const void *force, size_t at,
-                                     double out[LANES])
+static ALWAYS_INLINE wide read_force(const void *force, size_t at, bool is_double)
 {
-    if (step->model.double_precision) {
-        const double *from = (const double *)force + at;
-        for (int l = 0; l < LANES; l++)
-            out[l] = from[l];
-    } else {
-        const float *from = (const float *)force + at;
-        for (int l = 0; l < LANES; l++)
-            out[l] = (double)from[l];
-    }
+    if (is_double)
+        return *(const wide *)((const double *)force + at);
+    return __builtin_convertvector(*(const narrow *)((const float *)force + at), wide);
 }
 
 /* What all nodes of a station have in common: the weight, and the part of the mean acceleration
  * that selective scaling leaves. */
-static ALWAYS_INLINE void common_acceleration(const struct wb_swept_step *step, const void *force,
-                                              int c, int j, double out[LANES])
+static ALWAYS_INLINE wide common_acceleration(const struct wb_swept_step *step, const void *force,
+                                              size_t at, bool is_double)
 {
-    const size_t stride = (size_t)step->model.layout.stride, at = (size_t)c * stride + (size_t)j;
+    const size_t stride = 3 * (size_t)step->model.layout.stride;
     const double part = (1.0 - 1.0 / step->model.selective) / step->total;
-    double sum[LANES] = {0.0};
+    const wide weight = *(const wide *)(step->weight + at);
+    wide sum = {0.0};
 
-    for (int k = 0; part > 0.0 && k < step->model.layout.n_nodes; k++) {
-        double f[LANES];
-        read_force(step, force, 3 * (size_t)k * stride + at, f);
-        for (int l = 0; l < LANES; l++)
-            sum[l] += f[l];
-    }
-    for (int l = 0; l < LANES; l++)
-        out[l] = step->weight[at + (size_t)l] + part * sum[l] * step->inverse[at + (size_t)l];
+    if (part == 0.0)
+        return weight;
+    for (int k = 0; k < step->model.layout.n_nodes; k++)
+        sum += read_force(force, (size_t)k * stride + at, is_double);
+    return weight + part * sum * *(const wide *)(step->inverse + at);
 }
 
-static ALWAYS_INLINE void add_block(struct block_sums *b, double mass, const double *before,
-                                    const double *after)
+/* v.M'v = beta v.M v - (beta - 1) (sum m v)^2 / sum m, per station; `at` is the first's place. */
+static void add_sums(const struct wb_swept_step *step, const struct partial *p, size_t at,
+                     double dt, struct wb_swept_step_sums *sums)
 {
-    for (int l = 0; l < LANES; l++) {
-        b->both[l] += mass * before[l] * after[l];
-        b->half[l] += mass * after[l] * after[l];
-        b->before[l] += mass * before[l];
-        b->after[l] += mass * after[l];
-    }
-}
+    const double beta = step->model.selective, mean = (beta - 1.0) / step->total;
+    const size_t c = at / (size_t)step->model.layout.stride;
 
-/* v.M'v = beta v.M v - (beta - 1) (sum m v)^2 / sum m, per station. */
-static void finish_block(const struct wb_swept_step *step, const struct block_sums *b, int c, int j,
-                         double time, struct wb_swept_step_sums *sums)
-{
-    const double beta = step->model.selective;
-
-    for (int l = 0; l < LANES; l++) {
-        const size_t at = (size_t)(c * step->model.layout.stride + j + l);
-        if (step->inverse[at] == 0.0)
+    for (int l = 0; l < WIDE; l++) {
+        if (step->inverse[at + (size_t)l] == 0.0)
             continue;
-        const double scaled = 1.0 / step->inverse[at], mean = (beta - 1.0) / step->total;
-        sums->kinetic += 0.5 * scaled * (beta * b->both[l] - mean * b->before[l] * b->after[l]);
-        sums->kinetic_half += 0.5 * scaled * (beta * b->half[l] - mean * b->after[l] * b->after[l]);
-        sums->momentum[c] += scaled * b->after[l];
-        sums->gravity_work += scaled * step->weight[at] * b->after[l] * time;
+        const double scaled = 1.0 / step->inverse[at + (size_t)l];
+        sums->kinetic += 0.5 * scaled * (beta * p->both[l] - mean * p->before[l] * p->after[l]);
+        sums->kinetic_half += 0.5 * scaled * (beta * p->half[l] - mean * p->after[l] * p->after[l]);
+        sums->momentum[c] += scaled * p->after[l];
+        sums->gravity_work += scaled * step->weight[at + (size_t)l] * p->after[l] * dt;
     }
 }
 
 static ALWAYS_INLINE void advance(const struct wb_swept_step *step,
                                   const struct wb_swept_step_fields *fields, const double times[2],
-                                  int first, int end, struct wb_swept_step_sums *sums)
+                                  const int range[2], bool is_double,
+                                  struct wb_swept_step_sums *sums)
 {
     const size_t stride = (size_t)step->model.layout.stride;
-    const double own = 1.0 / step->model.selective;
+    const double own = 1.0 / step->model.selective, dv = times[0], dx = times[1];
 
-    for (int j = first * LANES; j < end * LANES; j += LANES) {
-        for (int c = 0; c < 3; c++) {
-            const double *inverse = step->inverse + (size_t)c * stride + j;
-            struct block_sums b = {{0.0}};
-            double common[LANES];
-            common_acceleration(step, fields->force, c, j, common);
+    for (size_t j = (size_t)range[0] * LANES; j < (size_t)range[1] * LANES; j += WIDE) {
+        for (size_t c = 0; c < 3; c++) {
+            const size_t station = c * stride + j;
+            const wide inverse = own * *(const wide *)(step->inverse + station);
+            const wide common = common_acceleration(step, fields->force, station, is_double);
+            struct partial partial = {{0.0}};
             for (int k = 0; k < step->model.layout.n_nodes; k++) {
-                const size_t at = (size_t)(3 * k + c) * stride + (size_t)j;
-                double *restrict v = fields->velocity + at, *restrict x = fields->position + at;
-                double f[LANES], before[LANES];
-                read_force(step, fields->force, at, f);
-                if (sums)
-                    memcpy(before, v, sizeof before);
-                const double factor = own * step->inverse_node[k];
-                for (int l = 0; l < LANES; l++) {
-                    v[l] += times[0] * (factor * f[l] * inverse[l] + common[l]);
-                    x[l] += times[1] * v[l];
+                const size_t at = 3 * (size_t)k * stride + station;
+                wide *v = (wide *)(fields->velocity + at), *x = (wide *)(fields->position + at);
+                const wide f = read_force(fields->force, at, is_double);
+                const wide before = *v;
+                const wide after = before + dv * (step->inverse_node[k] * f * inverse + common);
+                *v = after;
+                *x += dx * after;
+                if (sums) {
+                    const wide momentum = step->node_mass[k] * after;
+                    partial.both += before * momentum;
+                    partial.half += after * momentum;
+                    partial.before += step->node_mass[k] * before;
+                    partial.after += momentum;
                 }
-                if (sums)
-                    add_block(&b, step->node_mass[k], before, v);
             }
             if (sums)
-                finish_block(step, &b, c, j, times[1], sums);
+                add_sums(step, &partial, station, dx, sums);
         }
     }
 }
 
+/* With what is known at compile time. */
+static ALWAYS_INLINE void advance_any(const struct wb_swept_step *step,
+                                      const struct wb_swept_step_fields *fields,
+                                      const double times[2], const int range[2],
+                                      struct wb_swept_step_sums *sums)
+{
+    if (step->model.double_precision)
+        advance(step, fields, times, range, true, sums);
+    else if (sums)
+        advance(step, fields, times, range, false, sums);
+    else
+        advance(step, fields, times, range, false, NULL);
+}
+
 static void advance_portably(const struct wb_swept_step *step,
                              const struct wb_swept_step_fields *fields, const double times[2],
-                             int first, int end, struct wb_swept_step_sums *sums)
+                             const int range[2], struct wb_swept_step_sums *sums)
 {
-    if (sums)
-        advance(step, fields, times, first, end, sums);
-    else
-        advance(step, fields, times, first, end, NULL);
+    advance_any(step, fields, times, range, sums);
 }
 
 #ifdef __x86_64__
 __attribute__((target("avx2"))) static void advance_avx2(const struct wb_swept_step *step,
                                                          const struct wb_swept_step_fields *fields,
-                                                         const double times[2], int first, int end,
+                                                         const double times[2], const int range[2],
                                                          struct wb_swept_step_sums *sums)
 {
-    if (sums)
-        advance(step, fields, times, first, end, sums);
-    else
-        advance(step, fields, times, first, end, NULL);
+    advance_any(step, fields, times, range, sums);
 }
 
 __attribute__((target("avx512f,avx512dq,avx512vl"))) static void
 advance_avx512(const struct wb_swept_step *step, const struct wb_swept_step_fields *fields,
-               const double times[2], int first, int end, struct wb_swept_step_sums *sums)
+               const double times[2], const int range[2], struct wb_swept_step_sums *sums)
 {
-    if (sums)
-        advance(step, fields, times, first, end, sums);
-    else
-        advance(step, fields, times, first, end, NULL);
+    advance_any(step, fields, times, range, sums);
 }
 #endif
 
@@ -176,7 +170,9 @@ void wb_swept_step_update(const struct wb_swept_step *step,
                           const struct wb_swept_step_fields *fields, const double times[2],
                           int first, int end, struct wb_swept_step_sums *sums)
 {
-    step->advance(step, fields, times, first, end, sums);
+    const int range[2] = {first, end};
+
+    step->advance(step, fields, times, range, sums);
 }
 
 /* The numbers of a station from its length, extra mass and what is held. */
@@ -236,10 +232,12 @@ static enum wb_status allocate(struct wb_swept_step *step)
     const size_t stride = (size_t)step->model.layout.stride;
 
     step->node_mass = calloc(2 * n, sizeof *step->node_mass);
-    step->length = calloc(8 * stride, sizeof *step->length);
     step->held = calloc(3 * stride, sizeof *step->held);
-    if (!step->node_mass || !step->length || !step->held)
+    if (!step->node_mass || !step->held)
         return wb_fail(WB_ERR_MEMORY, "no memory for the masses of %zu stations", stride);
+    void *lines;
+    WB_TRY(wb_swept_allocate(&lines, 8 * stride, sizeof *step->length));
+    step->length = lines;
     step->inverse_node = step->node_mass + n;
     step->extra = step->length + stride;
     step->inverse = step->extra + stride;

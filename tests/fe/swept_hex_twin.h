@@ -20,21 +20,6 @@ struct twin_sums {
     double stored, artificial, plastic;
 };
 
-struct twin {
-    struct wb_swept_hex_model model;
-    struct twin_point *points; /* (elements x quads x 4) */
-};
-
-static inline struct twin twin_create(const struct wb_swept_hex_model *model)
-{
-    struct twin twin = {*model, NULL};
-    if (twin.model.hourglass == 0.0)
-        twin.model.hourglass = 0.1;
-    twin.points =
-        calloc((size_t)(4 * model->n_elements * model->section->n_quads), sizeof *twin.points);
-    return twin;
-}
-
 static const double twin_corner[8][3] = {{-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}, {-1, -1, 1},
                                          {1, -1, -1},  {1, 1, -1},  {1, 1, 1},  {1, -1, 1}};
 
@@ -130,6 +115,42 @@ static inline void twin_element_init(const struct wb_swept_hex_model *m, const d
         e->stiffness[1] = e->stiffness[2] = along / 3.0;
         e->stiffness[3] = along / 9.0;
     }
+}
+
+struct twin {
+    struct wb_swept_hex_model model;
+    struct twin_point *points;     /* (elements x quads x 4) */
+    struct twin_element *elements; /* (quads) */
+};
+
+static inline void twin_destroy(struct twin *twin)
+{
+    free(twin->points);
+    free(twin->elements);
+}
+
+static inline struct twin twin_create(const struct wb_swept_hex_model *model)
+{
+    const struct wb_swept_section *section = model->section;
+    struct twin twin = {*model, NULL, NULL};
+
+    if (twin.model.hourglass == 0.0)
+        twin.model.hourglass = 0.05;
+    twin.points = calloc((size_t)(4 * model->n_elements * section->n_quads), sizeof *twin.points);
+    twin.elements = calloc((size_t)section->n_quads, sizeof *twin.elements);
+    if (!twin.points || !twin.elements)
+        abort();
+    for (int q = 0; q < section->n_quads; q++) {
+        double X[8][3];
+        for (int a = 0; a < 8; a++) {
+            const double *node = section->node[section->quad[q][a % 4]];
+            X[a][0] = (a / 4) * model->element_length;
+            X[a][1] = node[0];
+            X[a][2] = node[1];
+        }
+        twin_element_init(&twin.model, (const double(*)[3])X, &twin.elements[q]);
+    }
+    return twin;
 }
 
 /* Eigenvalues and vectors (columns) of a symmetric matrix by Jacobi's rotations. */
@@ -353,19 +374,14 @@ static inline struct twin_sums twin_forces(struct twin *twin, const double *posi
     memset(force, 0, 3 * (size_t)(section->n_nodes * (m->n_elements + 1)) * sizeof *force);
     for (int j = 0; j < m->n_elements; j++) {
         for (int q = 0; q < section->n_quads; q++) {
-            double X[8][3], x[8][3], f[8][3] = {{0.0}};
+            double x[8][3], f[8][3] = {{0.0}};
             int node[8];
             for (int a = 0; a < 8; a++) {
-                const int k = section->quad[q][a % 4];
-                node[a] = (j + a / 4) * section->n_nodes + k;
-                X[a][0] = (a / 4) * m->element_length;
-                X[a][1] = section->node[k][0];
-                X[a][2] = section->node[k][1];
+                node[a] = (j + a / 4) * section->n_nodes + section->quad[q][a % 4];
                 memcpy(x[a], position + 3 * node[a], sizeof x[a]);
             }
-            struct twin_element e;
-            twin_element_init(m, (const double(*)[3])X, &e);
-            twin_element_forces(m, &e, x, twin->points + 4 * (j * section->n_quads + q), f, &sums);
+            twin_element_forces(m, &twin->elements[q], x,
+                                twin->points + 4 * (j * section->n_quads + q), f, &sums);
             for (int i = 0; i < 24; i++)
                 force[3 * node[i / 3] + i % 3] -= f[i / 3][i % 3];
         }

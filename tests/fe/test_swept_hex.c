@@ -98,7 +98,7 @@ static void forces_equal_the_twin_at_small_strain(void **unused)
             assert_close_relative(wb_swept_hex_plastic_strain(body.state, 2, j, 0),
                                   twin.points[4 * (4 * j + 2)].accumulated, 1e-3);
         assert_true(twin.points[8].accumulated > 3e-4);
-        free(twin.points);
+        twin_destroy(&twin);
         swept_body_destroy(&body);
         wb_swept_section_release(&section);
     }
@@ -125,7 +125,7 @@ static void logarithm_is_as_good_as_promised(void **unused)
                       off_sheared);
         assert_true(off_axial < 2e-3);
         assert_true(off_sheared < 1.5e-2);
-        free(twin.points);
+        twin_destroy(&twin);
         swept_body_destroy(&body);
     }
     wb_swept_section_release(&section);
@@ -243,7 +243,7 @@ static void linear_fields_pass_the_patch_test(void **unused)
         /* The stress is that of one element, whose exact value the twin knows to the logarithm. */
         struct twin twin = twin_create(&model);
         assert_true(compare_with_twin(&body, &twin) < 4e-5);
-        free(twin.points);
+        twin_destroy(&twin);
         swept_body_destroy(&body);
     }
     wb_swept_section_release(&section);
@@ -363,7 +363,7 @@ static void all_instructions_agree(void **unused)
             }
             free(plain);
             free(force);
-            free(twin.points);
+            twin_destroy(&twin);
         }
     }
     wb_log_set_sink(NULL, NULL);
