@@ -1,0 +1,427 @@
+#include "fe/bundle.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "fe/bundle_bond.h"
+#include "fe/bundle_private.h"
+
+#define WB_LOG_DOMAIN "bundle"
+
+enum {
+    SETTLE_BLOCK = 20,    /* steps between looks at the kinetic energy */
+    SETTLE_MOST = 400000, /* steps */
+    SETTLE_QUIET = 10     /* stops in a row with little motion */
+};
+
+/* At rest: kinetic energy over the weight's work. */
+static const double settled = 1e-7;
+
+double wb_bundle_internal(const struct wb_bundle_energies *e)
+{
+    return e->stored + e->plastic + e->contact + e->cohesive;
+}
+
+double wb_bundle_imbalance(const struct wb_bundle_energies *e)
+{
+    return e->external - e->kinetic - wb_bundle_internal(e) - e->artificial - e->friction;
+}
+
+double wb_bundle_time_step(const struct wb_bundle *bundle)
+{
+    return bundle->time_step;
+}
+
+long wb_bundle_hexahedra(const struct wb_bundle *bundle)
+{
+    return wb_bundle_model_hexahedra(bundle->model, bundle->mesh);
+}
+
+int wb_bundle_shells(const struct wb_bundle *bundle)
+{
+    return bundle->has_tape ? bundle->ring.layout.n_nodes * (bundle->n_stations - 1) : 0;
+}
+
+double wb_bundle_station_mass(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
+                              int station)
+{
+    const bool end = station == 0 || station == bundle->n_stations - 1;
+    return body->mass * bundle->spacing * (end ? 0.5 : 1.0) * bundle->model->run.mass_scaling;
+}
+
+/* --- the tip --- */
+
+/* Sums over the end station of all bodies, weighted by masses: of a field's component. */
+static double tip_mean(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
+                       const double *field, int component)
+{
+    const int j = bundle->n_stations - 1, stride = body->layout.stride;
+    double sum = 0.0;
+
+    for (int k = 0; k < body->layout.n_nodes; k++)
+        sum += body->node_mass[k] * field[(3 * k + component) * stride + j];
+    return sum / body->mass;
+}
+
+static double tip_force(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
+                        int component)
+{
+    const int j = bundle->n_stations - 1, stride = body->layout.stride;
+    double sum = 0.0;
+
+    for (int k = 0; k < body->layout.n_nodes; k++)
+        sum += (double)body->force[(3 * k + component) * stride + j];
+    return sum;
+}
+
+/* Spreads a force over the end by its masses, so that it accelerates all of it alike. */
+static void push_tip(struct wb_bundle *bundle, struct wb_bundle_body *body, const double force[3],
+                     double whole)
+{
+    const int j = bundle->n_stations - 1, stride = body->layout.stride;
+
+    for (int k = 0; k < body->layout.n_nodes; k++)
+        for (int c = 0; c < 3; c++)
+            body->force[(3 * k + c) * stride + j] += (float)(force[c] * body->node_mass[k] / whole);
+}
+
+/* Calls for every body that has mass at the tip. */
+static int tip_bodies(struct wb_bundle *bundle, struct wb_bundle_body *body[WB_PACKING_MOST + 1])
+{
+    int n = 0;
+    for (int w = 0; w < bundle->n_wires; w++)
+        body[n++] = &bundle->wire[w];
+    if (bundle->has_tape)
+        body[n++] = &bundle->ring;
+    return n;
+}
+
+struct tip {
+    double mass;                  /* kg, scaled, of the end station */
+    double weight;                /* sum of unscaled masses per length, kg/m */
+    double position[3], velocity; /* means; of the height */
+    double force;                 /* N, vertical, of all that acts */
+};
+
+static void look_at_tip(struct wb_bundle *bundle, struct tip *tip)
+{
+    struct wb_bundle_body *body[WB_PACKING_MOST + 1];
+    const int n = tip_bodies(bundle, body);
+
+    *tip = (struct tip){0};
+    for (int i = 0; i < n; i++) {
+        const double m = body[i]->mass;
+        tip->weight += m;
+        tip->mass += wb_bundle_station_mass(bundle, body[i], bundle->n_stations - 1);
+        for (int c = 0; c < 3; c++)
+            tip->position[c] += m * tip_mean(bundle, body[i], body[i]->position, c);
+        tip->position[1] -= m * body[i]->start;
+        tip->velocity += m * tip_mean(bundle, body[i], body[i]->velocity, 1);
+        tip->force += tip_force(bundle, body[i], 1);
+    }
+    for (int c = 0; c < 3; c++)
+        tip->position[c] /= tip->weight;
+    tip->velocity /= tip->weight;
+}
+
+/* Fifth-order smooth step: rest, speed and acceleration zero at both ends. */
+static double smooth(double t)
+{
+    if (t <= 0.0)
+        return 0.0;
+    return t >= 1.0 ? 1.0 : t * t * t * (10.0 + t * (6.0 * t - 15.0));
+}
+
+static double target_at(const struct wb_bundle *bundle, double time)
+{
+    return bundle->from +
+           (bundle->to - bundle->from) * smooth((time - bundle->way_start) / bundle->way_duration);
+}
+
+/* The force that brings the tip's mean height to its target in this step. A strand leans as the
+ * tip comes nearer and only pulls. */
+static void lead_tip(struct wb_bundle *bundle, double half)
+{
+    const double dt = bundle->time_step, length = bundle->model->loads.strand_length;
+    struct wb_bundle_body *body[WB_PACKING_MOST + 1];
+    const int n = tip_bodies(bundle, body);
+    struct tip tip;
+    double lean[2] = {0.0, 0.0}, upright = 1.0;
+
+    look_at_tip(bundle, &tip);
+    const double wanted = (target_at(bundle, bundle->time + dt) - tip.position[1]) / dt;
+    const double gravity = bundle->gravity / bundle->model->run.mass_scaling;
+    const double vertical =
+        tip.mass * ((wanted - tip.velocity) / (half * dt) + gravity) - tip.force;
+    if (length > 0.0) {
+        lean[0] = (bundle->model->length - tip.position[0]) / length;
+        lean[1] = -tip.position[2] / length;
+        upright = sqrt(fmax(0.0, 1.0 - lean[0] * lean[0] - lean[1] * lean[1]));
+    }
+    bundle->slack = length > 0.0 && vertical < 0.0;
+    bundle->vertical = bundle->slack ? 0.0 : vertical;
+    bundle->tension = bundle->vertical / upright;
+
+    const double force[3] = {bundle->tension * lean[0], bundle->vertical,
+                             bundle->tension * lean[1]};
+    for (int i = 0; i < n; i++)
+        push_tip(bundle, body[i], force, tip.weight);
+}
+
+/* --- steps --- */
+
+static enum wb_status find_forces(struct wb_bundle *bundle, bool look)
+{
+    struct wb_bundle_bond_energies bond = {0};
+
+    bundle->wires = (struct wb_swept_hex_sums){0};
+    bundle->shells = (struct wb_swept_tape_sums){0};
+    for (int w = 0; w < bundle->n_wires; w++) {
+        struct wb_bundle_body *body = &bundle->wire[w];
+        const struct wb_swept_hex *hex = bundle->type[bundle->model->type_of[w]].hex;
+        wb_swept_hex_forces(bundle->history[w], body->position, body->force, 0,
+                            wb_swept_hex_blocks(hex), look ? &bundle->wires : NULL);
+    }
+    if (bundle->has_tape) {
+        const struct wb_swept_tape_fields fields = {
+            .position = bundle->ring.position,
+            .director = bundle->directors.position,
+            .force = bundle->ring.force,
+            .moment = bundle->directors.force,
+        };
+        wb_swept_tape_forces(bundle->tape_history, &fields, 0, wb_swept_tape_blocks(bundle->tape),
+                             look ? &bundle->shells : NULL);
+    }
+    if (bundle->contact) {
+        WB_TRY(wb_swept_contact_add_forces(bundle->contact, bundle->positions, bundle->forces,
+                                           bundle->time_step, &bundle->touching));
+        bundle->friction_work += bundle->touching.friction;
+    }
+    if (bundle->bond) {
+        WB_TRY(wb_bundle_bond_add_forces(bundle->bond, &bond));
+        bundle->bond_energy = bond.stored;
+        bundle->friction_work += bond.dissipated;
+    }
+    return WB_OK;
+}
+
+static void update(struct wb_bundle *bundle, struct wb_bundle_body *body, double half,
+                   struct wb_swept_step_sums *sums)
+{
+    const struct wb_swept_step_fields fields = {body->position, body->velocity, body->force};
+    const double times[2] = {half * bundle->time_step, bundle->time_step};
+
+    wb_swept_step_update(body->step, &fields, times, 0, body->layout.stride / WB_SWEPT_LANES, sums);
+}
+
+/* One step; `look` keeps what energies need. */
+static enum wb_status step(struct wb_bundle *bundle, bool look)
+{
+    const double half = bundle->has_moved ? 1.0 : 0.5;
+    struct wb_swept_step_sums sums = {0};
+    struct tip before, after;
+
+    WB_TRY(find_forces(bundle, look));
+    look_at_tip(bundle, &before);
+    lead_tip(bundle, half);
+    for (int w = 0; w < bundle->n_wires; w++)
+        update(bundle, &bundle->wire[w], half, look ? &sums : NULL);
+    if (bundle->has_tape) {
+        update(bundle, &bundle->ring, half, look ? &sums : NULL);
+        update(bundle, &bundle->directors, half, look ? &sums : NULL);
+    }
+    bundle->has_moved = true;
+    if (look)
+        bundle->kinetic = sums.kinetic;
+    bundle->time += bundle->time_step;
+    bundle->steps++;
+
+    look_at_tip(bundle, &after);
+    const double length = bundle->model->loads.strand_length;
+    bundle->tip_work += bundle->vertical * (after.position[1] - before.position[1]);
+    if (length > 0.0)
+        bundle->tip_work += bundle->tension * (bundle->model->length - before.position[0]) /
+                            length * (after.position[0] - before.position[0]);
+    return isfinite(bundle->vertical)
+               ? WB_OK
+               : wb_fail(WB_ERR_DATA,
+                         "%s: the run is lost after %lld steps: the tip's force is "
+                         "not finite",
+                         bundle->model->path, bundle->steps);
+}
+
+enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n)
+{
+    for (int i = 0; i < n; i++)
+        WB_TRY(step(bundle, i == n - 1));
+    return WB_OK;
+}
+
+void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration)
+{
+    bundle->from = target_at(bundle, bundle->time);
+    bundle->to = deflection;
+    bundle->way_start = bundle->time;
+    bundle->way_duration = duration;
+}
+
+/* --- settling --- */
+
+static void stop_body(struct wb_bundle_body *body)
+{
+    memset(body->velocity, 0, wb_swept_size(&body->layout) * sizeof *body->velocity);
+}
+
+static void stop_motion(struct wb_bundle *bundle)
+{
+    for (int w = 0; w < bundle->n_wires; w++)
+        stop_body(&bundle->wire[w]);
+    if (bundle->has_tape) {
+        stop_body(&bundle->ring);
+        stop_body(&bundle->directors);
+    }
+    bundle->has_moved = false;
+}
+
+/* A body's part of the weight's potential, J. */
+static double potential_of(const struct wb_bundle *bundle, const struct wb_bundle_body *body)
+{
+    double sum = 0.0;
+
+    for (int k = 0; k < body->layout.n_nodes; k++) {
+        const double *y = body->position + (ptrdiff_t)(3 * k + 1) * body->layout.stride;
+        double heights = 0.5 * (y[0] + y[bundle->n_stations - 1]);
+        for (int j = 1; j < bundle->n_stations - 1; j++)
+            heights += y[j];
+        sum += body->node_mass[k] * heights;
+    }
+    return sum * bundle->spacing * bundle->gravity;
+}
+
+static double weight_potential(const struct wb_bundle *bundle)
+{
+    double sum = 0.0;
+    for (int w = 0; w < bundle->n_wires; w++)
+        sum += potential_of(bundle, &bundle->wire[w]);
+    return sum + (bundle->has_tape ? potential_of(bundle, &bundle->ring) : 0.0);
+}
+
+enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
+{
+    double last = 0.0;
+    int quiet = 0;
+
+    bundle->from = bundle->to = 0.0;
+    bundle->way_start = 0.0;
+    bundle->way_duration = 1.0;
+    bundle->weight_zero = weight_potential(bundle);
+    if (bundle->gravity == 0.0)
+        return WB_OK;
+    for (int done = 0; quiet < SETTLE_QUIET; done += SETTLE_BLOCK) {
+        if (done > SETTLE_MOST)
+            return wb_fail(WB_ERR_CONVERGENCE,
+                           "%s: the bundle does not come to rest under its "
+                           "weight within %d steps",
+                           bundle->model->path, SETTLE_MOST);
+        WB_TRY(wb_bundle_advance(bundle, SETTLE_BLOCK));
+        if (bundle->kinetic >= last) {
+            last = bundle->kinetic;
+            continue;
+        }
+        const double work = bundle->weight_zero - weight_potential(bundle);
+        quiet = last < settled * fabs(work) ? quiet + 1 : 0;
+        stop_motion(bundle);
+        last = 0.0;
+    }
+    /* What motion was stopped took its energy with it: the account begins here. */
+    struct wb_bundle_energies now;
+    wb_bundle_get_energies(bundle, &now);
+    bundle->tip_work +=
+        now.kinetic + wb_bundle_internal(&now) + now.artificial + now.friction - now.external;
+    bundle->time = 0.0;
+    bundle->way_start = 0.0;
+    return WB_OK;
+}
+
+/* --- what it tells --- */
+
+void wb_bundle_get_state(const struct wb_bundle *bundle, struct wb_bundle_state *state)
+{
+    struct tip tip;
+
+    look_at_tip((struct wb_bundle *)bundle, &tip);
+    *state = (struct wb_bundle_state){
+        .time = bundle->time,
+        .steps = bundle->steps,
+        .deflection = tip.position[1],
+        .target = target_at(bundle, bundle->time),
+        .tip = {tip.position[0], tip.position[1], tip.position[2]},
+        .tension = bundle->tension,
+        .vertical = bundle->vertical,
+        .slack = bundle->slack,
+    };
+}
+
+void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_energies *energies)
+{
+    double plastic = 0.0;
+
+    for (int w = 0; w < bundle->n_wires; w++)
+        plastic += wb_swept_hex_plastic_work(bundle->history[w]);
+    if (bundle->has_tape)
+        plastic += wb_swept_tape_plastic_work(bundle->tape_history);
+    *energies = (struct wb_bundle_energies){
+        .kinetic = bundle->kinetic,
+        .stored = bundle->wires.stored + bundle->shells.stored,
+        .plastic = plastic,
+        .artificial = bundle->wires.artificial + bundle->shells.artificial,
+        .contact = bundle->touching.normal + bundle->touching.tangential,
+        .friction = bundle->friction_work,
+        .cohesive = bundle->bond_energy,
+        .external = bundle->tip_work + bundle->weight_zero - weight_potential(bundle),
+    };
+}
+
+double wb_bundle_kinetic_ratio(const struct wb_bundle *bundle)
+{
+    const double external = bundle->tip_work + bundle->weight_zero - weight_potential(bundle);
+    const double internal = external - bundle->kinetic;
+    return internal > 0.0 ? bundle->kinetic / internal : (double)INFINITY;
+}
+
+void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, double (*shape)[3])
+{
+    for (int i = 0; i < n; i++) {
+        const double along = fmin(fmax(s[i] / bundle->spacing, 0.0), bundle->n_stations - 1.0);
+        const int j = (int)fmin(floor(along), bundle->n_stations - 2.0);
+        const double t = along - j;
+        double mass = 0.0, height = 0.0;
+
+        shape[i][0] = shape[i][1] = shape[i][2] = 0.0;
+        for (int w = 0; w < bundle->n_wires; w++) {
+            const struct wb_bundle_body *body = &bundle->wire[w];
+            for (int k = 0; k < body->layout.n_nodes; k++)
+                for (int c = 0; c < 3; c++) {
+                    const double *x =
+                        body->position + (ptrdiff_t)(3 * k + c) * body->layout.stride + j;
+                    shape[i][c] += body->node_mass[k] * ((1.0 - t) * x[0] + t * x[1]);
+                }
+            mass += body->mass;
+            height += body->mass * body->start;
+        }
+        for (int c = 0; c < 3; c++)
+            shape[i][c] /= mass;
+        shape[i][1] -= height / mass;
+    }
+}
+
+void wb_bundle_get_limits(const struct wb_bundle *bundle, struct wb_bundle_limits *limits)
+{
+    *limits = (struct wb_bundle_limits){
+        .beyond = bundle->wires.beyond_limit + bundle->shells.beyond_limit,
+        .largest_strain = fmax(bundle->wires.largest_strain, bundle->shells.largest_strain),
+        .deepest = bundle->touching.deepest,
+    };
+}

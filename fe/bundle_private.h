@@ -1,0 +1,78 @@
+/* Shared by bundle.c (the run) and bundle_create.c; nobody else. */
+#ifndef WB_FE_BUNDLE_PRIVATE_H
+#define WB_FE_BUNDLE_PRIVATE_H
+
+#include "fe/bundle.h"
+#include "fe/swept_contact.h"
+#include "fe/swept_hex.h"
+#include "fe/swept_step.h"
+#include "fe/swept_tape.h"
+
+/* One body: its fields and how they are stepped. */
+struct wb_bundle_body {
+    struct wb_swept_layout layout;
+    double *position, *velocity;
+    float *force;
+    const struct wb_swept_step *step; /* owned elsewhere */
+    const double *node_mass;          /* (n_nodes) kg/m, unscaled; owned elsewhere */
+    double mass;                      /* kg/m, unscaled */
+    double start;                     /* m: mean height of the section, unscaled masses */
+};
+
+/* What the wires of one type share. */
+struct wb_bundle_type {
+    struct wb_swept_section section;
+    struct wb_swept_hex *hex;
+    struct wb_swept_step *step;
+    double *node_mass; /* (n_nodes) kg/m */
+};
+
+struct wb_bundle {
+    const struct wb_bundle_model *model; /* borrowed */
+    const struct wb_bundle_mesh *mesh;
+    struct wb_bundle_settings settings;
+    int n_stations;
+    double spacing;
+
+    struct wb_bundle_type type[WB_BUNDLE_MODEL_TYPES];
+    int n_wires;
+    struct wb_bundle_body wire[WB_PACKING_MOST];
+    struct wb_swept_hex_state *history[WB_PACKING_MOST];
+    struct wb_swept_contact *contact; /* NULL with one wire */
+    const double *positions[WB_PACKING_MOST];
+    void *forces[WB_PACKING_MOST];
+
+    bool has_tape;
+    struct wb_swept_tape *tape;
+    struct wb_swept_tape_state *tape_history;
+    struct wb_swept_step *tape_step, *director_step;
+    double *tape_mass, *tape_inertia; /* (ring nodes) */
+    struct wb_bundle_body ring, directors;
+    struct wb_bundle_bond *bond; /* between tape and wires */
+
+    double time_step;
+    double gravity; /* m/s2, downwards */
+
+    /* The way of the tip: a smooth step from `from` to `to`. */
+    double from, to, way_start, way_duration;
+    double time; /* s, of all steps since creation but settling */
+    long long steps;
+    bool has_moved; /* velocities are half a step behind positions */
+
+    /* Of the last step. */
+    double tension, vertical;
+    bool slack;
+    double tip_work, friction_work;
+    double kinetic;
+    struct wb_swept_contact_energies touching;
+    struct wb_swept_hex_sums wires;
+    struct wb_swept_tape_sums shells;
+    double bond_energy;
+    double weight_zero; /* J: potential of the weight at the start */
+};
+
+/* Kilograms of a body's station, scaled, half at the ends. */
+double wb_bundle_station_mass(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
+                              int station);
+
+#endif

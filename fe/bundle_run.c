@@ -1,0 +1,493 @@
+#include "fe/bundle_run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "bundle"
+
+enum {
+    MOST_SHAPE = 1000,
+    MOST_BLOCK = 50,       /* steps between two samples of the force */
+    SAMPLES_OF_A_ROW = 40, /* at least, where its steps allow it */
+    LOOKS_OF_A_ROW = 4,    /* at all energies */
+    REST_SAMPLES = 40      /* of the force at zero */
+};
+
+static const double usual_from = 2.0 * WB_MM; /* where ratios begin to count */
+static const double pilot_share = 1.5;        /* of that, where a duration is judged */
+static const double margin = 1.04;            /* on a duration that follows from a ratio */
+static const double late_margin = 1.1;        /* on one that follows from a later ratio */
+static const double too_slow = 0.75;          /* a needed duration over the present one */
+static const double lost_balance = 0.05;      /* imbalance over work: the run is no solution */
+
+/* --- memory --- */
+
+int wb_bundle_run_planned_rows(const struct wb_bundle_model *model)
+{
+    return 1 + model->run.rows * (model->run.cycles == 0 ? 1 : 2 * model->run.cycles);
+}
+
+enum wb_status wb_bundle_run_init(struct wb_bundle_history *history,
+                                  const struct wb_bundle_model *model, int n_shape)
+{
+    *history = (struct wb_bundle_history){0};
+    if (n_shape < 0 || n_shape == 1 || n_shape > MOST_SHAPE)
+        return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
+                       n_shape, MOST_SHAPE);
+
+    const size_t rows = (size_t)wb_bundle_run_planned_rows(model), n = (size_t)n_shape;
+    history->rows = calloc(rows, sizeof *history->rows);
+    if (n_shape > 0) {
+        history->shape_s = calloc(n, sizeof *history->shape_s);
+        history->shape = calloc(rows * n, sizeof *history->shape);
+    }
+    if (!history->rows || (n_shape > 0 && (!history->shape_s || !history->shape))) {
+        wb_bundle_run_release(history);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
+    }
+    history->capacity = (int)rows;
+    history->n_shape = n_shape;
+    for (int i = 0; i < n_shape; i++)
+        history->shape_s[i] = model->length * i / (n_shape - 1);
+    return WB_OK;
+}
+
+void wb_bundle_run_release(struct wb_bundle_history *history)
+{
+    if (!history)
+        return;
+    free(history->rows);
+    free(history->shape_s);
+    free(history->shape);
+    *history = (struct wb_bundle_history){0};
+}
+
+/* --- one attempt --- */
+
+enum verdict {
+    GO_ON,
+    DONE,     /* or stopped, or lost: nothing more is to be done */
+    ANEW,     /* with another duration */
+    NO_MEMORY /* or another error that is not the run's */
+};
+
+/* The straight line through forces against the target, of one row. */
+struct line {
+    double n, x, y, xx, xy, yy;
+    bool any_slack, all_slack;
+};
+
+struct run {
+    struct wb_bundle_history *history;
+    const struct wb_bundle_model *model;
+    const struct wb_bundle_observer *observer;
+    struct wb_bundle *bundle;
+    struct wb_bundle_state state;
+    enum wb_status status;
+
+    double from;   /* m: ratios count from here on */
+    bool counting; /* the tip was there */
+    bool judged;   /* the duration is believed */
+    double begin;  /* s of the bundle's time: the loading's */
+    double next;   /* s: duration of the next attempt */
+    double kinetic, artificial;
+    double most_external;
+
+    int branch;      /* ways made so far */
+    double way[2];   /* m: from, to */
+    double way_time; /* s: its begin */
+    int block;       /* steps between samples */
+    struct line vertical, tension;
+    struct wb_bundle_row row; /* passed, its mean not complete */
+};
+
+static int branches_of(const struct wb_bundle_model *model)
+{
+    return model->run.cycles == 0 ? 1 : 2 * model->run.cycles;
+}
+
+/* A run that is lost keeps the reason that was given. */
+static void keep_reason(void *context, enum wb_log_level level, const char *domain,
+                        const char *message)
+{
+    struct run *r = context;
+    (void)level, (void)domain;
+    snprintf(r->history->problem, sizeof r->history->problem, "%s", message);
+}
+
+static enum verdict lose(struct run *r)
+{
+    if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE)
+        return NO_MEMORY;
+    r->status = WB_OK;
+    r->history->converged = false;
+    return DONE;
+}
+
+static enum verdict advance(struct run *r, int n)
+{
+    r->history->problem[0] = '\0';
+    wb_log_set_tap(keep_reason, r);
+    const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
+    r->status = n > 0 ? wb_bundle_advance(r->bundle, n) : wb_bundle_settle(r->bundle);
+    wb_log_set_gravest(before);
+    wb_log_set_tap(NULL, NULL);
+    if (r->status != WB_OK)
+        return lose(r);
+    wb_bundle_get_state(r->bundle, &r->state);
+    return GO_ON;
+}
+
+/* --- energies --- */
+
+static double over(double part, double whole)
+{
+    return whole > 0.0 ? part / whole : (double)INFINITY;
+}
+
+static void count_limits(struct run *r)
+{
+    struct wb_bundle_extremes *largest = &r->history->largest;
+    struct wb_bundle_limits limits;
+
+    wb_bundle_get_limits(r->bundle, &limits);
+    largest->strain = fmax(largest->strain, limits.largest_strain);
+    largest->penetration = fmax(largest->penetration, limits.deepest);
+    largest->beyond = largest->beyond || limits.beyond > 0;
+}
+
+/* What a ratio says of the duration while the first loading goes on. */
+static enum verdict judge(struct run *r)
+{
+    struct wb_bundle_history *h = r->history;
+    const double limit = r->model->run.kinetic_limit;
+    const double needed = h->duration * sqrt(h->largest.kinetic / limit);
+    const bool last = h->attempts == WB_BUNDLE_RUN_ATTEMPTS;
+
+    if (!h->chosen || (!r->judged && r->state.target < pilot_share * r->from))
+        return GO_ON;
+    h->exceeded = h->largest.kinetic > limit;
+    if (h->exceeded && !last) {
+        r->next = needed * (r->judged ? late_margin : margin);
+        return ANEW;
+    }
+    if (!r->judged && h->attempts == 1 && needed * margin < too_slow * h->duration) {
+        r->next = needed * margin;
+        return ANEW;
+    }
+    r->judged = true;
+    return GO_ON;
+}
+
+static enum verdict look(struct run *r, struct wb_bundle_energies *e)
+{
+    struct wb_bundle_extremes *largest = &r->history->largest;
+
+    wb_bundle_get_energies(r->bundle, e);
+    const double internal = wb_bundle_internal(e);
+    r->kinetic = over(e->kinetic, internal);
+    r->artificial = over(e->artificial, internal);
+    r->most_external = fmax(r->most_external, fabs(e->external));
+    count_limits(r);
+    r->counting = r->counting || r->state.target >= r->from;
+    const double imbalance = over(fabs(wb_bundle_imbalance(e)), r->most_external);
+    if (!r->counting)
+        return GO_ON;
+
+    largest->kinetic = fmax(largest->kinetic, r->kinetic);
+    largest->artificial = fmax(largest->artificial, r->artificial);
+    largest->imbalance = fmax(largest->imbalance, imbalance);
+    if (!(imbalance <= lost_balance)) {
+        snprintf(r->history->problem, sizeof r->history->problem,
+                 "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
+                 "are missing or too much",
+                 r->state.deflection / WB_MM, r->state.steps, imbalance);
+        r->status = WB_ERR_DATA;
+        return lose(r);
+    }
+    return r->branch == 0 ? judge(r) : GO_ON;
+}
+
+/* --- rows --- */
+
+static void add_to_line(struct line *line, double x, double y)
+{
+    line->n += 1.0;
+    line->x += x;
+    line->y += y;
+    line->xx += x * x;
+    line->xy += x * y;
+    line->yy += y * y;
+}
+
+/* Its value at x; at one place only, or with too few points, the mean. */
+static double value_at(const struct line *line, double x, double *deviation)
+{
+    const double mean = line->y / line->n, at = line->x / line->n;
+    const double spread = line->xx / line->n - at * at;
+    const double together = line->xy / line->n - at * mean;
+    const bool has_slope = line->n > 2.0 && spread > 1e-9 * line->xx / line->n;
+    const double slope = has_slope ? together / spread : 0.0;
+
+    *deviation = sqrt(fmax(0.0, line->yy / line->n - mean * mean - slope * together));
+    return mean + slope * (x - at);
+}
+
+static void take_place(struct run *r)
+{
+    struct wb_bundle_row *row = &r->row;
+    const double length = r->model->length, last = 0.01 * length;
+    const double s[2] = {length - last, length};
+    double ends[2][3];
+
+    wb_bundle_shape(r->bundle, 2, s, ends);
+    *row = (struct wb_bundle_row){
+        .time = r->state.time - r->begin,
+        .cycle = 1 + r->branch / 2,
+        .phase = r->branch % 2 == 0 ? WB_HISTORY_LOAD : WB_HISTORY_UNLOAD,
+        .deflection = r->state.deflection,
+        .tip = {ends[1][0], ends[1][1], ends[1][2]},
+        .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
+    };
+    if (r->history->n_shape > 0)
+        wb_bundle_shape(r->bundle, r->history->n_shape, r->history->shape_s,
+                        r->history->shape +
+                            (size_t)r->history->n_rows * (size_t)r->history->n_shape);
+}
+
+static void finish_row(struct run *r)
+{
+    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_row *row = &r->row;
+    double ignored;
+
+    /* The target is the deflection's, but in slack rows, where all forces are zero. */
+    row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
+    row->tension = value_at(&r->tension, row->deflection, &ignored);
+    if (r->vertical.any_slack) {
+        row->phase = WB_HISTORY_SLACK;
+        row->vertical_force = r->vertical.y / r->vertical.n;
+        row->tension = r->tension.y / r->tension.n;
+    }
+    if (h->n_rows == 0)
+        h->zero_force = row->vertical_force;
+    row->force = row->vertical_force - h->zero_force;
+    h->rows[h->n_rows++] = *row;
+    r->vertical = r->tension = (struct line){0};
+}
+
+static void sample(struct run *r)
+{
+    add_to_line(&r->vertical, r->state.target, r->state.vertical);
+    add_to_line(&r->tension, r->state.target, r->state.tension);
+    r->vertical.any_slack = r->vertical.any_slack || r->state.slack;
+}
+
+static enum verdict report(struct run *r)
+{
+    struct wb_bundle_history *h = r->history;
+    const double whole = h->duration * branches_of(r->model);
+    const struct wb_bundle_progress progress = {
+        .attempt = h->attempts,
+        .steps = r->state.steps,
+        .done = fmin(1.0, (r->state.time - r->begin) / whole),
+        .deflection = r->state.deflection,
+        .kinetic = r->kinetic,
+        .artificial = r->artificial,
+    };
+
+    if (!r->observer || !r->observer->progress ||
+        r->observer->progress(r->observer->context, &progress))
+        return GO_ON;
+    h->stopped = true;
+    return DONE;
+}
+
+/* --- ways --- */
+
+/* Time over duration at which a fifth-order smooth step has made the share of its way. */
+static double time_of(double share)
+{
+    double low = 0.0, high = 1.0;
+
+    for (int i = 0; i < 60; i++) {
+        const double t = 0.5 * (low + high);
+        if (t * t * t * (10.0 + t * (6.0 * t - 15.0)) < share)
+            low = t;
+        else
+            high = t;
+    }
+    return 0.5 * (low + high);
+}
+
+/* Goes on to a share of the way, sampling; energies are looked at four times a row. */
+static enum verdict go_to(struct run *r, double share, bool look_there)
+{
+    const double dt = r->history->time_step;
+    const double end = r->way_time + r->history->duration * time_of(share);
+    long long left = llround((end - r->state.time) / dt);
+    struct wb_bundle_energies energies;
+
+    while (left > 0) {
+        const int n = (int)(left < r->block ? left : r->block);
+        enum verdict verdict = advance(r, n);
+        if (verdict != GO_ON)
+            return verdict;
+        sample(r);
+        left -= n;
+        verdict = report(r);
+        if (verdict != GO_ON)
+            return verdict;
+    }
+    return look_there ? look(r, &energies) : GO_ON;
+}
+
+/* From half a step before a row's place to half a step after it. */
+static enum verdict pass_row(struct run *r, int i)
+{
+    const int rows = r->model->run.rows;
+    enum verdict verdict = GO_ON;
+
+    for (int k = 1; k <= LOOKS_OF_A_ROW && verdict == GO_ON; k++) {
+        const double at = i - 0.5 + (double)k / LOOKS_OF_A_ROW;
+        const bool there = 2 * k == LOOKS_OF_A_ROW;
+        if (at > rows)
+            break;
+        verdict = go_to(r, at / rows, !there);
+        if (verdict == GO_ON && there) {
+            take_place(r);
+            verdict = look(r, &r->row.energies);
+        }
+    }
+    if (verdict == GO_ON)
+        finish_row(r);
+    return verdict;
+}
+
+static enum verdict make_way(struct run *r)
+{
+    const int rows = r->model->run.rows;
+    const double duration = r->history->duration;
+    const double steps = duration / (1.875 * rows * r->history->time_step * SAMPLES_OF_A_ROW);
+    const bool unloads = r->branch % 2 == 1;
+    enum verdict verdict = GO_ON;
+
+    r->block = (int)fmin(fmax(steps, 1.0), MOST_BLOCK);
+    r->way_time = r->state.time;
+    wb_bundle_lead(r->bundle, unloads ? 0.0 : r->model->run.deflection, duration);
+    /* What is nearer to where the last way ended belongs to its last row, not to the first. */
+    verdict = go_to(r, 0.5 / rows, false);
+    r->vertical = r->tension = (struct line){0};
+    for (int i = 1; i <= rows && verdict == GO_ON; i++)
+        verdict = pass_row(r, i);
+    return verdict;
+}
+
+/* Row 0: at rest, with the weight on. */
+static enum verdict rest(struct run *r)
+{
+    enum verdict verdict = advance(r, 0);
+
+    if (verdict != GO_ON)
+        return verdict;
+    r->begin = r->state.time;
+    take_place(r);
+    for (int i = 0; i < REST_SAMPLES && r->model->loads.weight; i++) {
+        verdict = advance(r, MOST_BLOCK);
+        if (verdict != GO_ON)
+            return verdict;
+        sample(r);
+    }
+    if (!r->model->loads.weight) /* nothing has moved, nothing acts */
+        sample(r);
+    wb_bundle_get_energies(r->bundle, &r->row.energies);
+    finish_row(r);
+    r->begin = r->state.time;
+    return GO_ON;
+}
+
+static enum verdict attempt(struct run *r, const char *mesh)
+{
+    struct wb_bundle_history *h = r->history;
+    const struct wb_bundle_settings settings = {.mesh = mesh, .duration = h->duration};
+
+    h->n_rows = 0;
+    h->exceeded = false;
+    h->largest = (struct wb_bundle_extremes){0};
+    h->attempts++;
+    r->counting = r->judged = false;
+    r->kinetic = r->artificial = (double)NAN;
+    r->most_external = 0.0;
+    r->vertical = r->tension = (struct line){0};
+    r->branch = 0;
+    r->status = wb_bundle_create(&r->bundle, r->model, &settings);
+    if (r->status != WB_OK)
+        return NO_MEMORY;
+    h->time_step = wb_bundle_time_step(r->bundle);
+    h->hexahedra = wb_bundle_hexahedra(r->bundle);
+    h->shells = wb_bundle_shells(r->bundle);
+
+    enum verdict verdict = rest(r);
+    for (r->branch = 0; r->branch < branches_of(r->model) && verdict == GO_ON; r->branch++)
+        verdict = make_way(r);
+    wb_bundle_get_state(r->bundle, &r->state);
+    h->steps = r->state.steps;
+    h->all_steps += h->steps;
+    h->exceeded = h->largest.kinetic > r->model->run.kinetic_limit;
+    wb_bundle_destroy(r->bundle);
+    r->bundle = NULL;
+    return verdict;
+}
+
+/* --- the duration --- */
+
+/* A guess, s: the ratio where it begins to count, of a tip that follows the smooth step while the
+ * beam keeps its static shape. Its rigidity is between sliding and bonded wires. Half the time that
+ * would do: what is too short is soon found. */
+static double guess_duration(const struct wb_bundle_model *model, double from)
+{
+    const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(model);
+    const double ei = sqrt(rigidity.sliding[0] * rigidity.bonded[0]), length = model->length;
+    const double mass = (wb_bundle_model_wire_mass(model) + wb_bundle_model_tape_mass(model)) *
+                        model->run.mass_scaling;
+    const double t = time_of(from / model->run.deflection);
+    /* m/s for a duration of 1 s */
+    const double speed = 30.0 * model->run.deflection * t * t * (1.0 - t) * (1.0 - t);
+    const double ratio =
+        33.0 / 140.0 * mass * pow(length, 4.0) * speed * speed / (3.0 * ei * from * from);
+    return 0.5 * sqrt(ratio / model->run.kinetic_limit);
+}
+
+enum wb_status wb_bundle_run(struct wb_bundle_history *history, const struct wb_bundle_model *model,
+                             const char *mesh, const struct wb_bundle_observer *observer)
+{
+    struct run r = {
+        .history = history,
+        .model = model,
+        .observer = observer,
+        .from = fmin(usual_from, 0.5 * model->run.deflection),
+    };
+    enum verdict verdict;
+
+    if (history->capacity < wb_bundle_run_planned_rows(model))
+        return wb_fail(WB_ERR_ARGUMENT, "a history of %d rows for a test of %d", history->capacity,
+                       wb_bundle_run_planned_rows(model));
+    history->chosen = model->run.duration == 0.0;
+    history->duration = history->chosen ? guess_duration(model, r.from) : model->run.duration;
+    history->converged = true;
+    history->stopped = false;
+    history->problem[0] = '\0';
+    history->attempts = 0;
+    history->all_steps = 0;
+    do {
+        verdict = attempt(&r, mesh);
+        if (verdict == ANEW)
+            history->duration = r.next;
+    } while (verdict == ANEW);
+    return r.status;
+}
