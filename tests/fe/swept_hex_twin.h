@@ -1,7 +1,7 @@
 /* The slow twin of fe/swept_hex.c, and the textbook's way: 8-node elements one by one, nodes
  * gathered and forces scattered, shape functions in three dimensions, the whole deformation
- * gradient, the exact logarithm by eigenvectors, the yield stress by bisection; all in double.
- * Node fields are plain: [(station n_nodes + node) 3 + component]. */
+ * gradient, the exact logarithm by eigenvectors, the yield stress by Newton's method; all in
+ * double. Node fields are plain: [(station n_nodes + node) 3 + component]. */
 #ifndef WB_TESTS_FE_SWEPT_HEX_TWIN_H
 #define WB_TESTS_FE_SWEPT_HEX_TWIN_H
 
@@ -229,25 +229,29 @@ static inline void twin_return(const struct wb_material *m, struct twin_point *p
         square += e[i / 3][i % 3] * e[i / 3][i % 3];
     }
     const double size = sqrt(2.0 / 3.0 * square);
-    double low = 0.0, high = size;
     if (m->hardening == WB_HARDENING_NONE_ELASTIC ||
         three_mu * size <=
             m->yield_stress + m->strength_coefficient * pow(p->accumulated, m->hardening_exponent))
         return;
-    for (int k = 0; k < 100; k++) {
-        const double step = 0.5 * (low + high);
-        const double yield = m->yield_stress + m->strength_coefficient * pow(p->accumulated + step,
-                                                                             m->hardening_exponent);
-        if (three_mu * (size - step) > yield)
-            low = step;
-        else
-            high = step;
+    /* Newton's method between bounds: where it leaves them, or p is 0, they are halved. */
+    double low = 0.0, high = size, step = 0.0;
+    for (int k = 0; k < 200; k++) {
+        const double now = p->accumulated + step;
+        const double hardening = m->strength_coefficient * pow(now, m->hardening_exponent);
+        const double excess = three_mu * (size - step) - m->yield_stress - hardening;
+        const double slope = three_mu + m->hardening_exponent * hardening / now;
+        low = excess > 0.0 ? step : low;
+        high = excess > 0.0 ? high : step;
+        const double next = step + excess / slope, before = step;
+        step = next > low && next < high ? next : 0.5 * (low + high);
+        if (fabs(step - before) <= 1e-15 * size)
+            break;
     }
     for (int i = 0; i < 9; i++) {
-        p->plastic[i / 3][i % 3] += low / size * e[i / 3][i % 3];
-        e[i / 3][i % 3] *= 1 - low / size;
+        p->plastic[i / 3][i % 3] += step / size * e[i / 3][i % 3];
+        e[i / 3][i % 3] *= 1 - step / size;
     }
-    p->accumulated += low;
+    p->accumulated += step;
 }
 
 static inline void twin_green(double F[3][3], double E[3][3])
