@@ -25,6 +25,15 @@ const char *wb_comparison_command(enum wb_comparison_solver solver)
     return solver == WB_COMPARISON_SOLID ? "wire3d" : "wire1d";
 }
 
+/* How a path from the campaign file is told, in commands that are run in its folder: as it is
+ * given, or its last part where it says where on this machine it is. */
+static const char *as_told(const char *given)
+{
+    if (given[0] == '/' || strstr(given, ".."))
+        given = wb_file_name(given);
+    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
+}
+
 /* --- datasets --- */
 
 /* A name lies among the simulations; whatever holds a '/' is a path from the campaign file. */
@@ -34,10 +43,13 @@ static enum wb_status find_dataset(const struct reading *reading, const char *gi
     char folder[WB_PATH], name[WB_PATH];
     dataset->wanted = true;
     if (strchr(given, '/')) {
-        snprintf(dataset->name, sizeof dataset->name, "%.250s", wb_file_name(given));
+        snprintf(dataset->name, sizeof dataset->name, "%.250s", as_told(given));
         return wb_file_join(dataset->path, reading->folder, given);
     }
-    snprintf(dataset->name, sizeof dataset->name, "%s/%.200s", shipped, given);
+    const char *const folder_told = as_told(reading->simulations);
+    const bool has_name = folder_told[0] && strcmp(folder_told, ".") != 0;
+    snprintf(dataset->name, sizeof dataset->name, "%.120s/%.120s", has_name ? folder_told : shipped,
+             given);
     if (reading->simulations[0]) {
         WB_TRY(wb_file_join(folder, reading->folder, reading->simulations));
         return wb_file_join(dataset->path, folder, given);
@@ -59,7 +71,7 @@ static enum wb_status read_model(const struct reading *reading, const struct wb_
     WB_TRY(wb_file_find_named(path, "models", name, reading->folder, named_in));
     const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
     snprintf(item->model_name, sizeof item->model_name,
-             is_shipped ? "fixtures/models/%s.yaml" : "%s", is_shipped ? name : wb_file_name(name));
+             is_shipped ? "fixtures/models/%s.yaml" : "%s", is_shipped ? name : as_told(name));
     item->model = calloc(1, sizeof *item->model);
     if (!item->model)
         return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
@@ -121,10 +133,11 @@ static enum wb_status check_case(const struct wb_config_node *node, const struct
 static enum wb_status check_alone(const struct wb_config_node *node,
                                   const struct wb_wire_model *model)
 {
-    const bool has_weight =
-        model->gravity[0] != 0.0 || model->gravity[1] != 0.0 || model->gravity[2] != 0.0;
-    if (!wb_wire_model_is_follower(model) || has_weight)
+    if (!wb_wire_model_is_follower(model))
         return wb_config_refuse(node, "model", "'%s' is not loaded by a follower force alone",
+                                model->name);
+    if (model->gravity[0] != 0.0 || model->gravity[1] != 0.0 || model->gravity[2] != 0.0)
+        return wb_config_refuse(node, "model", "'%s' has weight: its gravity must be [0, 0, 0]",
                                 model->name);
     return WB_OK;
 }

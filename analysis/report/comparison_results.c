@@ -148,8 +148,11 @@ double wb_comparison_split(const struct wb_wire_model *model, double change)
 
 double wb_comparison_cost(const struct wb_comparison_results *results, int index)
 {
-    const struct wb_comparison_run *const runs = results->runs[index];
-    return runs[WB_COMPARISON_ROD].cpu_s / runs[WB_COMPARISON_SOLID].cpu_s;
+    const struct wb_comparison_run *const solid =
+        wb_comparison_usable(results, index, WB_COMPARISON_SOLID);
+    const struct wb_comparison_run *const rod =
+        wb_comparison_usable(results, index, WB_COMPARISON_ROD);
+    return solid && rod ? rod->cpu_s / solid->cpu_s : (double)NAN;
 }
 
 double wb_comparison_tip_error(const struct wb_comparison_results *results,

@@ -68,7 +68,7 @@ void wb_comparison_results_release(
 const struct wb_comparison_run *wb_comparison_usable(const struct wb_comparison_results *results,
                                                      int index, enum wb_comparison_solver solver);
 
-/* CPU seconds of the rod over the solid's; NaN when one is not known. */
+/* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_comparison_cost(const struct wb_comparison_results *results, int index);
 
 /* Distance of a usable run's tip from the exact elastic one, over that one's displacement. */

@@ -159,6 +159,23 @@ static void a_campaign_that_cannot_be_compared_is_refused_with_its_line(void **s
     }
 }
 
+static void a_wire_with_weight_cannot_be_compared(void **state)
+{
+    (void)state;
+    char path[WB_PATH], *bytes;
+    size_t size;
+    assert_int_equal(wb_file_find_data(path, "fixtures/models/follower-8awg-elastic.yaml"), WB_OK);
+    assert_int_equal(wb_file_read(path, &bytes, &size), WB_OK);
+    char *const gravity = memmem(bytes, size, "[0, 0, 0]", 9);
+    assert_non_null(gravity);
+    memcpy(gravity, "[0, 9, 0]", 9);
+    write_text("heavy.yaml", bytes);
+    free(bytes);
+    assert_true(read_campaign("kind: comparison\ntitle: x\nelastic: {model: ./heavy.yaml}\n"
+                              "elastoplastic: {model: follower-8awg}\n") != WB_OK);
+    assert_non_null(strstr(last_error, "c.yaml:3: model: 'follower-8awg-elastic' has weight"));
+}
+
 /* --- datasets --- */
 
 static struct bent_wire bent_of(int index, const char *solver)
@@ -406,7 +423,7 @@ static void a_missing_dataset_is_told_with_the_command_that_makes_it(void **stat
         &results.runs[WB_COMPARISON_ELASTOPLASTIC][WB_COMPARISON_SOLID];
     assert_int_equal(run->state, WB_COMPARISON_MISSING);
     assert_string_equal(run->command,
-                        "wirebench solve wire3d plastic.yaml -o simulations/follower-8awg-3d");
+                        "wirebench solve wire3d plastic.yaml -o own/follower-8awg-3d");
     assert_int_equal(results.fit_state, WB_COMPARISON_MISSING);
     release();
 }
@@ -475,7 +492,7 @@ static void a_damaged_dataset_is_refused_without_this_machines_paths(void **stat
         &results.runs[WB_COMPARISON_ELASTIC][WB_COMPARISON_SOLID];
     assert_int_equal(run->state, WB_COMPARISON_REFUSED);
     assert_non_null(
-        strstr(wb_text_string(&run->problem), "simulations/follower-8awg-elastic-3d/fields.csv:1"));
+        strstr(wb_text_string(&run->problem), "own/follower-8awg-elastic-3d/fields.csv:1"));
     assert_null(strstr(wb_text_string(&run->problem), folder));
     release();
 }
@@ -567,9 +584,9 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     release();
     assert_true(says("none/report.html", "<b>Incomplete.</b> 4 of 4 datasets are missing"));
     assert_true(says("none/report.html", "wirebench solve wire3d plastic.yaml -o "
-                                         "simulations/follower-8awg-3d"));
+                                         "xyz/follower-8awg-3d"));
     assert_true(says("none/report.html", "wirebench solve wire1d plastic.yaml -o "
-                                         "simulations/follower-8awg-1d"));
+                                         "xyz/follower-8awg-1d"));
     assert_false(says("none/report.html", ">nan") || says("none/report.html", " nan"));
 }
 
@@ -579,6 +596,7 @@ int main(void)
         cmocka_unit_test(a_campaign_names_models_and_their_datasets),
         cmocka_unit_test(the_shipped_campaign_can_be_read),
         cmocka_unit_test(a_campaign_that_cannot_be_compared_is_refused_with_its_line),
+        cmocka_unit_test(a_wire_with_weight_cannot_be_compared),
         cmocka_unit_test(stresses_of_beam_theory_are_found_with_their_ratio),
         cmocka_unit_test(tips_and_axes_are_compared_at_the_full_force),
         cmocka_unit_test(the_exact_rod_is_the_reference_solution),

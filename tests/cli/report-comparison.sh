@@ -42,7 +42,7 @@ run 3 "$folder/c.yaml" -o "$folder/r"
 for file in report.pdf report.html report.json; do
     [ -s "$folder/r/$file" ] || fail "no $file"
 done
-grep -qF 'wirebench solve wire3d fixtures/models/follower-8awg.yaml -o simulations/follower-8awg-3d' \
+grep -qF 'wirebench solve wire3d fixtures/models/follower-8awg.yaml -o sim/follower-8awg-3d' \
     "$folder/out" || fail 'it is not told how to make a dataset'
 cp "$folder/out" "$folder/before"
 run 1 "$folder/c.yaml" -o "$folder/r"
