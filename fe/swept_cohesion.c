@@ -373,6 +373,12 @@ double wb_swept_cohesion_area(const struct wb_swept_cohesion *cohesion)
     return area;
 }
 
+int wb_swept_cohesion_partner(const struct wb_swept_cohesion *cohesion, int node, int station)
+{
+    const int s = cohesion->strip_of[node * layout_of(cohesion)->n_stations + station];
+    return s < 0 ? WB_SWEPT_COHESION_FREE : cohesion->strip[s].to;
+}
+
 double wb_swept_cohesion_damage(const struct wb_swept_cohesion *cohesion, int node, int station)
 {
     const int s = cohesion->strip_of[node * layout_of(cohesion)->n_stations + station];

@@ -43,6 +43,7 @@ struct wb_swept_cohesion_wire {
     int n_nodes;
     int n_surface;
     const int *surface; /* (n_surface) nodes, in turn */
+    double radius;      /* m, of contact (fe/swept_tape_contact.h); not used by cohesion */
 };
 
 struct wb_swept_cohesion_settings {
@@ -93,6 +94,9 @@ void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
 
 /* Area that is bonded, m2. */
 double wb_swept_cohesion_area(const struct wb_swept_cohesion *cohesion);
+
+/* What a node was bonded to, damaged or not. */
+int wb_swept_cohesion_partner(const struct wb_swept_cohesion *cohesion, int node, int station);
 
 /* Damage of a node's bond, 0 to 1 (broken); 1 of nodes that are not bonded. */
 double wb_swept_cohesion_damage(const struct wb_swept_cohesion *cohesion, int node, int station);
