@@ -21,7 +21,13 @@ enum {
     KEY_WEIGHT,
     KEY_CYCLES,
     KEY_POINTS,
-    KEY_VTK
+    KEY_VTK,
+    KEY_MESH,
+    KEY_DEAD_FORCE,
+    KEY_NO_WEIGHT,
+    KEY_DURATION,
+    KEY_MASS_SCALING,
+    KEY_SELECTIVE
 };
 
 static const struct argp_option option_table[] = {
@@ -37,6 +43,16 @@ static const struct argp_option option_table[] = {
     {"cycles", KEY_CYCLES, "N", 0, "Load and unload N times; without it, load once", 0},
     {"points", KEY_POINTS, "N", 0, "N equal steps to the largest deflection (53)", 0},
     {"vtk", KEY_VTK, "DIR", 0, "Write every row's stress field for ParaView (wire3d)", 0},
+    {"mesh", KEY_MESH, "NAME", 0, "Mesh of a bundle (its file's)", 0},
+    {"dead-force", KEY_DEAD_FORCE, NULL, 0, "Raise a bundle by a vertical force, not by its strand",
+     0},
+    {"no-weight", KEY_NO_WEIGHT, NULL, 0, "Leave a bundle's weight out", 0},
+    {"duration-s", KEY_DURATION, "T", 0,
+     "Duration of a bundle's loading; otherwise its file's, or chosen so that kinetic energy stays "
+     "small",
+     0},
+    {"mass-scaling", KEY_MASS_SCALING, "F", 0, "Factor on a bundle's masses (its file's)", 0},
+    {"selective", KEY_SELECTIVE, "B", 0, "Selective mass scaling of its sections (its file's)", 0},
     {"output", 'o', "DATASET", 0, "Write a dataset folder", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
@@ -53,36 +69,37 @@ static const char *option_name(int key)
 }
 
 static const char *const kind_names[] = {
-    [WB_SOLVE_NONE] = "",
-    [WB_SOLVE_CANTILEVER] = "cantilever",
-    [WB_SOLVE_WIRE3D] = "wire3d",
-    [WB_SOLVE_WIRE1D] = "wire1d",
+    [WB_SOLVE_NONE] = "",         [WB_SOLVE_CANTILEVER] = "cantilever",
+    [WB_SOLVE_WIRE3D] = "wire3d", [WB_SOLVE_WIRE1D] = "wire1d",
+    [WB_SOLVE_BUNDLE] = "bundle",
 };
 
 static void take_argument(struct argp_state *state, const char *argument,
                           struct wb_solve_options *o)
 {
-    const bool takes_model = o->kind == WB_SOLVE_WIRE3D || o->kind == WB_SOLVE_WIRE1D;
+    const bool takes_model = o->kind != WB_SOLVE_NONE && o->kind != WB_SOLVE_CANTILEVER;
     if (takes_model && !o->model) {
         o->model = argument;
         return;
     }
     if (o->kind != WB_SOLVE_NONE)
         argp_error(state, "one model at a time, not '%s' too", argument);
-    for (int kind = WB_SOLVE_CANTILEVER; kind <= WB_SOLVE_WIRE1D; kind++)
+    for (int kind = WB_SOLVE_CANTILEVER; kind <= WB_SOLVE_BUNDLE; kind++)
         if (strcmp(argument, kind_names[kind]) == 0)
             o->kind = (enum wb_solve_kind)kind;
     if (o->kind == WB_SOLVE_NONE)
-        argp_error(state, "no model '%s'; there are cantilever, wire3d, wire1d", argument);
+        argp_error(state, "no model '%s'; there are cantilever, wire3d, wire1d, bundle", argument);
     o->kind_name = kind_names[o->kind];
 }
 
 static void check(struct argp_state *state, const struct wb_solve_options *o)
 {
     if (o->kind == WB_SOLVE_NONE)
-        argp_error(state, "name the model: cantilever, wire3d or wire1d");
+        argp_error(state, "name the model: cantilever, wire3d, wire1d or bundle");
     if (o->vtk && o->kind != WB_SOLVE_WIRE3D)
         argp_error(state, "--vtk: %s has no stress field for ParaView", o->kind_name);
+    if (o->bundle_option && o->kind != WB_SOLVE_BUNDLE)
+        argp_error(state, "--%s is for bundle, not for %s", o->bundle_option, o->kind_name);
     if (o->kind == WB_SOLVE_CANTILEVER) {
         if (!o->wire || o->length == 0.0 || o->deflection == 0.0)
             argp_error(state, "--wire, --length-mm and --deflection-mm are needed");
@@ -101,6 +118,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 
     if (key >= KEY_WIRE && key <= KEY_POINTS)
         o->cantilever_option = option_name(key);
+    if (key >= KEY_MESH && key <= KEY_SELECTIVE)
+        o->bundle_option = option_name(key);
     switch (key) {
     case KEY_WIRE:
         o->wire = argument;
@@ -131,6 +150,24 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_VTK:
         o->vtk = argument;
         return 0;
+    case KEY_MESH:
+        o->mesh = argument;
+        return 0;
+    case KEY_DEAD_FORCE:
+        o->dead_force = true;
+        return 0;
+    case KEY_NO_WEIGHT:
+        o->no_weight = true;
+        return 0;
+    case KEY_DURATION:
+        o->duration = wb_command_number(state, "--duration-s", argument, 1e-6, 1e6);
+        return 0;
+    case KEY_MASS_SCALING:
+        o->mass_scaling = wb_command_number(state, "--mass-scaling", argument, 1.0, 1e6);
+        return 0;
+    case KEY_SELECTIVE:
+        o->selective = wb_command_number(state, "--selective", argument, 1.0, 1e6);
+        return 0;
     case ARGP_KEY_ARG:
         take_argument(state, argument, o);
         return 0;
@@ -145,11 +182,12 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .args_doc = "cantilever\nwire3d MODEL.yaml\nwire1d MODEL.yaml",
+    .args_doc = "cantilever\nwire3d MODEL.yaml\nwire1d MODEL.yaml\nbundle BUNDLE.yaml",
     .doc = "Computes a bending test and prints its curve as CSV, or as JSON, or writes it as a "
            "dataset. cantilever is the 1D beam model of a homogenised wire, described by options. "
            "wire3d and wire1d compute a model file (fixtures/models, by name or path): as a 3D "
-           "solid, or as a rod of fibres.\v"
+           "solid, or as a rod of fibres. bundle computes a bundle file (fixtures/bundles), wires "
+           "with contact and tape, in explicit dynamics.\v"
            "Exit code 3: the curve was cut short because the solver did not converge, or by "
            "Ctrl-C; what was computed is there.",
 };
@@ -200,6 +238,12 @@ int wb_cmd_solve(int argc, char **argv)
     struct wb_solve_options options = {.points = DEFAULT_POINTS};
     wb_command_parse(&argp, argc, argv, &options);
     wb_interrupt_install();
-    return options.kind == WB_SOLVE_CANTILEVER ? wb_solve_cantilever(&options)
-                                               : wb_solve_wire(&options);
+    switch (options.kind) {
+    case WB_SOLVE_CANTILEVER:
+        return wb_solve_cantilever(&options);
+    case WB_SOLVE_BUNDLE:
+        return wb_solve_bundle(&options);
+    default:
+        return wb_solve_wire(&options);
+    }
 }

@@ -14,27 +14,34 @@ enum wb_solve_kind {
     WB_SOLVE_NONE,
     WB_SOLVE_CANTILEVER,
     WB_SOLVE_WIRE3D,
-    WB_SOLVE_WIRE1D
+    WB_SOLVE_WIRE1D,
+    WB_SOLVE_BUNDLE
 };
 
 struct wb_solve_options {
     struct wb_command_common common;
     enum wb_solve_kind kind;
-    const char *kind_name; /* "cantilever", "wire3d", "wire1d" */
+    const char *kind_name; /* "cantilever", "wire3d", "wire1d", "bundle" */
     /* Of the cantilever. */
     const char *wire;                  /* name or file */
     double length, deflection, strand; /* m */
     int cycles, points;
     bool elastic, weight;
     const char *cantilever_option; /* one of these that was given; NULL: none */
-    /* Of the wires. */
+    /* Of the wires, and of bundles. */
     const char *model; /* name or file */
     const char *vtk;   /* folder; NULL: none */
+    /* Of bundles, in place of what the file has. */
+    const char *mesh;                         /* name; NULL: the file's */
+    bool dead_force, no_weight;               /* no strand; no weight */
+    double duration, mass_scaling, selective; /* s; 0: the file's */
+    const char *bundle_option;                /* one of these that was given; NULL: none */
 };
 
 /* Each returns an exit code. */
 int wb_solve_cantilever(const struct wb_solve_options *options);
 int wb_solve_wire(const struct wb_solve_options *options);
+int wb_solve_bundle(const struct wb_solve_options *options);
 
 /* A row of any model, as it is printed. */
 struct wb_solve_point {

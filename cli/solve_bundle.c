@@ -1,0 +1,241 @@
+/* wirebench solve bundle: a bundle file in explicit dynamics. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/simulated_bundle.h"
+#include "base/file.h"
+#include "base/interrupt.h"
+#include "base/progress.h"
+#include "base/units.h"
+#include "cli/solve.h"
+#include "fe/bundle_run.h"
+
+#define WB_LOG_DOMAIN "solve"
+
+enum {
+    MARKERS = 26
+};
+
+static const double allowed_imbalance = 0.01;
+
+/* Everything a run needs and gives. */
+struct run {
+    const struct wb_solve_options *options;
+    struct wb_bundle_model model;
+    const struct wb_bundle_mesh *mesh;
+    struct wb_bundle_history history;
+    struct wb_progress progress;
+    int attempt; /* that the live line is about */
+    bool made_output;
+    struct wb_solve_time spent;
+};
+
+/* --- before --- */
+
+static void override(struct run *run)
+{
+    const struct wb_solve_options *o = run->options;
+    struct wb_bundle_model *model = &run->model;
+
+    if (o->dead_force)
+        model->loads.strand_length = 0.0;
+    if (o->no_weight)
+        model->loads.weight = false;
+    if (o->duration > 0.0)
+        model->run.duration = o->duration;
+    if (o->mass_scaling > 0.0)
+        model->run.mass_scaling = o->mass_scaling;
+    if (o->selective > 0.0)
+        model->run.selective = o->selective;
+}
+
+static enum wb_status prepare(struct run *run)
+{
+    const struct wb_solve_options *o = run->options;
+    char path[WB_PATH];
+
+    WB_TRY(wb_file_find_fixture(path, "bundles", o->model, NULL));
+    WB_TRY(wb_bundle_model_read(&run->model, path));
+    override(run);
+    const char *name = o->mesh ? o->mesh : run->model.run.mesh;
+    run->mesh = wb_bundle_model_mesh(&run->model, name);
+    if (!run->mesh)
+        return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", run->model.path, name);
+    WB_TRY(wb_bundle_run_init(&run->history, &run->model, MARKERS));
+    if (!o->common.output)
+        return WB_OK;
+    /* Now, so that nothing is computed in vain. */
+    const bool was_there = wb_file_exists(o->common.output);
+    WB_TRY(wb_file_prepare_output(o->common.output, o->common.force));
+    run->made_output = !was_there;
+    return WB_OK;
+}
+
+/* --- while it runs --- */
+
+static bool report_progress(void *context, const struct wb_bundle_progress *now)
+{
+    struct run *run = context;
+    char note[128];
+
+    if (now->attempt != run->attempt) {
+        if (run->attempt > 0)
+            wb_progress_finish(&run->progress);
+        wb_progress_start(&run->progress, "solve", "rows", wb_bundle_run_planned_rows(&run->model));
+        run->attempt = now->attempt;
+    }
+    snprintf(note, sizeof note, "T %.3g s, step %lld, %.2f mm", run->history.duration, now->steps,
+             now->deflection / WB_MM);
+    if (isfinite(now->kinetic)) {
+        const size_t used = strlen(note);
+        snprintf(note + used, sizeof note - used, ", kinetic %.2g, artificial %.2g", now->kinetic,
+                 now->artificial);
+    }
+    wb_progress_update(&run->progress, now->done * wb_bundle_run_planned_rows(&run->model), note);
+    return !wb_interrupted();
+}
+
+static enum wb_status compute(struct run *run)
+{
+    const struct wb_bundle_observer observer = {.progress = report_progress, .context = run};
+    const struct wb_solve_time start = wb_solve_now();
+    const enum wb_status status =
+        wb_bundle_run(&run->history, &run->model, run->mesh->name, &observer);
+    const struct wb_solve_time end = wb_solve_now();
+
+    if (run->attempt > 0)
+        wb_progress_finish(&run->progress);
+    run->spent = (struct wb_solve_time){end.wall - start.wall, end.cpu - start.cpu};
+    return status;
+}
+
+/* --- what comes out --- */
+
+static struct wb_simulated_bundle simulated(const struct run *run)
+{
+    return (struct wb_simulated_bundle){
+        .model = &run->model,
+        .mesh = run->mesh,
+        .history = &run->history,
+        .wall = run->spent.wall,
+        .cpu = run->spent.cpu,
+    };
+}
+
+static enum wb_status write_dataset(const struct run *run)
+{
+    const char *folder = run->options->common.output;
+    const struct wb_simulated_bundle bundle = simulated(run);
+    struct wb_dataset dataset;
+
+    WB_TRY(wb_dataset_init(&dataset));
+    enum wb_status status = wb_simulated_bundle_fill(&dataset, &bundle);
+    /* Whether it may be overwritten was asked before the computation. */
+    if (status == WB_OK)
+        status = wb_dataset_write(&dataset, folder, true);
+    if (status == WB_OK)
+        status = wb_simulated_bundle_write_energies(&dataset, &bundle, folder);
+    wb_dataset_release(&dataset);
+    return status;
+}
+
+static struct wb_solve_point point_of(const struct wb_bundle_row *row)
+{
+    return (struct wb_solve_point){
+        .cycle = row->cycle,
+        .phase = row->phase,
+        .deflection = row->deflection,
+        .tension = row->tension,
+        .force = row->force,
+        .tip_x = row->tip[0],
+        .tip_angle = row->tip_angle,
+    };
+}
+
+static int print_json(const struct run *run)
+{
+    const struct wb_simulated_bundle bundle = simulated(run);
+    struct wb_json *const root = wb_json_create();
+    struct wb_json *const points = wb_json_set_array(root, "points");
+
+    for (int i = 0; i < run->history.n_rows; i++) {
+        const struct wb_solve_point point = point_of(&run->history.rows[i]);
+        struct wb_json *const object = wb_json_append_object(points);
+        wb_solve_set_point(object, &point);
+        wb_json_set_number(object, "tip_z_mm", run->history.rows[i].tip[2] / WB_MM);
+    }
+    wb_simulated_bundle_describe(root, &bundle);
+    return wb_command_print_json(root);
+}
+
+static void print_csv(const struct run *run)
+{
+    wb_solve_print_header();
+    for (int i = 0; i < run->history.n_rows; i++) {
+        const struct wb_solve_point point = point_of(&run->history.rows[i]);
+        wb_solve_print_point(&point);
+    }
+}
+
+/* What a reader of the curve has to know. */
+static void warn(const struct run *run)
+{
+    const struct wb_bundle_history *h = &run->history;
+    const char *name = run->model.name;
+
+    if (!h->converged)
+        wb_warn("%s: the run was lost: %s; %d of %d rows were computed", name, h->problem,
+                h->n_rows, h->capacity);
+    if (h->stopped)
+        wb_warn("stopped after %d rows", h->n_rows);
+    if (h->exceeded)
+        wb_warn("%s: kinetic over internal energy reaches %.3g with a duration of %.3g s, beyond "
+                "the limit of %.3g: the curve is not quasi-static",
+                name, h->largest.kinetic, h->duration, run->model.run.kinetic_limit);
+    if (h->largest.imbalance > allowed_imbalance)
+        wb_warn("%s: the energy balance is off by up to %.3g of the external work", name,
+                h->largest.imbalance);
+    if (h->largest.beyond)
+        wb_warn("%s: strains reach %.3g, beyond what the elements are made for", name,
+                h->largest.strain);
+}
+
+static int deliver(const struct run *run)
+{
+    const struct wb_command_common *common = &run->options->common;
+    const struct wb_bundle_history *h = &run->history;
+    int code = WB_EXIT_OK;
+
+    if (common->output && h->n_rows > 0)
+        code = wb_command_exit(write_dataset(run));
+    if (code == WB_EXIT_OK && common->json)
+        code = print_json(run);
+    else if (code == WB_EXIT_OK && !common->output)
+        print_csv(run);
+    if (code != WB_EXIT_OK)
+        return code;
+    warn(run);
+    return h->converged && !h->stopped ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+}
+
+int wb_solve_bundle(const struct wb_solve_options *options)
+{
+    struct run *const run = calloc(1, sizeof *run);
+    if (!run)
+        return wb_command_exit(wb_fail(WB_ERR_MEMORY, "out of memory"));
+    run->options = options;
+    enum wb_status status = prepare(run);
+    if (status == WB_OK)
+        status = compute(run);
+    const int code = status == WB_OK ? deliver(run) : wb_command_exit(status);
+
+    /* A folder that was made for nothing goes again. */
+    if (run->made_output)
+        (void)rmdir(options->common.output);
+    wb_bundle_run_release(&run->history);
+    free(run);
+    return code;
+}
