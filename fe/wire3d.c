@@ -413,17 +413,28 @@ static bool begin(struct run *r)
     return r->status == WB_OK && !r->run->stopped;
 }
 
+/* Virgin again. */
+static enum wb_status begin_anew(struct wb_wire3d *wire)
+{
+    struct wb_solid *const used = wire->solid;
+    const enum wb_status status = make_solid(wire);
+
+    if (status != WB_OK) {
+        wire->solid = used;
+        return status;
+    }
+    wb_solid_destroy(used);
+    wire->sliding = 0.0;
+    return WB_OK;
+}
+
 enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
                              const struct wb_wire_observer *observer)
 {
     struct run r = {.wire = wire, .run = run, .observer = observer, .status = WB_OK};
 
-    if (wire->has_run) { /* virgin again */
-        wb_solid_destroy(wire->solid);
-        wire->solid = NULL;
-        wire->sliding = 0.0;
-        WB_TRY(make_solid(wire));
-    }
+    if (wire->has_run)
+        WB_TRY(begin_anew(wire));
     wire->has_run = true;
     r.shape = calloc((size_t)run->n_shape + 1, sizeof *r.shape);
     if (!r.shape)
