@@ -359,6 +359,8 @@ static void all_instructions_agree(void **unused)
                     for (int j = l->n_stations; j < l->stride; j++)
                         assert_true(swept_force(&body, row / 3, row % 3, j) == 0.0);
                 }
+                for (int j = sizes[s]; j < l->stride; j++)
+                    assert_true(wb_swept_hex_plastic_strain(body.state, 5, j, 0) == 0.0);
                 swept_body_destroy(&body);
             }
             free(plain);
