@@ -164,6 +164,7 @@ static void describe_solid(struct wb_json *simulation, const struct wb_wire_mode
         wb_json_set_number(interface, "penetration_mm", balance->penetration / WB_MM);
         wb_json_set_number(interface, "opening_mm", balance->opening / WB_MM);
         wb_json_set_number(interface, "slip_mm", balance->slip / WB_MM);
+        wb_json_set_number(interface, "sliding_mm", balance->sliding / WB_MM);
         wb_json_set_number(interface, "slip_limit_mm", balance->slip_limit / WB_MM);
     }
     struct wb_json *const mesh = wb_json_set_object(simulation, "mesh");

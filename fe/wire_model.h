@@ -26,8 +26,7 @@
  *       section_density: 1
  *       integration: selective                         # or reduced
  *     fields_at_mm: [3.26, 50]                         # optional: cross sections to keep fields of
- *     history:                                         # steps, each from where the one before
- * ended
+ *     history:                                         # steps, each from the end of the last
  *       - name: force
  *         force_N: [5, 5, 5]                           # dead force at the tip
  *         rows: 5                                      # optional, 10: rows kept, in equal steps
@@ -40,8 +39,7 @@
  *         follower_N: [0, 24, 0]                       # turns with the tip; (along, y, z) of its
  *         fields: true                                 # frame. Keep stress fields at its end
  *       - name: raised
- *         deflection_mm: 53                            # y of the tip, by a vertical force or
- * strand
+ *         deflection_mm: 53                            # y of the tip, by vertical force or strand
  *       - name: released
  *         release: true                                # that force back to zero
  *
