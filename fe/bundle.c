@@ -164,10 +164,11 @@ static void lead_tip(struct wb_bundle *bundle, double half)
     bundle->vertical = bundle->slack ? 0.0 : vertical;
     bundle->tension = bundle->vertical / upright;
 
-    const double force[3] = {bundle->tension * lean[0], bundle->vertical,
-                             bundle->tension * lean[1]};
+    bundle->pull[0] = bundle->tension * lean[0];
+    bundle->pull[1] = bundle->vertical;
+    bundle->pull[2] = bundle->tension * lean[1];
     for (int i = 0; i < n; i++)
-        push_tip(bundle, body[i], force, tip.weight);
+        push_tip(bundle, body[i], bundle->pull, tip.weight);
 }
 
 /* --- steps --- */
@@ -382,6 +383,43 @@ void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_ene
         .cohesive = bundle->bond_energy,
         .external = bundle->tip_work + bundle->weight_zero - weight_potential(bundle),
     };
+}
+
+int wb_bundle_last_held(const struct wb_bundle *bundle)
+{
+    return (int)floor(bundle->model->potted_length / bundle->spacing + 1e-9);
+}
+
+/* Adds a body's part. */
+static void add_outside(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
+                        struct wb_bundle_outside *out)
+{
+    const int held = wb_bundle_last_held(bundle), stride = body->layout.stride;
+
+    for (int j = 0; j < bundle->n_stations; j++) {
+        const double mass = wb_bundle_station_mass(bundle, body, j);
+        const double weight = -bundle->gravity * mass / bundle->model->run.mass_scaling;
+        out->weight[1] += weight;
+        if (j <= held)
+            out->clamp[1] -= weight;
+        for (int i = 0; i < 3 * body->layout.n_nodes; i++) {
+            const size_t at = (size_t)i * (size_t)stride + (size_t)j;
+            if (j <= held)
+                out->clamp[i % 3] -= (double)body->force[at];
+            out->momentum[i % 3] += mass * body->node_mass[i / 3] / body->mass * body->velocity[at];
+        }
+    }
+}
+
+void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outside *outside)
+{
+    *outside = (struct wb_bundle_outside){
+        .tip = {bundle->pull[0], bundle->pull[1], bundle->pull[2]},
+    };
+    for (int w = 0; w < bundle->n_wires; w++)
+        add_outside(bundle, &bundle->wire[w], outside);
+    if (bundle->has_tape)
+        add_outside(bundle, &bundle->ring, outside);
 }
 
 double wb_bundle_kinetic_ratio(const struct wb_bundle *bundle)

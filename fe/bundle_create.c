@@ -208,7 +208,7 @@ static enum wb_status make_tape(struct wb_bundle *bundle)
 
 static void hold_clamp(struct wb_bundle *bundle)
 {
-    const int last = (int)floor(bundle->model->potted_length / bundle->spacing + 1e-9);
+    const int last = wb_bundle_last_held(bundle);
 
     for (int j = 0; j <= last; j++)
         for (int c = 0; c < 3; c++) {
@@ -283,6 +283,10 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
     if (!(settings->duration > 0.0 && isfinite(settings->duration)))
         return wb_fail(WB_ERR_ARGUMENT, "a duration of %g s: expected above 0", settings->duration);
 
+    if (model->tip == WB_BUNDLE_TIP_CAPPED)
+        return wb_fail(WB_ERR_UNSUPPORTED, "%s: a capped tip cannot be computed yet; use tip: free",
+                       model->path);
+
     struct wb_bundle *bundle = calloc(1, sizeof *bundle);
     if (!bundle)
         return wb_fail(WB_ERR_MEMORY, "out of memory for a bundle");
@@ -292,6 +296,7 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
     bundle->n_wires = model->packing.n;
     bundle->n_stations = mesh->elements_along + 1;
     bundle->spacing = model->length / mesh->elements_along;
+    bundle->way_duration = settings->duration;
     bundle->gravity = model->loads.weight ? WB_STANDARD_GRAVITY : 0.0;
 
     const enum wb_status status = build(bundle);

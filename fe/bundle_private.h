@@ -61,6 +61,7 @@ struct wb_bundle {
 
     /* Of the last step. */
     double tension, vertical;
+    double pull[3]; /* N, on the tip */
     bool slack;
     double tip_work, friction_work;
     double kinetic;
@@ -74,5 +75,8 @@ struct wb_bundle {
 /* Kilograms of a body's station, scaled, half at the ends. */
 double wb_bundle_station_mass(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
                               int station);
+
+/* The last station that the clamp holds. */
+int wb_bundle_last_held(const struct wb_bundle *bundle);
 
 #endif

@@ -79,7 +79,6 @@ enum verdict {
 /* The straight line through forces against the target, of one row. */
 struct line {
     double n, x, y, xx, xy, yy;
-    bool any_slack, all_slack;
 };
 
 struct run {
@@ -249,7 +248,9 @@ static void take_place(struct run *r)
     *row = (struct wb_bundle_row){
         .time = r->state.time - r->begin,
         .cycle = 1 + r->branch / 2,
-        .phase = r->branch % 2 == 0 ? WB_HISTORY_LOAD : WB_HISTORY_UNLOAD,
+        .phase = r->state.slack       ? WB_HISTORY_SLACK
+                 : r->branch % 2 == 0 ? WB_HISTORY_LOAD
+                                      : WB_HISTORY_UNLOAD,
         .deflection = r->state.deflection,
         .tip = {ends[1][0], ends[1][1], ends[1][2]},
         .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
@@ -266,13 +267,10 @@ static void finish_row(struct run *r)
     struct wb_bundle_row *row = &r->row;
     double ignored;
 
-    /* The target is the deflection's, but in slack rows, where all forces are zero. */
-    row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
-    row->tension = value_at(&r->tension, row->deflection, &ignored);
-    if (r->vertical.any_slack) {
-        row->phase = WB_HISTORY_SLACK;
-        row->vertical_force = r->vertical.y / r->vertical.n;
-        row->tension = r->tension.y / r->tension.n;
+    /* Where the strand is taut the target is the deflection. */
+    if (row->phase != WB_HISTORY_SLACK) {
+        row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
+        row->tension = value_at(&r->tension, row->deflection, &ignored);
     }
     if (h->n_rows == 0)
         h->zero_force = row->vertical_force;
@@ -283,9 +281,10 @@ static void finish_row(struct run *r)
 
 static void sample(struct run *r)
 {
+    if (r->state.slack)
+        return;
     add_to_line(&r->vertical, r->state.target, r->state.vertical);
     add_to_line(&r->tension, r->state.target, r->state.tension);
-    r->vertical.any_slack = r->vertical.any_slack || r->state.slack;
 }
 
 static enum verdict report(struct run *r)
@@ -388,7 +387,7 @@ static enum verdict make_way(struct run *r)
     return verdict;
 }
 
-/* Row 0: at rest, with the weight on. */
+/* Row 0: at rest, with the weight on. The strand is taut: it carries part of it. */
 static enum verdict rest(struct run *r)
 {
     enum verdict verdict = advance(r, 0);

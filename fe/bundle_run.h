@@ -6,7 +6,7 @@
  * moment at which the target is there. The force is a mean: the value there of the straight line
  * through the forces against the target from half a step before to half a step after, so that
  * vibration averages out (at both ends of a way the half on its side). In slack rows the strand
- * carries nothing and the tip is where it is.
+ * carries nothing and the tip is where it is; what is slack in another row's window is left out.
  *
  * Quasi-static control: where the model leaves the duration open it is chosen so that kinetic over
  * internal energy stays below run.kinetic_limit from 2 mm on (half the deflection, if that is
