@@ -1,13 +1,16 @@
-/* What a shell of the tape costs on one core: a closed sleeve of 32 x 80 elements, bent as a
- * bundle's, all points elastic or all yielding, with and without what integrates it. */
+/* What a shell of the tape costs on one core: a closed sleeve of 32 x 80 elements, all points
+ * elastic or all yielding, with and without what integrates it; and what its nodes cost that are
+ * bonded to a wire, or touch one. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
+#include "fe/swept_cohesion.h"
 #include "fe/swept_step.h"
 #include "fe/swept_tape.h"
+#include "fe/swept_tape_contact.h"
 
 enum {
     NODES = 32,
@@ -144,12 +147,96 @@ static double time_sleeve(struct sleeve *s, bool yielding, bool whole)
     return best;
 }
 
+/* --- on a wire --- */
+
+enum {
+    SURFACE = 24
+};
+
+struct wire {
+    struct wb_swept_layout layout;
+    double node[SURFACE][2];
+    int surface[SURFACE];
+    double *position;
+    void *force;
+};
+
+static enum wb_status create_wire(struct wire *w, double its_radius)
+{
+    *w = (struct wire){.layout = wb_swept_layout(SURFACE, ALONG + 1)};
+    WB_TRY(wb_swept_allocate((void **)&w->position, wb_swept_size(&w->layout), sizeof(double)));
+    WB_TRY(wb_swept_allocate(&w->force, wb_swept_size(&w->layout), sizeof(double)));
+    for (int k = 0; k < SURFACE; k++) {
+        w->surface[k] = k;
+        w->node[k][0] = its_radius * sin(2.0 * M_PI * k / SURFACE);
+        w->node[k][1] = its_radius * cos(2.0 * M_PI * k / SURFACE);
+        for (int j = 0; j <= ALONG; j++) {
+            double *at = w->position + 3 * k * w->layout.stride + j;
+            at[0] = j * spacing;
+            at[w->layout.stride] = w->node[k][0];
+            at[2 * w->layout.stride] = w->node[k][1];
+        }
+    }
+    return WB_OK;
+}
+
+/* Least ns a node and step, of a sleeve on a wire as large, pressed together. */
+static enum wb_status time_wire(struct sleeve *s, double ns[2])
+{
+    struct wb_swept_cohesion_bond *bond = calloc(NODES * (ALONG + 1), sizeof *bond);
+    struct wb_swept_cohesion_settings bonded;
+    struct wb_swept_tape_contact_settings touching;
+    struct wb_swept_cohesion *cohesion = NULL;
+    struct wb_swept_tape_contact *contact = NULL;
+    struct wire w;
+
+    if (!bond)
+        return WB_ERR_MEMORY;
+    for (int i = 0; i < NODES * (ALONG + 1); i++)
+        bond[i] = (struct wb_swept_cohesion_bond){0, 1.0};
+    wb_swept_cohesion_default_settings(&bonded);
+    wb_swept_tape_contact_default_settings(&touching);
+    WB_TRY(create_wire(&w, radius - 0.099e-3));
+    const struct wb_swept_cohesion_wire wire = {.node = (const double(*)[2])w.node,
+                                                .n_nodes = SURFACE,
+                                                .n_surface = SURFACE,
+                                                .surface = w.surface,
+                                                .radius = radius - 0.099e-3};
+    WB_TRY(wb_swept_cohesion_create(&cohesion, s->tape, &bonded, 1, &wire, bond));
+    WB_TRY(wb_swept_tape_contact_create(&contact, s->tape, NULL, &touching, 1, &wire));
+    const struct wb_swept_cohesion_fields fields = {{s->position, s->director, s->force, s->moment},
+                                                    (const double *const[]){w.position},
+                                                    (void *const[]){w.force}};
+    ns[0] = ns[1] = 1e9;
+    for (int repeat = 0; repeat < REPEATS; repeat++) {
+        struct wb_swept_cohesion_sums of_bond = {0};
+        struct wb_swept_tape_contact_sums of_contact = {0};
+        const double start = cpu_seconds();
+        for (int i = 0; i < STEPS; i++)
+            wb_swept_cohesion_add_forces(cohesion, &fields, 0, wb_swept_tape_blocks(s->tape),
+                                         &of_bond);
+        const double middle = cpu_seconds();
+        for (int i = 0; i < STEPS; i++)
+            WB_TRY(wb_swept_tape_contact_add_forces(contact, &fields, 1e-6, &of_contact));
+        const double per = 1e9 / (STEPS * NODES * (ALONG + 1));
+        ns[0] = fmin(ns[0], (middle - start) * per);
+        ns[1] = fmin(ns[1], (cpu_seconds() - middle) * per);
+    }
+    wb_swept_cohesion_destroy(cohesion);
+    wb_swept_tape_contact_destroy(contact);
+    free(bond);
+    free(w.position);
+    free(w.force);
+    return WB_OK;
+}
+
 int main(void)
 {
     static const char *const names[] = {"best", "baseline", "avx2", "avx512"};
 
     printf("a shell of the tape, ns an element and step on one core\n\n"
-           "                 points   elastic   yielding   elastic, with update\n");
+           "                 points   elastic   yielding   elastic, with update   "
+           "a bonded node   a touching node\n");
     for (int is_double = 0; is_double < 2; is_double++) {
         for (int way = WB_SWEPT_TAPE_BASELINE; way <= WB_SWEPT_TAPE_AVX512; way++) {
             for (int points = 3; points <= 5; points += 2) {
@@ -158,12 +245,16 @@ int main(void)
                     destroy(&s);
                     continue;
                 }
+                double of_wire[2];
+                if (time_wire(&s, of_wire) != WB_OK)
+                    return EXIT_FAILURE;
                 const double elastic = time_sleeve(&s, false, false);
                 const double whole = time_sleeve(&s, false, true);
                 stretch(&s, 1.03);
                 const double yielding = time_sleeve(&s, true, false);
-                printf("%-8s %-6s %6d %9.2f %10.2f %22.2f\n", names[way],
-                       is_double ? "double" : "float", points, elastic, yielding, whole);
+                printf("%-8s %-6s %6d %9.2f %10.2f %22.2f %15.2f %17.2f\n", names[way],
+                       is_double ? "double" : "float", points, elastic, yielding, whole, of_wire[0],
+                       of_wire[1]);
                 if (!(wb_swept_tape_plastic_work(s.state) > 0.0)) {
                     fprintf(stderr, "the tape did not yield\n");
                     return EXIT_FAILURE;
