@@ -168,7 +168,7 @@ static void forces_are_the_derivative_of_the_energy(void **unused)
                 largest = fmax(largest, fabs(force));
             }
         }
-        assert_true(worst < 1e-9 * largest);
+        assert_true(worst < 1e-10 * largest);
         swept_body_destroy(&body);
     }
     wb_swept_section_release(&section);
@@ -182,7 +182,7 @@ static void rigid_motion_makes_no_force(void **unused)
         struct wb_swept_hex_model model = small_model(&section, 20, formulations[f / 2]);
         model.double_precision = f % 2;
         struct swept_body body = swept_body_create(&model);
-        /* The force of one strain over the section; float knows positions to 6e-8. */
+        /* The force of one strain over the section. Float must not show. */
         const double scale = model.material.youngs_modulus * section.area;
         const double c[3] = {0.3, -0.2, 0.05};
         for (int turn = 0; turn < 50; turn++) {
@@ -195,8 +195,8 @@ static void rigid_motion_makes_no_force(void **unused)
                 for (int i = 0; i < 3 * 21; i++)
                     worst = fmax(worst, fabs(swept_force(&body, k, i % 3, i / 3)));
             }
-            assert_true(worst < (model.double_precision ? 5e-13 : 5e-7) * scale);
-            assert_true(sums.stored < (model.double_precision ? 1e-24 : 1e-13) * scale * 0.02);
+            assert_true(worst < 5e-13 * scale);
+            assert_true(sums.stored < 1e-24 * scale * 0.02);
         }
         for (int q = 0; q < 12; q++)
             assert_true(wb_swept_hex_plastic_strain(body.state, q, 3, 0) == 0.0);
@@ -354,7 +354,7 @@ static void all_instructions_agree(void **unused)
                 wb_swept_hex_forces(body.state, body.position, body.force, 0, 1, NULL);
                 wb_swept_hex_forces(body.state, body.position, body.force, 1,
                                     wb_swept_hex_blocks(body.hex), NULL);
-                assert_true(difference(&body, force) < (model.double_precision ? 1e-5 : 4e-4));
+                assert_true(difference(&body, force) < 1e-5);
                 for (int row = 0; row < 3 * l->n_nodes; row++) {
                     for (int j = l->n_stations; j < l->stride; j++)
                         assert_true(swept_force(&body, row / 3, row % 3, j) == 0.0);
@@ -411,7 +411,7 @@ static void work_is_stored_or_plastic(void **unused)
                 1.0;
         }
         assert_true(wb_swept_hex_plastic_work(body.state) > 0.5 * work);
-        assert_true(fabs(balance[0]) < 1e-2);
+        assert_true(fabs(balance[0]) < 2e-4);
         assert_true(fabs(balance[1]) < 0.6 * fabs(balance[0]));
         free(start);
         free(change);
