@@ -54,7 +54,7 @@ static const struct argp_option option_table[] = {
     {"mass-scaling", KEY_MASS_SCALING, "F", 0, "Factor on a bundle's masses (its file's)", 0},
     {"selective", KEY_SELECTIVE, "B", 0, "Selective mass scaling of its sections (its file's)", 0},
     {"output", 'o', "DATASET", 0, "Write a dataset folder", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset, and the files of --vtk", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
     {0},
 };

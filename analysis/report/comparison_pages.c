@@ -10,8 +10,6 @@
 #include "base/units.h"
 #include "base/version.h"
 
-static const double degrees = 180.0 / 3.14159265358979323846; /* of a radian */
-
 /* --- what is missing, what is exceeded --- */
 
 static void put_missing(struct wb_document *document, const struct wb_comparison_results *results)
@@ -109,7 +107,7 @@ static void put_fact(struct wb_document *document, struct wb_document_table *tab
 
 static double angle_of(const struct wb_comparison_run *run)
 {
-    return run ? run->tip_angle * degrees : (double)NAN;
+    return run ? run->tip_angle / WB_DEGREE : (double)NAN;
 }
 
 static double largest_stress(const struct wb_comparison_results *results, int index)
@@ -165,15 +163,17 @@ static void put_facts(struct wb_document *document, const struct wb_comparison_r
          fitted && plastic ? wb_comparison_rod_distance(plastic, &results->fitted) / WB_MM : none,
          2, NULL},
         {"Elastoplastic: angle of the tip, 1D with the printed properties", "degrees",
-         results->printed.reached ? results->printed.tip_angle * degrees : none, 0, NULL},
+         results->printed.reached ? results->printed.tip_angle / WB_DEGREE : none, 0, NULL},
         {"Cost of the elastic rod over the solid's", "%",
          wb_comparison_cost(results, WB_COMPARISON_ELASTIC) / WB_PERCENT, 2, cost},
     };
     wb_document_heading(document, 2, "facts", "What came out");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Paper: what it prints. It has no numbers for the rest, and its figures are lost.", 4,
-        columns);
+        comparison->printed_source[0]
+            ? "Paper: what it prints. It has no numbers for the rest, and its figures are lost."
+            : NULL,
+        4, columns);
     for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
         put_fact(document, table, &facts[i]);
 }
@@ -297,8 +297,11 @@ static void put_materials(struct wb_document *document, const struct wb_comparis
     const struct wb_wire_model *const model = comparison->cases[WB_COMPARISON_ELASTOPLASTIC].model;
     wb_document_heading(document, 2, "materials", "Materials");
     struct wb_document_table *const table = wb_document_table(
-        document, "Substitute: stands in for a value of the paper's Table 1, which is lost.", 9,
-        columns);
+        document,
+        wb_comparison_has_substitutes(comparison)
+            ? "Substitute: stands in for a value of the paper's Table 1, which is lost."
+            : NULL,
+        9, columns);
     for (int i = 0; i < model->n_parts; i++)
         put_material(document, table, &model->part[i]);
     for (int i = 0; i < model->n_parts; i++) {

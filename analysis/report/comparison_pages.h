@@ -33,6 +33,9 @@ void wb_comparison_pages_provenance(struct wb_document *document,
 /* What they share: the follower force at the end, N; a table of tips (`caption` NULL: a usual one),
  * and a row of it, with distances from the solid. Runs that are NULL are left out. */
 double wb_comparison_pages_force(const struct wb_comparison_results *results);
+/* " (the paper's Fig. N)", or "" of a campaign that has nothing of the paper's. */
+const char *wb_comparison_pages_figure(char text[48], const struct wb_comparison_results *results,
+                                       const char *number);
 struct wb_document_table *wb_comparison_pages_start_tips(struct wb_document *document,
                                                          const char *caption);
 void wb_comparison_pages_put_tip(struct wb_document *document, struct wb_document_table *table,

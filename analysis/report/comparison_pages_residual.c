@@ -140,9 +140,11 @@ static void put_finding(struct wb_document *document, const struct wb_comparison
     if (!isfinite(moved) || !isfinite(stress))
         return;
     snprintf(text, sizeof text,
-             "The paper finds the shapes notably different. Here the pre-loads leave at most "
-             "<b>%.0f MPa</b> in the solid's core on that section, and move its tip by at most "
-             "<b>%.2f mm</b> while the follower force grows.",
+             "%s pre-loads leave at most <b>%.0f MPa</b> in the solid's core on that section, "
+             "and move its tip by at most <b>%.2f mm</b> while the follower force grows.",
+             comparison->printed_source[0]
+                 ? "The paper finds the shapes notably different. Here the"
+                 : "The",
              stress / WB_MPA, moved / WB_MM);
     wb_document_paragraph(document, text);
 }
@@ -152,7 +154,7 @@ void wb_comparison_pages_residual(struct wb_document *document,
                                   const struct wb_comparison_figures *figures)
 {
     const struct wb_comparison *const comparison = results->comparison;
-    char caption[700];
+    char caption[700], in[48];
     if (comparison->n_residual == 0)
         return;
     wb_document_heading(document, 1, "residual", "Residual stresses");
@@ -167,21 +169,22 @@ void wb_comparison_pages_residual(struct wb_document *document,
         if (!figures->residual[i])
             continue;
         snprintf(caption, sizeof caption,
-                 "%s (the paper's Fig. 5a): simulated residual stress in the core near the clamp, "
-                 "seen from it: axial stress, tension positive, and von Mises stress, of the solid "
-                 "and of the rod's fibres.",
+                 "%s%s: simulated residual stress in the core near the clamp, seen from it: axial "
+                 "stress, tension positive, and von Mises stress, of the solid and of the rod's "
+                 "fibres.",
                  wb_pages_escape(label, sizeof label,
-                                 comparison->cases[WB_COMPARISON_RESIDUAL + i].label));
+                                 comparison->cases[WB_COMPARISON_RESIDUAL + i].label),
+                 wb_comparison_pages_figure(in, results, "5a"));
         wb_document_figures(document, figures->residual[i], caption, NULL, NULL);
     }
     put_residual_stresses(document, results);
     put_finding(document, results);
     if (figures->residual_stress) {
         snprintf(caption, sizeof caption,
-                 "Von Mises stress at %g N without and with residual stresses (the paper's Fig. "
-                 "5b), simulated: longitudinal sections as they are deformed, seen from the side, "
-                 "with the largest value of the core.",
-                 wb_comparison_pages_force(results));
+                 "Von Mises stress at %g N without and with residual stresses%s, simulated: "
+                 "longitudinal sections as they are deformed, seen from the side, with the largest "
+                 "value of the core.",
+                 wb_comparison_pages_force(results), wb_comparison_pages_figure(in, results, "5b"));
         wb_document_figures(document, figures->residual_stress, caption, NULL, NULL);
     }
     if (figures->residual_shapes)

@@ -8,8 +8,6 @@
 #include "base/text.h"
 #include "base/units.h"
 
-static const double degrees = 180.0 / 3.14159265358979323846; /* of a radian */
-
 static void put_paragraph(struct wb_document *document, struct wb_text *text)
 {
     wb_document_paragraph(document, wb_text_string(text));
@@ -22,6 +20,15 @@ double wb_comparison_pages_force(const struct wb_comparison_results *results)
     const struct wb_wire_model *const model =
         results->comparison->cases[WB_COMPARISON_ELASTIC].model;
     return model->step[model->n_steps - 1].loads.follower[1];
+}
+
+const char *wb_comparison_pages_figure(char text[48], const struct wb_comparison_results *results,
+                                       const char *number)
+{
+    text[0] = '\0';
+    if (results->comparison->printed_source[0])
+        snprintf(text, 48, " (the paper's Fig. %s)", number);
+    return text;
 }
 
 /* --- tips --- */
@@ -57,7 +64,7 @@ static void put_tip(struct wb_document *document, struct wb_document_table *tabl
     wb_pages_cell_plain(&row, WB_TONE_PLAIN, tip->label);
     for (int i = 0; i < 3; i++)
         wb_pages_cell_number(&row, tip->place[i] / WB_MM, 3);
-    wb_pages_cell_number(&row, tip->angle * degrees, 3);
+    wb_pages_cell_number(&row, tip->angle / WB_DEGREE, 3);
     double away = (double)NAN;
     if (solid && isfinite(tip->largest))
         away = hypot(hypot(tip->place[0] - solid->tip[0], tip->place[1] - solid->tip[1]),
@@ -179,15 +186,16 @@ void wb_comparison_pages_elastic(struct wb_document *document,
         wb_comparison_usable(results, WB_COMPARISON_ELASTIC, WB_COMPARISON_ROD);
     const struct wb_wire_model *const model =
         results->comparison->cases[WB_COMPARISON_ELASTIC].model;
-    char caption[700];
+    char caption[700], in[48];
     wb_document_heading(document, 1, "elastic", "Linear elastic: solid and rod");
     if (figures->elastic) {
         snprintf(
             caption, sizeof caption,
-            "Simulated wire of linear elastic materials under a follower force of %g N (the "
-            "paper's Fig. 3a): von Mises stress on the longitudinal section as it is deformed, "
-            "and on a cross section, seen from the clamp. Ring: the largest value.",
-            wb_comparison_pages_force(results));
+            "Simulated wire of linear elastic materials under a follower force of %g N%s: von "
+            "Mises "
+            "stress on the longitudinal section as it is deformed, and on a cross section, seen "
+            "from the clamp. Ring: the largest value.",
+            wb_comparison_pages_force(results), wb_comparison_pages_figure(in, results, "3a"));
         wb_document_figures(document, figures->elastic, caption, NULL, NULL);
     }
     if (solid)
@@ -196,9 +204,10 @@ void wb_comparison_pages_elastic(struct wb_document *document,
     wb_document_heading(document, 2, "elastic-shapes", "Shapes");
     if (figures->elastic_shapes) {
         snprintf(caption, sizeof caption,
-                 "Simulated shapes of the axis at %g N (the paper's Fig. 4, linear elastic), and "
-                 "how far they lie from that of the bonded solid.",
-                 wb_comparison_pages_force(results));
+                 "Simulated shapes of the axis at %g N%s, and how far they lie from that of the "
+                 "bonded solid.",
+                 wb_comparison_pages_force(results),
+                 wb_comparison_pages_figure(in, results, "4, linear elastic"));
         wb_document_figures(document, figures->elastic_shapes, caption, NULL, NULL);
     }
     struct wb_document_table *const table = wb_comparison_pages_start_tips(
@@ -232,13 +241,13 @@ void wb_comparison_pages_elastic(struct wb_document *document,
 static void append_misprint(struct wb_text *text, const struct wb_comparison_results *results,
                             bool solid_curls)
 {
-    if (!(results->printed.tip_angle * degrees > 90.0))
+    if (!(results->printed.tip_angle / WB_DEGREE > 90.0))
         return;
     wb_text_append(text, " The paper's text suggests no such curl, so its <i>K</i> is taken for a "
                          "misprint");
     if (results->tenfold.reached)
         wb_text_append(text, " (ten times as much gives %.0f degrees)",
-                       results->tenfold.tip_angle * degrees);
+                       results->tenfold.tip_angle / WB_DEGREE);
     wb_text_append(text, ".");
     if (solid_curls)
         wb_text_append(text, " That the solid of copper as soft as the literature has it curls up "
@@ -264,8 +273,9 @@ static void put_curl(struct wb_document *document, const struct wb_comparison_re
                    "degrees</b>, where the elastic one turns by %.0f.",
                    copper->yield_stress / WB_MPA, copper->strength_coefficient / WB_MPA,
                    copper->hardening_exponent,
-                   solid->tip_angle * degrees > 90.0 ? " itself curls up" : " yields", solid->force,
-                   solid->tip_angle * degrees, results->exact.tip_angle * degrees);
+                   solid->tip_angle / WB_DEGREE > 90.0 ? " itself curls up" : " yields",
+                   solid->force, solid->tip_angle / WB_DEGREE,
+                   results->exact.tip_angle / WB_DEGREE);
     if (results->printed.done) {
         const struct wb_material *const printed = &comparison->printed_wire.material;
         wb_text_append(
@@ -273,13 +283,13 @@ static void put_curl(struct wb_document *document, const struct wb_comparison_re
             " With the effective properties that the paper prints (<i>\xcf\x83</i><sub>Y</sub> = "
             "%g MPa, <i>K</i> = %g MPa, <i>n</i> = %g) the 1D wire curls to <b>%.0f degrees</b>",
             printed->yield_stress / WB_MPA, printed->strength_coefficient / WB_MPA,
-            printed->hardening_exponent, results->printed.tip_angle * degrees);
+            printed->hardening_exponent, results->printed.tip_angle / WB_DEGREE);
         if (!results->printed.reached)
             wb_text_append(&text, " at %.1f N, where its computation ended",
                            results->printed.force[results->printed.n_curve - 1]);
         wb_text_append(&text, "; without hardening it would give way at %.1f N.",
                        results->collapse_force);
-        append_misprint(&text, results, solid->tip_angle * degrees > 90.0);
+        append_misprint(&text, results, solid->tip_angle / WB_DEGREE > 90.0);
     }
     wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
     document->failed |= text.failed;
@@ -387,24 +397,25 @@ void wb_comparison_pages_elastoplastic(struct wb_document *document,
         wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_SOLID);
     const struct wb_comparison_run *const rod =
         wb_comparison_usable(results, WB_COMPARISON_ELASTOPLASTIC, WB_COMPARISON_ROD);
-    char caption[700];
+    char caption[700], in[48];
     wb_document_heading(document, 1, "elastoplastic", "Elastoplastic: solid and rod");
     if (solid)
         put_curl(document, results, solid);
     if (figures->elastoplastic) {
         snprintf(caption, sizeof caption,
-                 "The same wire of elastoplastic materials at %g N (the paper's Fig. 3b): von "
-                 "Mises stress, simulated. The colours have another scale than the elastic ones.",
-                 wb_comparison_pages_force(results));
+                 "The same wire of elastoplastic materials at %g N%s: von Mises stress, simulated. "
+                 "The colours have another scale than the elastic ones.",
+                 wb_comparison_pages_force(results), wb_comparison_pages_figure(in, results, "3b"));
         wb_document_figures(document, figures->elastoplastic, caption, NULL, NULL);
     }
     if (figures->shapes) {
         snprintf(
             caption, sizeof caption,
-            "Simulated shapes of the axis at %g N (the paper's Fig. 4, elastoplastic), and how "
-            "far they lie from that of the solid. 1D fibres: each material with its own law; "
-            "1D fitted: one homogenised material, fitted to the solid.",
-            wb_comparison_pages_force(results));
+            "Simulated shapes of the axis at %g N%s, and how far they lie from that of the solid. "
+            "1D fibres: each material with its own law; 1D fitted: one homogenised material, "
+            "fitted to the solid.",
+            wb_comparison_pages_force(results),
+            wb_comparison_pages_figure(in, results, "4, elastoplastic"));
         wb_document_figures(document, figures->shapes, caption, NULL, NULL);
     }
     wb_document_heading(document, 2, "elastoplastic-shapes", "Shapes");
@@ -417,8 +428,11 @@ void wb_comparison_pages_elastoplastic(struct wb_document *document,
     put_fit(document, results, solid);
     if (figures->loading)
         wb_document_figures(document, figures->loading,
-                            "Follower force against deflection and angle of the tip, simulated. "
-                            "As printed: with the paper's effective properties.",
+                            results->printed.reached
+                                ? "Follower force against deflection and angle of the tip, "
+                                  "simulated. As printed: with the paper's effective properties."
+                                : "Follower force against deflection and angle of the tip, "
+                                  "simulated.",
                             NULL, NULL);
     put_split(document, results);
 }
