@@ -463,6 +463,40 @@ static void cantilever_has_its_first_frequency(void **unused)
     }
 }
 
+/* The layer's energy, twisted as a circle is, without warping; the section was scaled for bending.
+ */
+static void wire_twists_as_a_circle(void **unused)
+{
+    (void)unused;
+    static const int meshes[][2] = {{2, 0}, {2, 1}, {6, 2}};
+    static const double limits[] = {4e-2, 1e-2, 2e-3};
+    for (int i = 0; i < 6; i++) {
+        struct swept_setup setup = swept_type3(meshes[i / 2][0], meshes[i / 2][1], 80, 0.085);
+        struct swept_run run;
+        setup.formulation = (enum wb_swept_hex_formulation)(i % 2);
+        swept_run_init(&run, &setup);
+        const int n = run.section.n_nodes;
+        double *K = layer_of(run.body.hex, n), *u = calloc((size_t)(6 * n), sizeof *u);
+        double energy = 0.0;
+        assert_non_null(u);
+        for (int k = 0; k < n; k++) {
+            u[3 * (n + k) + 1] = -run.section.node[k][1];
+            u[3 * (n + k) + 2] = run.section.node[k][0];
+        }
+        for (int p = 0; p < 6 * n; p++) {
+            for (int q = 0; q < 6 * n; q++)
+                energy += 0.5 * u[p] * K[6 * n * p + q] * u[q];
+        }
+        const struct wb_material *m = &setup.material;
+        const double G = m->youngs_modulus / (2 * (1 + m->poissons_ratio));
+        const double J = M_PI * pow(setup.diameter, 4) / 32;
+        assert_close_relative(2 * energy * run.model.element_length, G * J, limits[i / 2]);
+        free(K);
+        free(u);
+        swept_run_release(&run);
+    }
+}
+
 static void impossible_bodies_are_refused(void **unused)
 {
     (void)unused;
@@ -504,6 +538,7 @@ int main(void)
         cmocka_unit_test(selective_scaling_leaves_the_mean_alone),
         cmocka_unit_test(bar_impact_has_its_stress_and_contact_time),
         cmocka_unit_test(cantilever_has_its_first_frequency),
+        cmocka_unit_test(wire_twists_as_a_circle),
         cmocka_unit_test(impossible_bodies_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
