@@ -64,6 +64,37 @@ static void energies_are_kept_and_motion_is_slow_enough(void **unused)
     assert_close_relative(history.largest.kinetic, 4.0 * ratio, 0.3);
 }
 
+/* Side by side two wires are twice as stiff as one; one above the other they slide on each
+ * other, as nothing presses them together, and are far from plane sections. */
+static void two_wires_are_twice_as_stiff_as_one(void **unused)
+{
+    (void)unused;
+    enum {
+        ROWS_OF_TWO = 15
+    };
+    double force[3];
+    static const char *const places[] = {
+        ONE,
+        "wires: [{wire: type3, count: 2}]\npacking: places\nplaces_mm: [[0, -0.7], [0, 0.7]]\n",
+        "wires: [{wire: type3, count: 2}]\npacking: places\nplaces_mm: [[-0.7, 0], [0.7, 0]]\n",
+    };
+    for (int i = 0; i < 3; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "%s%s", places[i],
+                 RUN("deflection_mm: 15, rows: 15, duration_s: 1") "loads: {weight: false}\n");
+        read_model(text);
+        run_model(NULL);
+        assert_true(history.converged);
+        assert_true(history.largest.imbalance < 0.01);
+        check_work(&history);
+        force[i] = history.rows[ROWS_OF_TWO].force;
+    }
+    const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(&model);
+    assert_close_relative(force[1], 2.0 * force[0], 1e-3);
+    assert_true(force[2] > 1.99 * force[0]);
+    assert_true(force[2] < 2.0 * force[0] * rigidity.bonded[0] / rigidity.sliding[0]);
+}
+
 /* The engineering mesh, alone: within 1.5 % of the beam from 10 to 53 mm. */
 static void one_wire_is_within_the_mesh_error_of_the_beam(void **unused)
 {
@@ -125,6 +156,7 @@ int main(void)
         cmocka_unit_test_teardown(unloading_follows_the_beam_until_the_strand_is_slack, release),
         cmocka_unit_test_teardown(energies_are_kept_and_motion_is_slow_enough, release),
         cmocka_unit_test_teardown(one_wire_is_within_the_mesh_error_of_the_beam, release),
+        cmocka_unit_test_teardown(two_wires_are_twice_as_stiff_as_one, release),
         cmocka_unit_test_teardown(seven_wires_are_between_sliding_and_bonded, release),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
