@@ -238,7 +238,9 @@ static enum wb_status find_time_step(struct wb_bundle *bundle)
         const enum wb_status status =
             wb_swept_frequency_bound(type->hex, type->node_mass, run->selective, &omega);
         if (status == WB_OK && bundle->contact)
-            added = wb_swept_contact_stiffness_per_mass(bundle->contact, w, mass, run->selective);
+            added = wb_swept_contact_stiffness_per_mass(bundle->contact, w, type->node_mass,
+                                                        run->selective) /
+                    run->mass_scaling;
         if (status == WB_OK && bundle->bond)
             added += wb_bundle_bond_wire_stiffness(bundle->bond, w, mass);
         free(mass);
