@@ -12,12 +12,13 @@
  *
  * Normal force per length: k (r_a + r_b - distance) where positive, along the line between the two
  * places: exactly the derivative of an energy of the nodes' positions while s rests, and s rests
- * where that energy is stationary. Friction per length: an elastic spring for the slip of the
- * surfaces since they touched, k_t, returned to mu N (Coulomb), with
+ * where that energy is stationary. Slip d along the wires between two refreshes tilts that line by
+ * d / (r_a + r_b) until the next; keep it far below mu times that. Friction per length: an elastic
+ * spring for the slip of the surfaces since they touched, k_t, returned to mu N (Coulomb), with
  *
  *     mu = mu_k + (mu_s - mu_k) exp(-decay slip rate)                               (eq. 20),
  *
- * the rate being that of the surfaces' relative tangential motion, in the model's own time. Slip
+ * the rate being that of the surfaces' relative tangential motion in the model's own time. Slip
  * includes what the wires' turning, twisting and rolling do. Forces on either wire act at one point
  * of space: they cancel in sum and moment to round-off, and a rigid motion of wires that touch
  * makes neither slip nor force.
@@ -116,14 +117,13 @@ void wb_swept_contact_scatter(const struct wb_swept_contact *contact, void *cons
 WB_MUST_CHECK enum wb_status wb_swept_contact_finish(struct wb_swept_contact *contact,
                                                      struct wb_swept_contact_energies *energies);
 
-/* For the stable step: a bound of what contact adds to the largest eigenvalue of M^-1 K, 1/s2; of
- * the wire with the most, the caller takes the largest. So omega_max^2 <= that of the wires'
- * elements
- * + this. `mass` (n_nodes) is that of the section's nodes at an inner station, kg, mass scaling
- * included; `selective` is beta of the selective mass scaling a = mean + (a - mean) / beta, 1
- * without. With the pairs there are, and at least six neighbours. */
+/* For the stable step: a bound of what contact of a wire adds to the largest eigenvalue of M^-1 K,
+ * 1/s2. So omega_max^2 is at most that of the wires' elements + the largest of these. `node_mass`
+ * is kg/m, one a section node; `selective` is beta of fe/swept_step.h, 1 is none; mass scaling by
+ * f_m divides it by f_m. Of the neighbours there are, and at least six, all round the wire.
+ * Infinite where a mass is not positive. */
 double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contact, int wire,
-                                           const double *mass, double selective);
+                                           const double *node_mass, double selective);
 
 /* The neighbours, and what goes on between them at the last step's positions. */
 struct wb_swept_contact_pair {

@@ -13,12 +13,12 @@ enum {
 
 /* The energy of a pair's springs is at most that of springs of twice the stiffness to either wire:
  * k (u_a - u_b)^2 <= 2 k u_a^2 + 2 k u_b^2. On a wire, a displacement u = sum w x has u^2 <= |w|^2
- * sum m x^2 with |w|^2 = sum w^2 / m; selective mass scaling makes it that below. Towards a neighbour
- * w = a; along the axis w = a + r (b cos + e sin); around it a, and of the turn about the axis half
- * the square of the slopes' at most. Of n neighbours all round, every direction in the section takes
- * n / 2. */
+ * sum m x^2 with |w|^2 = sum w^2 / m; selective mass scaling makes it that below. Towards a
+ * neighbour w = a; along the axis w = a + r (b cos + e sin); around it a, and of the turn about the
+ * axis half the square of the slopes' at most. Of n neighbours all round, every direction in the
+ * section takes n / 2. Stiffnesses and masses are per length. */
 double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contact, int wire,
-                                           const double *mass, double selective)
+                                           const double *node_mass, double selective)
 {
     const struct wb_swept_contact_frames *frames = &contact->model.wire[wire];
     const double r = contact->radius[wire];
@@ -26,14 +26,14 @@ double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contac
     int neighbours = 0;
 
     for (int k = 0; k < frames->n_nodes; k++) {
-        if (!(mass[k] > 0.0))
+        if (!(node_mass[k] > 0.0))
             return (double)INFINITY;
-        total += mass[k];
+        total += node_mass[k];
     }
     for (int k = 0; k < frames->n_surface; k++) {
         const double *w = frames->weight[k];
         for (int i = 0; i < 9; i++)
-            G[i / 3][i % 3] += w[i / 3] * w[i % 3] / (selective * mass[frames->node[k]]);
+            G[i / 3][i % 3] += w[i / 3] * w[i % 3] / (selective * node_mass[frames->node[k]]);
     }
     G[0][0] += (1.0 - 1.0 / selective) / total;
     for (int p = 0; p < contact->model.n_pairs; p++) {
@@ -52,9 +52,9 @@ double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contac
     const double slopes = 0.5 * (G[1][1] + G[2][2]) + hypot(0.5 * (G[1][1] - G[2][2]), G[1][2]);
     const double cross = hypot(G[0][1], G[0][2]);
     const double along = tangential * (G[0][0] + 0.5 * r * r * slopes + r * cross);
-    const double across = 0.5 * (normal + tangential) * G[0][0] +
-                          0.5 * tangential * (r * r * slopes + r * cross);
-    return 2.0 * neighbours * contact->spacing * fmax(along, across);
+    const double across =
+        0.5 * (normal + tangential) * G[0][0] + 0.5 * tangential * (r * r * slopes + r * cross);
+    return 2.0 * neighbours * fmax(along, across);
 }
 
 int wb_swept_contact_pairs(const struct wb_swept_contact *contact)

@@ -387,6 +387,46 @@ static void wires_part_and_touch_again_elsewhere(void **state)
     contacts_release(&c);
 }
 
+/* From one step to the next, beyond a block's end: what was there must not act on. */
+static void stations_that_leave_carry_nothing(void **state)
+{
+    const double radius[2] = {0.7e-3, 0.7e-3}, depth = 2e-6, h = 1e-3;
+    const double straight[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    struct wb_swept_contact_settings settings = contacts_settings();
+    struct contacts c;
+
+    (void)state;
+    settings.refresh_interval = 1;
+    contacts_init(&c, &settings, 2, radius, 48, h);
+    for (int step = 0; step < 4; step++) {
+        double R[3][3];
+        memcpy(R, straight, sizeof R);
+        contacts_place_straight(&c, 0, origin, 0.0);
+        for (int j = 0; j < 48; j++) {
+            /* Stuck, with half of what it can carry; then the rear two thirds far (the wire rises
+             * between stations 15 and 16); then back. */
+            const double slip = step == 0 ? 0.0 : 0.8e-6, away = step == 2 && j > 15 ? 2e-3 : 0.0;
+            contacts_place(&c, 1, j, (double[3]){h * j + 0.4e-3 + slip, 1.4e-3 - depth + away, 0.0},
+                           R);
+        }
+        contacts_step(&c, dt);
+        for (int j = 0; j < 48; j++) {
+            double f[3], m[3];
+            struct wb_swept_contact_point point;
+            contacts_wrench(&c, 1, j, origin, f, m);
+            wb_swept_contact_get_point(c.contact, 0, j, &point);
+            const bool far = step == 2 && j > 15;
+            if (far)
+                assert_true(f[0] == 0.0 && f[1] == 0.0 && f[2] == 0.0);
+            else if (j > 0 && j < 14)
+                assert_close_relative(f[1], 0.25e9 * depth * h, 1e-3);
+            if (step == 3 && j != 15 && j != 16)
+                assert_close(point.friction[0], j < 15 ? 100.0 : 0.0, 0.1);
+        }
+    }
+    contacts_release(&c);
+}
+
 static void impossible_input_is_refused(void **state)
 {
     const double radius[3] = {0.7e-3, 0.7e-3, 0.7e-3};
@@ -514,6 +554,7 @@ int main(void)
         cmocka_unit_test(forces_in_float_cancel_to_their_digits),
         cmocka_unit_test(rigid_rotation_makes_no_friction),
         cmocka_unit_test(wires_part_and_touch_again_elsewhere),
+        cmocka_unit_test(stations_that_leave_carry_nothing),
         cmocka_unit_test(impossible_input_is_refused),
         cmocka_unit_test(bad_settings_are_refused),
     };
