@@ -71,3 +71,12 @@ void wb_material_stress(const struct wb_material *material, double strain,
         break;
     }
 }
+
+double wb_material_flow_stress(const struct wb_material *material, double plastic_strain)
+{
+    if (material->hardening != WB_HARDENING_ISOTROPIC_POWER)
+        return (double)INFINITY;
+    const double p = fmax(0.0, plastic_strain);
+    return material->yield_stress +
+           (p > 0.0 ? material->strength_coefficient * pow(p, material->hardening_exponent) : 0.0);
+}

@@ -36,4 +36,8 @@ void wb_material_stress(const struct wb_material *material, double strain,
                         const struct wb_material_state *before, struct wb_material_state *after,
                         double *stress, double *tangent);
 
+/* The largest von Mises stress (Pa) at an accumulated plastic strain: sigma_Y + K p^n. Infinite
+ * where that is no bound: elastic, and kinematic hardening, whose surface moves. */
+double wb_material_flow_stress(const struct wb_material *material, double plastic_strain);
+
 #endif

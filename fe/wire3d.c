@@ -486,6 +486,26 @@ static enum wb_status average_by_part(const struct wb_solid_mesh *mesh,
     return taken ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for fields");
 }
 
+/* What is continued from inside an element to its nodes overshoots where the plastic zone begins:
+ * no deviator is left larger than the flow stress of the node's own plastic strain. */
+static void keep_to_law(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields)
+{
+    const struct wb_solid_mesh *mesh = &wire->mesh;
+
+    for (int e = 0; e < mesh->n_elements; e++)
+        for (int k = 0; k < WB_SOLID_MESH_NODES; k++) {
+            const double flow = wb_material_flow_stress(&wire->model->part[mesh->part[e]].material,
+                                                        fields->plastic[e][k]);
+            double *s = fields->stress[e][k];
+            const double mean = (s[0] + s[1] + s[2]) / 3.0;
+            const double a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
+            const double mises = sqrt(1.5 * (a * a + b * b + c * c) +
+                                      3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+            for (int i = 0; mises > flow && i < 6; i++)
+                s[i] = (i < 3 ? mean : 0.0) + (s[i] - (i < 3 ? mean : 0.0)) * flow / mises;
+        }
+}
+
 enum wb_status wb_wire3d_fields(const struct wb_wire3d *wire, struct wb_wire3d_fields *fields)
 {
     const struct wb_solid_mesh *mesh = &wire->mesh;
@@ -506,7 +526,9 @@ enum wb_status wb_wire3d_fields(const struct wb_wire3d *wire, struct wb_wire3d_f
     for (int e = 0; e < mesh->n_elements; e++)
         wb_solid_nodal_stress(wire->solid, e, fields->stress[e], fields->plastic[e]);
     const enum wb_status status = average_by_part(mesh, fields);
-    if (status != WB_OK)
+    if (status == WB_OK)
+        keep_to_law(wire, fields);
+    else
         wb_wire3d_fields_release(fields);
     return status;
 }

@@ -95,6 +95,31 @@ static void energies_balance_as_the_increments_shrink(void **state)
 
 /* --- elastic wires against closed forms --- */
 
+static void no_node_is_stressed_beyond_its_flow_stress(void **state)
+{
+    (void)state;
+    struct computed *c = begin_rod(30e-3, 1.4e-3, type3, 15);
+    struct wb_wire3d_fields fields;
+    double closest = 0.0;
+
+    c->model.n_steps = 1;
+    c->model.step[0] = (struct wb_wire_step){
+        .name = "raised", .kind = WB_WIRE_STEP_DEFLECTION, .deflection = 12e-3, .rows = 8};
+    compute(c, NULL);
+    assert_int_equal(wb_wire3d_fields(c->wire, &fields), WB_OK);
+    for (int e = 0; e < wb_wire3d_mesh(c->wire)->n_elements; e++)
+        for (int k = 0; k < WB_SOLID_MESH_NODES; k++) {
+            const double *s = fields.stress[e][k];
+            const double mises =
+                sqrt(0.5 * (pow(s[0] - s[1], 2.0) + pow(s[1] - s[2], 2.0) + pow(s[2] - s[0], 2.0)) +
+                     3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+            closest = fmax(closest, mises / wb_material_flow_stress(&type3, fields.plastic[e][k]));
+        }
+    assert_close(closest, 1.0, 1e-12);
+    wb_wire3d_fields_release(&fields);
+    end(c);
+}
+
 static void elastic_wire_under_a_follower_force_is_the_exact_rod(void **state)
 {
     (void)state;
@@ -458,6 +483,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solid_cylinder_follows_the_rod_and_springs_back_like_it),
         cmocka_unit_test(energies_balance_as_the_increments_shrink),
+        cmocka_unit_test(no_node_is_stressed_beyond_its_flow_stress),
         cmocka_unit_test(elastic_wire_under_a_follower_force_is_the_exact_rod),
         cmocka_unit_test(stress_in_the_coppers_outer_fibre_is_that_of_the_rod),
         cmocka_unit_test(contact_with_friction_hardly_changes_the_elastic_wire),
