@@ -13,8 +13,8 @@
  * (of Kirchhoff): as plastic flow keeps the volume, that a stretched tape gets thinner is in them.
  * Details are in swept_tape_kernel.inc.
  *
- * The logarithm is a polynomial: at a strain of 10 % it is 0.03 % off, forces 0.2 %. Elements with a
- * larger strain are counted; whoever runs the model must say so.
+ * The logarithm is a polynomial: at a strain of 10 % it is 0.03 % off, forces 0.2 %. Elements with
+ * a larger strain are counted; whoever runs the model must say so.
  *
  * Node fields are those of fe/swept.h, forces float or, of a model of double precision, double.
  * Fields must come from wb_swept_allocate(): what lies behind the last number is read.

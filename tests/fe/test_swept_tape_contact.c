@@ -165,7 +165,8 @@ static void pressure_is_stiffness_times_depth(void **unused)
         assert_int_equal(wb_swept_tape_contact_near(g.contact), RING * STATIONS);
         assert_close_relative(sums.normal, 0.5 * 30e9 * depth * depth * area_of(&g), tolerance);
         assert_close_relative(sums.deepest, depth, tolerance);
-        assert_close(sums.tangential + sums.friction, 0.0, (is_double ? 1e-18 : 1e-9) * sums.normal);
+        assert_close(sums.tangential + sums.friction, 0.0,
+                     (is_double ? 1e-18 : 1e-9) * sums.normal);
         for (int k = 0; k < RING; k++) {
             const double *d = wb_swept_tape_directors(g.tape.tape);
             double out = 0.0, beside = 0.0;
