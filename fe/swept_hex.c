@@ -134,9 +134,9 @@ static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_q
     for (int i = 0; i < 2; i++) {
         row[WB_SWEPT_HEX_B + 2 * i] = 0.5 * quad->gradient[i][2];
         row[WB_SWEPT_HEX_B + 2 * i + 1] = 0.5 * quad->gradient[i][3];
-        row[WB_SWEPT_HEX_GAMMA + i] = 0.25 * (at[0][i] - at[1][i] + at[2][i] - at[3][i]);
+        row[WB_SWEPT_HEX_GAMMA + i] = 2.0 * (at[0][i] - at[1][i] + at[2][i] - at[3][i]);
     }
-    row[WB_SWEPT_HEX_K_PLANE] = m->hourglass * mu * quad->hourglass_slope * h;
+    row[WB_SWEPT_HEX_K_PLANE] = m->hourglass * mu * quad->hourglass_slope * h / 64.0;
     row[WB_SWEPT_HEX_K_VOLUME] = kappa * volume;
     for (int a = 0; a < 4; a++)
         row[WB_SWEPT_HEX_MEAN + a] = quad->mean[a] / h;
@@ -322,7 +322,7 @@ void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double sti
 {
     const double *row = hex->rows + quad * CONSTANTS;
 
-    stiffness[0] = row[WB_SWEPT_HEX_K_PLANE];
+    stiffness[0] = 64.0 * row[WB_SWEPT_HEX_K_PLANE];
     for (int i = 0; i < 3; i++)
         stiffness[1 + i] = row[WB_SWEPT_HEX_K_ALONG + i];
 }

@@ -31,8 +31,8 @@ enum {
  * kappa the bulk modulus. */
 enum {
     WB_SWEPT_HEX_B = 0,          /* half the mean dN/dy at corners 2 and 3, then of dN/dz; 1/m */
-    WB_SWEPT_HEX_GAMMA = 4,      /* g.y / 4 and g.z / 4 with g = (1, -1, 1, -1), m */
-    WB_SWEPT_HEX_K_PLANE = 6,    /* stiffness of the section's hourglass field, N/m */
+    WB_SWEPT_HEX_GAMMA = 4,      /* 2 g.y and 2 g.z with g = (1, -1, 1, -1), m */
+    WB_SWEPT_HEX_K_PLANE = 6,    /* stiffness of the section's hourglass field / 64, N/m */
     WB_SWEPT_HEX_K_VOLUME = 7,   /* kappa V, N m */
     WB_SWEPT_HEX_MEAN = 8,       /* mean N_a / h (4), 1/m */
     WB_SWEPT_HEX_K_ALONG = 12,   /* one point: stiffness of the fields xi, eta, xi eta of d, N/m */
