@@ -190,6 +190,34 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
         wb_json_set_number(object, "ns_per_element_step", 1e9 * bundle->cpu / element_steps);
 }
 
+static void describe_override(struct wb_json *simulation, const struct wb_bundle_override *o)
+{
+    if (!o || wb_bundle_override_is_empty(o))
+        return;
+    struct wb_json *const out = wb_json_set_object(simulation, "overridden");
+
+    if (o->mesh)
+        wb_json_set_text(out, "mesh", o->mesh);
+    if (o->dead_force)
+        wb_json_set_boolean(out, "dead_force", true);
+    if (o->no_weight)
+        wb_json_set_boolean(out, "no_weight", true);
+    if (o->duration > 0.0)
+        wb_json_set_number(out, "duration_s", o->duration);
+    if (o->mass_scaling > 0.0)
+        wb_json_set_number(out, "mass_scaling", o->mass_scaling);
+    if (o->selective > 0.0)
+        wb_json_set_number(out, "selective_mass_scaling", o->selective);
+    if (o->has_friction) {
+        struct wb_json *const friction = wb_json_set_object(out, "friction");
+        wb_json_set_number(friction, "static", o->friction_static);
+        wb_json_set_number(friction, "kinetic", o->friction_kinetic);
+        wb_json_set_number(friction, "decay_s_mm", o->friction_decay / s_per_m);
+    }
+    if (o->cohesive_stiffness > 0.0)
+        wb_json_set_number(out, "cohesive_stiffness_N_mm3", o->cohesive_stiffness / pa_per_m);
+}
+
 static void describe(struct wb_json *document, const struct wb_simulated_bundle *bundle)
 {
     const struct wb_bundle_model *model = bundle->model;
@@ -212,6 +240,7 @@ static void describe(struct wb_json *document, const struct wb_simulated_bundle 
     wb_json_set_integer(simulation, "wires", model->packing.n);
     wb_json_set_boolean(simulation, "tape", model->has_tape);
     describe_interface(simulation, model);
+    describe_override(simulation, bundle->override);
     wb_simulated_bundle_describe(simulation, bundle);
 
     struct wb_json *const tool = wb_json_set_object(document, "tool");

@@ -14,13 +14,15 @@
 #include "analysis/dataset.h"
 #include "base/status.h"
 #include "fe/bundle_model.h"
+#include "fe/bundle_override.h"
 #include "fe/bundle_run.h"
 
 struct wb_simulated_bundle {
     const struct wb_bundle_model *model; /* as it was run: with what was overridden */
     const struct wb_bundle_mesh *mesh;
     const struct wb_bundle_history *history;
-    double wall, cpu; /* s */
+    const struct wb_bundle_override *override; /* what was overridden; NULL: nothing */
+    double wall, cpu;                          /* s */
 };
 
 /* Fills an initialised dataset. It is the homogenised beam's test: the outer diameter is the

@@ -27,8 +27,13 @@ enum {
     KEY_NO_WEIGHT,
     KEY_DURATION,
     KEY_MASS_SCALING,
-    KEY_SELECTIVE
+    KEY_SELECTIVE,
+    KEY_FRICTION,
+    KEY_COHESIVE_STIFFNESS
 };
+
+static const double pa_per_m = 1e9; /* of one N/mm3 */
+static const double s_per_m = 1e3;  /* of one s/mm */
 
 static const struct argp_option option_table[] = {
     {"wire", KEY_WIRE, "NAME|FILE", 0, "Wire with its properties (fixtures/wires or a file)", 0},
@@ -53,6 +58,12 @@ static const struct argp_option option_table[] = {
      0},
     {"mass-scaling", KEY_MASS_SCALING, "F", 0, "Factor on a bundle's masses (its file's)", 0},
     {"selective", KEY_SELECTIVE, "B", 0, "Selective mass scaling of its sections (its file's)", 0},
+    {"friction", KEY_FRICTION, "S[,K,D]", 0,
+     "Friction in a bundle: constant, or static, kinetic and decay in s/mm (its file's)", 0},
+    {"cohesive-stiffness", KEY_COHESIVE_STIFFNESS, "K", 0,
+     "Normal stiffness between tape and wires in N/mm3; the shear stiffness keeps its ratio (its "
+     "file's)",
+     0},
     {"output", 'o', "DATASET", 0, "Write a dataset folder", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset, and the files of --vtk", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
@@ -112,14 +123,81 @@ static void check(struct argp_state *state, const struct wb_solve_options *o)
                    o->cantilever_option, o->kind_name);
 }
 
+/* "S" or "S,K,D". */
+static void take_friction(struct argp_state *state, const char *argument,
+                          struct wb_bundle_override *override)
+{
+    static const double range[3][2] = {{0.0, 10.0}, {0.0, 10.0}, {1e-9, 1e9}};
+    char text[3 * WB_NUMBER_TEXT];
+    double value[3] = {0.0};
+    int n = 0;
+
+    snprintf(text, sizeof text, "%s", argument);
+    for (char *part = text, *next; part; part = next) {
+        next = strchr(part, ',');
+        if (next)
+            *next++ = '\0';
+        if (n < 3)
+            value[n] = wb_command_number(state, "--friction", part, range[n][0], range[n][1]);
+        n++;
+    }
+    if (n != 1 && n != 3)
+        argp_error(state, "--friction: expected S or S,K,D, not '%s'", argument);
+    if (n == 1)
+        value[1] = value[0];
+    if (value[1] > value[0])
+        argp_error(state, "--friction: the kinetic coefficient %g is more than the static one, %g",
+                   value[1], value[0]);
+    override->has_friction = true;
+    override->friction_static = value[0];
+    override->friction_kinetic = value[1];
+    override->friction_decay = value[2] * s_per_m;
+}
+
+static error_t take_bundle_option(int key, char *argument, struct argp_state *state,
+                                  struct wb_bundle_override *override)
+{
+    switch (key) {
+    case KEY_MESH:
+        override->mesh = argument;
+        return 0;
+    case KEY_DEAD_FORCE:
+        override->dead_force = true;
+        return 0;
+    case KEY_NO_WEIGHT:
+        override->no_weight = true;
+        return 0;
+    case KEY_DURATION:
+        override->duration = wb_command_number(state, "--duration-s", argument, 1e-6, 1e6);
+        return 0;
+    case KEY_MASS_SCALING:
+        override->mass_scaling = wb_command_number(state, "--mass-scaling", argument, 1.0, 1e6);
+        return 0;
+    case KEY_SELECTIVE:
+        override->selective = wb_command_number(state, "--selective", argument, 1.0, 1e6);
+        return 0;
+    case KEY_FRICTION:
+        take_friction(state, argument, override);
+        return 0;
+    case KEY_COHESIVE_STIFFNESS:
+        override->cohesive_stiffness =
+            pa_per_m * wb_command_number(state, "--cohesive-stiffness", argument, 1e-6, 1e9);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct wb_solve_options *o = state->input;
 
     if (key >= KEY_WIRE && key <= KEY_POINTS)
         o->cantilever_option = option_name(key);
-    if (key >= KEY_MESH && key <= KEY_SELECTIVE)
+    if (key >= KEY_MESH && key <= KEY_COHESIVE_STIFFNESS) {
         o->bundle_option = option_name(key);
+        return take_bundle_option(key, argument, state, &o->override);
+    }
     switch (key) {
     case KEY_WIRE:
         o->wire = argument;
@@ -149,24 +227,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_VTK:
         o->vtk = argument;
-        return 0;
-    case KEY_MESH:
-        o->mesh = argument;
-        return 0;
-    case KEY_DEAD_FORCE:
-        o->dead_force = true;
-        return 0;
-    case KEY_NO_WEIGHT:
-        o->no_weight = true;
-        return 0;
-    case KEY_DURATION:
-        o->duration = wb_command_number(state, "--duration-s", argument, 1e-6, 1e6);
-        return 0;
-    case KEY_MASS_SCALING:
-        o->mass_scaling = wb_command_number(state, "--mass-scaling", argument, 1.0, 1e6);
-        return 0;
-    case KEY_SELECTIVE:
-        o->selective = wb_command_number(state, "--selective", argument, 1.0, 1e6);
         return 0;
     case ARGP_KEY_ARG:
         take_argument(state, argument, o);

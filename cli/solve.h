@@ -8,6 +8,7 @@
 
 #include "base/json.h"
 #include "cli/command.h"
+#include "fe/bundle_override.h"
 #include "fe/history.h"
 
 enum wb_solve_kind {
@@ -31,11 +32,9 @@ struct wb_solve_options {
     /* Of the wires, and of bundles. */
     const char *model; /* name or file */
     const char *vtk;   /* folder; NULL: none */
-    /* Of bundles, in place of what the file has. */
-    const char *mesh;                         /* name; NULL: the file's */
-    bool dead_force, no_weight;               /* no strand; no weight */
-    double duration, mass_scaling, selective; /* s; 0: the file's */
-    const char *bundle_option;                /* one of these that was given; NULL: none */
+    /* Of bundles. */
+    struct wb_bundle_override override;
+    const char *bundle_option; /* one of its options that was given; NULL: none */
 };
 
 /* Each returns an exit code. */

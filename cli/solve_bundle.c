@@ -35,23 +35,6 @@ struct run {
 
 /* --- before --- */
 
-static void override(struct run *run)
-{
-    const struct wb_solve_options *o = run->options;
-    struct wb_bundle_model *model = &run->model;
-
-    if (o->dead_force)
-        model->loads.strand_length = 0.0;
-    if (o->no_weight)
-        model->loads.weight = false;
-    if (o->duration > 0.0)
-        model->run.duration = o->duration;
-    if (o->mass_scaling > 0.0)
-        model->run.mass_scaling = o->mass_scaling;
-    if (o->selective > 0.0)
-        model->run.selective = o->selective;
-}
-
 static enum wb_status prepare(struct run *run)
 {
     const struct wb_solve_options *o = run->options;
@@ -59,11 +42,8 @@ static enum wb_status prepare(struct run *run)
 
     WB_TRY(wb_file_find_fixture(path, "bundles", o->model, NULL));
     WB_TRY(wb_bundle_model_read(&run->model, path));
-    override(run);
-    const char *name = o->mesh ? o->mesh : run->model.run.mesh;
-    run->mesh = wb_bundle_model_mesh(&run->model, name);
-    if (!run->mesh)
-        return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", run->model.path, name);
+    WB_TRY(wb_bundle_override_apply(&o->override, &run->model));
+    run->mesh = wb_bundle_model_mesh(&run->model, run->model.run.mesh);
     WB_TRY(wb_bundle_run_init(&run->history, &run->model, MARKERS));
     if (!o->common.output)
         return WB_OK;
@@ -120,6 +100,7 @@ static struct wb_simulated_bundle simulated(const struct run *run)
         .model = &run->model,
         .mesh = run->mesh,
         .history = &run->history,
+        .override = &run->options->override,
         .wall = run->spent.wall,
         .cpu = run->spent.cpu,
     };

@@ -120,6 +120,41 @@ static void datasets_are_those_of_the_homogenised_beam(void **unused)
     assert_non_null(strstr(out, "kinetic_over_internal"));
 }
 
+static void what_was_overridden_is_told(void **unused)
+{
+    (void)unused;
+    struct wb_json *root = NULL;
+    bool flag = false;
+    assert_int_equal(tool("--duration-s 0.5 --friction 0.3,0.2,1.5 --cohesive-stiffness 60 "
+                          "--dead-force --mass-scaling 100 -o over"),
+                     0);
+    read_all("over/dataset.json", out, sizeof out);
+    assert_int_equal(wb_json_parse(&root, out, "dataset.json"), WB_OK);
+    const struct wb_json *simulation = wb_json_get(root, "simulation");
+    const struct wb_json *over = wb_json_get(simulation, "overridden");
+    assert_non_null(over);
+    assert_close(number(over, "duration_s"), 0.5, 0.0);
+    assert_close(number(over, "mass_scaling"), 100.0, 0.0);
+    assert_close_relative(number(over, "cohesive_stiffness_N_mm3"), 60.0, 1e-15);
+    assert_close(number(wb_json_get(over, "friction"), "static"), 0.3, 0.0);
+    assert_close(number(wb_json_get(over, "friction"), "kinetic"), 0.2, 0.0);
+    assert_close_relative(number(wb_json_get(over, "friction"), "decay_s_mm"), 1.5, 1e-15);
+    assert_close(number(wb_json_get(simulation, "friction"), "kinetic"), 0.2, 0.0);
+    assert_true(wb_json_get_boolean(over, "dead_force", &flag) && flag);
+    assert_null(wb_json_get(over, "no_weight"));
+    assert_null(wb_json_get(over, "mesh"));
+    wb_json_destroy(root);
+
+    assert_int_equal(tool("--duration-s 0.5 --friction 0.25 -o constant"), 0);
+    read_all("constant/dataset.json", out, sizeof out);
+    assert_int_equal(wb_json_parse(&root, out, "dataset.json"), WB_OK);
+    const struct wb_json *friction = wb_json_get(wb_json_get(root, "simulation"), "friction");
+    assert_close(number(friction, "static"), 0.25, 0.0);
+    assert_close(number(friction, "kinetic"), 0.25, 0.0);
+    assert_close(number(friction, "decay_s_mm"), 0.0, 0.0);
+    wb_json_destroy(root);
+}
+
 static void options_of_others_are_refused(void **unused)
 {
     (void)unused;
@@ -128,6 +163,14 @@ static void options_of_others_are_refused(void **unused)
     assert_int_not_equal(tool("--mesh none"), 0);
     assert_non_null(strstr(err, "there is no mesh 'none'"));
     assert_int_not_equal(tool("--mass-scaling 0.5"), 0);
+    assert_int_not_equal(tool("--cohesive-stiffness 0"), 0);
+    assert_int_not_equal(tool("--friction 0.3,0.2"), 0);
+    assert_non_null(strstr(err, "expected S or S,K,D"));
+    assert_int_not_equal(tool("--friction 0.3,0.2,1,4"), 0);
+    assert_int_not_equal(tool("--friction 0.3,,1"), 0);
+    assert_int_not_equal(tool("--friction 0.2,0.3,1"), 0);
+    assert_non_null(strstr(err, "more than the static one"));
+    assert_int_not_equal(tool("--friction 11"), 0);
 }
 
 int main(void)
@@ -135,6 +178,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(json_has_the_curve_and_what_it_took),
         cmocka_unit_test(datasets_are_those_of_the_homogenised_beam),
+        cmocka_unit_test(what_was_overridden_is_told),
         cmocka_unit_test(options_of_others_are_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
