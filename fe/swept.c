@@ -17,6 +17,12 @@ size_t wb_swept_size(const struct wb_swept_layout *layout)
     return 3 * (size_t)layout->n_nodes * (size_t)layout->stride;
 }
 
+struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n)
+{
+    const int end = range.end == 0 || range.end > n ? n : range.end;
+    return (struct wb_swept_range){range.first < end ? range.first : end, end};
+}
+
 enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)
 {
     *out = NULL;

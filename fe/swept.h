@@ -32,9 +32,18 @@ struct wb_swept_layout {
     int stride;     /* of stations */
 };
 
+/* The stations, and the elements that begin there, that sums are over: a body that is an axial part
+ * of another counts what is its own, not what it shares with its neighbours. `end` 0: all. */
+struct wb_swept_range {
+    int first, end;
+};
+
 /* The layout, and the number of entries of a field. */
 struct wb_swept_layout wb_swept_layout(int n_nodes, int n_stations);
 size_t wb_swept_size(const struct wb_swept_layout *layout);
+
+/* The part of a range that lies in 0 to n - 1. */
+struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n);
 
 /* Zeroed, aligned memory for `count` values of `size` bytes; free() it. */
 WB_MUST_CHECK enum wb_status wb_swept_allocate(void **out, size_t count, size_t size);

@@ -295,6 +295,7 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
         .per_strength = breaks ? s->normal_stiffness / s->strength : 0.0,
         .per_shear_strength = breaks ? s->shear_stiffness / s->shear_strength : 0.0,
         .fracture_energy = s->fracture_energy,
+        .counted = wb_swept_range_within(c->tape->model.counted, layout->n_stations),
     };
     return WB_OK;
 }

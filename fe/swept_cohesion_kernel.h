@@ -36,6 +36,7 @@ struct wb_swept_cohesion_kernel_model {
     bool breaks;
     double per_strength, per_shear_strength; /* K_nn / strength, K_ss / shear_strength, 1/m */
     double fracture_energy;
+    struct wb_swept_range counted; /* stations, in sums */
 };
 
 struct wb_swept_cohesion_kernel_call {

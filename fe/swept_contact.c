@@ -249,6 +249,7 @@ static void size_model(struct wb_swept_contact *c, int n_wires, int n_stations)
         .friction_kinetic = s->friction_decay > 0.0 ? s->friction_kinetic : s->friction_static,
         .friction_decay = s->friction_decay,
         .damping_time = s->damping_time,
+        .counted = wb_swept_range_within(s->counted, n_stations),
     };
 }
 

@@ -60,10 +60,11 @@ struct wb_swept_contact_settings {
     double friction_static;  /* mu_s; 0.4 */
     double friction_kinetic; /* mu_k; 0.4 */
     double friction_decay;   /* s/m; 0: mu_s at any rate. 1 s/mm is 1000 s/m */
-    double damping_time;   /* s; 0: none. The normal force is k (depth + damping_time d(depth)/dt),
-                              never a pull */
-    double reach;          /* gap at which wires become neighbours, of the smallest radius; 0.5 */
-    int refresh_interval;  /* steps between refreshes of the shifts; 50 */
+    double damping_time;  /* s; 0: none. The normal force is k (depth + damping_time d(depth)/dt),
+                             never a pull */
+    double reach;         /* gap at which wires become neighbours, of the smallest radius; 0.5 */
+    int refresh_interval; /* steps between refreshes of the shifts; 50 */
+    struct wb_swept_range counted; /* points of contact, in energies; all are computed */
     int most_pairs;        /* of neighbours; 0: 4 a wire (touching circles have at most 3) */
     bool double_precision; /* of the forces; else float */
     enum wb_swept_contact_instructions instructions;

@@ -108,6 +108,7 @@ struct wb_swept_contact_model {
     struct wb_swept_contact_pair_rows *pair;
     double friction_static, friction_kinetic, friction_decay;
     double damping_time;
+    struct wb_swept_range counted;      /* stations, in energies */
     bool started;                       /* there was a step before */
     struct wb_swept_contact_sums *sums; /* (n_blocks), of this step */
 };

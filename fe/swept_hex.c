@@ -256,6 +256,7 @@ static enum wb_status fill(struct wb_swept_hex *hex)
         .layout = wb_swept_layout(m->section->n_nodes, m->n_elements + 1),
         .n_quads = m->section->n_quads,
         .n_elements = m->n_elements,
+        .counted = wb_swept_range_within(m->counted, m->n_elements),
         .centre = m->section->centre,
         .beside = farthest_node(m->section),
         .quad = (const int(*)[4])m->section->quad,
@@ -416,7 +417,7 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
                                     : row[WB_SWEPT_HEX_POINT + q * WB_SWEPT_HEX_POINT_STRIDE + 4]) /
                 two_mu;
             double density = 0.0;
-            for (int j = 0; j < hex->model.n_elements; j++) {
+            for (int j = hex->numbers.counted.first; j < hex->numbers.counted.end; j++) {
                 const double p = wb_swept_hex_plastic_strain(state, e, j, q);
                 if (p > 0.0)
                     density += p * (m->yield_stress + m->strength_coefficient *

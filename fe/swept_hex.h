@@ -51,6 +51,7 @@ struct wb_swept_hex_model {
     int n_elements;                         /* along the axis */
     double element_length;                  /* m */
     enum wb_swept_hex_formulation formulation;
+    struct wb_swept_range counted; /* in sums and the plastic work; all is computed */
     double hourglass; /* coefficient, 1; 0: 0.05. Of one point, 1 gives the fields that bend an
                          element their elastic stiffness */
     bool double_precision;

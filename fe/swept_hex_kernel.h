@@ -44,15 +44,16 @@ enum {
 struct wb_swept_hex_kernel_model {
     struct wb_swept_layout layout;
     int n_quads;
-    int n_elements;          /* along */
-    int centre, beside;      /* two nodes whose line turns with the section */
-    const int (*quad)[4];    /* (n_quads) */
-    const double (*node)[2]; /* (layout.n_nodes) */
-    double length;           /* h, m */
-    double yield_strain;     /* sigma_Y / (3 mu); infinite when elastic */
-    double strain_limit;     /* beyond it elements are counted */
-    const void *constants;   /* (n_quads x WB_SWEPT_HEX_KERNEL_CONSTANTS) */
-    const void *table;       /* (WB_SWEPT_HEX_KERNEL_TERMS x WB_SWEPT_HEX_KERNEL_OCTAVES) */
+    int n_elements;                /* along */
+    int centre, beside;            /* two nodes whose line turns with the section */
+    const int (*quad)[4];          /* (n_quads) */
+    const double (*node)[2];       /* (layout.n_nodes) */
+    double length;                 /* h, m */
+    double yield_strain;           /* sigma_Y / (3 mu); infinite when elastic */
+    struct wb_swept_range counted; /* elements, in sums */
+    double strain_limit;           /* beyond it elements are counted */
+    const void *constants;         /* (n_quads x WB_SWEPT_HEX_KERNEL_CONSTANTS) */
+    const void *table;             /* (WB_SWEPT_HEX_KERNEL_TERMS x WB_SWEPT_HEX_KERNEL_OCTAVES) */
 };
 
 struct wb_swept_hex_kernel_call {

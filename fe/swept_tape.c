@@ -327,6 +327,7 @@ static void set_numbers(struct wb_swept_tape *tape)
         .mean_share = 2.0 * (1.0 + nu) / (3.0 * (1.0 - nu)),
         .mean_slope = (1.0 + nu) / (3.0 * (1.0 - nu)),
         .strain_limit = WB_SWEPT_TAPE_STRAIN_LIMIT,
+        .counted = wb_swept_range_within(m->counted, m->layout.n_stations),
     };
     for (int i = 0; i < m->points; i++) {
         k->z[i] = 0.5 * bent * gauss_point[m->points - 2][i];
@@ -547,10 +548,11 @@ double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state)
     const struct wb_swept_tape *tape = state->tape;
     const struct wb_swept_tape_kernel_model *m = &tape->numbers;
     const struct wb_material *law = &tape->model.material;
+    const struct wb_swept_range counted = wb_swept_range_within(m->counted, m->n_along);
     double work = 0.0;
 
     for (int k = 0; k < m->n_elements; k++) {
-        for (int j = 0; j < m->n_along; j++) {
+        for (int j = counted.first; j < counted.end; j++) {
             const size_t place = (size_t)(j / LANES) * (size_t)m->n_elements + (size_t)k;
             const size_t at = (place * WB_SWEPT_TAPE_REFERENCE + WB_SWEPT_TAPE_VOLUME) * LANES +
                               (size_t)(j % LANES);

@@ -51,7 +51,9 @@ struct wb_swept_tape_model {
     const double *position; /* of the reference state; read at creation only. From node to node of
                                the ring so that axis x ring points outwards */
     double spacing;         /* of the stations along the axis, m: what masses per length refer to */
-    bool closed;            /* the last node of the ring is joined to the first */
+    struct wb_swept_range counted; /* in sums and the plastic work, also of what is made for this
+                                      tape (cohesion, contact); all is computed */
+    bool closed;                   /* the last node of the ring is joined to the first */
     bool double_precision;
     enum wb_swept_tape_instructions instructions;
 };

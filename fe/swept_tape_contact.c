@@ -482,6 +482,7 @@ static enum wb_status fill(struct wb_swept_tape_contact *c,
         .friction_static = s->friction_static,
         .friction_kinetic = s->friction_kinetic,
         .friction_decay = s->friction_decay,
+        .counted = wb_swept_range_within(c->tape->model.counted, layout->n_stations),
     };
     wb_swept_tape_contact_reset(c);
     return WB_OK;

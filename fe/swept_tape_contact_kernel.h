@@ -43,6 +43,7 @@ struct wb_swept_tape_contact_kernel_model {
     const void *rows; /* of each strip (ROWS x LANES) */
     double normal, shear;
     double friction_static, friction_kinetic, friction_decay;
+    struct wb_swept_range counted; /* stations, in sums */
 };
 
 struct wb_swept_tape_contact_kernel_call {

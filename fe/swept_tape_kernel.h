@@ -62,9 +62,10 @@ struct wb_swept_tape_kernel_model {
     double mean_share;                        /* E / (1 - nu) / (3 mu), of a mean strain */
     double mean_slope;                        /* E / (2 (1 - nu)) / (3 mu) */
     double strain_limit;
-    const void *table;            /* of fe/swept_hardening.h */
-    void *reference;              /* written by measure only */
-    const void *length_stiffness; /* (n_nodes x stride) of directors, N m */
+    struct wb_swept_range counted; /* stations, in sums; of the elements those that begin there */
+    const void *table;             /* of fe/swept_hardening.h */
+    void *reference;               /* written by measure only */
+    const void *length_stiffness;  /* (n_nodes x stride) of directors, N m */
 };
 
 struct wb_swept_tape_kernel_call {
