@@ -175,8 +175,6 @@ static void lead_tip(struct wb_bundle *bundle, double half)
 
 static enum wb_status find_forces(struct wb_bundle *bundle, bool look)
 {
-    struct wb_bundle_bond_energies bond = {0};
-
     bundle->wires = (struct wb_swept_hex_sums){0};
     bundle->shells = (struct wb_swept_tape_sums){0};
     for (int w = 0; w < bundle->n_wires; w++) {
@@ -201,9 +199,9 @@ static enum wb_status find_forces(struct wb_bundle *bundle, bool look)
         bundle->friction_work += bundle->touching.friction;
     }
     if (bundle->bond) {
-        WB_TRY(wb_bundle_bond_add_forces(bundle->bond, &bond));
-        bundle->bond_energy = bond.stored;
-        bundle->friction_work += bond.dissipated;
+        WB_TRY(wb_bundle_bond_add_forces(bundle->bond, &bundle->bonded));
+        bundle->damage_work += bundle->bonded.dissipated;
+        bundle->friction_work += bundle->bonded.friction;
     }
     return WB_OK;
 }
@@ -378,9 +376,9 @@ void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_ene
         .stored = bundle->wires.stored + bundle->shells.stored,
         .plastic = plastic,
         .artificial = bundle->wires.artificial + bundle->shells.artificial,
-        .contact = bundle->touching.normal + bundle->touching.tangential,
+        .contact = bundle->touching.normal + bundle->touching.tangential + bundle->bonded.contact,
         .friction = bundle->friction_work,
-        .cohesive = bundle->bond_energy,
+        .cohesive = bundle->bonded.stored + bundle->damage_work,
         .external = bundle->tip_work + bundle->weight_zero - weight_potential(bundle),
     };
 }
@@ -461,5 +459,7 @@ void wb_bundle_get_limits(const struct wb_bundle *bundle, struct wb_bundle_limit
         .beyond = bundle->wires.beyond_limit + bundle->shells.beyond_limit,
         .largest_strain = fmax(bundle->wires.largest_strain, bundle->shells.largest_strain),
         .deepest = bundle->touching.deepest,
+        .tape_deepest = bundle->bonded.deepest,
+        .debonded = bundle->bond ? wb_bundle_bond_broken(bundle->bond) : 0.0,
     };
 }

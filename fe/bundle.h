@@ -1,10 +1,11 @@
 /* A taped bundle bent as a cantilever, in explicit dynamics: section 5 of the paper.
  *
  * Wires are swept hexahedra (fe/swept_hex.h), the tape a sleeve of shells (fe/swept_tape.h), with
- * contact and friction between wires (fe/swept_contact.h) and cohesion between tape and wires
- * (fe/swept_cohesion.h). Central differences (fe/swept_step.h), masses scaled by f_m, the weight
- * not. The clamp holds all that is at its end; the mean height of the other end is led along a
- * smooth step by one vertical force, or by a strand that only pulls.
+ * contact and friction between wires (fe/swept_contact.h), cohesion between tape and wires
+ * (fe/swept_cohesion.h), and contact and friction between them where they are not bonded, or no
+ * longer (fe/swept_tape_contact.h). Central differences (fe/swept_step.h), masses scaled by f_m,
+ * the weight not. The clamp holds all that is at its end; the mean height of the other end is led
+ * along a smooth step by one vertical force, or by a strand that only pulls.
  *
  * Use: create, settle (the weight comes on, at zero deflection), then advance step by step; the
  * caller owns the loop, rows and the choice of the duration.
@@ -101,7 +102,9 @@ void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, dou
 struct wb_bundle_limits {
     long long beyond;
     double largest_strain;
-    double deepest; /* m: penetration of wires */
+    double deepest;      /* m: penetration of wires into each other */
+    double tape_deepest; /* m: of the tape into wires, where it is not bonded */
+    double debonded;     /* share of the bonded area whose bond is broken */
 };
 void wb_bundle_get_limits(const struct wb_bundle *bundle, struct wb_bundle_limits *limits);
 

@@ -4,16 +4,20 @@
 
 #include "fe/bundle_private.h"
 #include "fe/swept_cohesion.h"
+#include "fe/swept_tape_contact.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
 enum {
-    SAMPLES = 64 /* of the outline, for each node of the ring */
+    SAMPLES = 64,      /* of the outline, for each node of the ring */
+    LOOK_INTERVAL = 10 /* steps between searches for contact: few beside a vibration of the tape on
+                          its contact (some twenty), or searches feed it */
 };
 
 struct wb_bundle_bond {
     struct wb_bundle *bundle; /* borrowed: it owns this */
     struct wb_swept_cohesion *cohesion;
+    struct wb_swept_tape_contact *contact;
     double *ring_mass, *ring_inertia; /* (ring nodes) kg, kg m2: at an inner station, scaled */
 };
 
@@ -41,14 +45,32 @@ static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle *bundle
     return (struct wb_swept_cohesion_bond){most, (double)count[most] / SAMPLES};
 }
 
-static enum wb_status make_cohesion(struct wb_bundle_bond *bond)
+static void describe_wires(const struct wb_bundle *bundle,
+                           struct wb_swept_cohesion_wire wires[WB_PACKING_MOST])
+{
+    for (int w = 0; w < bundle->n_wires; w++) {
+        const int type = bundle->model->type_of[w];
+        const struct wb_swept_section *section = &bundle->type[type].section;
+        wires[w] = (struct wb_swept_cohesion_wire){
+            .y = bundle->model->packing.wire[w].y,
+            .z = bundle->model->packing.wire[w].z,
+            .node = (const double(*)[2])section->node,
+            .n_nodes = section->n_nodes,
+            .n_surface = section->n_outline,
+            .surface = section->outline,
+            .radius = 0.5 * bundle->model->type[type].outer_diameter,
+        };
+    }
+}
+
+static enum wb_status make_cohesion(struct wb_bundle_bond *bond,
+                                    const struct wb_swept_cohesion_wire *wires)
 {
     const struct wb_bundle *bundle = bond->bundle;
     const struct wb_bundle_interface *interface = &bundle->model->interface;
     const struct wb_bundle_tape *tape = &bundle->model->tape;
     const double offset = tape->gap + 0.5 * wb_taping_thickness(&tape->taping);
     const int n = bundle->ring.layout.n_nodes;
-    struct wb_swept_cohesion_wire wires[WB_PACKING_MOST];
     struct wb_swept_cohesion_settings settings;
     struct wb_swept_cohesion_bond *bonds =
         calloc((size_t)n * (size_t)bundle->n_stations, sizeof *bonds);
@@ -63,17 +85,6 @@ static enum wb_status make_cohesion(struct wb_bundle_bond *bond)
         settings.shear_strength = interface->damage.shear_strength;
         settings.fracture_energy = interface->damage.fracture_energy;
     }
-    for (int w = 0; w < bundle->n_wires; w++) {
-        const struct wb_swept_section *section = &bundle->type[bundle->model->type_of[w]].section;
-        wires[w] = (struct wb_swept_cohesion_wire){
-            .y = bundle->model->packing.wire[w].y,
-            .z = bundle->model->packing.wire[w].z,
-            .node = (const double(*)[2])section->node,
-            .n_nodes = section->n_nodes,
-            .n_surface = section->n_outline,
-            .surface = section->outline,
-        };
-    }
     for (int k = 0; k < n; k++) {
         const struct wb_swept_cohesion_bond partner = find_partner(bundle, offset, k);
         for (int j = 0; j < bundle->n_stations; j++)
@@ -83,6 +94,24 @@ static enum wb_status make_cohesion(struct wb_bundle_bond *bond)
                                                            bundle->n_wires, wires, bonds);
     free(bonds);
     return status;
+}
+
+static enum wb_status make_contact(struct wb_bundle_bond *bond,
+                                   const struct wb_swept_cohesion_wire *wires)
+{
+    const struct wb_bundle *bundle = bond->bundle;
+    const struct wb_bundle_interface *interface = &bundle->model->interface;
+    struct wb_swept_tape_contact_settings settings;
+
+    wb_swept_tape_contact_default_settings(&settings);
+    settings.normal_stiffness = interface->normal_stiffness;
+    settings.shear_stiffness = interface->shear_stiffness;
+    settings.friction_static = interface->friction_static;
+    settings.friction_kinetic = interface->friction_kinetic;
+    settings.friction_decay = interface->friction_decay;
+    settings.refresh_interval = LOOK_INTERVAL;
+    return wb_swept_tape_contact_create(&bond->contact, bundle->tape, bond->cohesion, &settings,
+                                        bundle->n_wires, wires);
 }
 
 static enum wb_status scale_masses(struct wb_bundle_bond *bond)
@@ -110,7 +139,11 @@ enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bund
         return wb_fail(WB_ERR_MEMORY, "out of memory for the tape's bonds");
     bond->bundle = bundle;
 
-    enum wb_status status = make_cohesion(bond);
+    struct wb_swept_cohesion_wire wires[WB_PACKING_MOST];
+    describe_wires(bundle, wires);
+    enum wb_status status = make_cohesion(bond, wires);
+    if (status == WB_OK)
+        status = make_contact(bond, wires);
     if (status == WB_OK)
         status = scale_masses(bond);
     if (status != WB_OK)
@@ -124,6 +157,7 @@ void wb_bundle_bond_destroy(struct wb_bundle_bond *bond)
 {
     if (!bond)
         return;
+    wb_swept_tape_contact_destroy(bond->contact);
     wb_swept_cohesion_destroy(bond->cohesion);
     free(bond->ring_mass);
     free(bond->ring_inertia);
@@ -143,22 +177,49 @@ enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bond,
         .force = bundle->forces,
     };
     struct wb_swept_cohesion_sums sums = {0};
+    struct wb_swept_tape_contact_sums touching = {0};
 
     wb_swept_cohesion_add_forces(bond->cohesion, &fields, 0, wb_swept_tape_blocks(bundle->tape),
                                  &sums);
-    energies->stored = sums.stored;
-    energies->dissipated = sums.dissipated;
+    WB_TRY(wb_swept_tape_contact_add_forces(bond->contact, &fields, bundle->time_step, &touching));
+    *energies = (struct wb_bundle_bond_energies){
+        .stored = sums.stored,
+        .dissipated = sums.dissipated,
+        .contact = touching.normal + touching.tangential,
+        .friction = touching.friction,
+        .deepest = touching.deepest,
+    };
     return WB_OK;
+}
+
+double wb_bundle_bond_broken(const struct wb_bundle_bond *bond)
+{
+    const struct wb_bundle *bundle = bond->bundle;
+    double all = 0.0, broken = 0.0;
+
+    for (int k = 0; k < bundle->ring.layout.n_nodes; k++)
+        for (int j = 0; j < bundle->n_stations; j++) {
+            if (wb_swept_cohesion_partner(bond->cohesion, k, j) == WB_SWEPT_COHESION_FREE)
+                continue;
+            const double area = wb_swept_tape_area(bundle->tape, k, j);
+            all += area;
+            if (wb_swept_cohesion_damage(bond->cohesion, k, j) >= 1.0)
+                broken += area;
+        }
+    return all > 0.0 ? broken / all : 0.0;
 }
 
 double wb_bundle_bond_wire_stiffness(const struct wb_bundle_bond *bond, int wire,
                                      const double *mass)
 {
-    return wb_swept_cohesion_wire_stiffness_per_mass(bond->cohesion, wire, mass);
+    return wb_swept_cohesion_wire_stiffness_per_mass(bond->cohesion, wire, mass) +
+           wb_swept_tape_contact_wire_stiffness_per_mass(bond->contact, wire, mass);
 }
 
 double wb_bundle_bond_ring_stiffness(const struct wb_bundle_bond *bond)
 {
     return wb_swept_cohesion_tape_stiffness_per_mass(bond->cohesion, bond->ring_mass,
-                                                     bond->ring_inertia);
+                                                     bond->ring_inertia) +
+           wb_swept_tape_contact_stiffness_per_mass(bond->contact, bond->ring_mass,
+                                                    bond->ring_inertia);
 }

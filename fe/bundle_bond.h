@@ -1,5 +1,9 @@
-/* The tape's hold on the wires of a bundle: which ring node faces which wire, and the interface
- * between them (fe/swept_cohesion.h).
+/* The tape's hold on the wires of a bundle: which ring node faces which wire, the interface between
+ * them (fe/swept_cohesion.h), and contact with friction where there is none, or none any more
+ * (fe/swept_tape_contact.h): where the tape spans a gap between wires and comes to lie on one of
+ * them, and where damage has broken the bond.
+ *
+ * Contact has the interface's stiffnesses.
  */
 #ifndef WB_FE_BUNDLE_BOND_H
 #define WB_FE_BUNDLE_BOND_H
@@ -10,7 +14,10 @@
 struct wb_bundle_bond; /* opaque */
 
 struct wb_bundle_bond_energies {
-    double stored, dissipated; /* J: of the interface; the latter in this step */
+    double stored, dissipated; /* J: of the interface; the latter by damage, in this step */
+    double contact;            /* J, stored in contact, normal and tangential */
+    double friction;           /* J, dissipated in this step */
+    double deepest;            /* m, penetration of the tape into a wire */
 };
 
 /* For a bundle whose wires and ring are made. */
@@ -18,9 +25,13 @@ WB_MUST_CHECK enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out,
                                                    struct wb_bundle *bundle);
 void wb_bundle_bond_destroy(struct wb_bundle_bond *bond); /* accepts NULL */
 
-/* Adds the interface's forces to the ring's and the wires' at their present positions. */
+/* Adds the forces of interface and contact to the ring's and the wires' at their present positions.
+ * WB_ERR_DATA when the tape passes through a wire. */
 WB_MUST_CHECK enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bond,
                                                        struct wb_bundle_bond_energies *energies);
+
+/* Share of the bonded area whose bond is broken, 0 to 1. */
+double wb_bundle_bond_broken(const struct wb_bundle_bond *bond);
 
 /* Bounds of what it adds to the largest squared frequency, 1/s2: of a wire whose section nodes have
  * the masses given (kg at an inner station, scaled), and of the ring. */

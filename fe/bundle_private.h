@@ -3,6 +3,7 @@
 #define WB_FE_BUNDLE_PRIVATE_H
 
 #include "fe/bundle.h"
+#include "fe/bundle_bond.h"
 #include "fe/swept_contact.h"
 #include "fe/swept_hex.h"
 #include "fe/swept_step.h"
@@ -68,7 +69,8 @@ struct wb_bundle {
     struct wb_swept_contact_energies touching;
     struct wb_swept_hex_sums wires;
     struct wb_swept_tape_sums shells;
-    double bond_energy;
+    struct wb_bundle_bond_energies bonded;
+    double damage_work;
     double weight_zero; /* J: potential of the weight at the start */
 };
 

@@ -96,6 +96,96 @@ static void momentum_comes_from_outside_alone(void **unused)
     wb_bundle_destroy(bundle);
 }
 
+/* --- tape and wires --- */
+
+/* Leads the tip to a deflection. Energies are kept to the part given of the largest work, momentum
+ * to what single precision leaves. */
+static void lead_and_check(struct wb_bundle *bundle, double deflection, double duration,
+                           double tolerance)
+{
+    const int steps = (int)(duration / wb_bundle_time_step(bundle));
+    struct wb_bundle_outside outside;
+    struct wb_bundle_energies e;
+    double impulse[3] = {0.0}, size = 0.0, most = 0.0, worst = 0.0;
+
+    wb_bundle_lead(bundle, deflection, duration);
+    for (int i = 0; i < steps; i++) {
+        const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
+        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        wb_bundle_get_outside(bundle, &outside);
+        for (int c = 0; c < 3; c++) {
+            const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];
+            impulse[c] += force * dt;
+            size += fabs(force * dt);
+        }
+        if (i % 50 != 0)
+            continue;
+        wb_bundle_get_energies(bundle, &e);
+        most = fmax(most, fabs(e.external));
+        if (i < steps / 10)
+            continue;
+        worst = fmax(worst, fabs(wb_bundle_imbalance(&e)) / most);
+        for (int c = 0; c < 3; c++)
+            assert_close(outside.momentum[c], impulse[c], 1e-5 * size);
+    }
+    print_message("energies are kept to %.3g %% in %d steps\n", 100.0 * worst, steps);
+    assert_true(worst < tolerance);
+}
+
+static void break_bonds_at(double strength, double fracture_energy)
+{
+    model.interface.has_damage = true;
+    model.interface.damage = (struct wb_bundle_damage){
+        .strength = strength, .shear_strength = strength, .fracture_energy = fracture_energy};
+}
+
+static void a_tape_that_came_loose_stays_round_its_wire(void **unused)
+{
+    (void)unused;
+    const struct wb_bundle_settings settings = {.duration = 0.2};
+    struct wb_bundle_limits limits;
+    struct wb_bundle_energies e;
+    struct wb_bundle *bundle;
+
+    read_model(ONE "tape: tape\n" RUN("deflection_mm: 30") "loads: {weight: false}\n");
+    break_bonds_at(500.0, 1e-4);
+    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
+    lead_and_check(bundle, 30e-3, settings.duration, 0.005);
+    wb_bundle_get_limits(bundle, &limits);
+    wb_bundle_get_energies(bundle, &e);
+    assert_true(limits.debonded > 0.9);
+    assert_true(limits.tape_deepest > 0.0 && limits.tape_deepest < 1e-6);
+    assert_true(e.contact > 0.0 && e.friction > 0.0 && e.cohesive > 0.0);
+    wb_bundle_destroy(bundle);
+}
+
+/* Adhesive that shear breaks where wires and tape slide most: the bundle gets softer, what was
+ * dissipated is no more than the fracture energy of the area that broke. */
+static void seven_wires_come_loose_and_energies_are_kept(void **unused)
+{
+    (void)unused;
+    const struct wb_bundle_settings settings = {.duration = 0.12};
+    struct wb_bundle_limits limits[2];
+    struct wb_bundle_energies e[2];
+    struct wb_bundle *bundle;
+
+    read_model(SEVEN "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 15}\n"
+                     "loads: {strand_mm: 760, weight: true}\n");
+    for (int i = 0; i < 2; i++) {
+        if (i == 1)
+            break_bonds_at(8e3, 0.1);
+        assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
+        lead_and_check(bundle, 10e-3, settings.duration, 0.01);
+        wb_bundle_get_limits(bundle, &limits[i]);
+        wb_bundle_get_energies(bundle, &e[i]);
+        wb_bundle_destroy(bundle);
+        assert_true(limits[i].tape_deepest < 10e-6);
+    }
+    assert_true(limits[0].debonded == 0.0 && limits[1].debonded > 0.3);
+    assert_true(e[1].external < 0.8 * e[0].external);
+    assert_true(e[1].cohesive < 0.1 * model.tape.taping.circumference * model.length);
+}
+
 /* --- ends of a run --- */
 
 static bool stop_beyond(void *context, const struct wb_bundle_progress *progress)
@@ -141,6 +231,8 @@ int main(void)
         cmocka_unit_test_teardown(one_wire_bends_as_the_beam, release),
         cmocka_unit_test(under_its_weight_it_hangs_as_a_propped_beam),
         cmocka_unit_test(momentum_comes_from_outside_alone),
+        cmocka_unit_test(a_tape_that_came_loose_stays_round_its_wire),
+        cmocka_unit_test(seven_wires_come_loose_and_energies_are_kept),
         cmocka_unit_test_teardown(a_stopped_run_keeps_its_rows, release),
         cmocka_unit_test_teardown(what_cannot_be_computed_is_refused, release),
     };
