@@ -1,0 +1,15 @@
+#!/bin/sh
+# Runs a program on ranks of this machine: ranks.sh RANKS PROGRAM ARGUMENT...
+# Exits with 77 (skipped) where there is no mpirun.
+set -eu
+command -v mpirun >/dev/null || {
+    echo "skipped: no mpirun (Debian: openmpi-bin)"
+    exit 77
+}
+# Containers run as root, and have fewer cores than ranks.
+OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+OMPI_MCA_btl_vader_single_copy_mechanism=none
+export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMPI_MCA_btl_vader_single_copy_mechanism
+ranks=$1
+shift
+exec mpirun --oversubscribe -n "$ranks" "$@"
