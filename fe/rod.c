@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/inertia.h"
 #include "fe/rod_chain.h"
 
 #define WB_LOG_DOMAIN "rod"
@@ -42,6 +43,7 @@ struct wb_rod {
     double (*residual)[U];           /* (n_nodes) */
     struct middle *middles;          /* (n_elements) */
     struct wb_rod_chain chain;       /* end nodes of the elements without the clamp */
+    int negative;                    /* eigenvalues below zero of the middle nodes' blocks */
 };
 
 /* Strains of an element's points with those of the reference. */
@@ -295,6 +297,7 @@ static void condense_element(struct wb_rod *rod, int e)
     double rows[U][WB_ROD_CHAIN_WIDTH] = {{0}};
 
     wb_rod_element_stiffness(&rod->shape, &rod->points[e * POINTS], &s);
+    rod->negative += wb_inertia_negative(U, U, s.K[1][1]);
     for (int r = 0; r < U; r++) {
         memcpy(rows[r], s.K[1][1] + U * r, U * sizeof(double));
         memcpy(rows[r] + U, s.K[1][2] + U * r, U * sizeof(double));
@@ -329,11 +332,17 @@ static void condense_element(struct wb_rod *rod, int e)
 void wb_rod_condense(struct wb_rod *rod, double *stiffness, double *right)
 {
     const int last = rod->n_elements - 1;
+    rod->negative = 0;
     for (int e = 0; e <= last; e++)
         condense_element(rod, e);
     wb_rod_chain_condense(&rod->chain);
     memcpy(stiffness, rod->chain.diagonal[last], U * U * sizeof *stiffness);
     memcpy(right, rod->chain.right[last], U * sizeof *right);
+}
+
+int wb_rod_negative(const struct wb_rod *rod)
+{
+    return rod->negative + rod->chain.negative;
 }
 
 /* An increment is applied to strains, and positions and rotations follow, for the reasons of

@@ -61,6 +61,11 @@ void wb_rod_evaluate(struct wb_rod *rod, double load_factor, struct wb_rod_balan
  * loads add. */
 void wb_rod_condense(struct wb_rod *rod, double *stiffness, double *right);
 
+/* Eigenvalues below zero that the last condensation eliminated: the tangent stiffness has these and
+ * those of the condensed one (Haynsworth). With the tip held the rod is stable where there are
+ * none. */
+int wb_rod_negative(const struct wb_rod *rod);
+
 /* Moves the trial state by the increment that belongs to `tip` (6). Where a node would turn by more
  * than `most_rotation` (rad), all of the increment is scaled down; returns the scale. */
 double wb_rod_advance(struct wb_rod *rod, const double *tip, double most_rotation);

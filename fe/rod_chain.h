@@ -17,6 +17,8 @@ struct wb_rod_chain {
     double (*upper)[WB_ROD_CHAIN_ENTRIES]; /* (n - 1) block (i, i + 1); becomes S_i^-1 U_i */
     double (*lower)[WB_ROD_CHAIN_ENTRIES]; /* (n - 1) block (i + 1, i) */
     double (*right)[WB_ROD_CHAIN_BLOCK];   /* (n); becomes S_i^-1 g_i, the last the condensed one */
+    int negative; /* eigenvalues below zero of what was eliminated, if symmetric; the last block is
+                     left out */
 };
 
 /* Eliminates blocks 0 .. n - 2. A singular block gives non-finite numbers. */

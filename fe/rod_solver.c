@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "fe/banded.h"
+#include "fe/inertia.h"
 
 #define WB_LOG_DOMAIN "rod solver"
 
@@ -26,7 +27,8 @@ enum failure {
     NONE,
     ITERATIONS,
     NOT_FINITE,
-    TURNED /* farther than an increment may */
+    TURNED,  /* farther than an increment may */
+    CRITICAL /* to what cannot stand */
 };
 
 /* The last evaluation whose numbers were finite. */
@@ -370,6 +372,69 @@ static bool settle(struct wb_rod_solver *s, struct step *step)
     return false;
 }
 
+/* Ways that are left to the tip: all six, or the five across a tension that holds it. Columns are
+ * ways. */
+static int free_ways(const struct step *step, const struct strand *strand, double way[TIP][TIP])
+{
+    const double *d = strand->direction;
+    int n = 0;
+
+    memset(way, 0, TIP * sizeof way[0]);
+    if (is_held(step)) {
+        /* Two vectors across d; its second component is the largest but in absurd states. */
+        const double length = hypot(d[0], d[1]);
+        const double first[3] = {d[1] / length, -d[0] / length, 0.0};
+        for (int i = 0; i < 3; i++)
+            way[i][0] = first[i];
+        way[0][1] = d[1] * first[2] - d[2] * first[1];
+        way[1][1] = d[2] * first[0] - d[0] * first[2];
+        way[2][1] = d[0] * first[1] - d[1] * first[0];
+        n = 2;
+    } else {
+        for (; n < 3; n++)
+            way[n][n] = 1.0;
+    }
+    for (int i = 3; i < TIP; i++)
+        way[i][n++] = 1.0;
+    return n;
+}
+
+/* Whether the loads have a potential. Those that turn with the tip, a moment, and a tension of
+ * given size along a strand that leans have none. */
+static bool is_conservative(const struct wb_rod_solver *s, const struct step *step)
+{
+    double others = 0.0;
+    for (int i = 0; i < 3; i++)
+        others += fabs(s->trial.tip.follower[i]) + fabs(s->trial.tip.moment[i]);
+    if (s->model.strand_length > 0.0 && !is_held(step))
+        others += fabs(s->trial.tension);
+    return others == 0.0;
+}
+
+/* Whether the equilibrium just found can stand under its control. The tangent is that of the state
+ * itself: a straight strut's equilibria need no iteration that would have seen it. */
+static bool can_stand(struct wb_rod_solver *s, const struct step *step)
+{
+    const struct strand strand = strand_at(s);
+    double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS], way[TIP][TIP], own[TIP][TIP] = {{0}};
+
+    tip_system(s, step, &strand, A, b);
+    const int n = free_ways(step, &strand, way), inner = wb_rod_negative(s->model.rod);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            for (int k = 0; k < TIP * TIP; k++)
+                own[i][j] +=
+                    way[k / TIP][i] * A[k / TIP * MOST_UNKNOWNS + k % TIP] * way[k % TIP][j];
+        }
+    }
+    const bool stands = is_conservative(s, step)
+                            ? inner + wb_inertia_negative(n, TIP, own[0]) == 0
+                            : (inner % 2 != 0) == wb_inertia_is_odd(n, TIP, own[0]);
+    if (!stands)
+        s->failure = CRITICAL;
+    return stands;
+}
+
 static void accept(struct wb_rod_solver *s, const struct step *step)
 {
     way_of(s, step, s->way);
@@ -438,6 +503,13 @@ static void describe_problem(const struct wb_rod_solver *s, double fraction,
                  s->settings.most_rotation, fraction);
         return;
     }
+    if (s->failure == CRITICAL) {
+        snprintf(result->problem, sizeof result->problem,
+                 "a critical point lies within %.1g of the way: a limit load or a buckling load, "
+                 "beyond which no equilibrium can stand",
+                 fraction);
+        return;
+    }
     snprintf(result->problem, sizeof result->problem,
              "with increments of %.1g of the way the iteration %s; forces are out of balance by "
              "%.1g of the largest, most at s = %.1f mm, and %d fibres yield",
@@ -473,7 +545,7 @@ enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_m
                             .deflection = between(start, move->deflection, next)};
         loads_between(&from, &move->target, next, &step.loads);
         s->iterations = 0;
-        const bool settled = settle(s, &step);
+        const bool settled = settle(s, &step) && can_stand(s, &step);
         result->iterations += s->iterations;
         result->residual = s->residual;
         if (settled) {

@@ -9,6 +9,10 @@
  *     direction of the tension (p, sqrt(1 - p^2 - q^2), q), p = (strand_x - x) / S, q = -z / S.
  *
  * A strand only pulls: below zero tension it is slack and the tip is free under the other loads.
+ *
+ * Newton's method may jump over a limit load or a buckling load to an equilibrium that cannot
+ * stand. An increment that leads to one is taken back and halved, and a move ends before such a
+ * critical point, not converged. See docs/theory.md, "Critical points".
  */
 #ifndef WB_FE_ROD_SOLVER_H
 #define WB_FE_ROD_SOLVER_H

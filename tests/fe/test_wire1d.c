@@ -335,6 +335,33 @@ static enum wb_status on_row(void *context, const struct wb_wire_run *run, bool 
     return run->n_rows == told->rows ? WB_OK : WB_ERR_DATA;
 }
 
+static void a_strut_ends_before_it_buckles(void **unused)
+{
+    (void)unused;
+    make_type3(1);
+    model.is_elastic = true;
+    model.part[0].material.hardening = WB_HARDENING_NONE_ELASTIC;
+    const double EI = wb_wire_model_flexural_rigidity(&model);
+    const double P = M_PI * M_PI / 4.0 * EI / (model.length * model.length);
+    model.step[0].loads.force[0] = -2.1 * P;
+    model.step[0].rows = 10;
+    struct computed c = compute(NULL, NULL);
+    print_message("strut: %d rows; %s\n", c.run.n_rows, c.run.problem);
+    assert_false(c.run.converged);
+    /* Rows 4 and 5 are 0.84 and 1.05 of Euler's load. */
+    assert_int_equal(c.run.n_rows, 5);
+    assert_non_null(strstr(c.run.problem, "step 'step1', row 5 (0.76"));
+    assert_non_null(strstr(c.run.problem, "a limit load or a buckling load"));
+    release(&c);
+
+    /* Pulled aside it bends instead. */
+    model.step[0].loads.force[1] = 0.1 * P;
+    c = compute(NULL, NULL);
+    assert_complete(&c);
+    assert_true(last_row(&c)->tip[0] < 0.0);
+    release(&c);
+}
+
 static void observer_is_told_and_can_stop(void **unused)
 {
     (void)unused;
@@ -423,6 +450,7 @@ int main(void)
         cmocka_unit_test(longer_increments_change_little),
         cmocka_unit_test(strand_goes_slack_and_comes_back),
         cmocka_unit_test(a_limit_load_ends_the_history_with_its_rows_kept),
+        cmocka_unit_test(a_strut_ends_before_it_buckles),
         cmocka_unit_test(observer_is_told_and_can_stop),
         cmocka_unit_test(a_second_run_begins_anew),
         cmocka_unit_test(what_makes_no_wire_is_refused),
