@@ -358,7 +358,7 @@ static void a_strut_ends_before_it_buckles(void **unused)
     model.step[0].loads.force[1] = 0.1 * P;
     c = compute(NULL, NULL);
     assert_complete(&c);
-    assert_true(last_row(&c)->tip[0] < 0.0);
+    assert_true(last_row(&c)->tip[0] < 0.1 * model.length);
     release(&c);
 }
 
