@@ -225,6 +225,8 @@ static enum wb_status step(struct wb_bundle *bundle, bool look)
     WB_TRY(find_forces(bundle, look));
     look_at_tip(bundle, &before);
     lead_tip(bundle, half);
+    if (bundle->cap)
+        wb_bundle_cap_advance(bundle->cap, half);
     for (int w = 0; w < bundle->n_wires; w++)
         update(bundle, &bundle->wire[w], half, look ? &sums : NULL);
     if (bundle->has_tape) {
@@ -233,7 +235,7 @@ static enum wb_status step(struct wb_bundle *bundle, bool look)
     }
     bundle->has_moved = true;
     if (look)
-        bundle->kinetic = sums.kinetic;
+        bundle->kinetic = sums.kinetic + (bundle->cap ? wb_bundle_cap_kinetic(bundle->cap) : 0.0);
     bundle->time += bundle->time_step;
     bundle->steps++;
 
@@ -281,6 +283,8 @@ static void stop_motion(struct wb_bundle *bundle)
         stop_body(&bundle->ring);
         stop_body(&bundle->directors);
     }
+    if (bundle->cap)
+        wb_bundle_cap_stop(bundle->cap);
     bundle->has_moved = false;
 }
 

@@ -5,7 +5,8 @@
  * (fe/swept_cohesion.h), and contact and friction between them where they are not bonded, or no
  * longer (fe/swept_tape_contact.h). Central differences (fe/swept_step.h), masses scaled by f_m,
  * the weight not. The clamp holds all that is at its end; the mean height of the other end is led
- * along a smooth step by one vertical force, or by a strand that only pulls.
+ * along a smooth step by one vertical force, or by a strand that only pulls; it is free, or capped:
+ * one rigid body (fe/bundle_cap.h), pulled at its centre of mass.
  *
  * Use: create, settle (the weight comes on, at zero deflection), then advance step by step; the
  * caller owns the loop, rows and the choice of the duration.

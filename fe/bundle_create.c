@@ -271,6 +271,8 @@ static enum wb_status build(struct wb_bundle *bundle)
     WB_TRY(make_contact(bundle));
     WB_TRY(make_tape(bundle));
     hold_clamp(bundle);
+    if (bundle->model->tip == WB_BUNDLE_TIP_CAPPED)
+        WB_TRY(wb_bundle_cap_create(&bundle->cap, bundle));
     return find_time_step(bundle);
 }
 
@@ -284,10 +286,6 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
         return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", model->path, name);
     if (!(settings->duration > 0.0 && isfinite(settings->duration)))
         return wb_fail(WB_ERR_ARGUMENT, "a duration of %g s: expected above 0", settings->duration);
-
-    if (model->tip == WB_BUNDLE_TIP_CAPPED)
-        return wb_fail(WB_ERR_UNSUPPORTED, "%s: a capped tip cannot be computed yet; use tip: free",
-                       model->path);
 
     struct wb_bundle *bundle = calloc(1, sizeof *bundle);
     if (!bundle)
@@ -320,6 +318,7 @@ void wb_bundle_destroy(struct wb_bundle *bundle)
 {
     if (!bundle)
         return;
+    wb_bundle_cap_destroy(bundle->cap);
     wb_bundle_bond_destroy(bundle->bond);
     wb_swept_contact_destroy(bundle->contact);
     for (int w = 0; w < bundle->n_wires; w++) {

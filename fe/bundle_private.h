@@ -4,6 +4,7 @@
 
 #include "fe/bundle.h"
 #include "fe/bundle_bond.h"
+#include "fe/bundle_cap.h"
 #include "fe/swept_contact.h"
 #include "fe/swept_hex.h"
 #include "fe/swept_step.h"
@@ -50,6 +51,8 @@ struct wb_bundle {
     double *tape_mass, *tape_inertia; /* (ring nodes) */
     struct wb_bundle_body ring, directors;
     struct wb_bundle_bond *bond; /* between tape and wires */
+
+    struct wb_bundle_cap *cap; /* NULL: the tip is free */
 
     double time_step;
     double gravity; /* m/s2, downwards */
