@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "analysis/report/bundles_report.h"
 #include "analysis/report/comparison_report.h"
 #include "analysis/report/report.h"
 #include "base/file.h"
@@ -44,7 +45,8 @@ static const struct argp argp = {
     .args_doc = "CAMPAIGN.yaml",
     .doc = "Aligns the recordings of a campaign, calibrates and validates its wires and writes the "
            "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). A campaign of "
-           "the kind `comparison` compares datasets that `solve` made of wire models.\v"
+           "the kind `comparison` compares datasets that `solve` made of wire models, one of the "
+           "kind `bundles` those of bundles.\v"
            "What is missing or cannot be used is named in the report (exit code 3). Exit code 4: "
            "all is written, but a limit of the campaign is exceeded. The same recordings or "
            "datasets and the same revision give the same bytes.",
@@ -225,8 +227,106 @@ static int report_comparison(const struct options *o, const char *path)
     return code;
 }
 
+/* --- bundles --- */
+
+static void print_dataset(const struct wb_bundles_dataset *dataset,
+                          const struct wb_bundles_result *result)
+{
+    if (result->state != WB_BUNDLES_USABLE && result->state != WB_BUNDLES_NOT_WANTED)
+        printf("  %s: %s; to make it:\n    %s\n", dataset->name, wb_text_string(&result->problem),
+               dataset->command);
+}
+
+static void print_bundle(const struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
+    printf("%-16s", bundle->label);
+    if (run)
+        printf("  F_max %.4g N", run->curve.max_force);
+    if (run && run->published)
+        printf("  RMS from the published curve %.4f", run->rms);
+    if (fit)
+        printf("  E %.0f MPa, yield stress %.2f MPa, K %.4g MPa, n %.3f, RMS %.4f",
+               fit->result.material.youngs_modulus / WB_MPA,
+               fit->result.material.yield_stress / WB_MPA,
+               fit->result.material.strength_coefficient / WB_MPA,
+               fit->result.material.hardening_exponent, fit->result.rms);
+    else
+        printf("  no fitted beam: %s", wb_text_string(&results->fits[index].problem));
+    printf("\n");
+}
+
+static void print_bundles(const struct wb_bundles_results *results)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+    printf("%s (simulations): %d of %d datasets used\n", campaign->title, results->n_usable,
+           results->n_wanted);
+    for (int i = 0; i < campaign->n_runs; i++)
+        print_dataset(&campaign->runs[i].dataset, &results->runs[i]);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        print_dataset(&campaign->bundles[i].rod, &results->rods[i]);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        print_bundle(results, i);
+    const int n = wb_bundles_results_judge(results, verdicts);
+    for (int i = 0; i < n; i++) {
+        if (!verdicts[i].kept)
+            printf("  limit %s exceeded by %s: %.4g, limit %.4g\n", verdicts[i].key,
+                   verdicts[i].label, verdicts[i].value, verdicts[i].limit);
+    }
+}
+
+static int finish_bundles(const struct options *o, const struct wb_bundles_results *results)
+{
+    if (results->interrupted)
+        return refuse_interrupted();
+    if (wb_bundles_report_write(results, o->common.output, o->common.force) != WB_OK)
+        return WB_EXIT_FAILED;
+    if (!o->common.json)
+        print_bundles(results);
+    return deliver(o, results->is_complete, results->exceeds_limit);
+}
+
+static int report_bundles(const struct options *o, const char *path)
+{
+    /* Too large for the stack of a small system. */
+    struct wb_bundles *const bundles = calloc(1, sizeof *bundles);
+    struct wb_bundles_results *const results = calloc(1, sizeof *results);
+    struct wb_progress progress;
+    int code = bundles && results ? WB_EXIT_OK : WB_EXIT_FAILED;
+    if (code != WB_EXIT_OK)
+        wb_error("out of memory");
+    else
+        code = wb_command_exit(wb_bundles_read(bundles, path));
+    if (code == WB_EXIT_OK)
+        code = prepare(o);
+    if (code == WB_EXIT_OK) {
+        wb_progress_start(&progress, "report", "steps", wb_bundles_count(bundles));
+        wb_bundles_results_load(results, bundles, show_progress, &progress);
+        wb_bundles_results_compute(results, show_progress, &progress);
+        wb_progress_finish(&progress);
+        code = finish_bundles(o, results);
+    }
+    if (results)
+        wb_bundles_results_release(results);
+    if (bundles)
+        wb_bundles_release(bundles);
+    free(results);
+    free(bundles);
+    return code;
+}
+
 int wb_cmd_report(int argc, char **argv)
 {
+    static int (*const reports[])(const struct options *, const char *) = {
+        [WB_CAMPAIGN_RECORDINGS] = report_recordings,
+        [WB_CAMPAIGN_COMPARISON] = report_comparison,
+        [WB_CAMPAIGN_BUNDLES] = report_bundles,
+    };
+
     char buffer[WB_PATH];
     struct options options = {.common = {.noun = "campaign file", .destination = "report goes"}};
     wb_command_parse(&argp, argc, argv, &options);
@@ -236,8 +336,7 @@ int wb_cmd_report(int argc, char **argv)
         return WB_EXIT_FAILED;
     const bool existed = wb_file_exists(options.common.output);
     wb_interrupt_install();
-    const int code = kind == WB_CAMPAIGN_COMPARISON ? report_comparison(&options, path)
-                                                    : report_recordings(&options, path);
+    const int code = reports[kind](&options, path);
     if (code == WB_EXIT_FAILED && !existed)
         remove(options.common.output); /* only if it is empty */
     return code;

@@ -343,7 +343,7 @@ void wb_campaign_set_name(char *name, size_t size, const char *path)
 
 enum wb_status wb_campaign_read_kind(enum wb_campaign_kind *kind, const char *path)
 {
-    static const char *const kinds[] = {"recordings", "comparison"};
+    static const char *const kinds[] = {"recordings", "comparison", "bundles"};
     struct wb_config *config;
     WB_TRY(wb_config_read(&config, path));
     const struct wb_config_node *const root = wb_config_root(config);
@@ -354,8 +354,10 @@ enum wb_status wb_campaign_read_kind(enum wb_campaign_kind *kind, const char *pa
         *kind = WB_CAMPAIGN_RECORDINGS;
     else if (text && strcmp(text, kinds[1]) == 0)
         *kind = WB_CAMPAIGN_COMPARISON;
+    else if (text && strcmp(text, kinds[2]) == 0)
+        *kind = WB_CAMPAIGN_BUNDLES;
     else
-        status = wb_config_refuse(root, "kind", "expected recordings or comparison");
+        status = wb_config_refuse(root, "kind", "expected recordings, comparison or bundles");
     wb_config_destroy(config);
     return status;
 }
