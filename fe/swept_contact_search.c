@@ -10,8 +10,10 @@ enum {
     MOST_ITERATIONS = 60
 };
 
-/* Shifts are found to this part of a station; the energy is stationary there. */
-static const double shift_tolerance = 1e-4;
+/* Shifts are found to this part of a station; the energy is stationary there. Of pairs that are
+ * new as exactly as can be: then it is of no account where one began, so that parts of a bundle
+ * find what the whole does. */
+static const double shift_tolerance = 1e-4, first_tolerance = 1e-12;
 
 /* Neighbours are searched anew when a centre moved by this part of the reach. Two of them then are
  * nearer by at most twice that, and half of the reach is left for what follows till the next
@@ -58,7 +60,7 @@ static void place_of(const struct wb_swept_contact *contact, int j, double shift
 
 /* Newton's method for (c_b - c_a) (t_a + t_b) = 0. */
 static double solve_shift(const struct wb_swept_contact *contact, const int wire[2], int j,
-                          double shift)
+                          double shift, double tolerance)
 {
     const double end = contact->model.n_stations - 1;
 
@@ -82,7 +84,7 @@ static double solve_shift(const struct wb_swept_contact *contact, const int wire
             return shift;
         const double change = larger(-1.0, smaller(1.0, -apart / square));
         shift = larger(-end, smaller(end, shift + change));
-        if (fabs(change) < shift_tolerance)
+        if (fabs(change) < tolerance)
             break;
     }
     return shift;
@@ -176,7 +178,8 @@ static void refresh_pair(const struct wb_swept_contact *contact,
     memset(pair->active, 0, (size_t)contact->model.n_blocks);
     for (int j = 0; j < contact->model.n_stations; j++) {
         double place[2];
-        shift = solve_shift(contact, pair->wire, j, is_new ? shift : offset[1][j] - offset[0][j]);
+        shift = solve_shift(contact, pair->wire, j, is_new ? shift : offset[1][j] - offset[0][j],
+                            is_new ? first_tolerance : shift_tolerance);
         place_of(contact, j, shift, place);
         wb_swept_contact_set(contact, pair->load,
                              WB_SWEPT_CONTACT_LENGTH * (ptrdiff_t)contact->model.row + j,

@@ -558,6 +558,74 @@ int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact)
     return contact->n_near;
 }
 
+/* --- checkpoints --- */
+
+struct piece {
+    void *data;
+    size_t size;
+};
+
+enum {
+    PIECES = 8
+};
+
+/* All there is room for, so that the size is fixed. */
+static void list_pieces(const struct wb_swept_tape_contact *c, struct piece out[PIECES])
+{
+    struct wb_swept_tape_contact *changeable;
+    const struct wb_swept_layout *layout = layout_of(c);
+    const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
+    const size_t blocks = (size_t)layout->stride / LANES;
+
+    memcpy(&changeable, &c, sizeof changeable);
+    const struct piece pieces[PIECES] = {
+        {&changeable->steps, sizeof c->steps},
+        {&changeable->n_strips, sizeof c->n_strips},
+        {&changeable->n_near, sizeof c->n_near},
+        {c->first, (blocks + 1) * sizeof *c->first},
+        {c->strip, places * sizeof *c->strip},
+        {c->wire_of, places * sizeof *c->wire_of},
+        {c->rows, places * ROWS * LANES * real_size(c)},
+        {c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride * real_size(c)},
+    };
+    memcpy(out, pieces, sizeof pieces);
+}
+
+size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact)
+{
+    struct piece pieces[PIECES];
+    size_t size = 0;
+
+    list_pieces(contact, pieces);
+    for (int i = 0; i < PIECES; i++)
+        size += pieces[i].size;
+    return size;
+}
+
+void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state)
+{
+    struct piece pieces[PIECES];
+    unsigned char *at = state;
+
+    list_pieces(contact, pieces);
+    for (int i = 0; i < PIECES; i++) {
+        memcpy(at, pieces[i].data, pieces[i].size);
+        at += pieces[i].size;
+    }
+}
+
+void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state)
+{
+    struct piece pieces[PIECES];
+    const unsigned char *at = state;
+
+    list_pieces(contact, pieces);
+    for (int i = 0; i < PIECES; i++) {
+        memcpy(pieces[i].data, at, pieces[i].size);
+        at += pieces[i].size;
+    }
+}
+
 /* --- stable step --- */
 
 static double largest_stiffness(const struct wb_swept_tape_contact *c)

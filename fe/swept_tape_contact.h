@@ -65,6 +65,11 @@ wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *contact,
 /* Nodes that are looked after now: within the margin of a wire, and not bonded to it. */
 int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact);
 
+/* A checkpoint: what a contact of the same tape, wires and settings needs to go on, bit for bit. */
+size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact);
+void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state);
+void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state);
+
 /* Bounds of what contact adds to the largest eigenvalue of M^-1 K, as of cohesion, if all nodes of
  * the ring touched. */
 double wb_swept_tape_contact_stiffness_per_mass(const struct wb_swept_tape_contact *contact,

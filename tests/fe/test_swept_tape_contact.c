@@ -280,6 +280,40 @@ static void sliding_is_resisted_by_mu_times_the_pressure(void **unused)
     }
 }
 
+/* Slip after `begin` steps up to `end`; the force in the last. */
+static double slide_on(struct grip *g, int begin, int end)
+{
+    for (int i = begin; i < end; i++) {
+        slide_wire(g, 2e-8 * i);
+        (void)step(g, 1e-6);
+    }
+    return sum_on_wire(g, 0);
+}
+
+static void a_checkpoint_goes_on_bit_for_bit(void **unused)
+{
+    (void)unused;
+    const struct wb_swept_tape_contact_settings settings = usual();
+    for (int is_double = 0; is_double < 2; is_double++) {
+        struct grip g, other;
+        grip_create(&g, &settings, 2e-6, is_double, NULL);
+        grip_create(&other, &settings, 2e-6, is_double, NULL);
+        (void)slide_on(&g, 0, 24);
+        const size_t size = wb_swept_tape_contact_state_size(g.contact);
+        void *state = malloc(size);
+        assert_non_null(state);
+        wb_swept_tape_contact_save(g.contact, state);
+        const double force = slide_on(&g, 24, 50);
+        wb_swept_tape_contact_restore(other.contact, state);
+        assert_true(slide_on(&other, 24, 50) == force && force != 0.0);
+        wb_swept_tape_contact_reset(other.contact);
+        assert_true(slide_on(&other, 24, 50) != force);
+        free(state);
+        grip_destroy(&g);
+        grip_destroy(&other);
+    }
+}
+
 static void sticking_is_elastic(void **unused)
 {
     (void)unused;
@@ -498,6 +532,7 @@ int main(void)
         cmocka_unit_test(nothing_acts_across_a_gap),
         cmocka_unit_test(forces_are_the_derivatives_of_the_pressures_energy),
         cmocka_unit_test(sliding_is_resisted_by_mu_times_the_pressure),
+        cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
         cmocka_unit_test(sticking_is_elastic),
         cmocka_unit_test(turning_together_makes_no_friction),
         cmocka_unit_test(forces_and_their_moments_balance),
