@@ -26,11 +26,7 @@ struct wb_wire1d {
 /* A run under way. */
 struct run {
     struct wb_wire1d *wire;
-    struct wb_wire_run *run;
-    const struct wb_wire_observer *observer;
-    int step, row;              /* under way; row from 1 */
-    int increments, iterations; /* since the row before */
-    enum wb_status status;      /* of the observer */
+    struct wb_wire_progress at;
 };
 
 static enum wb_status make_section(struct wb_wire1d *wire,
@@ -121,69 +117,34 @@ void wb_wire1d_frame(const struct wb_wire1d *wire, double s, double position[3],
     }
 }
 
-static bool has_deflection(const struct wb_wire_model *model)
-{
-    for (int i = 0; i < model->n_steps; i++) {
-        if (model->step[i].kind == WB_WIRE_STEP_DEFLECTION)
-            return true;
-    }
-    return false;
-}
-
 static void add_row(struct run *r, double fraction)
 {
     const struct wb_wire1d *wire = r->wire;
-    const struct wb_wire_model *model = wire->model;
+    const struct wb_wire_run *run = r->at.run;
     const struct wb_rod_loads *loads = wb_rod_solver_loads(wire->solver);
-    struct wb_wire_row row = {
-        .step = r->step,
-        .fraction = fraction,
-        .loads = loads->tip,
-        .increments = r->increments,
-        .iterations = r->iterations,
-    };
+    struct wb_wire_row row = {.fraction = fraction, .loads = loads->tip};
     double frame[3][3];
 
-    wb_wire1d_frame(wire, model->length, row.tip, frame);
+    wb_wire1d_frame(wire, wire->model->length, row.tip, frame);
     memcpy(row.tangent, frame[0], sizeof row.tangent);
-    if (has_deflection(model)) {
-        row.tension = loads->tension;
-        row.vertical_force = wb_rod_solver_vertical_force(wire->solver);
-    } else {
-        row.tension = loads->tip.force[1];
-        for (int i = 0; i < 3; i++)
-            row.tension += loads->tip.follower[i] * frame[i][1];
-        row.vertical_force = row.tension;
-    }
-    for (int k = 0; k < r->run->n_shape; k++) {
-        const struct wb_rod_node at = wb_rod_position(wire->rod, r->run->shape_s[k]);
+    wb_wire_run_set_forces(&row, wire->model, loads->tension,
+                           wb_rod_solver_vertical_force(wire->solver), (const double(*)[3])frame);
+    for (int k = 0; k < run->n_shape; k++) {
+        const struct wb_rod_node at = wb_rod_position(wire->rod, run->shape_s[k]);
         memcpy(wire->shape[k], at.position, sizeof wire->shape[k]);
     }
-    const bool slack = wb_rod_solver_is_slack(wire->solver);
-    wb_wire_run_add(r->run, model, &row, slack, (const double(*)[3])wire->shape);
-    r->increments = r->iterations = 0;
-    if (r->observer && r->observer->row)
-        r->status = r->observer->row(r->observer->context, r->run, fraction == 1.0);
+    wb_wire_run_end_row(&r->at, &row, wb_rod_solver_is_slack(wire->solver),
+                        (const double(*)[3])wire->shape);
 }
 
-/* What wb_rod_solver_move() tells after each increment: shares of a row become shares of the step.
- */
+/* What wb_rod_solver_move() tells after each increment. */
 static bool observe(void *context, double fraction, int iterations)
 {
     struct run *r = context;
-    const struct wb_wire_model *model = r->wire->model;
-    const double done = (r->run->n_rows + fraction) / wb_wire_run_planned_rows(model);
-    const double of_step = (r->row - 1 + fraction) / model->step[r->step].rows;
-
-    r->increments++;
-    r->iterations += iterations;
-    r->run->increments++;
     double tip[3], frame[3][3];
-    wb_wire1d_frame(r->wire, model->length, tip, frame);
-    wb_wire_run_turn(r->run, frame[0]);
-    return !r->observer || !r->observer->increment ||
-           r->observer->increment(r->observer->context, r->run, r->step,
-                                  fmin(fmax(of_step, 0.0), 1.0), iterations, fmin(1.0, done));
+
+    wb_wire1d_frame(r->wire, r->wire->model->length, tip, frame);
+    return wb_wire_run_tell(&r->at, frame[0], fraction, iterations);
 }
 
 /* One move and what it cost; true when it arrived. */
@@ -191,64 +152,51 @@ static bool move(struct run *r, struct wb_rod_move *move, struct wb_rod_result *
 {
     move->observer = observe;
     move->context = r;
-    r->status = wb_rod_solver_move(r->wire->solver, move, result);
-    if (r->status != WB_OK)
+    r->at.status = wb_rod_solver_move(r->wire->solver, move, result);
+    if (r->at.status != WB_OK)
         return false;
-    r->run->iterations += result->iterations;
-    r->run->cutbacks += result->cutbacks;
-    r->run->stopped = r->run->stopped || result->end == WB_ROD_STOPPED;
+    r->at.run->iterations += result->iterations;
+    r->at.run->cutbacks += result->cutbacks;
+    r->at.run->stopped = r->at.run->stopped || result->end == WB_ROD_STOPPED;
     return result->end == WB_ROD_CONVERGED;
 }
 
-static double blend(double a, double b, double share)
-{
-    return share == 1.0 ? b : a + share * (b - a);
-}
-
 /* The end of a row: what the step wants at `share` of its way from `start`. */
-static struct wb_rod_move plan_row(const struct run *r, const struct wb_rod_loads *start,
-                                   double start_deflection, double share)
+static struct wb_rod_move plan_row(const struct run *r, const struct wb_wire_target *start,
+                                   double share)
 {
-    const struct wb_wire_step *step = &r->wire->model->step[r->step];
-    struct wb_rod_move move = {
-        .control = WB_ROD_LOADS,
-        .target = {.weight = 1.0, .tension = start->tension},
+    const struct wb_wire_target to =
+        wb_wire_run_target(&r->wire->model->step[r->at.step], start, share);
+    return (struct wb_rod_move){
+        .control = to.is_held ? WB_ROD_DEFLECTION : WB_ROD_LOADS,
+        .target = {.weight = 1.0, .tip = to.tip, .tension = to.tension},
+        .deflection = to.deflection,
     };
-    struct wb_tip_loads *to = &move.target.tip;
-
-    for (int i = 0; i < 3; i++) {
-        to->force[i] = blend(start->tip.force[i], step->loads.force[i], share);
-        to->moment[i] = blend(start->tip.moment[i], step->loads.moment[i], share);
-        to->follower[i] = blend(start->tip.follower[i], step->loads.follower[i], share);
-    }
-    if (step->kind == WB_WIRE_STEP_RELEASE)
-        move.target.tension = blend(start->tension, 0.0, share);
-    if (step->kind == WB_WIRE_STEP_DEFLECTION) {
-        move.control = WB_ROD_DEFLECTION;
-        move.deflection = blend(start_deflection, step->deflection, share);
-    }
-    return move;
 }
 
 static bool run_step(struct run *r)
 {
-    const struct wb_wire_step *step = &r->wire->model->step[r->step];
-    const struct wb_rod_loads start = *wb_rod_solver_loads(r->wire->solver);
-    const double start_deflection = wb_rod_solver_deflection(r->wire->solver);
+    const struct wb_wire_step *step = &r->wire->model->step[r->at.step];
+    const struct wb_rod_loads *loads = wb_rod_solver_loads(r->wire->solver);
+    const struct wb_wire_target start = {
+        .tip = loads->tip,
+        .tension = loads->tension,
+        .deflection = wb_rod_solver_deflection(r->wire->solver),
+    };
 
-    for (r->row = 1; r->row <= step->rows; r->row++) {
-        const double share = (double)r->row / step->rows;
-        struct wb_rod_move row = plan_row(r, &start, start_deflection, share);
+    for (r->at.row = 1; r->at.row <= step->rows; r->at.row++) {
+        const double share = (double)r->at.row / step->rows;
+        struct wb_rod_move row = plan_row(r, &start, share);
         struct wb_rod_result result = {0};
         if (!move(r, &row, &result)) {
             if (result.end == WB_ROD_NOT_CONVERGED)
-                snprintf(r->run->problem, sizeof r->run->problem,
-                         "step '%s', row %d (%.3g of the way): %s", step->name, r->row,
+                snprintf(r->at.run->problem, sizeof r->at.run->problem,
+                         "step '%s', row %d (%.3g of the way): %s", step->name, r->at.row,
                          result.fraction, result.problem);
             return false;
         }
         add_row(r, share);
-        if (r->status != WB_OK || r->run->stopped)
+        if (r->at.status != WB_OK || r->at.run->stopped)
             return false;
     }
     return true;
@@ -265,21 +213,24 @@ static bool begin(struct run *r)
     struct wb_rod_result result = {0};
 
     wb_rod_solver_reset(r->wire->solver);
-    r->row = 0;
+    r->at.row = 0;
     if (!move(r, &first, &result)) {
         if (result.end == WB_ROD_NOT_CONVERGED)
-            snprintf(r->run->problem, sizeof r->run->problem, "under its weight: %s",
+            snprintf(r->at.run->problem, sizeof r->at.run->problem, "under its weight: %s",
                      result.problem);
         return false;
     }
     add_row(r, 0.0);
-    return r->status == WB_OK && !r->run->stopped;
+    return r->at.status == WB_OK && !r->at.run->stopped;
 }
 
 enum wb_status wb_wire1d_run(struct wb_wire1d *wire, struct wb_wire_run *run,
                              const struct wb_wire_observer *observer)
 {
-    struct run r = {.wire = wire, .run = run, .observer = observer, .status = WB_OK};
+    struct run r = {
+        .wire = wire,
+        .at = {.run = run, .model = wire->model, .observer = observer, .status = WB_OK},
+    };
 
     if (run->n_shape > MOST_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected at most %d",
@@ -287,11 +238,11 @@ enum wb_status wb_wire1d_run(struct wb_wire1d *wire, struct wb_wire_run *run,
     run->n_elements = wire->n_elements;
     run->n_unknowns = 2 * WB_ROD_ELEMENT_UNKNOWNS * wire->n_elements;
     run->converged = begin(&r);
-    for (r.step = 0; run->converged && r.step < wire->model->n_steps; r.step++)
+    for (r.at.step = 0; run->converged && r.at.step < wire->model->n_steps; r.at.step++)
         run->converged = run_step(&r);
     if (run->stopped)
         run->converged = true;
-    return r.status;
+    return r.at.status;
 }
 
 /* The Gauss point nearest to s. */

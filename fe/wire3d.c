@@ -32,14 +32,10 @@ struct wb_wire3d {
 /* A run under way. */
 struct run {
     struct wb_wire3d *wire;
-    struct wb_wire_run *run;
-    const struct wb_wire_observer *observer;
+    struct wb_wire_progress at;
     double (*shape)[3]; /* (n_shape) workspace */
-    int step, row;      /* under way; row from 1 */
-    int increments, iterations;
-    bool slack;            /* the strand carries nothing */
-    double held;           /* m: the deflection at which it would hold the tip */
-    enum wb_status status; /* of the observer */
+    bool slack;         /* the strand carries nothing */
+    double held;        /* m: the deflection at which it would hold the tip */
 };
 
 static enum wb_status make_mesh(struct wb_wire3d *wire)
@@ -151,72 +147,38 @@ static void axis_at(const struct wb_wire3d *wire, double s, double position[3])
     }
 }
 
-static bool has_deflection(const struct wb_wire_model *model)
-{
-    for (int i = 0; i < model->n_steps; i++)
-        if (model->step[i].kind == WB_WIRE_STEP_DEFLECTION)
-            return true;
-    return false;
-}
-
 static void add_row(struct run *r, double fraction)
 {
     const struct wb_wire3d *wire = r->wire;
     const struct wb_wire_model *model = wire->model;
     const struct wb_solid_loads *loads = wb_solid_loads(wire->solid);
+    struct wb_wire_row row = {.fraction = fraction, .loads = loads->tip};
     struct wb_solid_tip tip;
-    struct wb_wire_row row = {
-        .step = r->step,
-        .fraction = fraction,
-        .loads = loads->tip,
-        .increments = r->increments,
-        .iterations = r->iterations,
-    };
+    double lean = 0.0;
 
     wb_solid_tip(wire->solid, &tip);
     memcpy(row.tip, tip.position, sizeof row.tip);
     memcpy(row.tangent, tip.frame[0], sizeof row.tangent);
-    if (has_deflection(model)) {
-        double lean = 0.0;
-        if (model->strand_length > 0.0)
-            lean = hypot(model->length - row.tip[0], row.tip[2]) / model->strand_length;
-        row.tension = loads->tension;
-        row.vertical_force = loads->tension * sqrt(1.0 - lean * lean);
-    } else {
-        for (int i = 0; i < 3; i++)
-            row.tension += loads->tip.follower[i] * tip.frame[i][1];
-        row.tension += loads->tip.force[1];
-        row.vertical_force = row.tension;
-    }
-    for (int k = 0; k < r->run->n_shape; k++)
-        axis_at(wire, r->run->shape_s[k], r->shape[k]);
-    wb_wire_run_add(r->run, model, &row, r->slack, (const double(*)[3])r->shape);
-    r->increments = r->iterations = 0;
-    if (r->observer && r->observer->row)
-        r->status = r->observer->row(r->observer->context, r->run, fraction == 1.0);
+    if (model->strand_length > 0.0)
+        lean = hypot(model->length - row.tip[0], row.tip[2]) / model->strand_length;
+    wb_wire_run_set_forces(&row, model, loads->tension, loads->tension * sqrt(1.0 - lean * lean),
+                           (const double(*)[3])tip.frame);
+    for (int k = 0; k < r->at.run->n_shape; k++)
+        axis_at(wire, r->at.run->shape_s[k], r->shape[k]);
+    wb_wire_run_end_row(&r->at, &row, r->slack, (const double(*)[3])r->shape);
 }
 
-/* What wb_solid_move() tells after each increment: shares of a row become shares of the step. */
+/* What wb_solid_move() tells after each increment. */
 static bool observe(void *context, double fraction, int iterations)
 {
     struct run *r = context;
-    const struct wb_wire_model *model = r->wire->model;
-    const int rows = model->step[r->step].rows;
-    const double done = (r->run->n_rows + fraction) / wb_wire_run_planned_rows(model);
-
-    r->increments++;
-    r->iterations += iterations;
-    r->run->increments++;
     struct wb_solid_tip tip;
     struct wb_solid_balance balance;
+
     wb_solid_tip(r->wire->solid, &tip);
-    wb_wire_run_turn(r->run, tip.frame[0]);
     wb_solid_balance(r->wire->solid, &balance);
     r->wire->sliding = fmax(r->wire->sliding, balance.interface.sliding);
-    return !r->observer || !r->observer->increment ||
-           r->observer->increment(r->observer->context, r->run, r->step,
-                                  fmin(fmax((r->row - 1 + fraction) / rows, 0.0), 1.0), iterations,
-                                  fmin(1.0, done));
+    return wb_wire_run_tell(&r->at, tip.frame[0], fraction, iterations);
 }
 
 /* One move and what it cost; true when it arrived. */
@@ -224,12 +186,12 @@ static bool move(struct run *r, struct wb_solid_move *move, struct wb_solid_poin
 {
     move->observer = observe;
     move->context = r;
-    r->status = wb_solid_move(r->wire->solid, move, point);
-    if (r->status != WB_OK)
+    r->at.status = wb_solid_move(r->wire->solid, move, point);
+    if (r->at.status != WB_OK)
         return false;
-    r->run->iterations += point->iterations;
-    r->run->cutbacks += point->cutbacks;
-    r->run->stopped = r->run->stopped || point->end == WB_SOLID_STOPPED;
+    r->at.run->iterations += point->iterations;
+    r->at.run->cutbacks += point->cutbacks;
+    r->at.run->stopped = r->at.run->stopped || point->end == WB_SOLID_STOPPED;
     return point->end == WB_SOLID_CONVERGED;
 }
 
@@ -238,34 +200,17 @@ static double between(double a, double b, double share)
     return share == 1.0 ? b : a + share * (b - a);
 }
 
-static void blend(const struct wb_tip_loads *a, const struct wb_tip_loads *b, double share,
-                  struct wb_tip_loads *out)
-{
-    for (int i = 0; i < 3; i++) {
-        out->force[i] = between(a->force[i], b->force[i], share);
-        out->moment[i] = between(a->moment[i], b->moment[i], share);
-        out->follower[i] = between(a->follower[i], b->follower[i], share);
-    }
-}
-
 /* The end of a row: what the step wants at `share` of its way from `start`. */
-static struct wb_solid_move plan_row(const struct run *r, const struct wb_solid_loads *start,
-                                     double start_deflection, double share)
+static struct wb_solid_move plan_row(const struct run *r, const struct wb_wire_target *start,
+                                     double share)
 {
-    const struct wb_wire_step *step = &r->wire->model->step[r->step];
-    struct wb_solid_move move = {
-        .control = WB_SOLID_LOADS,
-        .target = {.weight = 1.0, .tension = start->tension},
+    const struct wb_wire_target to =
+        wb_wire_run_target(&r->wire->model->step[r->at.step], start, share);
+    return (struct wb_solid_move){
+        .control = to.is_held ? WB_SOLID_DEFLECTION : WB_SOLID_LOADS,
+        .target = {.weight = 1.0, .tip = to.tip, .tension = to.tension},
+        .deflection = to.deflection,
     };
-
-    blend(&start->tip, &step->loads, share, &move.target.tip);
-    if (step->kind == WB_WIRE_STEP_RELEASE)
-        move.target.tension = (1.0 - share) * start->tension;
-    if (step->kind == WB_WIRE_STEP_DEFLECTION) {
-        move.control = WB_SOLID_DEFLECTION;
-        move.deflection = between(start_deflection, step->deflection, share);
-    }
-    return move;
 }
 
 static double tip_y(const struct run *r)
@@ -280,13 +225,13 @@ static bool has_room(struct run *r)
 {
     int planned = 0;
 
-    for (int i = r->step; i < r->wire->model->n_steps; i++)
-        planned += r->wire->model->step[i].rows - (i == r->step ? r->row - 1 : 0);
-    if (r->run->n_rows + planned < r->run->capacity)
+    for (int i = r->at.step; i < r->wire->model->n_steps; i++)
+        planned += r->wire->model->step[i].rows - (i == r->at.step ? r->at.row - 1 : 0);
+    if (r->at.run->n_rows + planned < r->at.run->capacity)
         return true;
-    snprintf(r->run->problem, sizeof r->run->problem,
+    snprintf(r->at.run->problem, sizeof r->at.run->problem,
              "step '%s', row %d: paths past limit points take more than %d rows",
-             r->wire->model->step[r->step].name, r->row, WB_WIRE_RUN_SPARE);
+             r->wire->model->step[r->at.step].name, r->at.row, WB_WIRE_RUN_SPARE);
     return false;
 }
 
@@ -329,12 +274,12 @@ static bool follow_arc(struct run *r, const struct wb_solid_move *row, double fr
         /* What is left of the way is an arc's whole. */
         path.share += point.fraction * (1.0 - path.share);
         add_row(r, fmin(between(from, to, path.share), 0.999999));
-        if (r->status != WB_OK || r->run->stopped)
+        if (r->at.status != WB_OK || r->at.run->stopped)
             return false;
         const bool near = path.share >= 1.0 || (point.fraction > 0.0 && i >= path.next_try);
         if (near && !point.unstable && reach_from_path(r, row, &path, i))
             return true;
-        if (r->status != WB_OK || r->run->stopped)
+        if (r->at.status != WB_OK || r->at.run->stopped)
             return false;
         /* Loads that are reached on an unstable branch are never reached in truth. */
         if (path.share >= 1.0 || !has_room(r))
@@ -368,28 +313,33 @@ static bool reach_row(struct run *r, struct wb_solid_move *row, double from, dou
         return true;
     if (point.end == WB_SOLID_SLACK && let_go(r, row))
         return true;
-    snprintf(r->run->problem, sizeof r->run->problem, "step '%s', row %d (%.3g of the way): %s",
-             r->wire->model->step[r->step].name, r->row, point.fraction, point.problem);
-    if (r->status != WB_OK || r->run->stopped || held)
+    snprintf(r->at.run->problem, sizeof r->at.run->problem,
+             "step '%s', row %d (%.3g of the way): %s", r->wire->model->step[r->at.step].name,
+             r->at.row, point.fraction, point.problem);
+    if (r->at.status != WB_OK || r->at.run->stopped || held)
         return false;
     return follow_arc(r, row, from, to, point.fraction);
 }
 
 static bool run_step(struct run *r)
 {
-    const struct wb_wire_step *step = &r->wire->model->step[r->step];
-    const struct wb_solid_loads start = *wb_solid_loads(r->wire->solid);
-    const double start_deflection = r->slack ? r->held : tip_y(r);
+    const struct wb_wire_step *step = &r->wire->model->step[r->at.step];
+    const struct wb_solid_loads *loads = wb_solid_loads(r->wire->solid);
+    const struct wb_wire_target start = {
+        .tip = loads->tip,
+        .tension = loads->tension,
+        .deflection = r->slack ? r->held : tip_y(r),
+    };
 
-    for (r->row = 1; r->row <= step->rows; r->row++) {
-        const double from = (r->row - 1.0) / step->rows, to = (double)r->row / step->rows;
-        struct wb_solid_move row = plan_row(r, &start, start_deflection, to);
+    for (r->at.row = 1; r->at.row <= step->rows; r->at.row++) {
+        const double from = (r->at.row - 1.0) / step->rows, to = (double)r->at.row / step->rows;
+        struct wb_solid_move row = plan_row(r, &start, to);
         if (!reach_row(r, &row, from, to))
             return false;
         r->held = step->kind == WB_WIRE_STEP_DEFLECTION ? row.deflection : tip_y(r);
-        r->run->problem[0] = '\0';
-        add_row(r, r->row == step->rows ? 1.0 : to);
-        if (r->status != WB_OK || r->run->stopped)
+        r->at.run->problem[0] = '\0';
+        add_row(r, r->at.row == step->rows ? 1.0 : to);
+        if (r->at.status != WB_OK || r->at.run->stopped)
             return false;
     }
     return true;
@@ -406,11 +356,12 @@ static bool begin(struct run *r)
     struct wb_solid_point point = {0};
 
     if (!move(r, &first, &point) && !(point.end == WB_SOLID_SLACK && let_go(r, &first))) {
-        snprintf(r->run->problem, sizeof r->run->problem, "under its weight: %s", point.problem);
+        snprintf(r->at.run->problem, sizeof r->at.run->problem, "under its weight: %s",
+                 point.problem);
         return false;
     }
     add_row(r, 0.0);
-    return r->status == WB_OK && !r->run->stopped;
+    return r->at.status == WB_OK && !r->at.run->stopped;
 }
 
 /* Virgin again. */
@@ -431,7 +382,10 @@ static enum wb_status begin_anew(struct wb_wire3d *wire)
 enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
                              const struct wb_wire_observer *observer)
 {
-    struct run r = {.wire = wire, .run = run, .observer = observer, .status = WB_OK};
+    struct run r = {
+        .wire = wire,
+        .at = {.run = run, .model = wire->model, .observer = observer, .status = WB_OK},
+    };
 
     if (wire->has_run)
         WB_TRY(begin_anew(wire));
@@ -442,12 +396,12 @@ enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
     run->n_elements = wire->mesh.n_elements;
     run->n_unknowns = wb_solid_unknowns(wire->solid);
     run->converged = begin(&r);
-    for (r.step = 0; run->converged && r.step < wire->model->n_steps; r.step++)
+    for (r.at.step = 0; run->converged && r.at.step < wire->model->n_steps; r.at.step++)
         run->converged = run_step(&r);
     if (run->stopped)
         run->converged = true;
     free(r.shape);
-    return r.status;
+    return r.at.status;
 }
 
 const struct wb_solid_mesh *wb_wire3d_mesh(const struct wb_wire3d *wire)

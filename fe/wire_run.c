@@ -96,3 +96,76 @@ void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
                (size_t)run->n_shape * sizeof *shape);
     run->n_rows++;
 }
+
+static double between(double from, double to, double share)
+{
+    return share == 1.0 ? to : from + share * (to - from);
+}
+
+struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
+                                         const struct wb_wire_target *start, double share)
+{
+    const struct wb_tip_loads *from = &start->tip, *to = &step->loads;
+    struct wb_wire_target target = {.tension = start->tension};
+
+    for (int i = 0; i < 3; i++) {
+        target.tip.force[i] = between(from->force[i], to->force[i], share);
+        target.tip.moment[i] = between(from->moment[i], to->moment[i], share);
+        target.tip.follower[i] = between(from->follower[i], to->follower[i], share);
+    }
+    if (step->kind == WB_WIRE_STEP_RELEASE)
+        target.tension = between(start->tension, 0.0, share);
+    target.is_held = step->kind == WB_WIRE_STEP_DEFLECTION;
+    if (target.is_held)
+        target.deflection = between(start->deflection, step->deflection, share);
+    return target;
+}
+
+bool wb_wire_run_tell(struct wb_wire_progress *p, const double tangent[3], double fraction,
+                      int iterations)
+{
+    const double done = (p->run->n_rows + fraction) / wb_wire_run_planned_rows(p->model);
+    const double of_step = (p->row - 1 + fraction) / p->model->step[p->step].rows;
+
+    p->increments++;
+    p->iterations += iterations;
+    p->run->increments++;
+    wb_wire_run_turn(p->run, tangent);
+    return !p->observer || !p->observer->increment ||
+           p->observer->increment(p->observer->context, p->run, p->step,
+                                  fmin(fmax(of_step, 0.0), 1.0), iterations, fmin(1.0, done));
+}
+
+static bool has_deflection(const struct wb_wire_model *model)
+{
+    for (int i = 0; i < model->n_steps; i++) {
+        if (model->step[i].kind == WB_WIRE_STEP_DEFLECTION)
+            return true;
+    }
+    return false;
+}
+
+void wb_wire_run_set_forces(struct wb_wire_row *row, const struct wb_wire_model *model,
+                            double tension, double vertical, const double frame[3][3])
+{
+    row->tension = tension;
+    row->vertical_force = vertical;
+    if (has_deflection(model))
+        return;
+    row->tension = row->loads.force[1];
+    for (int i = 0; i < 3; i++)
+        row->tension += row->loads.follower[i] * frame[i][1];
+    row->vertical_force = row->tension;
+}
+
+void wb_wire_run_end_row(struct wb_wire_progress *p, struct wb_wire_row *row, bool slack,
+                         const double (*shape)[3])
+{
+    row->step = p->step;
+    row->increments = p->increments;
+    row->iterations = p->iterations;
+    wb_wire_run_add(p->run, p->model, row, slack, shape);
+    p->increments = p->iterations = 0;
+    if (p->observer && p->observer->row)
+        p->status = p->observer->row(p->observer->context, p->run, row->fraction == 1.0);
+}

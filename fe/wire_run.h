@@ -55,6 +55,24 @@ struct wb_wire_observer {
     void *context;
 };
 
+/* A run under way, kept by the solver. */
+struct wb_wire_progress {
+    struct wb_wire_run *run;
+    const struct wb_wire_model *model;
+    const struct wb_wire_observer *observer; /* may be NULL */
+    int step, row;                           /* under way; row from 1, 0 under the weight alone */
+    int increments, iterations;              /* since the row before */
+    enum wb_status status;                   /* of the observer */
+};
+
+/* What a row wants. */
+struct wb_wire_target {
+    struct wb_tip_loads tip;
+    double tension;    /* N: of the strand, or the vertical force that makes a deflection */
+    bool is_held;      /* the tip's y goes to `deflection`, and the tension follows */
+    double deflection; /* m */
+};
+
 enum {
     WB_WIRE_RUN_SPARE = 400 /* rows that may come on top of the planned ones, on a path that is
                                followed past a limit point */
@@ -77,5 +95,24 @@ void wb_wire_run_turn(struct wb_wire_run *run, const double tangent[3]);
  * nothing. `shape` is (n_shape x 3). Rows beyond the spare ones are not taken. */
 void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
                      const struct wb_wire_row *row, bool slack, const double (*shape)[3]);
+
+/* What `step` wants at `share` of its way from `start`, the state in which it began. */
+struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
+                                         const struct wb_wire_target *start, double share);
+
+/* Takes note of a converged increment, the share `fraction` of the row under way, after which the
+ * tip's tangent is `tangent`, and tells the observer. False stops the run. */
+bool wb_wire_run_tell(struct wb_wire_progress *progress, const double tangent[3], double fraction,
+                      int iterations);
+
+/* Sets a row's tension and vertical force: of a model with a deflection as they are given, of
+ * others the vertical part of the row's loads. `frame`: the tip's axes, rows. */
+void wb_wire_run_set_forces(struct wb_wire_row *row, const struct wb_wire_model *model,
+                            double tension, double vertical, const double frame[3][3]);
+
+/* Appends a row that has fraction, loads, tip, tangent and forces as wb_wire_run_add() does, and
+ * tells the observer, whose status it keeps. */
+void wb_wire_run_end_row(struct wb_wire_progress *progress, struct wb_wire_row *row, bool slack,
+                         const double (*shape)[3]);
 
 #endif

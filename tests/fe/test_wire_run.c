@@ -171,6 +171,121 @@ static void angle_goes_on_past_pi_in_both_senses(void **state)
     }
 }
 
+static void a_target_lies_between_start_and_step(void **state)
+{
+    (void)state;
+    const struct wb_wire_target start = {
+        .tip = {.force = {1.0, 2.0, 3.0}, .moment = {0.0, 0.0, 4.0}, .follower = {0.0, 8.0, 0.0}},
+        .tension = 6.0,
+        .deflection = 0.01,
+    };
+    struct wb_wire_step step = {.kind = WB_WIRE_STEP_LOADS, .loads = {.force = {3.0, 0.0, 3.0}}};
+    struct wb_wire_target to = wb_wire_run_target(&step, &start, 0.25);
+    assert_close(to.tip.force[0], 1.5, 1e-15);
+    assert_close(to.tip.force[1], 1.5, 1e-15);
+    assert_close(to.tip.force[2], 3.0, 0.0);
+    assert_close(to.tip.moment[2], 3.0, 1e-15);
+    assert_close(to.tip.follower[1], 6.0, 1e-15);
+    assert_close(to.tension, 6.0, 0.0);
+    assert_false(to.is_held);
+
+    step.kind = WB_WIRE_STEP_RELEASE;
+    assert_close(wb_wire_run_target(&step, &start, 0.25).tension, 4.5, 1e-15);
+    assert_close(wb_wire_run_target(&step, &start, 1.0).tension, 0.0, 0.0);
+
+    step.kind = WB_WIRE_STEP_DEFLECTION;
+    step.deflection = 0.05;
+    to = wb_wire_run_target(&step, &start, 0.25);
+    assert_true(to.is_held);
+    assert_close(to.deflection, 0.02, 1e-16);
+    /* The end is the step's own number. */
+    step.deflection = 0.1 + 0.2;
+    assert_close(wb_wire_run_target(&step, &start, 1.0).deflection, 0.1 + 0.2, 0.0);
+}
+
+/* What an observer was told. */
+struct told {
+    int step, iterations, rows;
+    double fraction, done;
+    bool last;
+};
+
+static bool note_increment(void *context, const struct wb_wire_run *run, int step, double fraction,
+                           int iterations, double done)
+{
+    struct told *told = context;
+    (void)run;
+    told->step = step;
+    told->fraction = fraction;
+    told->iterations = iterations;
+    told->done = done;
+    return fraction < 0.9;
+}
+
+static enum wb_status note_row(void *context, const struct wb_wire_run *run, bool last)
+{
+    struct told *told = context;
+    told->rows = run->n_rows;
+    told->last = last;
+    return last ? WB_ERR_IO : WB_OK;
+}
+
+static void increments_are_counted_and_told_as_shares_of_the_step(void **state)
+{
+    (void)state;
+    struct told told = {0};
+    struct wb_wire_run run;
+    const struct wb_wire_observer observer = {note_increment, note_row, &told};
+    make_model(2);
+    assert_int_equal(wb_wire_run_init(&run, &model, 0), WB_OK);
+    struct wb_wire_progress at = {.run = &run, .model = &model, .observer = &observer};
+
+    /* Under its weight: no share of a step yet. */
+    assert_true(wb_wire_run_tell(&at, (double[3]){1.0, 0.0, 0.0}, 1.0, 4));
+    assert_close(told.fraction, 0.0, 0.0);
+    struct wb_wire_row row = {.fraction = 0.0, .tangent = {1.0, 0.0, 0.0}};
+    wb_wire_run_end_row(&at, &row, false, NULL);
+    assert_int_equal(run.rows[0].iterations, 4);
+
+    at.step = 1;
+    at.row = 2;
+    assert_true(wb_wire_run_tell(&at, (double[3]){0.0, 1.0, 0.0}, 0.5, 3));
+    assert_int_equal(told.step, 1);
+    assert_close(told.fraction, 0.75, 1e-15);
+    assert_close(told.done, 1.5 / 5.0, 1e-15);
+    assert_close(run.tip_angle, 0.5 * M_PI, 1e-15);
+    assert_false(wb_wire_run_tell(&at, (double[3]){0.0, 1.0, 0.0}, 1.0, 2));
+    assert_int_equal(run.increments, 3);
+
+    row.fraction = 1.0;
+    wb_wire_run_end_row(&at, &row, false, NULL);
+    assert_int_equal(run.rows[1].step, 1);
+    assert_int_equal(run.rows[1].increments, 2);
+    assert_int_equal(run.rows[1].iterations, 5);
+    assert_int_equal(at.increments + at.iterations, 0);
+    assert_true(told.last && told.rows == 2);
+    assert_int_equal(at.status, WB_ERR_IO);
+    wb_wire_run_release(&run);
+}
+
+static void forces_are_the_tensions_or_the_loads(void **state)
+{
+    (void)state;
+    /* Turned by 30 degrees about z. */
+    const double c = cos(M_PI / 6.0), frame[3][3] = {{c, 0.5, 0.0}, {-0.5, c, 0.0}, {0, 0, 1.0}};
+    struct wb_wire_row row = {
+        .loads = {.force = {9.0, 1.0, 9.0}, .follower = {2.0, 10.0, 7.0}},
+    };
+    make_model(2);
+    wb_wire_run_set_forces(&row, &model, 5.0, 4.0, frame);
+    assert_close(row.tension, 1.0 + 2.0 * 0.5 + 10.0 * c, 1e-14);
+    assert_close(row.vertical_force, row.tension, 0.0);
+    make_raise_and_release();
+    wb_wire_run_set_forces(&row, &model, 5.0, 4.0, frame);
+    assert_close(row.tension, 5.0, 0.0);
+    assert_close(row.vertical_force, 4.0, 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -181,6 +296,9 @@ int main(void)
         cmocka_unit_test(force_of_loads_is_not_zeroed),
         cmocka_unit_test(force_of_a_follower_is_the_follower),
         cmocka_unit_test(angle_goes_on_past_pi_in_both_senses),
+        cmocka_unit_test(a_target_lies_between_start_and_step),
+        cmocka_unit_test(increments_are_counted_and_told_as_shares_of_the_step),
+        cmocka_unit_test(forces_are_the_tensions_or_the_loads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
