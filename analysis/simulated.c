@@ -9,7 +9,7 @@
 /* m/s, of the paper's stage */
 static const double stage_speed = 1e-3;
 
-static enum wb_phase phase_of(enum wb_history_phase phase)
+enum wb_phase wb_simulated_phase(enum wb_history_phase phase)
 {
     switch (phase) {
     case WB_HISTORY_LOAD:
@@ -34,7 +34,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_histo
         const struct wb_row out = {
             .t = travelled / stage_speed,
             .cycle = row->cycle,
-            .phase = phase_of(row->phase),
+            .phase = wb_simulated_phase(row->phase),
             .deflection = row->point.deflection,
             .tension = row->point.tension,
             .force = row->force,

@@ -29,6 +29,9 @@ WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
                                                const double *shape_s,
                                                const struct wb_simulated_origin *origin);
 
+/* A history's phase as a dataset's. */
+enum wb_phase wb_simulated_phase(enum wb_history_phase phase);
+
 /* How a wire model was computed. */
 struct wb_simulated_wire {
     const char *solver; /* "wire3d" or "wire1d" */

@@ -19,19 +19,6 @@ static const char *const kind_names[] = {
     [WB_WIRE_STEP_RELEASE] = "release",
 };
 
-static enum wb_phase phase_of(enum wb_history_phase phase)
-{
-    switch (phase) {
-    case WB_HISTORY_LOAD:
-        return WB_PHASE_LOAD;
-    case WB_HISTORY_UNLOAD:
-        return WB_PHASE_UNLOAD;
-    case WB_HISTORY_SLACK:
-        return WB_PHASE_SLACK;
-    }
-    return WB_PHASE_LOAD;
-}
-
 /* Way of the tip, m. */
 static double way(const double from[3], const double to[3])
 {
@@ -67,7 +54,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_wire_
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
-            .phase = phase_of(row->phase),
+            .phase = wb_simulated_phase(row->phase),
             .deflection = row->tip[1],
             .tension = row->tension,
             .force = row->force,
@@ -91,7 +78,7 @@ static void set_info(struct wb_test_info *info, const struct wb_wire_model *mode
     info->strand_length = model->strand_length;
     info->is_general = !wb_wire_model_is_bending_test(model);
     info->is_follower = !info->is_general && wb_wire_model_is_follower(model);
-    info->gravity = -model->gravity[1];
+    info->gravity = 0.0 - model->gravity[1]; /* no -0 */
     info->rest_level = (double)NAN;
     info->is_simulation = true;
 }
