@@ -98,13 +98,13 @@ static enum wb_status check_material(const struct reader *reader, const struct w
 static enum wb_status read_part(struct reader *reader, const struct wb_config_node *map, int index)
 {
     struct wb_wire_model_part *const part = &reader->model->part[index];
+    char material[WB_PATH], path[WB_PATH]; /* a name, or the way to a file */
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", part->name),
         WB_CONFIG_NUMBER("outer_diameter_mm", &part->outer_diameter, WB_MM, 1e-3, 1e3),
-        WB_CONFIG_TEXT("material", part->material_name),
+        WB_CONFIG_TEXT("material", material),
     };
     struct wb_material_file file;
-    char path[WB_PATH];
 
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     WB_TRY(check_name(map, part->name));
@@ -117,7 +117,7 @@ static enum wb_status read_part(struct reader *reader, const struct wb_config_no
         if (strcmp(part->name, reader->model->part[i].name) == 0)
             return wb_config_refuse(map, "name", "another part is called %s, too", part->name);
 
-    WB_TRY(find(reader, map, "material", "materials", part->material_name, path));
+    WB_TRY(find(reader, map, "material", "materials", material, path));
     WB_TRY(wb_material_file_read(&file, path));
     WB_TRY(check_material(reader, map, "material", &file));
     part->material = file.material;
@@ -406,7 +406,7 @@ static enum wb_status read_root(struct reader *reader)
 {
     struct wb_wire_model *const m = reader->model;
     const struct wb_config_node *parts, *interface, *gravity, *mesh, *sections, *history;
-    char wire[64], path[WB_PATH];
+    char wire[WB_PATH], path[WB_PATH]; /* a name, or the way to a file */
     int law, clamp = 0;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", m->name),

@@ -144,6 +144,26 @@ static void every_key_is_read(void **state)
     assert_close(model.section[1], 0.05, 1e-15);
 }
 
+/* Names of products are short, ways to their files need not be. */
+static void ways_to_files_may_be_long(void **state)
+{
+    (void)state;
+    char way[201], text[1024];
+    for (int i = 0; i < 200; i++)
+        way[i] = i % 2 == 0 ? '.' : '/';
+    way[200] = '\0';
+    write_beside("mine.yaml", "name: mine\nconductor_diameter_mm: 1\nouter_diameter_mm: 2\n"
+                              "density_g_cm3: 3\n");
+    snprintf(text, sizeof text,
+             "name: far\ntitle: far\nwire: %smine.yaml\nlength_mm: 100\nlaw: elastic\n"
+             "parts:\n  - name: all\n    outer_diameter_mm: 2\n    material: %ssoft.yaml\n"
+             "gravity: [0, 0, 0]\nhistory:\n  - name: up\n    force_N: [0, 1, 0]\n    rows: 2\n",
+             way, way);
+    read_text(text);
+    assert_string_equal(model.wire.name, "mine");
+    assert_string_equal(model.part[0].material_name, "soft");
+}
+
 static void history_goes_on_from_step_to_step(void **state)
 {
     (void)state;
@@ -567,6 +587,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_key_is_read),
+        cmocka_unit_test(ways_to_files_may_be_long),
         cmocka_unit_test(history_goes_on_from_step_to_step),
         cmocka_unit_test(without_parts_it_is_the_homogenised_wire),
         cmocka_unit_test(rules_of_mixtures_give_the_papers_wire),
