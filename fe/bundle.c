@@ -41,7 +41,7 @@ long wb_bundle_hexahedra(const struct wb_bundle *bundle)
 
 int wb_bundle_shells(const struct wb_bundle *bundle)
 {
-    return bundle->has_tape ? bundle->ring.layout.n_nodes * (bundle->n_stations - 1) : 0;
+    return bundle->has_tape ? wb_swept_tape_elements(bundle->tape) * (bundle->n_stations - 1) : 0;
 }
 
 double wb_bundle_station_mass(const struct wb_bundle *bundle, const struct wb_bundle_body *body,

@@ -1,8 +1,10 @@
 #include "fe/bundle_bond.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "fe/bundle_private.h"
+#include "fe/bundle_tape.h"
 #include "fe/swept_cohesion.h"
 #include "fe/swept_tape_contact.h"
 
@@ -17,32 +19,39 @@ enum {
 struct wb_bundle_bond {
     struct wb_bundle *bundle; /* borrowed: it owns this */
     struct wb_swept_cohesion *cohesion;
+    struct wb_swept_cohesion *windings; /* of a helix, to each other; NULL of a sleeve */
     struct wb_swept_tape_contact *contact;
     double *ring_mass, *ring_inertia; /* (ring nodes) kg, kg m2: at an inner station, scaled */
 };
 
-/* The wire that most of a ring node's part of the outline lies on, and how much of it. */
-static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle *bundle, double offset,
-                                                  int node)
+/* What most of a ring node's part of the tape lies on, and how much of it: a wire, or the winding
+ * below. Where the strip climbs on itself it lies on neither. */
+static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle *bundle, int node,
+                                                  int station)
 {
-    const struct wb_hull *hull = &bundle->model->tape.hull;
-    const int n = bundle->ring.layout.n_nodes;
-    const double around = wb_hull_length(hull, offset);
-    int count[WB_PACKING_MOST] = {0}, most = -1;
+    const struct wb_swept_cohesion_bond nothing = {WB_SWEPT_COHESION_FREE, 0.0};
+    const struct wb_bundle_tape_place here = wb_bundle_tape_place(bundle, node, station);
+    const double element =
+        fabs(wb_bundle_tape_place(bundle, node + 1.0, station).level - here.level);
+    int count[WB_PACKING_MOST] = {0}, most = -1, n = 0;
 
+    if (here.level >= 1.0 + 0.999 * element && element > 0.0)
+        return (struct wb_swept_cohesion_bond){WB_SWEPT_COHESION_TAPE, 1.0};
     for (int i = 0; i < SAMPLES; i++) {
         const double at = node + (i + 0.5) / SAMPLES - 0.5;
-        const int wire = wb_hull_at(hull, offset, -around * at / n).wire;
-        if (wire < 0)
+        const struct wb_bundle_tape_place place = wb_bundle_tape_place(bundle, at, station);
+        const int wire = place.point.wire;
+        n += place.is_tape;
+        if (!place.is_tape || place.level >= 1.0 || wire < 0)
             continue;
         count[wire]++;
         if (most < 0 || count[wire] > count[most])
             most = wire;
     }
     /* A node over a gap that only borders on a wire faces nothing. */
-    if (most < 0 || wb_hull_at(hull, offset, -around * node / n).wire != most)
-        return (struct wb_swept_cohesion_bond){WB_SWEPT_COHESION_FREE, 0.0};
-    return (struct wb_swept_cohesion_bond){most, (double)count[most] / SAMPLES};
+    if (most < 0 || here.point.wire != most)
+        return nothing;
+    return (struct wb_swept_cohesion_bond){most, (double)count[most] / n};
 }
 
 static void describe_wires(const struct wb_bundle *bundle,
@@ -63,13 +72,12 @@ static void describe_wires(const struct wb_bundle *bundle,
     }
 }
 
-static enum wb_status make_cohesion(struct wb_bundle_bond *bond,
-                                    const struct wb_swept_cohesion_wire *wires)
+/* Bonds to wires, which may break, or those of windings to each other. */
+static enum wb_status make_cohesion(const struct wb_bundle *bundle,
+                                    const struct wb_swept_cohesion_wire *wires, bool windings,
+                                    struct wb_swept_cohesion **out)
 {
-    const struct wb_bundle *bundle = bond->bundle;
     const struct wb_bundle_interface *interface = &bundle->model->interface;
-    const struct wb_bundle_tape *tape = &bundle->model->tape;
-    const double offset = tape->gap + 0.5 * wb_taping_thickness(&tape->taping);
     const int n = bundle->ring.layout.n_nodes;
     struct wb_swept_cohesion_settings settings;
     struct wb_swept_cohesion_bond *bonds =
@@ -80,18 +88,21 @@ static enum wb_status make_cohesion(struct wb_bundle_bond *bond,
     wb_swept_cohesion_default_settings(&settings);
     settings.normal_stiffness = interface->normal_stiffness;
     settings.shear_stiffness = interface->shear_stiffness;
-    if (interface->has_damage) {
+    if (interface->has_damage && !windings) {
         settings.strength = interface->damage.strength;
         settings.shear_strength = interface->damage.shear_strength;
         settings.fracture_energy = interface->damage.fracture_energy;
     }
     for (int k = 0; k < n; k++) {
-        const struct wb_swept_cohesion_bond partner = find_partner(bundle, offset, k);
-        for (int j = 0; j < bundle->n_stations; j++)
-            bonds[k * bundle->n_stations + j] = partner;
+        for (int j = 0; j < bundle->n_stations; j++) {
+            struct wb_swept_cohesion_bond *bond = &bonds[k * bundle->n_stations + j];
+            *bond = find_partner(bundle, k, j);
+            if ((bond->to == WB_SWEPT_COHESION_TAPE) != windings)
+                *bond = (struct wb_swept_cohesion_bond){WB_SWEPT_COHESION_FREE, 0.0};
+        }
     }
-    const enum wb_status status = wb_swept_cohesion_create(&bond->cohesion, bundle->tape, &settings,
-                                                           bundle->n_wires, wires, bonds);
+    const enum wb_status status =
+        wb_swept_cohesion_create(out, bundle->tape, &settings, bundle->n_wires, wires, bonds);
     free(bonds);
     return status;
 }
@@ -141,7 +152,9 @@ enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bund
 
     struct wb_swept_cohesion_wire wires[WB_PACKING_MOST];
     describe_wires(bundle, wires);
-    enum wb_status status = make_cohesion(bond, wires);
+    enum wb_status status = make_cohesion(bundle, wires, false, &bond->cohesion);
+    if (status == WB_OK && bundle->model->tape.taping.kind == WB_TAPING_HELIX)
+        status = make_cohesion(bundle, wires, true, &bond->windings);
     if (status == WB_OK)
         status = make_contact(bond, wires);
     if (status == WB_OK)
@@ -159,6 +172,7 @@ void wb_bundle_bond_destroy(struct wb_bundle_bond *bond)
         return;
     wb_swept_tape_contact_destroy(bond->contact);
     wb_swept_cohesion_destroy(bond->cohesion);
+    wb_swept_cohesion_destroy(bond->windings);
     free(bond->ring_mass);
     free(bond->ring_inertia);
     free(bond);
@@ -181,6 +195,9 @@ enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bond,
 
     wb_swept_cohesion_add_forces(bond->cohesion, &fields, 0, wb_swept_tape_blocks(bundle->tape),
                                  &sums);
+    if (bond->windings)
+        wb_swept_cohesion_add_forces(bond->windings, &fields, 0, wb_swept_tape_blocks(bundle->tape),
+                                     &sums);
     WB_TRY(wb_swept_tape_contact_add_forces(bond->contact, &fields, bundle->time_step, &touching));
     *energies = (struct wb_bundle_bond_energies){
         .stored = sums.stored,
@@ -218,8 +235,11 @@ double wb_bundle_bond_wire_stiffness(const struct wb_bundle_bond *bond, int wire
 
 double wb_bundle_bond_ring_stiffness(const struct wb_bundle_bond *bond)
 {
-    return wb_swept_cohesion_tape_stiffness_per_mass(bond->cohesion, bond->ring_mass,
-                                                     bond->ring_inertia) +
-           wb_swept_tape_contact_stiffness_per_mass(bond->contact, bond->ring_mass,
-                                                    bond->ring_inertia);
+    const double *mass = bond->ring_mass, *inertia = bond->ring_inertia;
+    const double windings =
+        bond->windings ? wb_swept_cohesion_tape_stiffness_per_mass(bond->windings, mass, inertia)
+                       : 0.0;
+
+    return wb_swept_cohesion_tape_stiffness_per_mass(bond->cohesion, mass, inertia) + windings +
+           wb_swept_tape_contact_stiffness_per_mass(bond->contact, mass, inertia);
 }

@@ -3,7 +3,8 @@
  * (fe/swept_tape_contact.h): where the tape spans a gap between wires and comes to lie on one of
  * them, and where damage has broken the bond.
  *
- * Contact has the interface's stiffnesses.
+ * Contact has the interface's stiffnesses, and so has what bonds the windings of a helix to each
+ * other; that does not break.
  */
 #ifndef WB_FE_BUNDLE_BOND_H
 #define WB_FE_BUNDLE_BOND_H

@@ -1,10 +1,9 @@
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/units.h"
-#include "fe/bundle_bond.h"
 #include "fe/bundle_private.h"
+#include "fe/bundle_tape.h"
 #include "fe/swept_frequency.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -33,8 +32,9 @@ static enum wb_status share_mass(struct wb_bundle_type *type, const struct wb_wi
     return WB_OK;
 }
 
-static enum wb_status make_step(const struct wb_bundle *bundle, struct wb_swept_layout layout,
-                                const double *node_mass, double gravity, struct wb_swept_step **out)
+enum wb_status wb_bundle_create_step(const struct wb_bundle *bundle, struct wb_swept_layout layout,
+                                     const double *node_mass, double gravity,
+                                     struct wb_swept_step **out)
 {
     const struct wb_bundle_run *run = &bundle->model->run;
     const struct wb_swept_step_model model = {
@@ -66,11 +66,11 @@ static enum wb_status make_type(struct wb_bundle *bundle, int t)
     };
     WB_TRY(wb_swept_hex_create(&type->hex, &model));
     WB_TRY(share_mass(type, wire));
-    return make_step(bundle, wb_swept_hex_layout(type->hex), type->node_mass, bundle->gravity,
-                     &type->step);
+    return wb_bundle_create_step(bundle, wb_swept_hex_layout(type->hex), type->node_mass,
+                                 bundle->gravity, &type->step);
 }
 
-static enum wb_status make_fields(struct wb_bundle_body *body, struct wb_swept_layout layout)
+enum wb_status wb_bundle_create_fields(struct wb_bundle_body *body, struct wb_swept_layout layout)
 {
     const size_t n = wb_swept_size(&layout);
 
@@ -98,7 +98,7 @@ static enum wb_status make_wire(struct wb_bundle *bundle, int w)
     struct wb_bundle_body *body = &bundle->wire[w];
 
     WB_TRY(wb_swept_hex_state_create(&bundle->history[w], type->hex));
-    WB_TRY(make_fields(body, wb_swept_hex_layout(type->hex)));
+    WB_TRY(wb_bundle_create_fields(body, wb_swept_hex_layout(type->hex)));
     body->step = type->step;
     body->node_mass = type->node_mass;
     for (int k = 0; k < body->layout.n_nodes; k++) {
@@ -139,69 +139,6 @@ static enum wb_status make_contact(struct wb_bundle *bundle)
     }
     return wb_swept_contact_create(&bundle->contact, &settings, bundle->n_wires, wires,
                                    bundle->n_stations, bundle->spacing);
-}
-
-/* --- tape --- */
-
-static enum wb_status make_ring(struct wb_bundle *bundle)
-{
-    const struct wb_bundle_tape *tape = &bundle->model->tape;
-    const double thickness = wb_taping_thickness(&tape->taping);
-    const double offset = tape->gap + 0.5 * thickness;
-    const int n = wb_bundle_model_tape_quads(bundle->model, bundle->mesh);
-    const struct wb_swept_layout layout = wb_swept_layout(n, bundle->n_stations);
-
-    WB_TRY(make_fields(&bundle->ring, layout));
-    WB_TRY(make_fields(&bundle->directors, layout));
-    const double around = wb_hull_length(&tape->hull, offset);
-    for (int k = 0; k < n; k++) {
-        /* The hull runs from z towards y; axis x ring points outwards the other way round. */
-        const struct wb_hull_point at = wb_hull_at(&tape->hull, offset, -around * k / n);
-        place(bundle, &bundle->ring, k, at.y, at.z);
-    }
-    const struct wb_swept_tape_model model = {
-        .material = tape->material.material,
-        .density = tape->material.density,
-        .thickness = thickness,
-        .layout = layout,
-        .position = bundle->ring.position,
-        .spacing = bundle->spacing,
-        .closed = true,
-    };
-    WB_TRY(wb_swept_tape_create(&bundle->tape, &model));
-    return wb_swept_tape_state_create(&bundle->tape_history, bundle->tape);
-}
-
-static enum wb_status make_tape(struct wb_bundle *bundle)
-{
-    struct wb_bundle_body *ring = &bundle->ring, *directors = &bundle->directors;
-
-    if (!bundle->model->has_tape)
-        return WB_OK;
-    if (bundle->model->tape.taping.kind != WB_TAPING_SLEEVE)
-        return wb_fail(WB_ERR_UNSUPPORTED, "%s: a helix cannot be computed yet; use layout: sleeve",
-                       bundle->model->path);
-    bundle->has_tape = true;
-    WB_TRY(make_ring(bundle));
-    const int n = ring->layout.n_nodes;
-    bundle->tape_mass = calloc((size_t)n, sizeof *bundle->tape_mass);
-    bundle->tape_inertia = calloc((size_t)n, sizeof *bundle->tape_inertia);
-    if (!bundle->tape_mass || !bundle->tape_inertia)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the tape");
-    wb_swept_tape_masses(bundle->tape, bundle->tape_mass, bundle->tape_inertia);
-    memcpy(directors->position, wb_swept_tape_directors(bundle->tape),
-           wb_swept_size(&directors->layout) * sizeof *directors->position);
-    WB_TRY(make_step(bundle, ring->layout, bundle->tape_mass, bundle->gravity, &bundle->tape_step));
-    WB_TRY(make_step(bundle, ring->layout, bundle->tape_inertia, 0.0, &bundle->director_step));
-    ring->step = bundle->tape_step;
-    ring->node_mass = bundle->tape_mass;
-    directors->step = bundle->director_step;
-    for (int k = 0; k < n; k++) {
-        ring->mass += bundle->tape_mass[k];
-        ring->start += bundle->tape_mass[k] * ring->position[(3 * k + 1) * ring->layout.stride];
-    }
-    ring->start /= ring->mass;
-    return wb_bundle_bond_create(&bundle->bond, bundle);
 }
 
 /* --- ends and step --- */
@@ -269,7 +206,8 @@ static enum wb_status build(struct wb_bundle *bundle)
     for (int w = 0; w < bundle->n_wires; w++)
         WB_TRY(make_wire(bundle, w));
     WB_TRY(make_contact(bundle));
-    WB_TRY(make_tape(bundle));
+    if (bundle->model->has_tape)
+        WB_TRY(wb_bundle_tape_create(bundle));
     hold_clamp(bundle);
     if (bundle->model->tip == WB_BUNDLE_TIP_CAPPED)
         WB_TRY(wb_bundle_cap_create(&bundle->cap, bundle));
@@ -319,7 +257,7 @@ void wb_bundle_destroy(struct wb_bundle *bundle)
     if (!bundle)
         return;
     wb_bundle_cap_destroy(bundle->cap);
-    wb_bundle_bond_destroy(bundle->bond);
+    wb_bundle_tape_release(bundle);
     wb_swept_contact_destroy(bundle->contact);
     for (int w = 0; w < bundle->n_wires; w++) {
         wb_swept_hex_state_destroy(bundle->history[w]);
@@ -331,12 +269,6 @@ void wb_bundle_destroy(struct wb_bundle *bundle)
         free(bundle->type[t].node_mass);
         wb_swept_section_release(&bundle->type[t].section);
     }
-    wb_swept_tape_state_destroy(bundle->tape_history);
-    wb_swept_tape_destroy(bundle->tape);
-    wb_swept_step_destroy(bundle->tape_step);
-    wb_swept_step_destroy(bundle->director_step);
-    free(bundle->tape_mass);
-    free(bundle->tape_inertia);
     release_body(&bundle->ring);
     release_body(&bundle->directors);
     free(bundle);

@@ -1,4 +1,4 @@
-/* Shared by bundle.c (the run) and bundle_create.c; nobody else. */
+/* Shared by bundle.c (the run), bundle_create.c and bundle_tape.c, _bond.c, _cap.c; nobody else. */
 #ifndef WB_FE_BUNDLE_PRIVATE_H
 #define WB_FE_BUNDLE_PRIVATE_H
 
@@ -80,6 +80,14 @@ struct wb_bundle {
 /* Kilograms of a body's station, scaled, half at the ends. */
 double wb_bundle_station_mass(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
                               int station);
+
+/* Zeroed fields of a body; its steps. */
+WB_MUST_CHECK enum wb_status wb_bundle_create_fields(struct wb_bundle_body *body,
+                                                     struct wb_swept_layout layout);
+WB_MUST_CHECK enum wb_status wb_bundle_create_step(const struct wb_bundle *bundle,
+                                                   struct wb_swept_layout layout,
+                                                   const double *node_mass, double gravity,
+                                                   struct wb_swept_step **out);
 
 /* The last station that the clamp holds. */
 int wb_bundle_last_held(const struct wb_bundle *bundle);
