@@ -214,11 +214,11 @@ static int look(struct wb_jobs_plan *plan)
     for (int i = 0; i < plan->n; i++) {
         struct wb_jobs_plan_item *const item = &plan->items[i];
         int status = 0;
-        if (item->state != WB_JOBS_PLAN_RUNNING)
+        if (item->pid <= 0) /* what runs without one is a task of Slurm */
             continue;
         if (waitpid(item->pid, &status, WNOHANG) == item->pid)
             settle(plan, item, status);
-        running += item->state == WB_JOBS_PLAN_RUNNING;
+        running += item->pid > 0;
     }
     return running;
 }
