@@ -190,6 +190,28 @@ static void draw_text(cairo_t *cairo, const struct wb_layout_panel *layout,
 }
 
 /* The fields, below all else. */
+static enum wb_status draw_image(cairo_t *cairo, const struct wb_layout_panel *layout,
+                                 const struct wb_series *series)
+{
+    const double left = wb_layout_x(layout, series->x[0]), top = wb_layout_y(layout, series->y[1]);
+    const double width = wb_layout_x(layout, series->x[1]) - left;
+    const double height = wb_layout_y(layout, series->y[0]) - top;
+    const int across = series->pixels_across, down = series->pixels_down;
+    cairo_surface_t *const image =
+        cairo_image_surface_create_for_data((unsigned char *)series->pixels, CAIRO_FORMAT_ARGB32,
+                                            across, down, (int)sizeof(uint32_t) * across);
+    cairo_save(cairo);
+    cairo_translate(cairo, left, top);
+    cairo_scale(cairo, width / across, height / down);
+    cairo_set_source_surface(cairo, image, 0.0, 0.0);
+    cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_GOOD);
+    cairo_paint(cairo);
+    cairo_restore(cairo);
+    const enum wb_status status = wb_canvas_status(cairo_surface_status(image), "an image");
+    cairo_surface_destroy(image);
+    return status;
+}
+
 static enum wb_status draw_fields(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_panel *const panel = layout->panel;
@@ -198,6 +220,10 @@ static enum wb_status draw_fields(cairo_t *cairo, const struct wb_layout_panel *
     cairo_save(cairo);
     cairo_rectangle(cairo, plot->x, plot->y, plot->width, plot->height);
     cairo_clip(cairo);
+    for (int i = 0; i < panel->n_series && status == WB_OK; i++) {
+        if (panel->series[i].kind == WB_SERIES_IMAGE && panel->series[i].n > 0)
+            status = draw_image(cairo, layout, &panel->series[i]);
+    }
     for (int i = 0; i < panel->n_series && status == WB_OK; i++) {
         if (panel->series[i].kind == WB_SERIES_FIELD)
             status = wb_shading_draw_field(cairo, layout, &panel->series[i]);

@@ -58,6 +58,7 @@ static void destroy_panel(struct wb_panel *panel)
         free(panel->series[i].x);
         free(panel->series[i].y);
         free(panel->series[i].high);
+        free(panel->series[i].pixels);
         wb_contour_release(&panel->series[i].contour);
     }
     free(panel->series);
@@ -313,6 +314,26 @@ void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_co
         series->y[i] = faces[i / 8].y[i % 8];
     }
     series->n = n;
+}
+
+void wb_figure_add_image(struct wb_panel *panel, const struct wb_figure_image *image)
+{
+    struct wb_series *const series = add_series(panel, WB_SERIES_IMAGE, NULL);
+    if (!series)
+        return;
+    const size_t n = (size_t)image->width * (size_t)image->height;
+    const double x[2] = {image->low[0], image->high[0]}, y[2] = {image->low[1], image->high[1]};
+    series->x = copy_values(panel->figure, x, 2);
+    series->y = copy_values(panel->figure, y, 2);
+    series->pixels = malloc(n * sizeof *series->pixels);
+    if (!series->pixels || n == 0) {
+        panel->figure->failed = true;
+        return;
+    }
+    memcpy(series->pixels, image->pixels, n * sizeof *series->pixels);
+    series->pixels_across = image->width;
+    series->pixels_down = image->height;
+    series->n = series->x && series->y ? 2 : 0;
 }
 
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup)

@@ -14,7 +14,7 @@
  * remembered and reported when the figure is drawn. The same description gives the same bytes.
  *
  * Fields on 8-node faces are drawn as filled contours, see contour.h; a colour bar is a panel of
- * its own.
+ * its own. Scenes in space are images, see view.h.
  *
  * Legends and insets are placed where they cover no data: in the emptiest corner, else as near to a
  * corner as they fit, else outside of the axes. A figure is used by one thread at a time.
@@ -24,6 +24,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "analysis/plot/contour.h"
 #include "analysis/plot/palette.h"
@@ -109,7 +110,8 @@ void wb_figure_set_right_axis(struct wb_panel *panel, const char *label, double 
 /* No frame, ticks and labels: a drawing. */
 void wb_figure_hide_axes(struct wb_panel *panel);
 
-/* Series, drawn in the order fields, bands, areas, lines, points. `label` NULL: not in the legend.
+/* Series, drawn in the order images, fields, bands, areas, lines, points. `label` NULL: not in the
+ * legend.
  */
 void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *y, const struct wb_figure_style *style);
@@ -123,6 +125,14 @@ void wb_figure_add_area(struct wb_panel *panel, const char *label, size_t n, con
 /* A field with the outline of its faces; copied. Faces that are not finite are left out. */
 void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_contour_face *faces,
                          const struct wb_figure_colours *colours);
+/* An image from `low` to `high` of the axes: alpha, red, green, blue from the highest byte of a
+ * pixel down, colours times alpha; the upper left pixel first. Copied; drawn before all else. */
+struct wb_figure_image {
+    int width, height;      /* pixels */
+    const uint32_t *pixels; /* (height x width) */
+    double low[2], high[2];
+};
+void wb_figure_add_image(struct wb_panel *panel, const struct wb_figure_image *image);
 /* A text whose left (-1), middle (0) or right (1) end stands at a point. */
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup);
 

@@ -4,12 +4,14 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "analysis/plot/figure.h"
 
 #define WB_FIGURE_PANELS 6
 
 enum wb_series_kind {
+    WB_SERIES_IMAGE,
     WB_SERIES_FIELD,
     WB_SERIES_BAND,
     WB_SERIES_AREA,
@@ -24,6 +26,9 @@ struct wb_series {
     double *x, *y, *high; /* (n), owned; `high` of a band, whose low edge is y */
     struct wb_figure_style style;
     int side; /* of a text */
+    /* Of an image, whose x and y are its two edges. */
+    int pixels_across, pixels_down;
+    uint32_t *pixels; /* owned */
     /* Of a field, whose x and y are the nodes of its faces, eight each. */
     struct wb_contour contour; /* owned */
     struct wb_figure_colours colours;

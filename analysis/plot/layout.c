@@ -267,6 +267,8 @@ static void mark_series(struct wb_place *place, const struct wb_layout_panel *la
         if (series->n == 0)
             continue;
         switch (series->kind) {
+        case WB_SERIES_IMAGE:
+            break;
         case WB_SERIES_FIELD:
             mark_field(place, layout, series);
             break;

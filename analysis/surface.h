@@ -1,0 +1,54 @@
+/* The surface of a computed bundle at its largest deflection, kept in its dataset as surface.csv:
+ *
+ *     body,kind,station,node,x_mm,y_mm,z_mm,von_mises_MPa
+ *
+ * (one row for each node: body by body, station by station). `kind` is `wire`, `tape` (its ring is
+ * closed) or `strip` (a tape with two free edges). A wire's nodes go round its section, the tape's
+ * round its ring. Places are kept to 1 um, stresses to 4 digits.
+ *
+ * x runs from the clamp along the straight bundle, y up, z across.
+ */
+#ifndef WB_ANALYSIS_SURFACE_H
+#define WB_ANALYSIS_SURFACE_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "fe/bundle_fields.h"
+
+enum {
+    WB_SURFACE_ALONG = 41, /* stations and nodes at most that wb_surface_take() keeps */
+    WB_SURFACE_AROUND_WIRE = 24,
+    WB_SURFACE_AROUND_TAPE = 48
+};
+
+struct wb_surface_node {
+    double position[3]; /* m */
+    double von_mises;   /* Pa */
+};
+
+struct wb_surface_body {
+    bool is_tape;
+    bool closed; /* always, but for a strip */
+    int n_around, n_along;
+    struct wb_surface_node *nodes; /* (n_along x n_around), station by station; owned */
+};
+
+struct wb_surface {
+    int n;
+    struct wb_surface_body *bodies; /* (n), owned */
+};
+
+/* The surface of a bundle's fields, with fewer stations and nodes where there are more than above.
+ * On failure nothing needs a release. */
+WB_MUST_CHECK enum wb_status wb_surface_take(struct wb_surface *surface,
+                                             const struct wb_bundle_fields *fields);
+void wb_surface_release(struct wb_surface *surface); /* accepts a zeroed one */
+
+/* surface.csv in a dataset's folder, written whole or not at all; without a body the file is
+ * removed. Writing refuses what is not finite. Reading errors name file, line and column; a folder
+ * without surface.csv reads as no bodies. */
+WB_MUST_CHECK enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder);
+WB_MUST_CHECK enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder);
+
+#endif
