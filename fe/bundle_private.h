@@ -1,4 +1,5 @@
-/* Shared by bundle.c (the run), bundle_create.c and bundle_tape.c, _bond.c, _cap.c; nobody else. */
+/* Shared by bundle.c (the run), bundle_create.c, bundle_bond.c, bundle_cap.c, bundle_tape.c and
+ * test_bundle_cap.c; nobody else. */
 #ifndef WB_FE_BUNDLE_PRIVATE_H
 #define WB_FE_BUNDLE_PRIVATE_H
 
