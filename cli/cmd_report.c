@@ -1,6 +1,7 @@
 /* wirebench report: a campaign's recordings, or its simulations, become its report. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/report/bundles_report.h"
 #include "analysis/report/comparison_report.h"
@@ -10,12 +11,14 @@
 #include "base/progress.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/jobs.h"
 
 #define WB_LOG_DOMAIN "report"
 
 struct options {
     struct wb_command_common common;
     int threads;
+    struct wb_jobs_options jobs; /* for datasets that are missing */
 };
 
 enum {
@@ -33,23 +36,35 @@ static const struct argp_option option_table[] = {
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
-    if (key != KEY_THREADS)
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->jobs;
+        return 0;
+    case KEY_THREADS:
+        o->threads = wb_command_integer(state, "--threads", argument, 1, 16);
+        return 0;
+    default:
         return wb_command_parse_common(key, argument, state, &o->common);
-    o->threads = wb_command_integer(state, "--threads", argument, 1, 16);
-    return 0;
+    }
 }
+
+static const struct argp_child children[] = {{&wb_jobs_argp, 0, NULL, 0}, {0}};
 
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
     .args_doc = "CAMPAIGN.yaml",
-    .doc = "Aligns the recordings of a campaign, calibrates and validates its wires and writes the "
-           "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). A campaign of "
-           "the kind `comparison` compares datasets that `solve` made of wire models, one of the "
-           "kind `bundles` those of bundles.\v"
-           "What is missing or cannot be used is named in the report (exit code 3). Exit code 4: "
-           "all is written, but a limit of the campaign is exceeded. The same recordings or "
-           "datasets and the same revision give the same bytes.",
+    .doc =
+        "Aligns the recordings of a campaign, calibrates and validates its wires and writes the "
+        "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). A campaign of "
+        "the kind `comparison` compares datasets that `solve` made of wire models, one of the "
+        "kind `bundles` those of bundles.\v"
+        "What is missing or cannot be used is named in the report (exit code 3). Exit code 4: "
+        "all is written, but a limit of the campaign is exceeded. The same recordings or "
+        "datasets and the same revision give the same bytes. --solve and --slurm first make "
+        "the datasets that a campaign of bundles misses, those that are outdated too; run again, "
+        "they go on where they ended. Logs lie in DIR.jobs.",
+    .children = children,
 };
 
 static void show_progress(void *context, int done, int total, const char *what)
@@ -290,12 +305,81 @@ static int finish_bundles(const struct options *o, const struct wb_bundles_resul
     return deliver(o, results->is_complete, results->exceeds_limit);
 }
 
+/* A job for each dataset that is to be made; returns how many. */
+static int list_jobs(const struct wb_bundles_results *results, struct wb_job *jobs)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    int n = 0;
+    for (int i = 0; i < campaign->n_runs + campaign->n_bundles; i++) {
+        const bool is_rod = i >= campaign->n_runs;
+        const struct wb_bundles_result *const result =
+            is_rod ? &results->rods[i - campaign->n_runs] : &results->runs[i];
+        const struct wb_bundles_dataset *const dataset =
+            is_rod ? &campaign->bundles[i - campaign->n_runs].rod : &campaign->runs[i].dataset;
+        if (!wb_bundles_run_is_missing(result))
+            continue;
+        jobs[n++] = (struct wb_job){
+            .name = dataset->log,
+            .arguments = dataset->arguments,
+            .output = dataset->path,
+            .cost = is_rod ? 0.0 : wb_bundles_run_cost(&campaign->runs[i]),
+            .replace = result->state == WB_BUNDLES_STALE,
+        };
+    }
+    return n;
+}
+
+/* Makes what is missing and reads it; *told is whether that is all that was asked for. */
+static int make_missing(const struct options *o, struct wb_bundles_results *results, bool *told)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    static struct wb_job jobs[WB_BUNDLES_RUNS + WB_BUNDLES_BUNDLES];
+    struct wb_jobs_options options = o->jobs;
+    struct wb_jobs_outcome outcome;
+    char folder[WB_PATH];
+    const int n = list_jobs(results, jobs);
+    size_t length = strlen(o->common.output);
+    while (length > 1 && o->common.output[length - 1] == '/')
+        length--;
+    if (snprintf(folder, sizeof folder, "%.*s.jobs", (int)length, o->common.output) >=
+        (int)sizeof folder)
+        return wb_command_exit(wb_fail(WB_ERR_ARGUMENT, "the output's path is too long"));
+    options.folder = folder;
+    if (n == 0)
+        return WB_EXIT_OK;
+    const int code = wb_command_exit(wb_jobs_run(&outcome, jobs, n, &options));
+    if (code != WB_EXIT_OK)
+        return code;
+    *told = options.dry_run || outcome.interrupted;
+    if (*told)
+        return options.dry_run ? WB_EXIT_OK : refuse_interrupted();
+    wb_bundles_results_release(results);
+    wb_bundles_results_load(results, campaign);
+    return WB_EXIT_OK;
+}
+
+static int compute_bundles(const struct options *o, struct wb_bundles_results *results,
+                           const struct wb_bundles *campaign)
+{
+    struct wb_progress progress;
+    bool told = false;
+    int code = WB_EXIT_OK;
+    wb_bundles_results_load(results, campaign);
+    if (wb_jobs_wanted(&o->jobs))
+        code = make_missing(o, results, &told);
+    if (code != WB_EXIT_OK || told)
+        return code;
+    wb_progress_start(&progress, "report", "steps", campaign->n_bundles);
+    wb_bundles_results_compute(results, show_progress, &progress);
+    wb_progress_finish(&progress);
+    return finish_bundles(o, results);
+}
+
 static int report_bundles(const struct options *o, const char *path)
 {
     /* Too large for the stack of a small system. */
     struct wb_bundles *const bundles = calloc(1, sizeof *bundles);
     struct wb_bundles_results *const results = calloc(1, sizeof *results);
-    struct wb_progress progress;
     int code = bundles && results ? WB_EXIT_OK : WB_EXIT_FAILED;
     if (code != WB_EXIT_OK)
         wb_error("out of memory");
@@ -303,13 +387,8 @@ static int report_bundles(const struct options *o, const char *path)
         code = wb_command_exit(wb_bundles_read(bundles, path));
     if (code == WB_EXIT_OK)
         code = prepare(o);
-    if (code == WB_EXIT_OK) {
-        wb_progress_start(&progress, "report", "steps", wb_bundles_count(bundles));
-        wb_bundles_results_load(results, bundles, show_progress, &progress);
-        wb_bundles_results_compute(results, show_progress, &progress);
-        wb_progress_finish(&progress);
-        code = finish_bundles(o, results);
-    }
+    if (code == WB_EXIT_OK)
+        code = compute_bundles(o, results, bundles);
     if (results)
         wb_bundles_results_release(results);
     if (bundles)
@@ -334,10 +413,16 @@ int wb_cmd_report(int argc, char **argv)
     enum wb_campaign_kind kind;
     if (wb_campaign_read_kind(&kind, path) != WB_OK)
         return WB_EXIT_FAILED;
+    if (wb_jobs_wanted(&options.jobs) && kind != WB_CAMPAIGN_BUNDLES) {
+        wb_error("--solve and --slurm are for campaigns of the kind bundles; %s has another kind",
+                 path);
+        return WB_EXIT_FAILED;
+    }
     const bool existed = wb_file_exists(options.common.output);
     wb_interrupt_install();
     const int code = reports[kind](&options, path);
-    if (code == WB_EXIT_FAILED && !existed)
+    if (!existed)
         remove(options.common.output); /* only if it is empty */
+    wb_jobs_options_release(&options.jobs);
     return code;
 }

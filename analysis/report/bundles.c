@@ -224,13 +224,29 @@ static enum wb_status read_groups(const struct wb_bundles_reading *reading,
 
 /* --- studies --- */
 
+static enum wb_status read_labels(const struct wb_bundles *all, const struct wb_config_node *node,
+                                  const struct wb_config_node *labels,
+                                  struct wb_bundles_study *study)
+{
+    if (labels && wb_config_length(labels) != study->n)
+        return wb_config_refuse(node, "labels", "expected a list of %d labels, as many as runs",
+                                study->n);
+    for (int i = 0; i < study->n; i++) {
+        const char *const own = labels ? wb_config_scalar(wb_config_item(labels, i)) : NULL;
+        snprintf(study->labels[i], sizeof study->labels[i], "%.150s",
+                 own ? own : all->runs[study->runs[i]].label);
+    }
+    return WB_OK;
+}
+
 static enum wb_status read_study(struct wb_bundles *all, const struct wb_config_node *node,
                                  struct wb_bundles_study *study)
 {
-    const struct wb_config_node *runs;
+    const struct wb_config_node *runs, *labels;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("title", study->title),
         WB_CONFIG_NODE("runs", &runs),
+        WB_CONFIG_OPTIONAL_NODE("labels", &labels),
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     study->n = wb_config_length(runs);
@@ -244,7 +260,7 @@ static enum wb_status read_study(struct wb_bundles *all, const struct wb_config_
             return wb_config_refuse(node, "runs", "'%s' is of another bundle than '%s'", name,
                                     all->runs[study->runs[0]].name);
     }
-    return WB_OK;
+    return read_labels(all, node, labels, study);
 }
 
 static enum wb_status read_studies(struct wb_bundles *all, const struct wb_config_node *root,

@@ -18,7 +18,7 @@
  *         weight: false
  *         mesh: engineering
  *         mass_scaling: 25
- *         selective: 100
+ *         selective_mass_scaling: 100
  *         duration_s: 3
  *     groups:                                     # at most three bundles stand in one figure
  *       - label: 7, 12 and 19 wires of type 3
@@ -30,7 +30,7 @@
  *             rod: bundle-7-1d                    # optional: dataset of `wirebench solve
  *                                                 # cantilever` with the published properties
  *     studies:                                    # optional
- *       - {title: Friction, runs: [a, b, c]}
+ *       - {title: Friction, runs: [a, b], labels: [low, high]}   # labels: the runs' by default
  *     inset: 7 wires                              # optional: the bundle whose shape is drawn
  *     fit: {yield_point: 0.04}                    # optional, as a campaign's `settings`
  *     limits:                                     # optional, absent: none
@@ -114,6 +114,7 @@ struct wb_bundles_study {
     char title[160];
     int n;
     int runs[WB_BUNDLES_STUDY_RUNS];
+    char labels[WB_BUNDLES_STUDY_RUNS][160]; /* plain text */
 };
 
 /* Of ratios, 1; 0: none. */

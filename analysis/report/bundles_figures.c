@@ -103,14 +103,18 @@ static enum wb_status draw_sections(struct wb_figure **figure,
 
 /* --- constant and decaying friction --- */
 
+static bool is_usable(const struct wb_bundles_results *results,
+                      const struct wb_bundles_bundle *bundle)
+{
+    return wb_bundles_results_usable(results, bundle->dynamic) ||
+           wb_bundles_results_usable(results, bundle->constant);
+}
+
 static bool any_usable(const struct wb_bundles_results *results, const struct wb_bundles_group *g)
 {
     bool any = false;
-    for (int i = g->first; i < g->first + g->n; i++) {
-        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
-        any |= wb_bundles_results_usable(results, bundle->dynamic) ||
-               wb_bundles_results_usable(results, bundle->constant);
-    }
+    for (int i = g->first; i < g->first + g->n; i++)
+        any |= is_usable(results, &results->campaign->bundles[i]);
     return any;
 }
 
@@ -133,11 +137,10 @@ static enum wb_status draw_forces(struct wb_figure **figure,
     if (!any_usable(results, group))
         return WB_OK;
     WB_TRY(start(figure, "forces", index, panel_height));
-    for (int i = 0; i < group->n; i++) {
-        const struct wb_bundles_bundle *const bundle =
-            &results->campaign->bundles[group->first + i];
-        struct wb_panel *const panel = add_force_panel(*figure, bundle->label, i == 0);
-        WB_TRY(add_forces(panel, results, bundle));
+    for (int i = group->first, n = 0; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        if (is_usable(results, bundle))
+            WB_TRY(add_forces(add_force_panel(*figure, bundle->label, n++ == 0), results, bundle));
     }
     return WB_OK;
 }
@@ -238,17 +241,23 @@ static enum wb_status draw_energies(struct wb_figure **figure,
                                     const struct wb_bundles_results *results, int index)
 {
     const struct wb_bundles_group *const group = &results->campaign->groups[index];
-    if (!any_usable(results, group))
+    bool any = false;
+    for (int i = group->first; i < group->first + group->n; i++)
+        any |= wb_bundles_results_usable(results, results->campaign->bundles[i].dynamic) != NULL;
+    if (!any)
         return WB_OK;
     WB_TRY(start(figure, "energies", index, panel_height));
-    for (int i = 0; i < group->n; i++) {
-        const struct wb_bundles_bundle *const bundle =
-            &results->campaign->bundles[group->first + i];
+    for (int i = group->first, n = 0; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, bundle->dynamic);
+        if (!run)
+            continue;
         struct wb_panel *const panel = wb_figure_add_panel(*figure);
         set_title(panel, bundle->label);
-        wb_figure_set_axes(panel, "Time of the model (s)", i == 0 ? "Energy (mJ)" : "");
+        wb_figure_set_axes(panel, "Time of the model (s)", n++ == 0 ? "Energy (mJ)" : "");
         wb_figure_set_y_range(panel, 0.0, (double)NAN);
-        WB_TRY(add_energies(panel, wb_bundles_results_usable(results, bundle->dynamic)));
+        WB_TRY(add_energies(panel, run));
     }
     return WB_OK;
 }
@@ -273,7 +282,7 @@ static enum wb_status draw_study(struct wb_figure *figure, const struct wb_bundl
         if (!published)
             WB_TRY(add_published(panel, "published", run));
         published = true;
-        wb_text_append_escaped(&label, results->campaign->runs[study->runs[i]].label);
+        wb_text_append_escaped(&label, study->labels[i]);
         const enum wb_status status = add_run(panel, wb_text_string(&label), run, &style);
         wb_text_release(&label);
         WB_TRY(status);

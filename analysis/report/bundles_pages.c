@@ -12,8 +12,8 @@
 
 const char *wb_bundles_pages_loading(const struct wb_bundles_run *run)
 {
-    static const char *const texts[2][2] = {{"dead force, no weight", "dead force, weight"},
-                                            {"strand, no weight", "strand, weight"}};
+    static const char *const texts[2][2] = {{"dead force", "dead force, weight"},
+                                            {"strand", "strand, weight"}};
     const struct wb_bundle_loads *const loads = &run->model->loads;
     return texts[loads->strand_length > 0.0][loads->weight];
 }
@@ -265,15 +265,16 @@ void wb_bundles_pages_put_runs(struct wb_document *document,
         {.heading = "Time (s)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub> (N)", .right = true, .wraps = true},
         {.heading = "RMS", .right = true},
-        {.heading = "Kinetic (%)", .right = true, .wraps = true},
-        {.heading = "Artificial (%)", .right = true, .wraps = true},
-        {.heading = "Imbalance (%)", .right = true, .wraps = true},
+        {.heading = "<i>E</i><sub>kin</sub> (%)", .right = true, .wraps = true},
+        {.heading = "<i>E</i><sub>art</sub> (%)", .right = true, .wraps = true},
+        {.heading = "<i>E</i><sub>off</sub> (%)", .right = true, .wraps = true},
     };
     struct wb_document_table *const table = wb_document_table(
         document,
-        "RMS: from the published curve under the same loading, over its largest force. Kinetic and "
-        "artificial: largest part of the internal energy from 2 mm on; imbalance: of the external "
-        "work.",
+        "RMS: from the published curve under the same loading, over its largest force. "
+        "<i>E</i><sub>kin</sub>, <i>E</i><sub>art</sub>: kinetic and artificial energy over "
+        "internal energy, at most from 2 mm on; <i>E</i><sub>off</sub>: imbalance of energy over "
+        "the external work. Time: of the model.",
         10, columns);
     for (int i = 0; i < n; i++)
         put_run(document, table, results, runs[i]);

@@ -30,7 +30,8 @@ void wb_bundles_pages_runs(struct wb_document *document, const struct wb_bundles
 void wb_bundles_pages_provenance(struct wb_document *document,
                                  const struct wb_bundles_results *results);
 
-/* What they share: "dead force, no weight"; " (the paper's Fig. N)", or "" without a number. */
+/* What they share: "dead force", "strand, weight"; " (the paper's Fig. N)", or "" without a number.
+ */
 const char *wb_bundles_pages_loading(const struct wb_bundles_run *run);
 const char *wb_bundles_pages_figure(char text[48], const char *number);
 /* A table of the runs given by index, with RMS, force and energies of each. */

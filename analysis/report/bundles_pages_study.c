@@ -187,7 +187,9 @@ static void put_properties(struct wb_document *document, struct wb_document_tabl
     wb_pages_cell(&row, WB_TONE_PLAIN, "%s", of);
     wb_pages_cell_number(&row, diameter / WB_MM, 2);
     for (int k = 0; k < 4; k++)
-        wb_pages_cell_number(&row, material ? wb_pages_value(material, k) : (double)NAN,
+        wb_pages_cell_number(&row,
+                             material ? wb_pages_value(material, k) / wb_pages_properties[k].factor
+                                      : (double)NAN,
                              property_decimals[k]);
     wb_pages_cell_number(
         &row,

@@ -54,7 +54,7 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
                                   1e-6, 1e9),
         WB_CONFIG_OPTIONAL_TEXT("mesh", s->mesh),
         WB_CONFIG_OPTIONAL_NUMBER("mass_scaling", &o->mass_scaling, 1.0, 1.0, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("selective", &o->selective, 1.0, 1.0, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("selective_mass_scaling", &o->selective, 1.0, 1.0, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("duration_s", &o->duration, 1.0, 1e-6, 1e6),
         WB_CONFIG_OPTIONAL_BOOLEAN("dead_force", &s->dead_force),
         WB_CONFIG_OPTIONAL_BOOLEAN("weight", &s->weight),

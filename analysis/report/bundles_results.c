@@ -238,37 +238,14 @@ static void compare_run(struct wb_bundles_result *result, const struct wb_bundle
 
 /* --- all of it --- */
 
-int wb_bundles_count(const struct wb_bundles *campaign)
+void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign)
 {
-    int n = campaign->n_runs + campaign->n_bundles;
-    for (int i = 0; i < campaign->n_bundles; i++)
-        n += campaign->bundles[i].has_rod;
-    return n;
-}
-
-static void tell(wb_bundles_progress *progress, void *context, int done,
-                 const struct wb_bundles *campaign, const char *what, const char *name)
-{
-    char text[320];
-    snprintf(text, sizeof text, "%s %s", what, name);
-    if (progress)
-        progress(context, done, wb_bundles_count(campaign), text);
-}
-
-void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign,
-                             wb_bundles_progress *progress, void *context)
-{
-    int done = 0;
     results->campaign = campaign;
-    for (int i = 0; i < campaign->n_runs; i++) {
+    for (int i = 0; i < campaign->n_runs; i++)
         wb_bundles_run_load(&results->runs[i], &campaign->runs[i]);
-        tell(progress, context, ++done, campaign, "read", campaign->runs[i].dataset.name);
-    }
     for (int i = 0; i < campaign->n_bundles; i++) {
         const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
         wb_bundles_run_load_rod(&results->rods[i], bundle, &campaign->runs[bundle->dynamic]);
-        if (bundle->has_rod)
-            tell(progress, context, ++done, campaign, "read", bundle->rod.name);
     }
 }
 
@@ -276,14 +253,14 @@ void wb_bundles_results_compute(struct wb_bundles_results *results, wb_bundles_p
                                 void *context)
 {
     const struct wb_bundles *const campaign = results->campaign;
-    int done = wb_bundles_count(campaign) - campaign->n_bundles;
     for (int i = 0; i < campaign->n_runs && !wb_interrupted(); i++) {
         if (results->runs[i].state == WB_BUNDLES_USABLE)
             compare_run(&results->runs[i], &campaign->runs[i], &campaign->fit);
     }
     for (int i = 0; i < campaign->n_bundles && !wb_interrupted(); i++) {
         fit_bundle(results, i);
-        tell(progress, context, ++done, campaign, "fitted", campaign->bundles[i].label);
+        if (progress)
+            progress(context, i + 1, campaign->n_bundles, campaign->bundles[i].label);
     }
     results->interrupted = wb_interrupted();
     judge(results);

@@ -34,13 +34,9 @@ struct wb_bundles_results {
 
 typedef void wb_bundles_progress(void *context, int done, int total, const char *what);
 
-/* How many steps loading and computing tell of. */
-int wb_bundles_count(const struct wb_bundles *campaign);
-
 /* Reads and checks the datasets into zeroed results. Nothing fails. */
-void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign,
-                             wb_bundles_progress *progress, void *context);
-/* Then compares and fits what is there. Nothing fails. */
+void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign);
+/* Then compares and fits what is there, and tells of each bundle. Nothing fails. */
 void wb_bundles_results_compute(struct wb_bundles_results *results, wb_bundles_progress *progress,
                                 void *context);
 void wb_bundles_results_release(struct wb_bundles_results *results); /* accepts a zeroed one */

@@ -21,6 +21,12 @@ bool wb_bundles_run_is_missing(const struct wb_bundles_result *result)
     return result->state == WB_BUNDLES_MISSING || result->state == WB_BUNDLES_STALE;
 }
 
+double wb_bundles_run_cost(const struct wb_bundles_run *run)
+{
+    const double elements = (double)wb_bundle_model_hexahedra(run->model, run->mesh);
+    return run->model->run.duration > 0.0 ? elements : 2.0 * elements;
+}
+
 /* --- dataset.json --- */
 
 static double number_of(const struct wb_json *object, const char *key)
@@ -182,7 +188,7 @@ static const char energies_header[] =
 
 enum {
     COLUMNS = 11, /* that are wanted, the first ones */
-    MM_SHIFT = -3 /* to m */
+    MM_SHIFT = 3  /* in mm */
 };
 
 static bool parse_energy(char *line, struct wb_bundles_energy *energy)

@@ -71,4 +71,8 @@ WB_MUST_CHECK enum wb_status wb_bundles_run_compare(struct wb_bundles_result *re
 /* Whether it is to be made (again) by --solve. */
 bool wb_bundles_run_is_missing(const struct wb_bundles_result *result);
 
+/* What a run costs, beside others: its elements, and twice as much where the duration is to be
+ * found first. */
+double wb_bundles_run_cost(const struct wb_bundles_run *run);
+
 #endif

@@ -1,0 +1,124 @@
+/* Datasets as `solve bundle` writes them, of a bundle that was never solved in 3D: its forces are
+ * those of its published beam times a factor, its axis is that beam's. For tests of what reads such
+ * datasets.
+ */
+#ifndef WB_TESTS_ANALYSIS_MADE_UP_BUNDLE_H
+#define WB_TESTS_ANALYSIS_MADE_UP_BUNDLE_H
+
+#include "tests/check.h"
+
+#include <stdlib.h>
+
+#include "analysis/simulated_bundle.h"
+#include "base/units.h"
+#include "fe/cantilever.h"
+#include "fe/section.h"
+
+enum {
+    MADE_UP_SHAPE = 26
+};
+
+struct made_up_bundle {
+    const struct wb_bundle_model *model; /* as it was run */
+    double factor;                       /* of the published forces */
+    double kinetic, imbalance;           /* largest ratios */
+    double cpu;                          /* s */
+    int rows;                            /* of the model's that were computed; 0: all */
+};
+
+static inline void made_up_fill_row(struct wb_bundle_history *history, int i,
+                                    const struct wb_cantilever_point *point, double factor)
+{
+    struct wb_bundle_row *const row = &history->rows[i];
+    *row = (struct wb_bundle_row){
+        .time = 0.01 * i,
+        .cycle = 1,
+        .phase = WB_HISTORY_LOAD,
+        .deflection = point->deflection,
+        .tip = {point->tip_x, point->deflection, 0.0},
+        .tip_angle = point->tip_angle,
+        .tension = factor * point->tension,
+        .vertical_force = factor * point->vertical_force,
+        .force = factor * point->vertical_force,
+    };
+    if (i > 0) {
+        const struct wb_bundle_row *const before = row - 1;
+        row->energies = before->energies;
+        row->energies.external +=
+            0.5 * (row->force + before->force) * (row->deflection - before->deflection);
+        row->energies.stored = 0.6 * row->energies.external;
+        row->energies.plastic = 0.3 * row->energies.external;
+        row->energies.friction = 0.1 * row->energies.external;
+    }
+}
+
+static inline void made_up_bend(const struct made_up_bundle *bundle,
+                                struct wb_bundle_history *history)
+{
+    const struct wb_bundle_model *const m = bundle->model;
+    const struct wb_wire *const beam = &m->published.beam;
+    struct wb_section section;
+    struct wb_cantilever *cantilever;
+    struct wb_cantilever_model model;
+    assert_int_equal(wb_section_init_circle(&section, beam->outer_diameter, &beam->material, 0),
+                     WB_OK);
+    wb_cantilever_default_model(&model);
+    model.section = &section;
+    model.length = m->length;
+    model.gravity_y = 0.0;
+    assert_int_equal(wb_cantilever_create(&cantilever, &model, NULL), WB_OK);
+    const int n = bundle->rows > 0 ? bundle->rows : m->run.rows + 1;
+    for (int i = 0; i < n; i++) {
+        struct wb_cantilever_point point;
+        double x[MADE_UP_SHAPE], y[MADE_UP_SHAPE];
+        assert_int_equal(wb_cantilever_move(cantilever, WB_CONTROL_DEFLECTION,
+                                            m->run.deflection * i / m->run.rows, &point),
+                         WB_OK);
+        made_up_fill_row(history, i, &point, bundle->factor);
+        wb_cantilever_shape(cantilever, MADE_UP_SHAPE, history->shape_s, x, y, NULL);
+        for (int k = 0; k < MADE_UP_SHAPE; k++) {
+            double *const at = history->shape[i * MADE_UP_SHAPE + k];
+            at[0] = x[k], at[1] = y[k], at[2] = 0.0;
+        }
+        history->n_rows = i + 1;
+    }
+    wb_cantilever_destroy(cantilever);
+    wb_section_release(&section);
+}
+
+/* Of a bundle under a dead force without weight. */
+static inline void made_up_write(const struct made_up_bundle *bundle, const char *folder)
+{
+    const struct wb_bundle_model *const m = bundle->model;
+    struct wb_bundle_history history = {0};
+    struct wb_dataset dataset;
+    assert_int_equal(wb_bundle_run_init(&history, m, MADE_UP_SHAPE), WB_OK);
+    made_up_bend(bundle, &history);
+    history.converged = history.n_rows == m->run.rows + 1;
+    snprintf(history.problem, sizeof history.problem, "made up");
+    history.duration = m->run.duration > 0.0 ? m->run.duration : 1.5;
+    history.chosen = !(m->run.duration > 0.0);
+    history.attempts = 1;
+    history.time_step = 4e-6;
+    history.steps = history.all_steps = 400000;
+    history.hexahedra = 6720;
+    history.largest.kinetic = bundle->kinetic;
+    history.largest.artificial = 0.004;
+    history.largest.imbalance = bundle->imbalance;
+    history.largest.strain = 0.03;
+    const struct wb_simulated_bundle simulated = {
+        .model = m,
+        .mesh = wb_bundle_model_mesh(m, m->run.mesh),
+        .history = &history,
+        .wall = bundle->cpu,
+        .cpu = bundle->cpu,
+    };
+    assert_int_equal(wb_dataset_init(&dataset), WB_OK);
+    assert_int_equal(wb_simulated_bundle_fill(&dataset, &simulated), WB_OK);
+    assert_int_equal(wb_dataset_write(&dataset, folder, true), WB_OK);
+    assert_int_equal(wb_simulated_bundle_write_energies(&dataset, &simulated, folder), WB_OK);
+    wb_dataset_release(&dataset);
+    wb_bundle_run_release(&history);
+}
+
+#endif

@@ -1,0 +1,117 @@
+#!/bin/bash
+# `wirebench report` of bundles as a user meets it: what is missing and how to make it, --solve makes
+# it, runs again only what has changed, and the report comes out. One wire stands in for a bundle: it
+# is solved in a second, and its published beam is the wire's own.
+# Usage: report-bundles.sh WIREBENCH
+set -u
+
+wirebench=$(realpath "$1")
+folder=$(mktemp -d /tmp/wb-bundles-XXXXXX)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
+    local expected=$1 code
+    shift
+    "$wirebench" report "$@" >"$folder/out" 2>"$folder/err"
+    code=$?
+    [ $code -eq "$expected" ] || {
+        fail "report $*: exit code $code, expected $expected"
+        cat "$folder/err"
+    }
+}
+
+cat >"$folder/one.yaml" <<'YAML'
+name: one
+title: One wire
+wires: [{wire: type3, count: 1}]
+packing: hexagon
+length_mm: 85
+interface: {cohesive_stiffness_N_mm3: 30, friction: 0.4}
+meshes: [{name: coarse, core_quads: 2, rings: 1, elements_along: 20, formulation: 2x2x1}]
+run: {mesh: coarse, deflection_mm: 20, rows: 40, mass_scaling: 25, selective_mass_scaling: 10}
+loads: {strand_mm: 760, weight: true}
+published: {outer_diameter_mm: 1.4, density_g_cm3: 4.97, beam: type3}
+YAML
+cat >"$folder/c.yaml" <<'YAML'
+kind: bundles
+title: One wire
+simulations: sim
+defaults: {dead_force: true, weight: false, duration_s: 1.5}
+runs:
+  - {name: one, bundle: ./one.yaml}
+  - {name: one-0.2, bundle: ./one.yaml, friction: 0.2}
+groups:
+  - label: A wire
+    bundles: [{label: one wire, dynamic: one, constant: one-0.2, rod: one-1d}]
+fit: {elements: 10, fibres: 12}
+YAML
+cd "$folder" || exit 1
+
+# Without datasets all is written, and everybody is told how to make them.
+run 3 c.yaml -o r
+for file in report.pdf report.html report.json figures/sections-1.svg; do
+    [ -s "r/$file" ] || fail "no $file"
+done
+grep -qF 'wirebench solve bundle one.yaml --dead-force --no-weight --friction 0.2 --duration-s 1.5 -o sim/one-0.2' out ||
+    fail 'it is not told how to make a dataset'
+grep -q '0 of 3 datasets used' out || fail 'datasets come from nowhere'
+
+# The command that is told makes it, in the campaign's folder.
+eval "$(sed -n 's/^ *wirebench \(solve cantilever .*\)/"$wirebench" \1/p' out)" 2>/dev/null
+run 3 c.yaml -o r --force
+grep -q '1 of 3 datasets used' out || fail 'the told command did not make the dataset'
+
+# An array that is only written, and no report.
+run 0 c.yaml -o dry --slurm-dry-run
+[ -e dry ] && fail 'a dry run wrote a report'
+find dry.jobs -type f | xargs grep -q -e '--dead-force' || fail 'no list of runs was written'
+
+# The missing ones are made here.
+run 0 c.yaml -o r --force --solve --workers 2
+grep -q '3 of 3 datasets used' out || fail 'not all datasets were made'
+[ -d r.jobs ] || fail 'there are no logs'
+rms=$(sed -n 's/^one wire .* published curve \([0-9.]*\) .*/\1/p' out)
+awk -v rms="$rms" 'BEGIN { exit !(rms > 0 && rms < 0.02) }' ||
+    fail "one wire is $rms from its own beam"
+before=$(sha256sum sim/*/dataset.json)
+run 0 c.yaml -o again --solve
+[ "$before" = "$(sha256sum sim/*/dataset.json)" ] || fail 'datasets that are there were made again'
+diff -r r again >/dev/null || fail 'another run gave other bytes'
+run 0 c.yaml -o json --json
+cmp -s out again/report.json || fail '--json does not print report.json'
+grep -qiE "experiment|$folder" r/report.html r/report.json && fail 'a word or path that must not be there'
+
+# Another friction: the dataset is outdated, left out, and replaced.
+sed -i 's/friction: 0.2/friction: 0.3/' c.yaml
+run 3 c.yaml -o r --force
+grep -q 'the static friction is 0.2 in it, and 0.3 is wanted' out || fail 'outdated datasets are not told'
+first=$(sha256sum sim/one/dataset.json)
+run 0 c.yaml -o r --force --solve
+grep -q '"static": 0.3' sim/one-0.2/dataset.json || fail 'the outdated dataset was not replaced'
+[ "$first" = "$(sha256sum sim/one/dataset.json)" ] || fail 'a dataset that fits was made again'
+
+# A run that cannot be made is named, and the others are reported.
+cat >>c.yaml <<'YAML'
+limits: {kinetic_max: 1e-6}
+YAML
+sed -i 's/^  - {name: one-0.2.*/&\n  - {name: lost, bundle: .\/one.yaml, mass_scaling: 1e6, duration_s: 1e-3}/' c.yaml
+run 3 c.yaml -o r --force --solve
+grep -q 'lost' err || fail 'the failed run is not named'
+grep -q 'sim/lost: there is no such dataset' out || fail 'the missing dataset is not told'
+grep -q 'limit kinetic_max exceeded by one' out || fail 'the exceeded limit is not told'
+sed -i '/name: lost/d' c.yaml
+run 4 c.yaml -o r --force
+
+# Of bundles only.
+sed 's/^kind: .*/kind: comparison/' c.yaml >other.yaml
+run 1 other.yaml -o other --solve
+grep -q 'kind bundles' err || fail 'it is not told which campaigns can be solved'
+
+[ $failures -eq 0 ] && echo 'report of bundles: all good'
+exit $((failures > 0))
