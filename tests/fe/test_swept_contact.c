@@ -56,6 +56,45 @@ static void parallel_wires_press_with_stiffness_times_depth(void **state)
     contacts_release(&c);
 }
 
+/* Two like cylinders, pressed by P per length, in plane strain (K. L. Johnson, Contact Mechanics,
+ * 1985, section 5.6): half width b, approach of their axes
+ *
+ *     b^2 = 4 P R (1 - nu^2) / (pi E),  delta = 2 P (1 - nu^2) / (pi E) (2 ln(4 R / b) - 1).
+ */
+static double hertz_approach(double load, double R, double E, double nu)
+{
+    const double soft = (1.0 - nu * nu) / (M_PI * E);
+    const double b = sqrt(4.0 * load * R * soft);
+    return 2.0 * load * soft * (2.0 * log(4.0 * R / b) - 1.0);
+}
+
+/* One stiffness stands for what grows slowly with the load: it is Hertz's at 3e-3 E R (10 N/mm
+ * between wires of type 3), 1.6 times as stiff a hundred times below. */
+static void stiffness_is_about_that_of_hertz_line_contact(void **state)
+{
+    const double E = 1e9, nu = 0.39, radius[2] = {0.7e-3, 0.7e-3};
+    struct wb_swept_contact_settings settings = contacts_settings();
+    double ratio[5];
+
+    (void)state;
+    for (int i = 0; i < 5; i++) {
+        const double load = 3e-3 * pow(10.0, -0.5 * i) * E * radius[0];
+        const double depth = hertz_approach(load, radius[0], E, nu);
+        struct contacts c;
+        struct wb_swept_contact_point point;
+        contacts_make_pair(&c, &settings, radius, depth, 0.6, 0.0);
+        contacts_step(&c, dt);
+        wb_swept_contact_get_point(c.contact, 0, 10, &point);
+        ratio[i] = point.normal / load;
+        print_message("load %.1e E R: approach %.1e R, force over Hertz's %.2f\n",
+                      load / (E * radius[0]), depth / radius[0], ratio[i]);
+        contacts_release(&c);
+    }
+    assert_close(ratio[0], 1.0, 0.03);
+    for (int i = 1; i < 5; i++)
+        assert_true(ratio[i] > ratio[i - 1] && ratio[i] < 1.7);
+}
+
 /* Trapezoids: what lies within is a half station longer on either side. */
 static void stations_at_the_ends_weigh_half(void **state)
 {
@@ -545,6 +584,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parallel_wires_press_with_stiffness_times_depth),
+        cmocka_unit_test(stiffness_is_about_that_of_hertz_line_contact),
         cmocka_unit_test(stations_at_the_ends_weigh_half),
         cmocka_unit_test(wires_that_slipped_past_press_side_by_side_only),
         cmocka_unit_test(chords_of_bent_wires_do_not_show_in_the_gap),
