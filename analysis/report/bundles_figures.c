@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/properties.h"
+#include "analysis/report/figures_surface.h"
 #include "analysis/report/report_pdf.h"
 #include "analysis/validate.h"
 #include "base/text.h"
@@ -262,6 +263,41 @@ static enum wb_status draw_energies(struct wb_figure **figure,
     return WB_OK;
 }
 
+/* --- bent bundles --- */
+
+/* The bundles of a group have one scale. */
+static enum wb_status draw_shapes(struct wb_bundles_figures *figures,
+                                  const struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_group *const group = &campaign->groups[index];
+    const int end = group->first + group->n;
+    struct wb_figures_surface_style style = {.width = WB_REPORT_WIDTH};
+    for (int i = group->first; i < end; i++) {
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, campaign->bundles[i].dynamic);
+        if (run && run->surface.n > 0)
+            style.most_stress =
+                fmax(style.most_stress, wb_figures_surface_most_stress(&run->surface));
+    }
+    for (int i = group->first; i < end; i++) {
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, campaign->bundles[i].dynamic);
+        struct wb_text title = {0};
+        char name[64];
+        if (!run || run->surface.n == 0)
+            continue;
+        wb_text_append_escaped(&title, campaign->bundles[i].label);
+        snprintf(name, sizeof name, "shape-%d", i + 1);
+        style.title = wb_text_string(&title);
+        const enum wb_status status =
+            wb_figures_surface_draw(&figures->shapes[i], name, &run->surface, &style);
+        wb_text_release(&title);
+        WB_TRY(status);
+    }
+    return WB_OK;
+}
+
 /* --- studies --- */
 
 static enum wb_status draw_study(struct wb_figure *figure, const struct wb_bundles_results *results,
@@ -439,6 +475,7 @@ static enum wb_status draw_all(struct wb_bundles_figures *figures,
         WB_TRY(draw_sections(&group[WB_BUNDLES_SECTION], results, i));
         WB_TRY(draw_forces(&group[WB_BUNDLES_FORCE], results, i));
         WB_TRY(draw_errors(&group[WB_BUNDLES_ERROR], results, i));
+        WB_TRY(draw_shapes(figures, results, i));
         WB_TRY(draw_energies(&group[WB_BUNDLES_ENERGY], results, i));
     }
     for (int i = 0; 2 * i < campaign->n_studies; i++)
@@ -456,7 +493,7 @@ enum wb_status wb_bundles_figures_create(struct wb_bundles_figures *figures,
     return status;
 }
 
-/* Everything, also what is not there, in the report's order. */
+/* Everything, also what is not there. */
 static int collect(const struct wb_bundles_figures *figures,
                    struct wb_figure *all[WB_BUNDLES_FIGURES_MOST])
 {
@@ -469,6 +506,8 @@ static int collect(const struct wb_bundles_figures *figures,
         for (int k = WB_BUNDLES_SECTION + 1; k < WB_BUNDLES_FIGURES; k++)
             all[n++] = figures->groups[i][k];
     }
+    for (int i = 0; i < WB_BUNDLES_BUNDLES; i++)
+        all[n++] = figures->shapes[i];
     all[n++] = figures->fit;
     return n;
 }

@@ -9,8 +9,9 @@
 #include "base/status.h"
 
 struct wb_bundles_figures {
-    /* Of a group: sections, forces over deflection, errors, shapes in 3D, energies. */
+    /* Of a group: sections, forces over deflection, errors, energies; not WB_BUNDLES_SHAPE. */
     struct wb_figure *groups[WB_BUNDLES_GROUPS][WB_BUNDLES_FIGURES];
+    struct wb_figure *shapes[WB_BUNDLES_BUNDLES];            /* a bent bundle in space */
     struct wb_figure *studies[(WB_BUNDLES_STUDIES + 1) / 2]; /* two studies beside each other */
     struct wb_figure *fit;                                   /* 3D and 1D */
 };
@@ -21,9 +22,9 @@ WB_MUST_CHECK enum wb_status wb_bundles_figures_create(struct wb_bundles_figures
 void wb_bundles_figures_release(struct wb_bundles_figures *figures); /* accepts a zeroed one */
 
 #define WB_BUNDLES_FIGURES_MOST                                                                    \
-    (WB_BUNDLES_GROUPS * WB_BUNDLES_FIGURES + (WB_BUNDLES_STUDIES + 1) / 2 + 1)
+    (WB_BUNDLES_GROUPS * WB_BUNDLES_FIGURES + WB_BUNDLES_BUNDLES + (WB_BUNDLES_STUDIES + 1) / 2 + 1)
 
-/* All figures there are, in the report's order; returns how many. */
+/* All figures there are, those of one kind together; returns how many. */
 int wb_bundles_figures_list(const struct wb_bundles_figures *figures,
                             const struct wb_figure *list[WB_BUNDLES_FIGURES_MOST]);
 

@@ -148,9 +148,32 @@ static void put_forces(struct wb_document *document, const struct wb_bundles *ca
     put_figure(document, figure, &caption);
 }
 
-static void put_group(struct wb_document *document, const struct wb_bundles *campaign, int index,
-                      struct wb_figure *const figures[WB_BUNDLES_FIGURES])
+static void put_shapes(struct wb_document *document, const struct wb_bundles_results *results,
+                       const struct wb_bundles_group *group, struct wb_figure *const shapes[])
 {
+    for (int i = group->first; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, bundle->dynamic);
+        struct wb_text caption = {0};
+        char place[48];
+        if (!shapes[i])
+            continue;
+        wb_text_append_escaped(&caption, bundle->label);
+        wb_text_append(&caption,
+                       " bent by %.0f mm%s: von Mises stress of the wires, with the tape drawn as "
+                       "glass, from the side and its ends from nearby.",
+                       run->curve.max_deflection / WB_MM,
+                       wb_bundles_pages_figure(place, group->figures[WB_BUNDLES_SHAPE]));
+        put_figure(document, shapes[i], &caption);
+    }
+}
+
+static void put_group(struct wb_document *document, const struct wb_bundles_results *results,
+                      int index, const struct wb_bundles_figures *all)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    struct wb_figure *const *const figures = all->groups[index];
     const struct wb_bundles_group *const group = &campaign->groups[index];
     struct wb_text caption = {0};
     char anchor[32], place[48];
@@ -162,6 +185,7 @@ static void put_group(struct wb_document *document, const struct wb_bundles *cam
                    "curve's largest force <i>F</i><sub>max</sub>.",
                    wb_bundles_pages_figure(place, group->figures[WB_BUNDLES_ERROR]));
     put_figure(document, figures[WB_BUNDLES_ERROR], &caption);
+    put_shapes(document, results, group, all->shapes);
     wb_text_append(&caption,
                    "Energies%s over the model's own time, with decaying friction. Internal: stored "
                    "and plastic, in wires, tape, contact and cohesion.",
@@ -173,7 +197,7 @@ void wb_bundles_pages_groups(struct wb_document *document, const struct wb_bundl
                              const struct wb_bundles_figures *figures)
 {
     for (int i = 0; i < results->campaign->n_groups; i++)
-        put_group(document, results->campaign, i, figures->groups[i]);
+        put_group(document, results, i, figures);
 }
 
 /* --- 1D properties --- */

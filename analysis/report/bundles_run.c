@@ -258,7 +258,8 @@ static enum wb_status read_run(struct wb_bundles_result *result, const struct wb
     *stale = false;
     WB_TRY(wb_file_join(rows, run->dataset.path, "force_deflection.csv"));
     WB_TRY(wb_hash_file(rows, result->sha256));
-    return read_energies(result, run->dataset.path);
+    WB_TRY(read_energies(result, run->dataset.path));
+    return wb_surface_read(&result->surface, run->dataset.path);
 }
 
 static enum wb_status read_rod(struct wb_bundles_result *result,
@@ -318,6 +319,7 @@ void wb_bundles_run_release(struct wb_bundles_result *result)
 {
     wb_text_release(&result->problem);
     wb_dataset_release(&result->dataset);
+    wb_surface_release(&result->surface);
     wb_curve_release(&result->curve);
     free(result->energies);
     free(result->published);

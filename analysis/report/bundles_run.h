@@ -9,6 +9,7 @@
 #include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "analysis/report/bundles.h"
+#include "analysis/surface.h"
 #include "base/text.h"
 
 enum wb_bundles_state {
@@ -45,6 +46,7 @@ struct wb_bundles_result {
     struct wb_dataset dataset;
     int n_energies;
     struct wb_bundles_energy *energies; /* (n_energies), owned; none without energies.csv */
+    struct wb_surface surface;          /* bent; no bodies without surface.csv */
     struct wb_curve curve;              /* the loading */
     /* The published beam under the run's own loading, where there is one; (curve.n), owned. */
     double *published; /* N; NaN from n_published on */

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "analysis/simulated_bundle.h"
+#include "analysis/surface.h"
 #include "base/units.h"
 #include "fe/cantilever.h"
 #include "fe/section.h"
@@ -86,6 +87,35 @@ static inline void made_up_bend(const struct made_up_bundle *bundle,
     wb_section_release(&section);
 }
 
+enum {
+    MADE_UP_AROUND = 12
+};
+
+/* One tube of the bundle's diameter along its last axis, with a stress that falls to the tip. */
+static inline void made_up_write_surface(const struct wb_bundle_history *history, double diameter,
+                                         const char *folder)
+{
+    const double(*const axis)[3] =
+        (const double(*)[3])history->shape + (size_t)(history->n_rows - 1) * MADE_UP_SHAPE;
+    struct wb_surface_node nodes[MADE_UP_SHAPE * MADE_UP_AROUND];
+    struct wb_surface_body body = {
+        .closed = true, .n_around = MADE_UP_AROUND, .n_along = MADE_UP_SHAPE, .nodes = nodes};
+    const struct wb_surface surface = {1, &body};
+    for (int i = 0; i < MADE_UP_SHAPE; i++) {
+        const int from = i > 0 ? i - 1 : 0, to = i + 1 < MADE_UP_SHAPE ? i + 1 : i;
+        const double angle = atan2(axis[to][1] - axis[from][1], axis[to][0] - axis[from][0]);
+        for (int k = 0; k < MADE_UP_AROUND; k++) {
+            const double around = 6.283185307179586 * k / MADE_UP_AROUND;
+            const double up = 0.5 * diameter * cos(around), aside = 0.5 * diameter * sin(around);
+            nodes[i * MADE_UP_AROUND + k] = (struct wb_surface_node){
+                .position = {axis[i][0] - up * sin(angle), axis[i][1] + up * cos(angle), aside},
+                .von_mises = 30e6 * (1.0 - (double)i / MADE_UP_SHAPE),
+            };
+        }
+    }
+    assert_int_equal(wb_surface_write(&surface, folder), WB_OK);
+}
+
 /* Of a bundle under a dead force without weight. */
 static inline void made_up_write(const struct made_up_bundle *bundle, const char *folder)
 {
@@ -117,6 +147,7 @@ static inline void made_up_write(const struct made_up_bundle *bundle, const char
     assert_int_equal(wb_simulated_bundle_fill(&dataset, &simulated), WB_OK);
     assert_int_equal(wb_dataset_write(&dataset, folder, true), WB_OK);
     assert_int_equal(wb_simulated_bundle_write_energies(&dataset, &simulated, folder), WB_OK);
+    made_up_write_surface(&history, m->published.outer_diameter, folder);
     wb_dataset_release(&dataset);
     wb_bundle_run_release(&history);
 }

@@ -96,7 +96,7 @@ static const char whole[] =
          "  - {name: twelve, bundle: 12-type3}\n"
          "groups:\n"
          "  - label: Both\n"
-         "    figures: {section: '17', force: '19', error: '20', energy: '22'}\n"
+         "    figures: {section: '17', force: '19', error: '20', shape: '21', energy: '22'}\n"
          "    bundles:\n"
          "      - {label: 7 wires, dynamic: seven, constant: seven-constant, rod: ./seven-1d}\n"
          "      - {label: 12 wires, dynamic: twelve, rod: twelve-1d}\n"
@@ -473,6 +473,12 @@ static void something_else_in_a_datasets_place_is_left_alone(void **state)
     release();
     read_small("", "");
     make_run(0, 1.0);
+    write_text("sim/x/surface.csv", "nonsense\n");
+    compute();
+    assert_problem(WB_BUNDLES_REFUSED, "sim/x/surface.csv:1: ");
+    release();
+    read_small("", "");
+    make_run(0, 1.0);
     write_text("sim/x/energies.csv", "nonsense\n");
     compute();
     assert_problem(WB_BUNDLES_REFUSED, "sim/x/energies.csv:1: expected the columns");
@@ -553,6 +559,8 @@ static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
         assert_true(wb_file_exists(in_folder(name)));
     }
     assert_true(wb_file_exists(in_folder("report/figures/sections-1.svg")));
+    assert_true(wb_file_exists(in_folder("report/figures/shape-1.svg")));
+    assert_true(wb_file_exists(in_folder("report/figures/shape-2.svg")));
     assert_true(says("report/report.pdf", "%PDF"));
     static const char *const texts[] = {
         "<b>Simulations.</b>",
@@ -563,6 +571,7 @@ static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
         "<b>Incomplete.</b> 1 of 7 datasets is missing",
         "wirebench solve bundle fixtures/bundles/7-type3.yaml -o sim/hung",
         "(the paper's Fig. 17)",
+        "7 wires bent by 53 mm (the paper's Fig. 21)",
         "RMS from the published curve, over its largest force, 12 wires",
         "1114",
         "0.200",
@@ -594,7 +603,7 @@ static void report_json_has_what_the_pages_tell(void **state)
     assert_close(value, wb_bundles_results_usable(whole_report(), 4)->rms, 1e-15);
     assert_int_equal((int)wb_json_length(wb_json_get(run, "force_N")), 107);
     assert_int_equal((int)wb_json_length(wb_json_get(root, "limits")), 7);
-    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 15);
+    assert_int_equal((int)wb_json_length(wb_json_get(root, "files")), 19);
     wb_json_destroy(root);
 }
 
