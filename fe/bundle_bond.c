@@ -33,6 +33,8 @@ static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle *bundle
     const struct wb_bundle_tape_place here = wb_bundle_tape_place(bundle, node, station);
     const double element =
         fabs(wb_bundle_tape_place(bundle, node + 1.0, station).level - here.level);
+    const struct wb_bundle_tape *tape = &bundle->model->tape;
+    const double middle = tape->gap + 0.5 * wb_taping_thickness(&tape->taping);
     int count[WB_PACKING_MOST] = {0}, most = -1, n = 0;
 
     if (here.level >= 1.0 + 0.999 * element && element > 0.0)
@@ -40,7 +42,8 @@ static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle *bundle
     for (int i = 0; i < SAMPLES; i++) {
         const double at = node + (i + 0.5) / SAMPLES - 0.5;
         const struct wb_bundle_tape_place place = wb_bundle_tape_place(bundle, at, station);
-        const int wire = place.point.wire;
+        const int wire =
+            wb_bundle_model_tape_wire(bundle->model, place.point.y, place.point.z, middle);
         n += place.is_tape;
         if (!place.is_tape || place.level >= 1.0 || wire < 0)
             continue;
@@ -48,8 +51,7 @@ static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle *bundle
         if (most < 0 || count[wire] > count[most])
             most = wire;
     }
-    /* A node over a gap that only borders on a wire faces nothing. */
-    if (most < 0 || here.point.wire != most)
+    if (most < 0)
         return nothing;
     return (struct wb_swept_cohesion_bond){most, (double)count[most] / n};
 }

@@ -11,6 +11,10 @@ static const double n_mm2 = 1e-6;    /* N m2 of one N mm2 */
 static const double g_per_m = 1e-3;  /* kg/m of one g/m */
 static const double touching = 1e-9; /* m */
 
+enum {
+    OUTLINE = 20000 /* places looked at round a tape */
+};
+
 static double circle_area(double diameter)
 {
     return 0.25 * pi * diameter * diameter;
@@ -107,6 +111,23 @@ double wb_bundle_model_tape_mass(const struct wb_bundle_model *model)
     return model->tape.material.density * taping->layer_thickness * wb_taping_area(taping);
 }
 
+int wb_bundle_model_tape_wire(const struct wb_bundle_model *model, double y, double z,
+                              double offset)
+{
+    double least = model->tape.reach + touching;
+    int nearest = -1;
+
+    for (int w = 0; w < model->packing.n; w++) {
+        const struct wb_packing_circle *const wire = &model->packing.wire[w];
+        const double gap = hypot(y - wire->y, z - wire->z) - wire->radius - offset;
+        if (gap > least)
+            continue;
+        least = gap;
+        nearest = w;
+    }
+    return nearest;
+}
+
 double wb_bundle_model_density(const struct wb_bundle_model *model, double diameter)
 {
     return (wb_bundle_model_wire_mass(model) + wb_bundle_model_tape_mass(model)) /
@@ -197,16 +218,35 @@ static void tell_packing(struct list *list, const struct wb_bundle_model *model)
          wb_packing_pairs(&model->packing, touching, 0, NULL));
 }
 
-static void tell_tape(struct list *list, const struct wb_bundle_tape *tape)
+/* Wires that have a bond, and all bonds together round the outline, m. */
+static int find_bonds(const struct wb_bundle_model *model, double *length)
 {
-    const struct wb_taping *const taping = &tape->taping;
-    int n = 0;
-    for (int i = 0; i < tape->hull.packing.n; i++) {
-        bool touches;
-        (void)wb_hull_contact(&tape->hull, i, &touches);
-        n += touches;
+    const struct wb_hull *const hull = &model->tape.hull;
+    const double around = wb_hull_length(hull, 0.0);
+    bool bonded[WB_PACKING_MOST] = {false};
+    int n = 0, places = 0;
+
+    for (int i = 0; i < OUTLINE; i++) {
+        const struct wb_hull_point at = wb_hull_at(hull, 0.0, around * (i + 0.5) / OUTLINE);
+        const int wire = wb_bundle_model_tape_wire(model, at.y, at.z, 0.0);
+        if (wire < 0)
+            continue;
+        places++;
+        n += !bonded[wire];
+        bonded[wire] = true;
     }
+    *length = around * places / OUTLINE;
+    return n;
+}
+
+static void tell_tape(struct list *list, const struct wb_bundle_model *model)
+{
+    const struct wb_bundle_tape *const tape = &model->tape;
+    const struct wb_taping *const taping = &tape->taping;
+    double bonded;
+    const int n = find_bonds(model, &bonded);
     tell(list, "wires_at_tape", "wires that touch the tape", "", n);
+    tell(list, "bonded_length_mm", "of its outline bonded to them", "mm", bonded / WB_MM);
     tell(list, "tape_length_round_mm", "round the middle of the tape", "mm",
          taping->circumference / WB_MM);
     tell(list, "tape_thickness_mm", "tape, all layers", "mm", wb_taping_thickness(taping) / WB_MM);
@@ -266,7 +306,7 @@ int wb_bundle_model_facts(const struct wb_bundle_model *model,
     struct list list = {facts, 0};
     tell_packing(&list, model);
     if (model->has_tape)
-        tell_tape(&list, &model->tape);
+        tell_tape(&list, model);
     tell_mass(&list, model);
     tell_rigidity(&list, model);
     if (model->has_published)

@@ -49,7 +49,10 @@ struct wb_bundle_tape {
     struct wb_material_file material; /* its Poisson's ratio is a number */
     struct wb_taping taping;
     double gap;          /* m, from the wires it touches to its inner face */
-    struct wb_hull hull; /* of the wires; the tape's middle is gap + half its thickness outside */
+    bool round;          /* on a circle round all wires, not taut on their hull */
+    double reach;        /* m: bonded where no farther from a wire than gap and this */
+    struct wb_hull hull; /* of the wires, or of the one circle round them; the tape's middle is gap
+                            + half its thickness outside */
 };
 
 /* --- between wires and tape --- */
@@ -173,6 +176,11 @@ const char *wb_bundle_model_arrangement(const struct wb_bundle_model *model);
 
 /* The wires of a type. */
 int wb_bundle_model_count(const struct wb_bundle_model *model, int type);
+
+/* The wire that the tape is bonded to at a place (m) that lies `offset` (m) outside its outline:
+ * the nearest one within reach; -1 when there is none. */
+int wb_bundle_model_tape_wire(const struct wb_bundle_model *model, double y, double z,
+                              double offset);
 
 /* --- homogenised --- */
 

@@ -9,6 +9,8 @@
 #define WB_LOG_DOMAIN "bundle"
 
 static const double touching = 1e-9; /* m: wires so near to the tape touch it */
+/* What a row of facets of a fine mesh (0.17 mm on a wire of 1.4 mm) touches beside a line. */
+static const double usual_reach = 5e-6; /* m */
 static const double largest_poisson = 0.499;
 /* Of a tape whose material says none. With 0.39 for the wires and voids that count as zero it gives
  * the bundles of Table 4 the 0.3 on average that section 5.5 takes by the rule of mixtures. */
@@ -16,6 +18,7 @@ static const double tape_poisson = 0.35;
 
 const char *const wb_bundle_model_packings[] = {"hexagon", "triangle", "densest", "places", NULL};
 static const char *const layouts[] = {"sleeve", "helix", NULL};
+static const char *const outlines[] = {"hull", "circle", NULL};
 static const char *const hands[] = {"right", "left", NULL};
 
 /* --- wires --- */
@@ -224,8 +227,8 @@ static enum wb_status read_packing(struct wb_bundle_model_reader *reader,
 /* --- tape --- */
 
 struct taping_settings {
-    int layout, layers, hand;
-    double width, lap, poissons_ratio;
+    int layout, layers, hand, outline;
+    double width, lap, poissons_ratio, reach;
     bool has_layers, has_width, has_lap, has_hand, has_poisson;
 };
 
@@ -257,6 +260,8 @@ static enum wb_status read_taping(const struct wb_config_node *map,
         WB_CONFIG_OPTIONAL_CHOICE("hand", &settings->hand, hands),
         WB_CONFIG_OPTIONAL_NUMBER("poissons_ratio", &settings->poissons_ratio, 1.0, -0.99,
                                   largest_poisson),
+        WB_CONFIG_OPTIONAL_CHOICE("outline", &settings->outline, outlines),
+        WB_CONFIG_OPTIONAL_NUMBER("bond_reach_mm", &settings->reach, WB_MM, 0.0, 1.0),
     };
     keys[1].present = &settings->has_layers;
     keys[2].present = &settings->has_width;
@@ -289,7 +294,11 @@ static enum wb_status lay_tape(struct wb_bundle_model_reader *reader,
     struct wb_bundle_tape *const tape = &reader->model->tape;
     const double layer = 0.5 * tape->material.thickness;
     const double layers = settings->layout == 0 ? settings->layers : 1.0 / (1.0 - settings->lap);
-    WB_TRY(wb_hull_find(&tape->hull, &reader->model->packing, touching));
+    struct wb_packing circle = {.n = 1};
+    tape->round = settings->outline == 1;
+    tape->reach = settings->reach;
+    circle.wire[0] = wb_packing_enclosing(reader->model->packing.n, reader->model->packing.wire);
+    WB_TRY(wb_hull_find(&tape->hull, tape->round ? &circle : &reader->model->packing, touching));
     const double round = wb_hull_length(&tape->hull, tape->gap + 0.5 * layers * layer);
     if (settings->layout == 0)
         return wb_taping_sleeve(&tape->taping, round, layer, settings->layers);
@@ -305,7 +314,7 @@ static enum wb_status lay_tape(struct wb_bundle_model_reader *reader,
 static enum wb_status read_tape(struct wb_bundle_model_reader *reader, const char *name,
                                 const struct wb_config_node *map)
 {
-    struct taping_settings settings = {.layers = 2, .lap = 0.5};
+    struct taping_settings settings = {.layers = 2, .lap = 0.5, .reach = usual_reach};
     if (*name == '\0') {
         if (map)
             return wb_config_refuse(reader->root, "taping", "there is no tape");

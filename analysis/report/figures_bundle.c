@@ -16,6 +16,7 @@ static const double pi = 3.14159265358979323846;
 enum {
     CIRCLE = 96,          /* points of one */
     OUTLINE = 720,        /* points of the tape's faces */
+    BONDS = 1440,         /* places looked at for bonds */
     MOST_POINTS = 1 << 15 /* of a series */
 };
 
@@ -180,21 +181,19 @@ static void add_face(struct pen *pen, const struct wb_hull *hull, double offset)
     }
 }
 
-/* Where the tape lies on a wire. */
-static void add_contacts(struct pen *pen, const struct wb_hull *hull)
+/* Where the tape is bonded to a wire. */
+static void add_bonds(struct pen *pen, const struct wb_hull *hull)
 {
-    static const double least = 0.06; /* rad: what would else be a point */
-    for (int k = 0; k < hull->n_arcs; k++) {
-        const struct wb_hull_arc *const arc = &hull->arc[k];
-        const struct wb_packing_circle *const wire = &hull->packing.wire[arc->wire];
-        const double middle = 0.5 * (arc->from + arc->to);
-        const double half = fmax(0.5 * (arc->to - arc->from), least);
-        lift(pen);
-        for (int i = 0; i <= 24; i++) {
-            const double angle = middle + half * (i / 12.0 - 1.0);
-            add(pen, (wire->z + wire->radius * cos(angle)) / WB_MM,
-                (wire->y + wire->radius * sin(angle)) / WB_MM);
-        }
+    const double length = wb_hull_length(hull, 0.0);
+    bool drawing = false;
+    for (int i = 0; i <= BONDS; i++) {
+        const struct wb_hull_point p = wb_hull_at(hull, 0.0, length * i / BONDS);
+        const bool bonded = wb_bundle_model_tape_wire(pen->model, p.y, p.z, 0.0) >= 0;
+        if (bonded && !drawing)
+            lift(pen);
+        if (bonded)
+            add(pen, p.z / WB_MM, p.y / WB_MM);
+        drawing = bonded;
     }
 }
 
@@ -219,7 +218,7 @@ static void draw_tape(struct pen *pen, const struct wb_bundle_mesh *mesh)
     stroke(pen, paler(tape_colour, 0.75), 0.35);
     if (tape->gap > 0.0)
         return;
-    add_contacts(pen, &tape->hull);
+    add_bonds(pen, &tape->hull);
     stroke(pen, (struct wb_colour){0.84, 0.15, 0.16, 1.0}, 1.1);
 }
 

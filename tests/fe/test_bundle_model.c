@@ -14,6 +14,7 @@ static char model_path[64];
 static char message[2048];
 static int messages;
 static struct wb_bundle_model model;
+static struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS];
 
 static void keep_message(void *context, enum wb_log_level level, const char *domain,
                          const char *text)
@@ -334,6 +335,40 @@ static void a_helix_is_half_lapped(void **state)
     assert_close(wb_bundle_model_rigidity(&model).tape[0], 0.0, 0.0);
 }
 
+static double fact(int n, const char *key)
+{
+    for (int i = 0; i < n; i++)
+        if (strcmp(facts[i].key, key) == 0)
+            return facts[i].value;
+    fail_msg("no fact %s", key);
+    return 0.0;
+}
+
+static void a_tape_on_a_circle_is_bonded_along_lines(void **state)
+{
+    (void)state;
+    read_changed(bare, "wires: [{wire: type3}]\npacking: hexagon\nlength_mm: 85\n",
+                 "wires: [{wire: type3, count: 7}]\npacking: hexagon\nlength_mm: 85\ntape: tape\n"
+                 "taping: {layout: sleeve, outline: circle, bond_reach_mm: 0.02}\n");
+    assert_true(model.tape.round);
+    assert_close_relative(model.tape.reach, 0.02e-3, 1e-12);
+    const int n = wb_bundle_model_facts(&model, facts);
+    assert_close(fact(n, "wires_at_tape"), 6.0, 0.0);
+    /* Cosine rule: the circle's radius, the way between centres, a wire's radius with reach. */
+    const double half = acos((2.1 * 2.1 + 1.4 * 1.4 - 0.72 * 0.72) / (2.0 * 2.1 * 1.4));
+    assert_close(fact(n, "bonded_length_mm"), 12.0 * 2.1 * half, 0.01);
+}
+
+static void wires_that_the_tape_touches_in_passing_are_bonded(void **state)
+{
+    (void)state;
+    read_shipped("12-type3"); /* three of them in the middle of straight sides */
+    const int n = wb_bundle_model_facts(&model, facts);
+    assert_close(fact(n, "wires_at_tape"), 9.0, 0.0);
+    assert_close(fact(n, "bonded_length_mm"), 1.4 * M_PI + 18.0 * sqrt(0.705 * 0.705 - 0.7 * 0.7),
+                 0.02);
+}
+
 /* --- homogenised --- */
 
 /* Table 4, with its diameters; the tape's mass was inferred from the same table. */
@@ -440,39 +475,30 @@ static void published_rigidities_lie_between_the_bounds(void **state)
     }
 }
 
-static double fact(const struct wb_bundle_fact *facts, int n, const char *key)
-{
-    for (int i = 0; i < n; i++) {
-        if (strcmp(facts[i].key, key) == 0)
-            return facts[i].value;
-    }
-    fail_msg("no fact %s", key);
-    return 0.0;
-}
-
 static void facts_are_in_the_units_of_their_keys(void **state)
 {
     (void)state;
-    struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS];
     read_shipped("7-type3");
     int n = wb_bundle_model_facts(&model, facts);
-    assert_close(fact(facts, n, "outer_diameter_mm"), 4.6, 1e-9);
-    assert_close(fact(facts, n, "wires_circle_mm"), 4.2, 1e-9);
-    assert_close(fact(facts, n, "filled_percent"), 700.0 / 9.0, 1e-9);
-    assert_close(fact(facts, n, "touching_pairs"), 12.0, 0.0);
-    assert_close(fact(facts, n, "wires_at_tape"), 6.0, 0.0);
-    assert_close(fact(facts, n, "tape_length_round_mm"), 1.4 * (6.0 + M_PI) + 0.2 * M_PI, 1e-9);
-    assert_close(fact(facts, n, "tape_thickness_mm"), 0.2, 1e-12);
-    assert_close(fact(facts, n, "tape_mass_g_m"), 0.25 * (1.4 * (6.0 + M_PI) + 0.2 * M_PI), 1e-9);
-    assert_close(fact(facts, n, "mass_g_m") - fact(facts, n, "tape_mass_g_m"),
-                 7.0 * 4.97 * M_PI * 0.49, 1e-9);
-    assert_close_relative(fact(facts, n, "density_g_cm3"), 3.43, 0.005);
-    assert_close(fact(facts, n, "published_density_g_cm3"), 3.43, 1e-12);
-    assert_close_relative(fact(facts, n, "wires_EI_N_mm2"),
-                          7.0 * 4528.0 * M_PI * pow(1.4, 4.0) / 64.0, 1e-12);
-    assert_close_relative(fact(facts, n, "published_EI_N_mm2"),
-                          1114.0 * M_PI * pow(4.6, 4.0) / 64.0, 1e-12);
-    assert_close(fact(facts, n, "published_youngs_modulus_MPa"), 1114.0, 1e-9);
+    assert_close(fact(n, "outer_diameter_mm"), 4.6, 1e-9);
+    assert_close(fact(n, "wires_circle_mm"), 4.2, 1e-9);
+    assert_close(fact(n, "filled_percent"), 700.0 / 9.0, 1e-9);
+    assert_close(fact(n, "touching_pairs"), 12.0, 0.0);
+    assert_close(fact(n, "wires_at_tape"), 6.0, 0.0);
+    /* Arcs of 60 degrees, and what is within reach beside them. */
+    const double reach = 1.4 / 2.0 * (M_PI / 3.0) + 2.0 * sqrt(0.705 * 0.705 - 0.7 * 0.7);
+    assert_close(fact(n, "bonded_length_mm"), 6.0 * reach, 0.01);
+    assert_close(fact(n, "tape_length_round_mm"), 1.4 * (6.0 + M_PI) + 0.2 * M_PI, 1e-9);
+    assert_close(fact(n, "tape_thickness_mm"), 0.2, 1e-12);
+    assert_close(fact(n, "tape_mass_g_m"), 0.25 * (1.4 * (6.0 + M_PI) + 0.2 * M_PI), 1e-9);
+    assert_close(fact(n, "mass_g_m") - fact(n, "tape_mass_g_m"), 7.0 * 4.97 * M_PI * 0.49, 1e-9);
+    assert_close_relative(fact(n, "density_g_cm3"), 3.43, 0.005);
+    assert_close(fact(n, "published_density_g_cm3"), 3.43, 1e-12);
+    assert_close_relative(fact(n, "wires_EI_N_mm2"), 7.0 * 4528.0 * M_PI * pow(1.4, 4.0) / 64.0,
+                          1e-12);
+    assert_close_relative(fact(n, "published_EI_N_mm2"), 1114.0 * M_PI * pow(4.6, 4.0) / 64.0,
+                          1e-12);
+    assert_close(fact(n, "published_youngs_modulus_MPa"), 1114.0, 1e-9);
     for (int i = 0; i < n; i++)
         assert_true(isfinite(facts[i].value) && strlen(facts[i].text) > 0);
 
@@ -654,6 +680,8 @@ int main(void)
         cmocka_unit_test(a_tape_of_ones_own_has_its_poissons_ratio),
         cmocka_unit_test(shear_is_as_strong_unless_said_otherwise),
         cmocka_unit_test(a_helix_is_half_lapped),
+        cmocka_unit_test(a_tape_on_a_circle_is_bonded_along_lines),
+        cmocka_unit_test(wires_that_the_tape_touches_in_passing_are_bonded),
         cmocka_unit_test(densities_are_those_of_table_4),
         cmocka_unit_test(diameters_are_those_of_the_notes),
         cmocka_unit_test(rigidity_of_seven_wires_by_hand),
