@@ -1,9 +1,12 @@
 /* What a swept hexahedron costs on one core: its forces, and the step that follows, of 12-element
  * sections, all points yielding, with each instruction set, in float and in double; and the slow
- * twin, the textbook's element in double. Several wires in turn, as a bundle would. */
+ * twin, the textbook's element in double. Several wires in turn, as a bundle would; the same in two
+ * processes at the same time. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "fe/swept_step.h"
 #include "tests/fe/swept_hex_twin.h"
@@ -19,10 +22,12 @@ static const double diameter = 1.4e-3, length = 0.085;
 static const struct wb_material material = {
     WB_HARDENING_ISOTROPIC_POWER, 4528e6, 0.39, 4.52e6, 1327e6, 0.90};
 
-static double cpu_seconds(void)
+static clockid_t bench_clock = CLOCK_PROCESS_CPUTIME_ID;
+
+static double seconds(void)
 {
     struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    clock_gettime(bench_clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
@@ -123,7 +128,7 @@ static double time_kernel(struct bench *b, bool move)
     double best = 1e30;
 
     for (int repeat = 0; repeat < REPEATS; repeat++) {
-        const double start = cpu_seconds();
+        const double start = seconds();
         for (int turn = 0; turn < turns; turn++) {
             for (int w = 0; w < WIRES; w++) {
                 struct wire *wire = &b->wire[w];
@@ -134,7 +139,7 @@ static double time_kernel(struct bench *b, bool move)
                     wb_swept_step_update(b->step, &fields, still, 0, blocks, NULL);
             }
         }
-        const double spent = (cpu_seconds() - start) / (turns * WIRES * ELEMENTS * QUADS) * 1e9;
+        const double spent = (seconds() - start) / (turns * WIRES * ELEMENTS * QUADS) * 1e9;
         best = spent < best ? spent : best;
     }
     return best;
@@ -162,9 +167,9 @@ static double time_twin(const struct wb_swept_hex_model *model, double *bytes)
             x[3 * i + 1] = 1.0 / curvature - (1.0 / curvature - node[0]) * cos(angle);
             x[3 * i + 2] = node[1];
         }
-        const double start = cpu_seconds();
+        const double start = seconds();
         twin_forces(&twin, x, x + 3 * n);
-        const double spent = (cpu_seconds() - start) / (ELEMENTS * QUADS) * 1e9;
+        const double spent = (seconds() - start) / (ELEMENTS * QUADS) * 1e9;
         best = spent < best ? spent : best;
     }
     *bytes = (double)(4 * sizeof *twin.points);
@@ -201,6 +206,31 @@ static bool print_row(const struct wb_swept_hex_model *model, double twin)
     return good;
 }
 
+/* Wall time of the whole step, best instructions, in one process and in two at the same time. */
+static bool print_copies(struct wb_swept_hex_model model)
+{
+    struct bench b;
+    model.instructions = WB_SWEPT_HEX_BEST;
+    bench_clock = CLOCK_MONOTONIC;
+    bool good = bench_create(&b, &model, 1.0);
+    if (good) {
+        const double one = time_kernel(&b, true);
+        fflush(stdout);
+        const pid_t copy = fork();
+        const double two = time_kernel(&b, true);
+        if (copy == 0)
+            _exit(0);
+        good = copy > 0 && waitpid(copy, NULL, 0) == copy;
+        if (good)
+            printf("%s, wall time of forces and step: %.2f ns in one process, %.2f in each of "
+                   "two: %.2f times the work\n",
+                   model.double_precision ? "double" : "float", one, two, 2.0 * one / two);
+    }
+    bench_destroy(&b);
+    bench_clock = CLOCK_PROCESS_CPUTIME_ID;
+    return good;
+}
+
 static void discard(void *context, enum wb_log_level level, const char *domain, const char *message)
 {
     (void)context, (void)level, (void)domain, (void)message;
@@ -233,6 +263,15 @@ int main(void)
         }
         printf("%-12s %-7s %-9s %8.2f\n", f == 0 ? "2x2x1" : "one point", "double", "slow twin",
                twin);
+    }
+    putchar('\n');
+    for (int d = 0; d < 2; d++) {
+        const struct wb_swept_hex_model model = {.material = material,
+                                                 .n_elements = ELEMENTS,
+                                                 .element_length = length / ELEMENTS,
+                                                 .double_precision = d};
+        if (!print_copies(model))
+            return EXIT_FAILURE;
     }
     printf("\ngoal, float with AVX-512, forces: at most 10 with 2x2x1, 8 with one point\n");
     return EXIT_SUCCESS;
