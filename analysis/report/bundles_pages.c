@@ -217,13 +217,17 @@ void wb_bundles_pages_cost(struct wb_document *document, const struct wb_bundles
 
 /* --- runs --- */
 
+/* In percent, as short as the column. */
 static void put_ratio(struct wb_pages_row *row, double value, double limit)
 {
-    if (limit > 0.0 && isfinite(value))
-        wb_pages_cell(row, value <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.3g",
-                      value / WB_PERCENT);
+    const double percent = value / WB_PERCENT;
+    enum wb_document_tone tone = WB_TONE_PLAIN;
+    if (limit > 0.0)
+        tone = value <= limit ? WB_TONE_GOOD : WB_TONE_WARNING;
+    if (isfinite(value) && percent < 0.005)
+        wb_pages_cell(row, tone, "&lt; 0.01");
     else if (isfinite(value))
-        wb_pages_cell(row, WB_TONE_PLAIN, "%.3g", value / WB_PERCENT);
+        wb_pages_cell(row, tone, "%.*f", percent < 1.0 ? 2 : percent < 10.0 ? 1 : 0, percent);
     else
         wb_pages_cell_number(row, value, 0);
 }
@@ -255,13 +259,19 @@ static void put_run(struct wb_document *document, struct wb_document_table *tabl
 }
 
 void wb_bundles_pages_put_runs(struct wb_document *document,
-                               const struct wb_bundles_results *results, int n, const int *runs)
+                               const struct wb_bundles_results *results, int n, const int *runs,
+                               bool explained)
 {
+    static const char caption[] =
+        "RMS: from the published curve under the same loading, over its largest force. "
+        "<i>E</i><sub>kin</sub>, <i>E</i><sub>art</sub>: kinetic and artificial energy over "
+        "internal energy, at most from 2 mm on; <i>E</i><sub>off</sub>: imbalance of energy over "
+        "the external work. Time: of the model.";
     static const struct wb_document_column columns[] = {
         {"Run"},
         {.heading = "Friction", .right = true},
         {.heading = "<i>K</i><sub>cc</sub> (N/mm<sup>3</sup>)", .right = true, .wraps = true},
-        {.heading = "Loading", .wraps = true},
+        {"Loading"},
         {.heading = "Time (s)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub> (N)", .right = true, .wraps = true},
         {.heading = "RMS", .right = true},
@@ -269,13 +279,8 @@ void wb_bundles_pages_put_runs(struct wb_document *document,
         {.heading = "<i>E</i><sub>art</sub> (%)", .right = true, .wraps = true},
         {.heading = "<i>E</i><sub>off</sub> (%)", .right = true, .wraps = true},
     };
-    struct wb_document_table *const table = wb_document_table(
-        document,
-        "RMS: from the published curve under the same loading, over its largest force. "
-        "<i>E</i><sub>kin</sub>, <i>E</i><sub>art</sub>: kinetic and artificial energy over "
-        "internal energy, at most from 2 mm on; <i>E</i><sub>off</sub>: imbalance of energy over "
-        "the external work. Time: of the model.",
-        10, columns);
+    struct wb_document_table *const table =
+        wb_document_table(document, explained ? caption : NULL, 10, columns);
     for (int i = 0; i < n; i++)
         put_run(document, table, results, runs[i]);
 }
@@ -293,7 +298,7 @@ void wb_bundles_pages_runs(struct wb_document *document, const struct wb_bundles
                            results->campaign->runs[i].name, run->numbers.strain / WB_PERCENT);
     }
     wb_document_heading(document, 1, "runs", "All runs");
-    wb_bundles_pages_put_runs(document, results, n, all);
+    wb_bundles_pages_put_runs(document, results, n, all, true);
     if (n_beyond > 0) {
         struct wb_text note = {0};
         wb_text_append(&note, "Strains went beyond what the elements' logarithm is made for in ");

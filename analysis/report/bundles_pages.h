@@ -34,8 +34,10 @@ void wb_bundles_pages_provenance(struct wb_document *document,
  */
 const char *wb_bundles_pages_loading(const struct wb_bundles_run *run);
 const char *wb_bundles_pages_figure(char text[48], const char *number);
-/* A table of the runs given by index, with RMS, force and energies of each. */
+/* A table of the runs given by index, with RMS, force and energies of each; `explained`: its
+ * caption tells what the columns are. */
 void wb_bundles_pages_put_runs(struct wb_document *document,
-                               const struct wb_bundles_results *results, int n, const int *runs);
+                               const struct wb_bundles_results *results, int n, const int *runs,
+                               bool explained);
 
 #endif

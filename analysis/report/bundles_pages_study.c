@@ -124,7 +124,7 @@ void wb_bundles_pages_studies(struct wb_document *document,
         snprintf(anchor, sizeof anchor, "study-%d", i + 1);
         wb_document_heading(document, 2, anchor, campaign->studies[i].title);
         wb_bundles_pages_put_runs(document, results, campaign->studies[i].n,
-                                  campaign->studies[i].runs);
+                                  campaign->studies[i].runs, i == campaign->n_studies - 1);
     }
 }
 
@@ -179,6 +179,8 @@ static void put_group(struct wb_document *document, const struct wb_bundles_resu
     char anchor[32], place[48];
     snprintf(anchor, sizeof anchor, "group-%d", index + 1);
     wb_document_heading(document, 1, anchor, group->label);
+    if (!figures[WB_BUNDLES_FORCE])
+        wb_document_paragraph(document, "None of their datasets is there.");
     put_forces(document, campaign, group, figures[WB_BUNDLES_FORCE]);
     wb_text_append(&caption,
                    "Distance of the simulated curves from the published ones%s, over the published "
