@@ -346,6 +346,14 @@ static enum verdict go_to(struct run *r, double share, bool look_there)
     return look_there ? look(r, &energies) : GO_ON;
 }
 
+static enum verdict show_place(struct run *r)
+{
+    if (!r->observer || !r->observer->place)
+        return GO_ON;
+    r->status = r->observer->place(r->observer->context, r->history, &r->row, r->bundle);
+    return r->status == WB_OK ? GO_ON : NO_MEMORY;
+}
+
 /* From half a step before a row's place to half a step after it. */
 static enum verdict pass_row(struct run *r, int i)
 {
@@ -361,6 +369,8 @@ static enum verdict pass_row(struct run *r, int i)
         if (verdict == GO_ON && there) {
             take_place(r);
             verdict = look(r, &r->row.energies);
+            if (verdict == GO_ON)
+                verdict = show_place(r);
         }
     }
     if (verdict == GO_ON)
@@ -396,6 +406,9 @@ static enum verdict rest(struct run *r)
         return verdict;
     r->begin = r->state.time;
     take_place(r);
+    verdict = show_place(r);
+    if (verdict != GO_ON)
+        return verdict;
     for (int i = 0; i < REST_SAMPLES && r->model->loads.weight; i++) {
         verdict = advance(r, MOST_BLOCK);
         if (verdict != GO_ON)

@@ -85,6 +85,11 @@ struct wb_bundle_progress {
 struct wb_bundle_observer {
     /* Several times a row. False stops the run: completed rows stay. May be NULL. */
     bool (*progress)(void *context, const struct wb_bundle_progress *progress);
+    /* The bundle at the place of each row, whose forces are not known yet: `row` is to become
+     * number history->n_rows. A new attempt begins at 0 again. An error ends the run. May be NULL.
+     */
+    enum wb_status (*place)(void *context, const struct wb_bundle_history *history,
+                            const struct wb_bundle_row *row, const struct wb_bundle *bundle);
     void *context;
 };
 
