@@ -14,12 +14,13 @@
 enum {
     USUAL_ITERATIONS = 25,
     FEW_ITERATIONS = 7, /* after so few the next increment may be longer */
+    FROZEN_TIMES = 3,   /* as many iterations */
     MOST_HALVINGS = 5,  /* of an iteration's step */
     MOST_SHIFT = 12     /* elements by which places that face each other may be apart */
 };
 
-static const double usual_tolerance = 1e-7;
 static const double most_rotation = 0.1; /* rad, of an iteration */
+static const double most_ahead = 4.0;    /* of a prediction: last increments */
 
 /* --- the system --- */
 
@@ -158,7 +159,7 @@ static double evaluate(struct wb_bundle_static *b)
         const double size = fabs(b->residual[i]) * b->per_unit[i % b->block];
         largest = size > largest || size != size ? size : largest;
     }
-    return largest / fmax(b->largest_force, 1e-9);
+    return largest / fmax(b->largest_force, b->smallest_force);
 }
 
 static bool solve(struct wb_bundle_static *b)
@@ -257,21 +258,30 @@ static bool take_step(struct wb_bundle_static *b, double gap, bool first,
 }
 
 /* Newton's method for the trial state with the tip at `target`, or, of a slack strand, without
- * force. */
+ * force. Friction is coupled to the normal forces of the same iteration, or, frozen, to those of an
+ * outer one: that is slower, and robust where contacts open and close. */
 static bool iterate(struct wb_bundle_static *b, double target, struct wb_bundle_static_point *point)
 {
-    const int most = b->settings.max_iterations > 0 ? b->settings.max_iterations : USUAL_ITERATIONS;
-    const double tolerance =
-        b->settings.force_tolerance > 0.0 ? b->settings.force_tolerance : usual_tolerance;
+    const int usual =
+        b->settings.max_iterations > 0 ? b->settings.max_iterations : USUAL_ITERATIONS;
+    const int most = b->frozen ? FROZEN_TIMES * usual : usual;
 
     point->residual = evaluate(b);
+    wb_bundle_static_freeze(b);
     for (int i = 0; i < most; i++) {
         double gap = b->slack ? 0.0 : target - tip_mean(b, b->trial, 1);
         point->iterations++;
         if (!isfinite(point->residual) || !solve(b) || !take_step(b, gap, i == 0, point))
             return false;
         gap = b->slack ? 0.0 : target - tip_mean(b, b->trial, 1);
-        if (point->residual <= tolerance && fabs(gap) <= 1e-9 * b->model->length)
+        if (!(point->residual <= b->settings.force_tolerance &&
+              fabs(gap) <= 1e-9 * b->model->length))
+            continue;
+        if (b->frozen) {
+            wb_bundle_static_freeze(b);
+            point->residual = evaluate(b);
+        }
+        if (point->residual <= b->settings.force_tolerance)
             return true;
     }
     return false;
@@ -322,6 +332,24 @@ static void commit(struct wb_bundle_static *b)
         memcpy(b->point, b->trial_point, points * sizeof *b->point);
 }
 
+/* Friction coupled first, then frozen. */
+static enum wb_status find_equilibrium(struct wb_bundle_static *b, double target, double weight,
+                                       double ratio, bool *found,
+                                       struct wb_bundle_static_point *point)
+{
+    *found = false;
+    for (int frozen = 0; frozen < 2 && !*found; frozen++) {
+        predict(b, ratio, weight);
+        wb_bundle_static_face(b);
+        if (!(largest_shift(b) <= MOST_SHIFT))
+            break;
+        WB_TRY(size_band(b));
+        b->frozen = frozen == 1;
+        *found = iterate(b, target, point);
+    }
+    return WB_OK;
+}
+
 /* One increment to `target`. The strand goes slack where it would push, and is taut again where it
  * would let the tip rise above it. */
 static enum wb_status attempt(struct wb_bundle_static *b, double target, double weight,
@@ -331,12 +359,10 @@ static enum wb_status attempt(struct wb_bundle_static *b, double target, double 
 
     *done = false;
     for (int change = 0; change < 2 && !*done; change++) {
-        predict(b, change == 0 && !b->slack ? ratio : 0.0, weight);
-        wb_bundle_static_face(b);
-        if (!(largest_shift(b) <= MOST_SHIFT))
-            break;
-        WB_TRY(size_band(b));
-        if (!iterate(b, target, point))
+        bool found;
+        WB_TRY(find_equilibrium(b, target, weight, change == 0 && !b->slack ? ratio : 0.0, &found,
+                                point));
+        if (!found)
             break;
         if (strand && !b->slack && b->trial[b->force_at] < 0.0)
             b->slack = true;
@@ -406,13 +432,14 @@ enum wb_status wb_bundle_static_move(struct wb_bundle_static *b, double deflecti
     /* Where only the weight comes on, the way is counted as if it were one of deflection. */
     const double whole = fmax(fabs(deflection - start), weight > start_weight ? largest : 0.0);
     while (way < whole) {
-        step = fmin(step, whole - way);
+        if (step > 0.9 * (whole - way))
+            step = whole - way; /* no increment of what rounding leaves */
         const double part = way + step >= whole ? 1.0 : (way + step) / whole;
         const double target = start + part * (deflection - start);
         const double now = start_weight + part * (weight - start_weight);
         const double change = target - b->target;
         const double ratio = b->last_step * change > 0.0 && now == b->committed[b->weight_at]
-                                 ? change / b->last_step
+                                 ? fmin(change / b->last_step, most_ahead)
                                  : 0.0;
         const int before = point->iterations;
         bool done;

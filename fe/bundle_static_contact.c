@@ -149,7 +149,7 @@ static struct answer press(const struct wb_bundle_static *b,
     }
     out.drag = touch->drag + pair->tangential * slip;
     out.drag_slip = pair->tangential;
-    const double limit = mu * fmax(0.0, out.normal + squeeze);
+    const double limit = mu * fmax(0.0, (b->frozen ? touch->pressure : out.normal) + squeeze);
     touch->limit = !glued && fabs(out.drag) > limit;
     touch->trial_slip = touch->slip;
     touch->trial_work = touch->work;
@@ -160,7 +160,7 @@ static struct answer press(const struct wb_bundle_static *b,
         touch->trial_work += plastic * limit;
         out.drag = sign * limit;
         out.drag_slip = 0.0;
-        out.drag_depth = limit > 0.0 ? sign * mu * out.normal_depth : 0.0;
+        out.drag_depth = limit > 0.0 && !b->frozen ? sign * mu * out.normal_depth : 0.0;
     }
     touch->trial_drag = out.drag;
     touch->normal = out.normal;
@@ -247,6 +247,13 @@ void wb_bundle_static_add_contact(struct wb_bundle_static *b)
         for (int j = b->held; j < b->n_stations; j++)
             if (b->pair[p].touch[j].active)
                 add_touch(b, &b->pair[p], j);
+}
+
+void wb_bundle_static_freeze(struct wb_bundle_static *b)
+{
+    for (int p = 0; p < b->n_pairs; p++)
+        for (int j = b->held; j < b->n_stations; j++)
+            b->pair[p].touch[j].pressure = b->pair[p].touch[j].normal;
 }
 
 void wb_bundle_static_commit_contact(struct wb_bundle_static *b)

@@ -1,3 +1,4 @@
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,6 +11,8 @@ enum {
     USUAL_ELEMENTS = 80,
     MOST_ELEMENTS = 2000
 };
+
+static const double usual_tolerance = 1e-7, smallest_force = 1e-9;
 
 static enum wb_status make_types(struct wb_bundle_static *b)
 {
@@ -130,6 +133,19 @@ static enum wb_status make_memory(struct wb_bundle_static *b)
     return WB_OK;
 }
 
+/* The force that makes contact's round-off, which positions of the bundle's size have, as small as
+ * residuals have to be. */
+static void find_smallest_force(struct wb_bundle_static *b)
+{
+    double stiffest = 0.0;
+
+    for (int p = 0; p < b->n_pairs; p++)
+        stiffest = fmax(stiffest, b->pair[p].normal);
+    b->smallest_force =
+        8.0 * DBL_EPSILON * b->model->length * stiffest * b->h / b->settings.force_tolerance;
+    b->smallest_force = fmax(b->smallest_force, smallest_force);
+}
+
 static enum wb_status build(struct wb_bundle_static *b)
 {
     WB_TRY(make_types(b));
@@ -137,6 +153,7 @@ static enum wb_status build(struct wb_bundle_static *b)
     WB_TRY(wb_bundle_static_make_contact(b));
     WB_TRY(wb_bundle_static_make_tape(b));
     number_unknowns(b);
+    find_smallest_force(b);
     WB_TRY(make_memory(b));
     for (int i = 0; i < b->block; i++)
         b->per_unit[i] = 1.0;
@@ -184,6 +201,8 @@ enum wb_status wb_bundle_static_create(struct wb_bundle_static **out,
         return wb_fail(WB_ERR_MEMORY, "out of memory for a bundle");
     b->model = model;
     b->settings = *settings;
+    if (!(b->settings.force_tolerance > 0.0))
+        b->settings.force_tolerance = usual_tolerance;
     b->n_elements = settings->n_elements > 0 ? settings->n_elements : USUAL_ELEMENTS;
     b->n_stations = b->n_elements + 1;
     b->h = model->length / b->n_elements;

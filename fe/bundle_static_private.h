@@ -51,6 +51,7 @@ struct wb_bundle_static_touch {
     double along, angle[2];  /* of the committed state: m, rad */
     double drag, trial_drag; /* N/m, friction on the second wire against its slip forwards */
     double normal;           /* N/m, trial */
+    double pressure;         /* N/m, normal force that friction goes by where it is frozen */
     double depth;            /* m, trial */
     double slip, trial_slip; /* m, plastic, summed up */
     double work, trial_work; /* J/m dissipated */
@@ -115,11 +116,13 @@ struct wb_bundle_static {
     double *matrix, *residual, *push, *solution;
     double *per_unit; /* (block) 1, or 1 / length of moments, to compare residuals */
     int *pivot;
-    double largest_force; /* N, of the last evaluation */
+    double largest_force;  /* N, of the last evaluation */
+    double smallest_force; /* N: below it residuals are round-off of positions */
 
     struct wb_bundle_static_point last;
     double last_step, target; /* m */
     bool slack;
+    bool frozen; /* friction goes by the normal forces of an outer iteration */
     double external, wire_work, tape_work; /* J */
 };
 
@@ -171,6 +174,8 @@ void wb_bundle_static_place_wires(struct wb_bundle_static *bundle, double *state
 /* Finds the places that face each other in the trial state, and what they were in the committed
  * one. */
 void wb_bundle_static_face(struct wb_bundle_static *bundle);
+/* Takes over the present normal forces for friction. */
+void wb_bundle_static_freeze(struct wb_bundle_static *bundle);
 void wb_bundle_static_commit_contact(struct wb_bundle_static *bundle);
 
 WB_MUST_CHECK enum wb_status wb_bundle_static_make_contact(struct wb_bundle_static *bundle);
