@@ -113,7 +113,7 @@ int wb_bundles_results_judge(const struct wb_bundles_results *results,
             run ? run->rms : (double)NAN,
             limits->rms,
             false};
-        if (run && run->published)
+        if (run && run->published && isfinite(run->rms))
             judge_one(verdicts, &n, &rms);
     }
     judge_energy(results, verdicts, &n, KINETIC);
