@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "fe/bundle_bond.h"
+#include "fe/bundle_parts.h"
 #include "fe/bundle_private.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -47,7 +48,8 @@ int wb_bundle_shells(const struct wb_bundle *bundle)
 double wb_bundle_station_mass(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
                               int station)
 {
-    const bool end = station == 0 || station == bundle->n_stations - 1;
+    const int in_whole = bundle->first + station;
+    const bool end = in_whole == 0 || in_whole == bundle->n_whole - 1;
     return body->mass * bundle->spacing * (end ? 0.5 : 1.0) * bundle->model->run.mass_scaling;
 }
 
@@ -211,20 +213,41 @@ static void update(struct wb_bundle *bundle, struct wb_bundle_body *body, double
 {
     const struct wb_swept_step_fields fields = {body->position, body->velocity, body->force};
     const double times[2] = {half * bundle->time_step, bundle->time_step};
+    const int first = bundle->own.first / WB_SWEPT_LANES;
+    const int end = (bundle->own.end + WB_SWEPT_LANES - 1) / WB_SWEPT_LANES;
 
-    wb_swept_step_update(body->step, &fields, times, 0, body->layout.stride / WB_SWEPT_LANES, sums);
+    wb_swept_step_update(body->step, &fields, times, first, end, sums);
 }
 
-/* One step; `look` keeps what energies need. */
-static enum wb_status step(struct wb_bundle *bundle, bool look)
+/* Where the tip belongs to another part. */
+static bool has_tip(const struct wb_bundle *bundle)
+{
+    return bundle->first + bundle->own.end == bundle->n_whole;
+}
+
+static void count_tip_work(struct wb_bundle *bundle, const struct tip *before)
+{
+    const double length = bundle->model->loads.strand_length;
+    struct tip after;
+
+    look_at_tip(bundle, &after);
+    bundle->tip_work += bundle->vertical * (after.position[1] - before->position[1]);
+    if (length > 0.0)
+        bundle->tip_work += bundle->tension * (bundle->model->length - before->position[0]) /
+                            length * (after.position[0] - before->position[0]);
+}
+
+enum wb_status wb_bundle_step(struct wb_bundle *bundle, bool look)
 {
     const double half = bundle->has_moved ? 1.0 : 0.5;
     struct wb_swept_step_sums sums = {0};
-    struct tip before, after;
+    struct tip before = {0};
 
     WB_TRY(find_forces(bundle, look));
-    look_at_tip(bundle, &before);
-    lead_tip(bundle, half);
+    if (has_tip(bundle)) {
+        look_at_tip(bundle, &before);
+        lead_tip(bundle, half);
+    }
     if (bundle->cap)
         wb_bundle_cap_advance(bundle->cap, half);
     for (int w = 0; w < bundle->n_wires; w++)
@@ -239,12 +262,8 @@ static enum wb_status step(struct wb_bundle *bundle, bool look)
     bundle->time += bundle->time_step;
     bundle->steps++;
 
-    look_at_tip(bundle, &after);
-    const double length = bundle->model->loads.strand_length;
-    bundle->tip_work += bundle->vertical * (after.position[1] - before.position[1]);
-    if (length > 0.0)
-        bundle->tip_work += bundle->tension * (bundle->model->length - before.position[0]) /
-                            length * (after.position[0] - before.position[0]);
+    if (has_tip(bundle))
+        count_tip_work(bundle, &before);
     return isfinite(bundle->vertical)
                ? WB_OK
                : wb_fail(WB_ERR_DATA,
@@ -255,8 +274,10 @@ static enum wb_status step(struct wb_bundle *bundle, bool look)
 
 enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n)
 {
+    if (bundle->parts)
+        return wb_bundle_parts_advance(bundle->parts, n);
     for (int i = 0; i < n; i++)
-        WB_TRY(step(bundle, i == n - 1));
+        WB_TRY(wb_bundle_step(bundle, i == n - 1));
     return WB_OK;
 }
 
@@ -275,7 +296,7 @@ static void stop_body(struct wb_bundle_body *body)
     memset(body->velocity, 0, wb_swept_size(&body->layout) * sizeof *body->velocity);
 }
 
-static void stop_motion(struct wb_bundle *bundle)
+void wb_bundle_stop(struct wb_bundle *bundle)
 {
     for (int w = 0; w < bundle->n_wires; w++)
         stop_body(&bundle->wire[w]);
@@ -285,27 +306,33 @@ static void stop_motion(struct wb_bundle *bundle)
     }
     if (bundle->cap)
         wb_bundle_cap_stop(bundle->cap);
+    if (bundle->parts)
+        wb_bundle_parts_stop(bundle->parts);
     bundle->has_moved = false;
 }
 
 /* A body's part of the weight's potential, J. */
 static double potential_of(const struct wb_bundle *bundle, const struct wb_bundle_body *body)
 {
+    const int last = bundle->n_whole - 1 - bundle->first;
     double sum = 0.0;
 
     for (int k = 0; k < body->layout.n_nodes; k++) {
         const double *y = body->position + (ptrdiff_t)(3 * k + 1) * body->layout.stride;
-        double heights = 0.5 * (y[0] + y[bundle->n_stations - 1]);
-        for (int j = 1; j < bundle->n_stations - 1; j++)
-            heights += y[j];
+        double heights = 0.0;
+        for (int j = bundle->own.first; j < bundle->own.end; j++)
+            heights += bundle->first + j == 0 || j == last ? 0.5 * y[j] : y[j];
         sum += body->node_mass[k] * heights;
     }
     return sum * bundle->spacing * bundle->gravity;
 }
 
-static double weight_potential(const struct wb_bundle *bundle)
+double wb_bundle_potential(const struct wb_bundle *bundle)
 {
     double sum = 0.0;
+
+    if (bundle->parts)
+        return wb_bundle_parts_potential(bundle->parts);
     for (int w = 0; w < bundle->n_wires; w++)
         sum += potential_of(bundle, &bundle->wire[w]);
     return sum + (bundle->has_tape ? potential_of(bundle, &bundle->ring) : 0.0);
@@ -319,7 +346,7 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
     bundle->from = bundle->to = 0.0;
     bundle->way_start = 0.0;
     bundle->way_duration = 1.0;
-    bundle->weight_zero = weight_potential(bundle);
+    bundle->weight_zero = wb_bundle_potential(bundle);
     if (bundle->gravity == 0.0)
         return WB_OK;
     for (int done = 0; quiet < SETTLE_QUIET; done += SETTLE_BLOCK) {
@@ -333,9 +360,9 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
             last = bundle->kinetic;
             continue;
         }
-        const double work = bundle->weight_zero - weight_potential(bundle);
+        const double work = bundle->weight_zero - wb_bundle_potential(bundle);
         quiet = last < settled * fabs(work) ? quiet + 1 : 0;
-        stop_motion(bundle);
+        wb_bundle_stop(bundle);
         last = 0.0;
     }
     /* What motion was stopped took its energy with it: the account begins here. */
@@ -367,23 +394,30 @@ void wb_bundle_get_state(const struct wb_bundle *bundle, struct wb_bundle_state 
     };
 }
 
-void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_energies *energies)
+double wb_bundle_plastic_work(const struct wb_bundle *bundle)
 {
     double plastic = 0.0;
 
+    if (bundle->parts)
+        return wb_bundle_parts_plastic_work(bundle->parts);
     for (int w = 0; w < bundle->n_wires; w++)
         plastic += wb_swept_hex_plastic_work(bundle->history[w]);
     if (bundle->has_tape)
         plastic += wb_swept_tape_plastic_work(bundle->tape_history);
+    return plastic;
+}
+
+void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_energies *energies)
+{
     *energies = (struct wb_bundle_energies){
         .kinetic = bundle->kinetic,
         .stored = bundle->wires.stored + bundle->shells.stored,
-        .plastic = plastic,
+        .plastic = wb_bundle_plastic_work(bundle),
         .artificial = bundle->wires.artificial + bundle->shells.artificial,
         .contact = bundle->touching.normal + bundle->touching.tangential + bundle->bonded.contact,
         .friction = bundle->friction_work,
         .cohesive = bundle->bonded.stored + bundle->damage_work,
-        .external = bundle->tip_work + bundle->weight_zero - weight_potential(bundle),
+        .external = bundle->tip_work + bundle->weight_zero - wb_bundle_potential(bundle),
     };
 }
 
@@ -415,6 +449,7 @@ static void add_outside(const struct wb_bundle *bundle, const struct wb_bundle_b
 
 void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outside *outside)
 {
+    wb_bundle_gather(bundle);
     *outside = (struct wb_bundle_outside){
         .tip = {bundle->pull[0], bundle->pull[1], bundle->pull[2]},
     };
@@ -426,13 +461,25 @@ void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outs
 
 double wb_bundle_kinetic_ratio(const struct wb_bundle *bundle)
 {
-    const double external = bundle->tip_work + bundle->weight_zero - weight_potential(bundle);
+    const double external = bundle->tip_work + bundle->weight_zero - wb_bundle_potential(bundle);
     const double internal = external - bundle->kinetic;
     return internal > 0.0 ? bundle->kinetic / internal : (double)INFINITY;
 }
 
+void wb_bundle_gather(const struct wb_bundle *bundle)
+{
+    if (bundle->parts)
+        wb_bundle_parts_gather(bundle->parts);
+}
+
+int wb_bundle_parts(const struct wb_bundle *bundle)
+{
+    return bundle->parts ? wb_bundle_parts_count(bundle->parts) : 1;
+}
+
 void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, double (*shape)[3])
 {
+    wb_bundle_gather(bundle);
     for (int i = 0; i < n; i++) {
         const double along = fmin(fmax(s[i] / bundle->spacing, 0.0), bundle->n_stations - 1.0);
         const int j = (int)fmin(floor(along), bundle->n_stations - 2.0);
@@ -457,6 +504,20 @@ void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, dou
     }
 }
 
+/* Share of the bonded area whose bond is broken. */
+static double debonded(const struct wb_bundle *bundle)
+{
+    double area[2] = {0.0, 0.0};
+
+    if (!bundle->bond)
+        return 0.0;
+    if (bundle->parts)
+        wb_bundle_parts_add_bonds(bundle->parts, area);
+    else
+        wb_bundle_bond_add_areas(bundle->bond, area);
+    return area[0] > 0.0 ? area[1] / area[0] : 0.0;
+}
+
 void wb_bundle_get_limits(const struct wb_bundle *bundle, struct wb_bundle_limits *limits)
 {
     *limits = (struct wb_bundle_limits){
@@ -464,6 +525,6 @@ void wb_bundle_get_limits(const struct wb_bundle *bundle, struct wb_bundle_limit
         .largest_strain = fmax(bundle->wires.largest_strain, bundle->shells.largest_strain),
         .deepest = bundle->touching.deepest,
         .tape_deepest = bundle->bonded.deepest,
-        .debonded = bundle->bond ? wb_bundle_bond_broken(bundle->bond) : 0.0,
+        .debonded = debonded(bundle),
     };
 }

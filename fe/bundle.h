@@ -8,6 +8,10 @@
  * along a smooth step by one vertical force, or by a strand that only pulls; it is free, or capped:
  * one rigid body (fe/bundle_cap.h), pulled at its centre of mass.
  *
+ * It may be computed in parts along its axis, by threads and by the ranks of an MPI run
+ * (fe/bundle_parts.h). With several ranks all call the functions that take a bundle alike, and get
+ * the same; results do not depend on the number of parts but for round-off.
+ *
  * Use: create, settle (the weight comes on, at zero deflection), then advance step by step; the
  * caller owns the loop, rows and the choice of the duration.
  */
@@ -18,11 +22,13 @@
 
 #include "base/status.h"
 #include "fe/bundle_model.h"
+#include "fe/checkpoint.h"
 
 struct wb_bundle_settings {
     const char *mesh;   /* name; NULL: the model's own */
     double duration;    /* s, of a way from zero to the deflection; > 0 */
     double step_safety; /* of the stable step's bound; 0: 0.9 */
+    int threads;        /* of each rank; 0: 1. More than there is room for are not started */
 };
 
 /* J, since the virgin bundle. */
@@ -60,6 +66,14 @@ WB_MUST_CHECK enum wb_status wb_bundle_create(struct wb_bundle **out,
                                               const struct wb_bundle_model *model,
                                               const struct wb_bundle_settings *settings);
 void wb_bundle_destroy(struct wb_bundle *bundle); /* accepts NULL */
+
+/* Into how many parts it is cut, of all ranks; and would be. `mesh` may be NULL. */
+int wb_bundle_parts(const struct wb_bundle *bundle);
+int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *mesh, int threads);
+
+/* Carries the state of a bundle of the same model, settings and number of parts to a checkpoint or
+ * back: it goes on bit for bit. */
+void wb_bundle_carry(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
 
 double wb_bundle_time_step(const struct wb_bundle *bundle); /* s */
 long wb_bundle_hexahedra(const struct wb_bundle *bundle);

@@ -211,21 +211,44 @@ enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bond,
     return WB_OK;
 }
 
-double wb_bundle_bond_broken(const struct wb_bundle_bond *bond)
+void wb_bundle_bond_add_areas(const struct wb_bundle_bond *bond, double area[2])
 {
     const struct wb_bundle *bundle = bond->bundle;
-    double all = 0.0, broken = 0.0;
 
     for (int k = 0; k < bundle->ring.layout.n_nodes; k++)
-        for (int j = 0; j < bundle->n_stations; j++) {
+        for (int j = bundle->own.first; j < bundle->own.end; j++) {
             if (wb_swept_cohesion_partner(bond->cohesion, k, j) == WB_SWEPT_COHESION_FREE)
                 continue;
-            const double area = wb_swept_tape_area(bundle->tape, k, j);
-            all += area;
+            const double of_node = wb_swept_tape_area(bundle->tape, k, j);
+            area[0] += of_node;
             if (wb_swept_cohesion_damage(bond->cohesion, k, j) >= 1.0)
-                broken += area;
+                area[1] += of_node;
         }
-    return all > 0.0 ? broken / all : 0.0;
+}
+
+static void carry_damage(struct wb_swept_cohesion *cohesion, struct wb_checkpoint *checkpoint)
+{
+    size_t bytes;
+    void *damage = wb_swept_cohesion_data(cohesion, &bytes);
+    wb_checkpoint_carry(checkpoint, damage, bytes);
+}
+
+void wb_bundle_bond_carry(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint)
+{
+    const size_t size = wb_swept_tape_contact_state_size(bond->contact);
+    void *state = malloc(size);
+
+    carry_damage(bond->cohesion, checkpoint);
+    if (!state) {
+        checkpoint->status = wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint");
+        return;
+    }
+    if (!checkpoint->restores)
+        wb_swept_tape_contact_save(bond->contact, state);
+    wb_checkpoint_carry(checkpoint, state, size);
+    if (checkpoint->restores && checkpoint->status == WB_OK)
+        wb_swept_tape_contact_restore(bond->contact, state);
+    free(state);
 }
 
 double wb_bundle_bond_wire_stiffness(const struct wb_bundle_bond *bond, int wire,

@@ -11,6 +11,7 @@
 
 #include "base/status.h"
 #include "fe/bundle.h"
+#include "fe/checkpoint.h"
 
 struct wb_bundle_bond; /* opaque */
 
@@ -31,8 +32,12 @@ void wb_bundle_bond_destroy(struct wb_bundle_bond *bond); /* accepts NULL */
 WB_MUST_CHECK enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bond,
                                                        struct wb_bundle_bond_energies *energies);
 
-/* Share of the bonded area whose bond is broken, 0 to 1. */
-double wb_bundle_bond_broken(const struct wb_bundle_bond *bond);
+/* Adds the areas that were bonded at first, and whose bond is broken, m2, of the bundle's own
+ * stations. */
+void wb_bundle_bond_add_areas(const struct wb_bundle_bond *bond, double area[2]);
+
+/* What a checkpoint keeps. */
+void wb_bundle_bond_carry(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint);
 
 /* Bounds of what it adds to the largest squared frequency, 1/s2: of a wire whose section nodes have
  * the masses given (kg at an inner station, scaled), and of the ring. */

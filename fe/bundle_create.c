@@ -60,8 +60,9 @@ static enum wb_status make_type(struct wb_bundle *bundle, int t)
     const struct wb_swept_hex_model model = {
         .section = &type->section,
         .material = wire->material,
-        .n_elements = bundle->mesh->elements_along,
+        .n_elements = bundle->n_stations - 1,
         .element_length = bundle->spacing,
+        .counted = bundle->own,
         .formulation = formulation,
     };
     WB_TRY(wb_swept_hex_create(&type->hex, &model));
@@ -85,7 +86,8 @@ static void place(const struct wb_bundle *bundle, struct wb_bundle_body *body, i
                   double z)
 {
     for (int j = 0; j < body->layout.stride; j++) {
-        const double at[3] = {fmin(j, bundle->n_stations - 1) * bundle->spacing, y, z};
+        const double at[3] = {(bundle->first + fmin(j, bundle->n_stations - 1)) * bundle->spacing,
+                              y, z};
         for (int c = 0; c < 3; c++)
             body->position[(3 * node + c) * body->layout.stride + j] = at[c];
     }
@@ -125,6 +127,7 @@ static enum wb_status make_contact(struct wb_bundle *bundle)
     settings.friction_static = interface->friction_static;
     settings.friction_kinetic = interface->friction_kinetic;
     settings.friction_decay = interface->friction_decay;
+    settings.counted = bundle->own;
     for (int w = 0; w < bundle->n_wires; w++) {
         const struct wb_bundle_type *type = &bundle->type[bundle->model->type_of[w]];
         const struct wb_wire *wire = &bundle->model->type[bundle->model->type_of[w]];
@@ -143,12 +146,14 @@ static enum wb_status make_contact(struct wb_bundle *bundle)
 
 /* --- ends and step --- */
 
-static void hold_clamp(struct wb_bundle *bundle)
+/* What the clamp holds, and what belongs to other parts: their positions come from there. */
+static void hold_stations(struct wb_bundle *bundle)
 {
-    const int last = wb_bundle_last_held(bundle);
+    const int last = wb_bundle_last_held(bundle) - bundle->first;
 
-    for (int j = 0; j <= last; j++)
-        for (int c = 0; c < 3; c++) {
+    for (int j = 0; j < bundle->n_stations; j++)
+        for (int c = 0; c < 3 && (j <= last || j < bundle->own.first || j >= bundle->own.end);
+             c++) {
             for (int t = 0; t < bundle->model->n_types; t++)
                 wb_swept_step_hold(bundle->type[t].step, j, c, true);
             if (bundle->has_tape) {
@@ -208,10 +213,14 @@ static enum wb_status build(struct wb_bundle *bundle)
     WB_TRY(make_contact(bundle));
     if (bundle->model->has_tape)
         WB_TRY(wb_bundle_tape_create(bundle));
-    hold_clamp(bundle);
-    if (bundle->model->tip == WB_BUNDLE_TIP_CAPPED)
+    hold_stations(bundle);
+    if (bundle->model->tip == WB_BUNDLE_TIP_CAPPED &&
+        bundle->first + bundle->n_stations == bundle->n_whole)
         WB_TRY(wb_bundle_cap_create(&bundle->cap, bundle));
-    return find_time_step(bundle);
+    if (!bundle->whole)
+        return find_time_step(bundle);
+    bundle->time_step = bundle->whole->time_step;
+    return WB_OK;
 }
 
 enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_model *model,
@@ -232,10 +241,42 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
     bundle->mesh = mesh;
     bundle->settings = *settings;
     bundle->n_wires = model->packing.n;
-    bundle->n_stations = mesh->elements_along + 1;
+    bundle->n_stations = bundle->n_whole = mesh->elements_along + 1;
+    bundle->own = (struct wb_swept_range){0, bundle->n_stations};
     bundle->spacing = model->length / mesh->elements_along;
     bundle->way_duration = settings->duration;
     bundle->gravity = model->loads.weight ? WB_STANDARD_GRAVITY : 0.0;
+
+    const int parts = wb_bundle_parts_of(model, name, settings->threads);
+    enum wb_status status = build(bundle);
+    if (status == WB_OK && parts > 1)
+        status = wb_bundle_parts_create(&bundle->parts, bundle, parts);
+    if (status != WB_OK)
+        wb_bundle_destroy(bundle);
+    else
+        *out = bundle;
+    return status;
+}
+
+enum wb_status wb_bundle_create_part(struct wb_bundle **out, const struct wb_bundle *whole,
+                                     int first, int n_stations, struct wb_swept_range own)
+{
+    *out = NULL;
+    struct wb_bundle *bundle = calloc(1, sizeof *bundle);
+    if (!bundle)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for a part of a bundle");
+    bundle->model = whole->model;
+    bundle->mesh = whole->mesh;
+    bundle->settings = whole->settings;
+    bundle->whole = whole;
+    bundle->first = first;
+    bundle->n_stations = n_stations;
+    bundle->n_whole = whole->n_whole;
+    bundle->own = own;
+    bundle->n_wires = whole->n_wires;
+    bundle->spacing = whole->spacing;
+    bundle->way_duration = whole->way_duration;
+    bundle->gravity = whole->gravity;
 
     const enum wb_status status = build(bundle);
     if (status != WB_OK)
@@ -256,6 +297,7 @@ void wb_bundle_destroy(struct wb_bundle *bundle)
 {
     if (!bundle)
         return;
+    wb_bundle_parts_destroy(bundle->parts);
     wb_bundle_cap_destroy(bundle->cap);
     wb_bundle_tape_release(bundle);
     wb_swept_contact_destroy(bundle->contact);

@@ -282,6 +282,7 @@ enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
 {
     int most = 0;
 
+    wb_bundle_gather(bundle);
     for (int b = 0; b < fields->n_bodies; b++) {
         const int n = fields->bodies[b].n_nodes * fields->bodies[b].n_stations;
         most = n > most ? n : most;

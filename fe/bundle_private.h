@@ -6,10 +6,15 @@
 #include "fe/bundle.h"
 #include "fe/bundle_bond.h"
 #include "fe/bundle_cap.h"
+#include "fe/bundle_parts.h"
 #include "fe/swept_contact.h"
 #include "fe/swept_hex.h"
 #include "fe/swept_step.h"
 #include "fe/swept_tape.h"
+
+enum {
+    WB_BUNDLE_MOST_PARTS = 1024
+};
 
 /* One body: its fields and how they are stepped. */
 struct wb_bundle_body {
@@ -37,6 +42,12 @@ struct wb_bundle {
     int n_stations;
     double spacing;
 
+    /* Of a part of another bundle (fe/bundle_parts.h); of a whole one, all. */
+    const struct wb_bundle *whole; /* NULL: it is one */
+    int first, n_whole;            /* station of the whole that is this one's first; all of them */
+    struct wb_swept_range own;     /* stations that it counts and leads; others are only computed */
+    struct wb_bundle_parts *parts; /* that it is computed in; NULL: none */
+
     struct wb_bundle_type type[WB_BUNDLE_MODEL_TYPES];
     int n_wires;
     struct wb_bundle_body wire[WB_PACKING_MOST];
@@ -57,6 +68,8 @@ struct wb_bundle {
 
     double time_step;
     double gravity; /* m/s2, downwards */
+
+    /* From here on all is in a checkpoint. */
 
     /* The way of the tip: a smooth step from `from` to `to`. */
     double from, to, way_start, way_duration;
@@ -90,7 +103,26 @@ WB_MUST_CHECK enum wb_status wb_bundle_create_step(const struct wb_bundle *bundl
                                                    const double *node_mass, double gravity,
                                                    struct wb_swept_step **out);
 
-/* The last station that the clamp holds. */
+/* The last station that the clamp holds, of the whole. */
 int wb_bundle_last_held(const struct wb_bundle *bundle);
+
+/* One step; `look` keeps what energies need. */
+WB_MUST_CHECK enum wb_status wb_bundle_step(struct wb_bundle *bundle, bool look);
+/* All that moves stands still. */
+void wb_bundle_stop(struct wb_bundle *bundle);
+/* The weight's potential and the plastic work, J, of its own stations. */
+double wb_bundle_potential(const struct wb_bundle *bundle);
+double wb_bundle_plastic_work(const struct wb_bundle *bundle);
+
+/* Brings the fields and histories of parts together: before they are read from the bundle. */
+void wb_bundle_gather(const struct wb_bundle *bundle);
+
+/* A part of a whole from its station `first` on. */
+WB_MUST_CHECK enum wb_status wb_bundle_create_part(struct wb_bundle **out,
+                                                   const struct wb_bundle *whole, int first,
+                                                   int n_stations, struct wb_swept_range own);
+
+/* Fields, histories and contacts, without the scalars, to a checkpoint or back. */
+void wb_bundle_carry_fields(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -1,12 +1,14 @@
-#include "fe/bundle_run.h"
+#include "fe/bundle_run_private.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/log.h"
 #include "base/units.h"
+#include "fe/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -23,6 +25,7 @@ static const double pilot_share = 1.5;        /* of that, where a duration is ju
 static const double margin = 1.04;            /* on a duration that follows from a ratio */
 static const double late_margin = 1.1;        /* on one that follows from a later ratio */
 static const double too_slow = 0.75;          /* a needed duration over the present one */
+static const double usual_interval = 600.0;   /* s between checkpoints */
 static const double lost_balance = 0.05;      /* imbalance over work: the run is no solution */
 
 /* --- memory --- */
@@ -76,35 +79,6 @@ enum verdict {
     NO_MEMORY /* or another error that is not the run's */
 };
 
-/* The straight line through forces against the target, of one row. */
-struct line {
-    double n, x, y, xx, xy, yy;
-};
-
-struct run {
-    struct wb_bundle_history *history;
-    const struct wb_bundle_model *model;
-    const struct wb_bundle_observer *observer;
-    struct wb_bundle *bundle;
-    struct wb_bundle_state state;
-    enum wb_status status;
-
-    double from;   /* m: ratios count from here on */
-    bool counting; /* the tip was there */
-    bool judged;   /* the duration is believed */
-    double begin;  /* s of the bundle's time: the loading's */
-    double next;   /* s: duration of the next attempt */
-    double kinetic, artificial;
-    double most_external;
-
-    int branch;      /* ways made so far */
-    double way[2];   /* m: from, to */
-    double way_time; /* s: its begin */
-    int block;       /* steps between samples */
-    struct line vertical, tension;
-    struct wb_bundle_row row; /* passed, its mean not complete */
-};
-
 static int branches_of(const struct wb_bundle_model *model)
 {
     return model->run.cycles == 0 ? 1 : 2 * model->run.cycles;
@@ -114,12 +88,12 @@ static int branches_of(const struct wb_bundle_model *model)
 static void keep_reason(void *context, enum wb_log_level level, const char *domain,
                         const char *message)
 {
-    struct run *r = context;
+    struct wb_bundle_run_now *r = context;
     (void)level, (void)domain;
     snprintf(r->history->problem, sizeof r->history->problem, "%s", message);
 }
 
-static enum verdict lose(struct run *r)
+static enum verdict lose(struct wb_bundle_run_now *r)
 {
     if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE)
         return NO_MEMORY;
@@ -128,7 +102,7 @@ static enum verdict lose(struct run *r)
     return DONE;
 }
 
-static enum verdict advance(struct run *r, int n)
+static enum verdict advance(struct wb_bundle_run_now *r, int n)
 {
     r->history->problem[0] = '\0';
     wb_log_set_tap(keep_reason, r);
@@ -149,7 +123,7 @@ static double over(double part, double whole)
     return whole > 0.0 ? part / whole : (double)INFINITY;
 }
 
-static void count_limits(struct run *r)
+static void count_limits(struct wb_bundle_run_now *r)
 {
     struct wb_bundle_extremes *largest = &r->history->largest;
     struct wb_bundle_limits limits;
@@ -161,7 +135,7 @@ static void count_limits(struct run *r)
 }
 
 /* What a ratio says of the duration while the first loading goes on. */
-static enum verdict judge(struct run *r)
+static enum verdict judge(struct wb_bundle_run_now *r)
 {
     struct wb_bundle_history *h = r->history;
     const double limit = r->model->run.kinetic_limit;
@@ -183,7 +157,7 @@ static enum verdict judge(struct run *r)
     return GO_ON;
 }
 
-static enum verdict look(struct run *r, struct wb_bundle_energies *e)
+static enum verdict look(struct wb_bundle_run_now *r, struct wb_bundle_energies *e)
 {
     struct wb_bundle_extremes *largest = &r->history->largest;
 
@@ -214,7 +188,7 @@ static enum verdict look(struct run *r, struct wb_bundle_energies *e)
 
 /* --- rows --- */
 
-static void add_to_line(struct line *line, double x, double y)
+static void add_to_line(struct wb_bundle_run_line *line, double x, double y)
 {
     line->n += 1.0;
     line->x += x;
@@ -225,7 +199,7 @@ static void add_to_line(struct line *line, double x, double y)
 }
 
 /* Its value at x; at one place only, or with too few points, the mean. */
-static double value_at(const struct line *line, double x, double *deviation)
+static double value_at(const struct wb_bundle_run_line *line, double x, double *deviation)
 {
     const double mean = line->y / line->n, at = line->x / line->n;
     const double spread = line->xx / line->n - at * at;
@@ -237,7 +211,7 @@ static double value_at(const struct line *line, double x, double *deviation)
     return mean + slope * (x - at);
 }
 
-static void take_place(struct run *r)
+static void take_place(struct wb_bundle_run_now *r)
 {
     struct wb_bundle_row *row = &r->row;
     const double length = r->model->length, last = 0.01 * length;
@@ -261,7 +235,7 @@ static void take_place(struct run *r)
                             (size_t)r->history->n_rows * (size_t)r->history->n_shape);
 }
 
-static void finish_row(struct run *r)
+static void finish_row(struct wb_bundle_run_now *r)
 {
     struct wb_bundle_history *h = r->history;
     struct wb_bundle_row *row = &r->row;
@@ -276,10 +250,10 @@ static void finish_row(struct run *r)
         h->zero_force = row->vertical_force;
     row->force = row->vertical_force - h->zero_force;
     h->rows[h->n_rows++] = *row;
-    r->vertical = r->tension = (struct line){0};
+    r->vertical = r->tension = (struct wb_bundle_run_line){0};
 }
 
-static void sample(struct run *r)
+static void sample(struct wb_bundle_run_now *r)
 {
     if (r->state.slack)
         return;
@@ -287,9 +261,11 @@ static void sample(struct run *r)
     add_to_line(&r->tension, r->state.target, r->state.tension);
 }
 
-static enum verdict report(struct run *r)
+/* Whether the caller wants to go on. */
+static bool is_wanted(const struct wb_bundle_run_now *r)
 {
-    struct wb_bundle_history *h = r->history;
+    const struct wb_bundle_history *h = r->history;
+    const struct wb_bundle_observer *observer = r->options.observer;
     const double whole = h->duration * branches_of(r->model);
     const struct wb_bundle_progress progress = {
         .attempt = h->attempts,
@@ -300,10 +276,23 @@ static enum verdict report(struct run *r)
         .artificial = r->artificial,
     };
 
-    if (!r->observer || !r->observer->progress ||
-        r->observer->progress(r->observer->context, &progress))
+    return !observer || !observer->progress || observer->progress(observer->context, &progress);
+}
+
+/* Rank 0 decides: clocks and signals differ. */
+static enum verdict report(struct wb_bundle_run_now *r)
+{
+    const char *file = r->options.checkpoint;
+    const bool wanted = is_wanted(r);
+    bool choice[2] = {wanted, file && (!wanted || wb_bundle_run_clock().wall - r->saved.wall >=
+                                                      r->options.checkpoint_interval)};
+
+    wb_team_share(choice, sizeof choice, 0);
+    if (choice[1] && wb_bundle_run_save(r) != WB_OK)
+        wb_warn("%s: the run goes on without this checkpoint", file);
+    if (choice[0])
         return GO_ON;
-    h->stopped = true;
+    r->history->stopped = true;
     return DONE;
 }
 
@@ -324,25 +313,28 @@ static double time_of(double share)
     return 0.5 * (low + high);
 }
 
-/* Goes on to a share of the way, sampling; energies are looked at four times a row. */
-static enum verdict go_to(struct run *r, double share, bool look_there)
+/* Goes on to a share of the way, sampling; energies are looked at four times a row. Here, between
+ * two blocks of steps, checkpoints are made, and here a run goes on from one. */
+static enum verdict go_to(struct wb_bundle_run_now *r, double share, bool look_there)
 {
     const double dt = r->history->time_step;
     const double end = r->way_time + r->history->duration * time_of(share);
-    long long left = llround((end - r->state.time) / dt);
     struct wb_bundle_energies energies;
 
-    while (left > 0) {
-        const int n = (int)(left < r->block ? left : r->block);
+    if (r->left < 0)
+        r->left = llround((end - r->state.time) / dt);
+    while (r->left > 0) {
+        const int n = (int)(r->left < r->block ? r->left : r->block);
         enum verdict verdict = advance(r, n);
         if (verdict != GO_ON)
             return verdict;
         sample(r);
-        left -= n;
+        r->left -= n;
         verdict = report(r);
         if (verdict != GO_ON)
             return verdict;
     }
+    r->left = -1;
     return look_there ? look(r, &energies) : GO_ON;
 }
 
@@ -355,14 +347,14 @@ static enum verdict show_place(struct run *r)
 }
 
 /* From half a step before a row's place to half a step after it. */
-static enum verdict pass_row(struct run *r, int i)
+static enum verdict pass_row(struct wb_bundle_run_now *r)
 {
     const int rows = r->model->run.rows;
     enum verdict verdict = GO_ON;
 
-    for (int k = 1; k <= LOOKS_OF_A_ROW && verdict == GO_ON; k++) {
-        const double at = i - 0.5 + (double)k / LOOKS_OF_A_ROW;
-        const bool there = 2 * k == LOOKS_OF_A_ROW;
+    for (; r->looks <= LOOKS_OF_A_ROW && verdict == GO_ON; r->looks++) {
+        const double at = r->place - 0.5 + (double)r->looks / LOOKS_OF_A_ROW;
+        const bool there = 2 * r->looks == LOOKS_OF_A_ROW;
         if (at > rows)
             break;
         verdict = go_to(r, at / rows, !there);
@@ -378,27 +370,50 @@ static enum verdict pass_row(struct run *r, int i)
     return verdict;
 }
 
-static enum verdict make_way(struct run *r)
+static void begin_way(struct wb_bundle_run_now *r)
 {
-    const int rows = r->model->run.rows;
     const double duration = r->history->duration;
-    const double steps = duration / (1.875 * rows * r->history->time_step * SAMPLES_OF_A_ROW);
+    const double steps =
+        duration / (1.875 * r->model->run.rows * r->history->time_step * SAMPLES_OF_A_ROW);
     const bool unloads = r->branch % 2 == 1;
-    enum verdict verdict = GO_ON;
 
     r->block = (int)fmin(fmax(steps, 1.0), MOST_BLOCK);
     r->way_time = r->state.time;
     wb_bundle_lead(r->bundle, unloads ? 0.0 : r->model->run.deflection, duration);
-    /* What is nearer to where the last way ended belongs to its last row, not to the first. */
-    verdict = go_to(r, 0.5 / rows, false);
-    r->vertical = r->tension = (struct line){0};
-    for (int i = 1; i <= rows && verdict == GO_ON; i++)
-        verdict = pass_row(r, i);
+    r->under_way = true;
+    r->place = 0;
+    r->left = -1;
+}
+
+static enum verdict make_way(struct wb_bundle_run_now *r)
+{
+    const int rows = r->model->run.rows;
+    enum verdict verdict = GO_ON;
+
+    if (!r->under_way)
+        begin_way(r);
+    if (r->place == 0) {
+        verdict = go_to(r, 0.5 / rows, false);
+        if (verdict != GO_ON)
+            return verdict;
+        /* What is nearer to where the last way ended belongs to its last row, not to the first. */
+        r->vertical = r->tension = (struct wb_bundle_run_line){0};
+        r->place = r->looks = 1;
+    }
+    while (r->place <= rows && verdict == GO_ON) {
+        verdict = pass_row(r);
+        if (verdict == GO_ON) {
+            r->place++;
+            r->looks = 1;
+        }
+    }
+    if (verdict == GO_ON)
+        r->under_way = false;
     return verdict;
 }
 
 /* Row 0: at rest, with the weight on. The strand is taut: it carries part of it. */
-static enum verdict rest(struct run *r)
+static enum verdict rest(struct wb_bundle_run_now *r)
 {
     enum verdict verdict = advance(r, 0);
 
@@ -423,30 +438,56 @@ static enum verdict rest(struct run *r)
     return GO_ON;
 }
 
-static enum verdict attempt(struct run *r, const char *mesh)
+static void begin_attempt(struct wb_bundle_run_now *r)
 {
     struct wb_bundle_history *h = r->history;
-    const struct wb_bundle_settings settings = {.mesh = mesh, .duration = h->duration};
 
     h->n_rows = 0;
     h->exceeded = false;
     h->largest = (struct wb_bundle_extremes){0};
     h->attempts++;
-    r->counting = r->judged = false;
+    r->counting = r->judged = r->under_way = false;
     r->kinetic = r->artificial = (double)NAN;
     r->most_external = 0.0;
-    r->vertical = r->tension = (struct line){0};
+    r->vertical = r->tension = (struct wb_bundle_run_line){0};
     r->branch = 0;
-    r->status = wb_bundle_create(&r->bundle, r->model, &settings);
-    if (r->status != WB_OK)
+}
+
+static enum verdict attempt(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_history *h = r->history;
+    struct wb_checkpoint checkpoint = {.bytes = NULL};
+    enum verdict verdict = GO_ON;
+
+    r->status = wb_bundle_run_find(r, &checkpoint);
+    const bool resumes = r->status == WB_OK && checkpoint.restores;
+    if (r->status == WB_OK && !resumes)
+        begin_attempt(r);
+    else if (resumes)
+        wb_bundle_run_carry(r, &checkpoint);
+    const struct wb_bundle_settings settings = {
+        .mesh = r->options.mesh, .duration = h->duration, .threads = r->options.threads};
+    if (r->status == WB_OK)
+        r->status = wb_bundle_create(&r->bundle, r->model, &settings);
+    if (r->status == WB_OK && resumes)
+        r->status = wb_bundle_run_resume(r, &checkpoint);
+    wb_checkpoint_release(&checkpoint);
+    if (r->status != WB_OK) {
+        wb_bundle_destroy(r->bundle);
+        r->bundle = NULL;
         return NO_MEMORY;
+    }
     h->time_step = wb_bundle_time_step(r->bundle);
     h->hexahedra = wb_bundle_hexahedra(r->bundle);
     h->shells = wb_bundle_shells(r->bundle);
+    h->parts = wb_bundle_parts(r->bundle);
 
-    enum verdict verdict = rest(r);
-    for (r->branch = 0; r->branch < branches_of(r->model) && verdict == GO_ON; r->branch++)
+    if (!resumes)
+        verdict = rest(r);
+    while (r->branch < branches_of(r->model) && verdict == GO_ON) {
         verdict = make_way(r);
+        r->branch += verdict == GO_ON;
+    }
     wb_bundle_get_state(r->bundle, &r->state);
     h->steps = r->state.steps;
     h->all_steps += h->steps;
@@ -475,31 +516,56 @@ static double guess_duration(const struct wb_bundle_model *model, double from)
     return 0.5 * sqrt(ratio / model->run.kinetic_limit);
 }
 
-enum wb_status wb_bundle_run(struct wb_bundle_history *history, const struct wb_bundle_model *model,
-                             const char *mesh, const struct wb_bundle_observer *observer)
+static void begin_history(struct wb_bundle_run_now *r)
 {
-    struct run r = {
+    struct wb_bundle_history *h = r->history;
+
+    h->chosen = r->model->run.duration == 0.0;
+    h->duration = h->chosen ? guess_duration(r->model, r->from) : r->model->run.duration;
+    h->converged = true;
+    h->stopped = h->resumed = false;
+    h->problem[0] = '\0';
+    h->attempts = 0;
+    h->all_steps = 0;
+}
+
+enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
+                                  const struct wb_bundle_model *model,
+                                  const struct wb_bundle_run_options *options)
+{
+    struct wb_bundle_run_now r = {
         .history = history,
         .model = model,
-        .observer = observer,
+        .begun = wb_bundle_run_clock(),
+        .saved = wb_bundle_run_clock(),
+        .may_resume = true,
         .from = fmin(usual_from, 0.5 * model->run.deflection),
+        .left = -1,
     };
     enum verdict verdict;
 
+    if (options)
+        r.options = *options;
+    if (r.options.checkpoint_interval == 0.0)
+        r.options.checkpoint_interval = usual_interval;
     if (history->capacity < wb_bundle_run_planned_rows(model))
         return wb_fail(WB_ERR_ARGUMENT, "a history of %d rows for a test of %d", history->capacity,
                        wb_bundle_run_planned_rows(model));
-    history->chosen = model->run.duration == 0.0;
-    history->duration = history->chosen ? guess_duration(model, r.from) : model->run.duration;
-    history->converged = true;
-    history->stopped = false;
-    history->problem[0] = '\0';
-    history->attempts = 0;
-    history->all_steps = 0;
+    begin_history(&r);
     do {
-        verdict = attempt(&r, mesh);
+        verdict = attempt(&r);
         if (verdict == ANEW)
             history->duration = r.next;
     } while (verdict == ANEW);
+    wb_bundle_run_take_time(&r);
+    if (r.options.checkpoint && r.status == WB_OK && !history->stopped && wb_team_rank() == 0)
+        (void)unlink(r.options.checkpoint);
     return r.status;
+}
+
+enum wb_status wb_bundle_run(struct wb_bundle_history *history, const struct wb_bundle_model *model,
+                             const char *mesh, const struct wb_bundle_observer *observer)
+{
+    const struct wb_bundle_run_options options = {.mesh = mesh, .observer = observer};
+    return wb_bundle_run_with(history, model, &options);
 }

@@ -13,6 +13,14 @@
  * less). The ratio goes as duration^-2: a run that shows by 3 mm that it is too fast, or much too
  * slow, begins anew with the duration that follows, and so does one that is found too fast later,
  * at most WB_BUNDLE_RUN_ATTEMPTS times in all.
+ *
+ * Checkpoints: every so often all that a run needs to go on is written to a file (fe/checkpoint.h).
+ * A run of the same model and settings that finds the file goes on from there, to the same result
+ * bit for bit; what is not the same (model, mesh, overrides, number of parts, program) is refused.
+ * At the end the file is removed; a run that its observer stops leaves a last one.
+ *
+ * With several ranks (fe/team.h) all call these functions alike and have the same history; the
+ * observer of rank 0 decides.
  */
 #ifndef WB_FE_BUNDLE_RUN_H
 #define WB_FE_BUNDLE_RUN_H
@@ -59,6 +67,7 @@ struct wb_bundle_history {
     double (*shape)[3];  /* (n_rows x n_shape), m, owned */
     bool converged;      /* false: ends early */
     bool stopped;        /* by the observer */
+    bool resumed;        /* from a checkpoint */
     char problem[320];   /* where and why it was lost; "" otherwise */
     double zero_force;   /* N: subtracted from `force` */
     double duration;     /* s, of a loading */
@@ -71,6 +80,8 @@ struct wb_bundle_history {
     long long steps;     /* of the last attempt, with settling */
     long long all_steps; /* of all attempts */
     struct wb_bundle_extremes largest;
+    int parts;        /* along the axis, each with a thread of its own (of all ranks) */
+    double wall, cpu; /* s, of all attempts, also before a checkpoint; cpu of all ranks */
 };
 
 /* Where a run stands. */
@@ -102,10 +113,23 @@ WB_MUST_CHECK enum wb_status wb_bundle_run_init(struct wb_bundle_history *histor
                                                 const struct wb_bundle_model *model, int n_shape);
 void wb_bundle_run_release(struct wb_bundle_history *history); /* accepts a zeroed one */
 
+struct wb_bundle_run_options {
+    const char *mesh;                          /* NULL: the model's own */
+    int threads;                               /* of each rank; 0: 1 */
+    const char *checkpoint;                    /* its file; NULL: none */
+    double checkpoint_interval;                /* s of wall time; 0: 600 */
+    const struct wb_bundle_observer *observer; /* may be NULL */
+};
+
 /* Runs the model's test on its mesh `mesh` (NULL: its own). A run that is lost on the way is a
  * result: converged is false, completed rows stay. `observer` may be NULL. */
 WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_history *history,
                                            const struct wb_bundle_model *model, const char *mesh,
                                            const struct wb_bundle_observer *observer);
+
+/* The same, with all that can be chosen; NULL: nothing is. */
+WB_MUST_CHECK enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
+                                                const struct wb_bundle_model *model,
+                                                const struct wb_bundle_run_options *options);
 
 #endif

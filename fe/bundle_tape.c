@@ -55,8 +55,8 @@ struct wb_bundle_tape_place wb_bundle_tape_place(const struct wb_bundle *bundle,
         place.point = wb_hull_at(&tape->hull, middle, around * part);
         return place;
     }
-    const double turned =
-        -taping->helix.hand * station * bundle->spacing / taping->advance; /* turns */
+    const double along = (bundle->first + station) * bundle->spacing;
+    const double turned = -taping->helix.hand * along / taping->advance; /* turns */
     const double layers = taping->layers;
     place.point = wb_hull_at(&tape->hull, middle, around * (turned + layers * (part - 0.5)));
     place.level = layers * (taping->helix.hand < 0 ? part : 1.0 - part);
@@ -76,7 +76,7 @@ static void place_ring(struct wb_bundle *bundle)
         for (int j = 0; j < ring->layout.stride; j++) {
             const int station = j < bundle->n_stations ? j : bundle->n_stations - 1;
             const struct wb_bundle_tape_place at = wb_bundle_tape_place(bundle, k, station);
-            const double x[3] = {station * bundle->spacing,
+            const double x[3] = {(bundle->first + station) * bundle->spacing,
                                  at.point.y + at.outside * sin(at.point.normal),
                                  at.point.z + at.outside * cos(at.point.normal)};
             for (int c = 0; c < 3; c++)
@@ -141,6 +141,7 @@ static enum wb_status make_ring(struct wb_bundle *bundle)
         .layout = layout,
         .position = bundle->ring.position,
         .spacing = bundle->spacing,
+        .counted = bundle->own,
         .closed = closed,
     };
     WB_TRY(wb_swept_tape_create(&bundle->tape, &model));
@@ -157,6 +158,11 @@ static enum wb_status make_steps(struct wb_bundle *bundle)
     if (!bundle->tape_mass || !bundle->tape_inertia)
         return wb_fail(WB_ERR_MEMORY, "out of memory for the tape");
     wb_swept_tape_masses(bundle->tape, bundle->tape_mass, bundle->tape_inertia);
+    /* They are means over all stations. */
+    if (bundle->whole) {
+        memcpy(bundle->tape_mass, bundle->whole->tape_mass, n * sizeof *bundle->tape_mass);
+        memcpy(bundle->tape_inertia, bundle->whole->tape_inertia, n * sizeof *bundle->tape_inertia);
+    }
     WB_TRY(wb_bundle_create_step(bundle, layout, bundle->tape_mass, bundle->gravity,
                                  &bundle->tape_step));
     return wb_bundle_create_step(bundle, layout, bundle->tape_inertia, 0.0, &bundle->director_step);

@@ -1,0 +1,393 @@
+/* A bundle in parts is the whole; a run that goes on from a checkpoint is the run. With an argument
+ * it prints what such a bundle comes to, for ranks that mpirun starts to be held against threads.
+ */
+#include "tests/fe/bundles.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "fe/team.h"
+
+enum {
+    ROUNDS = 8,
+    STEPS = 50,
+    SHAPE = 57
+};
+
+/* All that meets at a seam: contact, friction, bonds, the tape, plastic strain; strand and weight.
+ * Bent so fast that wires yield and slip in so few steps. */
+#define FINE                                                                                       \
+    "  - {name: fine, core_quads: 2, rings: 0, elements_along: 57}\n" SEVEN                        \
+    "run: {mesh: fine, selective_mass_scaling: 100, deflection_mm: 10}\n"                          \
+    "loads: {strand_mm: 760, weight: true}\n"
+
+static const double way = 10e-3, duration = 6e-3;
+
+/* What a bundle has come to. */
+struct result {
+    struct wb_bundle_state state;
+    struct wb_bundle_energies energies;
+    struct wb_bundle_outside outside;
+    struct wb_bundle_limits limits;
+    double shape[SHAPE][3];
+};
+
+static void take(const struct wb_bundle *bundle, struct result *out)
+{
+    double s[SHAPE];
+    for (int i = 0; i < SHAPE; i++)
+        s[i] = model.length * i / (SHAPE - 1);
+    memset(out, 0, sizeof *out);
+    wb_bundle_get_state(bundle, &out->state);
+    wb_bundle_get_energies(bundle, &out->energies);
+    wb_bundle_get_outside(bundle, &out->outside);
+    wb_bundle_get_limits(bundle, &out->limits);
+    wb_bundle_shape(bundle, SHAPE, s, out->shape);
+}
+
+static struct wb_bundle *create(int threads)
+{
+    const struct wb_bundle_settings settings = {.duration = duration, .threads = threads};
+    struct wb_bundle *bundle;
+    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
+    return bundle;
+}
+
+static void advance(struct wb_bundle *bundle, int rounds)
+{
+    for (int i = 0; i < rounds; i++)
+        assert_int_equal(wb_bundle_advance(bundle, STEPS), WB_OK);
+}
+
+static void bend(int threads, struct result *out)
+{
+    struct wb_bundle *bundle = create(threads);
+    assert_int_equal(wb_bundle_parts(bundle), threads * wb_team_ranks());
+    wb_bundle_lead(bundle, way, duration);
+    advance(bundle, ROUNDS);
+    take(bundle, out);
+    wb_bundle_destroy(bundle);
+}
+
+/* Forces are float, and a stiff whole: what is round-off in the first steps has grown a thousand
+ * times after some hundred. Positions are within 1e-11 m. */
+static void check_same(const struct result *a, const struct result *b)
+{
+    const double size = fabs(b->energies.external);
+    assert_close_relative(a->state.deflection, b->state.deflection, 1e-9);
+    assert_close_relative(a->state.vertical, b->state.vertical, 2e-5);
+    assert_close(a->energies.kinetic, b->energies.kinetic, 1e-6 * size);
+    assert_close(a->energies.stored, b->energies.stored, 1e-6 * size);
+    assert_close(a->energies.plastic, b->energies.plastic, 1e-6 * size);
+    assert_close(a->energies.artificial, b->energies.artificial, 1e-6 * size);
+    assert_close(a->energies.contact, b->energies.contact, 1e-6 * size);
+    assert_close(a->energies.friction, b->energies.friction, 1e-6 * size);
+    assert_close(a->energies.cohesive, b->energies.cohesive, 1e-6 * size);
+    assert_close(a->energies.external, b->energies.external, 1e-6 * size);
+    assert_close_relative(a->limits.largest_strain, b->limits.largest_strain, 1e-4);
+    assert_close_relative(a->limits.deepest, b->limits.deepest, 5e-3);
+    for (int c = 0; c < 3; c++) {
+        assert_close(a->outside.momentum[c], b->outside.momentum[c],
+                     1e-6 * fabs(b->outside.momentum[1]));
+        assert_close(a->outside.clamp[c], b->outside.clamp[c], 1e-4);
+    }
+    for (int i = 0; i < SHAPE; i++)
+        for (int c = 0; c < 3; c++)
+            assert_close(a->shape[i][c], b->shape[i][c], 1e-10);
+}
+
+static void parts_are_the_whole(void **unused)
+{
+    (void)unused;
+    struct result whole, parted;
+    read_model(FINE);
+    bend(1, &whole);
+    assert_true(whole.energies.plastic > 0.05 * whole.energies.external);
+    assert_true(whole.energies.friction > 1e-3 * whole.energies.external);
+    for (int threads = 2; threads <= 3; threads++) {
+        bend(threads, &parted);
+        check_same(&parted, &whole);
+    }
+}
+
+static void the_same_parts_are_the_same_bit_for_bit(void **unused)
+{
+    (void)unused;
+    struct result once, again;
+    read_model(FINE);
+    bend(3, &once);
+    bend(3, &again);
+    assert_memory_equal(&once, &again, sizeof once);
+}
+
+/* The momentum of every part is what crosses its seams: none of it is lost there. */
+static void momentum_comes_from_outside_alone(void **unused)
+{
+    (void)unused;
+    struct wb_bundle_outside outside;
+    double impulse = 0.0, size = 0.0;
+    read_model(FINE);
+    struct wb_bundle *bundle = create(3);
+    wb_bundle_lead(bundle, way, duration);
+    for (int i = 0; i < 400; i++) {
+        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        wb_bundle_get_outside(bundle, &outside);
+        const double force = outside.clamp[1] + outside.tip[1] + outside.weight[1];
+        impulse += force * wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
+        size += fabs(force) * wb_bundle_time_step(bundle);
+        assert_close(outside.momentum[1], impulse, 1e-5 * size);
+    }
+    wb_bundle_destroy(bundle);
+}
+
+#define CAPPED                                                                                     \
+    "  - {name: fine, core_quads: 2, rings: 0, elements_along: 57}\n" SEVEN                        \
+    "ends: {tip: capped}\nrun: {mesh: fine, selective_mass_scaling: 100, deflection_mm: 10}\n"     \
+    "loads: {weight: true}\n"
+
+static void a_capped_end_belongs_to_the_last_part(void **unused)
+{
+    (void)unused;
+    struct result whole, parted;
+    read_model(CAPPED);
+    bend(1, &whole);
+    bend(2, &parted);
+    check_same(&parted, &whole);
+}
+
+/* When motion is stopped depends on round-off; where all comes to rest does not. */
+static void parts_settle_under_the_weight(void **unused)
+{
+    (void)unused;
+    struct result result[2];
+    read_model(CAPPED);
+    for (int i = 0; i < 2; i++) {
+        struct wb_bundle *bundle = create(i + 1);
+        assert_int_equal(wb_bundle_settle(bundle), WB_OK);
+        take(bundle, &result[i]);
+        wb_bundle_destroy(bundle);
+    }
+    assert_close_relative(result[1].state.vertical, result[0].state.vertical, 1e-2);
+    assert_close_relative(result[1].outside.weight[1], result[0].outside.weight[1], 1e-12);
+    for (int i = 0; i < SHAPE; i++)
+        assert_close(result[1].shape[i][1], result[0].shape[i][1], 1e-7);
+}
+
+static void there_are_no_more_parts_than_there_is_room_for(void **unused)
+{
+    (void)unused;
+    read_model(FINE);
+    assert_int_equal(wb_bundle_parts_of(&model, NULL, 0), 1);
+    assert_int_equal(wb_bundle_parts_of(&model, NULL, 3), 3);
+    assert_int_equal(wb_bundle_parts_of(&model, NULL, 100), 4);
+    assert_int_equal(wb_bundle_parts_of(&model, "four", 3), 2);
+    assert_int_equal(wb_bundle_parts_of(&model, "paper", 2), 2);
+    struct wb_bundle *bundle = create(100);
+    assert_int_equal(wb_bundle_parts(bundle), 4);
+    wb_bundle_lead(bundle, way, duration);
+    advance(bundle, 1);
+    wb_bundle_destroy(bundle);
+}
+
+static void keep_message(void *context, enum wb_log_level level, const char *domain,
+                         const char *message)
+{
+    (void)level, (void)domain;
+    const size_t used = strlen(context);
+    snprintf((char *)context + used, 1024 - used, "%s\n", message);
+}
+
+/* A part that is lost keeps nobody waiting, and its reason is told once. */
+static void a_lost_part_ends_the_run(void **unused)
+{
+    (void)unused;
+    const struct wb_bundle_settings settings = {
+        .duration = duration, .threads = 3, .step_safety = 3.0};
+    char messages[1024] = "";
+    struct wb_bundle *bundle;
+    enum wb_status status = WB_OK;
+    read_model(FINE);
+    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
+    wb_bundle_lead(bundle, way, duration);
+    wb_log_set_sink(keep_message, messages);
+    for (int i = 0; i < 100 && status == WB_OK; i++)
+        status = wb_bundle_advance(bundle, STEPS);
+    wb_log_set_sink(NULL, NULL);
+    assert_int_equal(status, WB_ERR_DATA);
+    assert_non_null(strchr(messages, '\n'));
+    assert_string_equal(strchr(messages, '\n'), "\n");
+    wb_bundle_destroy(bundle);
+}
+
+/* --- checkpoints --- */
+
+static void a_checkpoint_goes_on_bit_for_bit(void **unused)
+{
+    (void)unused;
+    read_model(FINE);
+    for (int threads = 1; threads <= 2; threads++) {
+        struct result straight, resumed;
+        struct wb_checkpoint checkpoint;
+        struct wb_bundle *bundle = create(threads);
+        wb_bundle_lead(bundle, way, duration);
+        assert_int_equal(wb_bundle_advance(bundle, 137), WB_OK);
+        wb_checkpoint_init(&checkpoint);
+        wb_bundle_carry(bundle, &checkpoint);
+        assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
+        advance(bundle, 4);
+        take(bundle, &straight);
+        wb_bundle_destroy(bundle);
+
+        bundle = create(threads);
+        wb_checkpoint_rewind(&checkpoint);
+        wb_bundle_carry(bundle, &checkpoint);
+        assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
+        advance(bundle, 4);
+        take(bundle, &resumed);
+        assert_memory_equal(&straight, &resumed, sizeof straight);
+        wb_bundle_destroy(bundle);
+        wb_checkpoint_release(&checkpoint);
+    }
+}
+
+/* Stops a run as a signal does, after so many looks of the observer. */
+static bool stop_after(void *context, const struct wb_bundle_progress *progress)
+{
+    (void)progress;
+    return --*(int *)context > 0;
+}
+
+static void run_with(const struct wb_bundle_run_options *options)
+{
+    wb_bundle_run_release(&history);
+    assert_int_equal(wb_bundle_run_init(&history, &model, 5), WB_OK);
+    assert_int_equal(wb_bundle_run_with(&history, &model, options), WB_OK);
+    assert_true(history.converged);
+}
+
+/* Rows and shapes; the times it took differ. */
+static void check_history(const struct wb_bundle_history *a, const struct wb_bundle_history *b)
+{
+    assert_int_equal(a->n_rows, b->n_rows);
+    for (int i = 0; i < a->n_rows; i++) {
+        assert_true(a->rows[i].force == b->rows[i].force);
+        assert_true(a->rows[i].deflection == b->rows[i].deflection);
+        assert_true(a->rows[i].standard_deviation == b->rows[i].standard_deviation);
+        assert_true(a->rows[i].phase == b->rows[i].phase && a->rows[i].cycle == b->rows[i].cycle);
+        assert_memory_equal(&a->rows[i].energies, &b->rows[i].energies, sizeof a->rows[i].energies);
+        assert_memory_equal(a->shape[i * a->n_shape], b->shape[i * a->n_shape],
+                            (size_t)a->n_shape * sizeof *a->shape);
+    }
+    assert_memory_equal(&a->largest.kinetic, &b->largest.kinetic, sizeof(double));
+    assert_true(a->all_steps == b->all_steps && a->steps == b->steps);
+    assert_true(a->attempts == b->attempts && a->duration == b->duration);
+}
+
+static void quiet(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)context, (void)level, (void)domain, (void)message;
+}
+
+/* Again and again, in the way up and in the way down. */
+static void a_stopped_run_ends_with_the_same_result(void **unused)
+{
+    (void)unused;
+    char file[64];
+    snprintf(file, sizeof file, "%s/state", folder);
+    wb_log_set_sink(quiet, NULL);
+    for (int threads = 1; threads <= 2; threads++) {
+        read_model("  - {name: fine, core_quads: 2, rings: 0, elements_along: 24}\n"
+                   "wires: [{wire: type3, count: 3}]\npacking: triangle\ntape: tape\n"
+                   "run: {mesh: fine, selective_mass_scaling: 100, deflection_mm: 20, rows: 4, "
+                   "cycles: 1, duration_s: 0.03}\n"
+                   "loads: {weight: true}\n");
+        const struct wb_bundle_run_options plain = {.threads = threads};
+        run_with(&plain);
+        assert_int_equal(history.parts, threads);
+        const struct wb_bundle_history straight = history;
+        history = (struct wb_bundle_history){0};
+
+        int left, stops = 0;
+        const struct wb_bundle_observer observer = {.progress = stop_after, .context = &left};
+        const struct wb_bundle_run_options options = {
+            .threads = threads, .checkpoint = file, .observer = &observer};
+        do {
+            left = 7 + 200 * (++stops % 3);
+            run_with(&options);
+            assert_true(history.stopped == wb_file_exists(file));
+            assert_true(history.resumed == (stops > 1));
+        } while (history.stopped);
+        assert_true(stops > 3);
+        check_history(&history, &straight);
+        assert_true(history.wall > 0.0 && history.cpu > 0.0);
+        wb_bundle_run_release(&history);
+        history = straight;
+    }
+    wb_log_set_sink(NULL, NULL);
+}
+
+static void another_models_checkpoint_is_refused(void **unused)
+{
+    (void)unused;
+    char file[64], messages[1024] = "";
+    int left = 2;
+    const struct wb_bundle_observer observer = {.progress = stop_after, .context = &left};
+    snprintf(file, sizeof file, "%s/state", folder);
+    struct wb_bundle_run_options options = {.checkpoint = file, .observer = &observer};
+    read_model(ONE RUN("rows: 2, duration_s: 0.5") "loads: {weight: false}\n");
+    run_with(&options);
+    assert_true(history.stopped && wb_file_exists(file));
+    wb_log_set_sink(keep_message, messages);
+    model.interface.friction_static = 0.3;
+    assert_int_equal(wb_bundle_run_with(&history, &model, &options), WB_ERR_DATA);
+    wb_log_set_sink(NULL, NULL);
+    assert_non_null(strstr(messages, "another run"));
+    assert_true(wb_file_exists(file));
+    assert_int_equal(unlink(file), 0);
+}
+
+/* --- by mpirun --- */
+
+static int print_result(int threads)
+{
+    struct result r;
+    read_model(FINE);
+    bend(threads, &r);
+    if (wb_team_rank() > 0)
+        return 0;
+    const double *numbers = &r.energies.kinetic;
+    for (size_t i = 0; i < sizeof r.energies / sizeof *numbers; i++)
+        printf("%.17g\n", numbers[i]);
+    printf("%.17g %.17g\n", r.state.vertical, r.state.deflection);
+    for (int c = 0; c < 3; c++)
+        printf("%.17g %.17g\n", r.outside.momentum[c], r.outside.clamp[c]);
+    for (int i = 0; i < SHAPE; i++)
+        printf("%.17g %.17g %.17g\n", r.shape[i][0], r.shape[i][1], r.shape[i][2]);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parts_are_the_whole),
+        cmocka_unit_test(the_same_parts_are_the_same_bit_for_bit),
+        cmocka_unit_test(momentum_comes_from_outside_alone),
+        cmocka_unit_test(a_capped_end_belongs_to_the_last_part),
+        cmocka_unit_test(parts_settle_under_the_weight),
+        cmocka_unit_test(there_are_no_more_parts_than_there_is_room_for),
+        cmocka_unit_test(a_lost_part_ends_the_run),
+        cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
+        cmocka_unit_test_teardown(a_stopped_run_ends_with_the_same_result, release),
+        cmocka_unit_test_teardown(another_models_checkpoint_is_refused, release),
+    };
+    int failed;
+    if (wb_team_start() != WB_OK)
+        return 1;
+    if (argc > 1)
+        failed = make_folder(NULL) || print_result(atoi(argv[1])) || remove_folder(NULL);
+    else
+        failed = cmocka_run_group_tests(tests, make_folder, remove_folder);
+    wb_team_end();
+    return failed;
+}
