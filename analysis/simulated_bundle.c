@@ -241,6 +241,8 @@ static void describe(struct wb_json *document, const struct wb_simulated_bundle 
     wb_json_set_boolean(simulation, "tape", model->has_tape);
     describe_interface(simulation, model);
     describe_override(simulation, bundle->override);
+    if (bundle->surface_deflection > 0.0)
+        wb_json_set_number(simulation, "surface_deflection_mm", bundle->surface_deflection / WB_MM);
     wb_simulated_bundle_describe(simulation, bundle);
 
     struct wb_json *const tool = wb_json_set_object(document, "tool");

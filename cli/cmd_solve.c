@@ -29,7 +29,8 @@ enum {
     KEY_MASS_SCALING,
     KEY_SELECTIVE,
     KEY_FRICTION,
-    KEY_COHESIVE_STIFFNESS
+    KEY_COHESIVE_STIFFNESS,
+    KEY_VTK_EVERY
 };
 
 static const double pa_per_m = 1e9; /* of one N/mm3 */
@@ -47,7 +48,7 @@ static const struct argp_option option_table[] = {
     {"weight", KEY_WEIGHT, NULL, 0, "Let the wire's weight act, against the deflection", 0},
     {"cycles", KEY_CYCLES, "N", 0, "Load and unload N times; without it, load once", 0},
     {"points", KEY_POINTS, "N", 0, "N equal steps to the largest deflection (53)", 0},
-    {"vtk", KEY_VTK, "DIR", 0, "Write every row's stress field for ParaView (wire3d)", 0},
+    {"vtk", KEY_VTK, "DIR", 0, "Write every row's stress field for ParaView (wire3d, bundle)", 0},
     {"mesh", KEY_MESH, "NAME", 0, "Mesh of a bundle (its file's)", 0},
     {"dead-force", KEY_DEAD_FORCE, NULL, 0, "Raise a bundle by a vertical force, not by its strand",
      0},
@@ -64,6 +65,7 @@ static const struct argp_option option_table[] = {
      "Normal stiffness between tape and wires in N/mm3; the shear stiffness keeps its ratio (its "
      "file's)",
      0},
+    {"vtk-every", KEY_VTK_EVERY, "N", 0, "Of a bundle, write every Nth row only, and the last", 0},
     {"output", 'o', "DATASET", 0, "Write a dataset folder", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset, and the files of --vtk", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
@@ -107,8 +109,10 @@ static void check(struct argp_state *state, const struct wb_solve_options *o)
 {
     if (o->kind == WB_SOLVE_NONE)
         argp_error(state, "name the model: cantilever, wire3d, wire1d or bundle");
-    if (o->vtk && o->kind != WB_SOLVE_WIRE3D)
+    if (o->vtk && o->kind != WB_SOLVE_WIRE3D && o->kind != WB_SOLVE_BUNDLE)
         argp_error(state, "--vtk: %s has no stress field for ParaView", o->kind_name);
+    if (o->vtk_every > 0 && !o->vtk)
+        argp_error(state, "--vtk-every is for --vtk");
     if (o->bundle_option && o->kind != WB_SOLVE_BUNDLE)
         argp_error(state, "--%s is for bundle, not for %s", o->bundle_option, o->kind_name);
     if (o->kind == WB_SOLVE_CANTILEVER) {
@@ -155,9 +159,14 @@ static void take_friction(struct argp_state *state, const char *argument,
 }
 
 static error_t take_bundle_option(int key, char *argument, struct argp_state *state,
-                                  struct wb_bundle_override *override)
+                                  struct wb_solve_options *options)
 {
+    struct wb_bundle_override *const override = &options->override;
+
     switch (key) {
+    case KEY_VTK_EVERY:
+        options->vtk_every = wb_command_integer(state, "--vtk-every", argument, 1, 100000);
+        return 0;
     case KEY_MESH:
         override->mesh = argument;
         return 0;
@@ -194,9 +203,9 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 
     if (key >= KEY_WIRE && key <= KEY_POINTS)
         o->cantilever_option = option_name(key);
-    if (key >= KEY_MESH && key <= KEY_COHESIVE_STIFFNESS) {
+    if (key >= KEY_MESH && key <= KEY_VTK_EVERY) {
         o->bundle_option = option_name(key);
-        return take_bundle_option(key, argument, state, &o->override);
+        return take_bundle_option(key, argument, state, o);
     }
     switch (key) {
     case KEY_WIRE:

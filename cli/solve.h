@@ -31,9 +31,10 @@ struct wb_solve_options {
     const char *cantilever_option; /* one of these that was given; NULL: none */
     /* Of the wires, and of bundles. */
     const char *model; /* name or file */
-    const char *vtk;   /* folder; NULL: none */
+    const char *vtk;   /* folder; NULL: none; not of wire1d */
     /* Of bundles. */
     struct wb_bundle_override override;
+    int vtk_every;             /* rows */
     const char *bundle_option; /* one of its options that was given; NULL: none */
 };
 

@@ -10,6 +10,7 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
+#include "cli/bundle_states.h"
 #include "cli/solve.h"
 #include "fe/bundle_run.h"
 
@@ -29,11 +30,38 @@ struct run {
     struct wb_bundle_history history;
     struct wb_progress progress;
     int attempt; /* that the live line is about */
-    bool made_output;
+    struct wb_bundle_states states;
+    bool made_output, made_vtk; /* folders that were not there before */
     struct wb_solve_time spent;
 };
 
 /* --- before --- */
+
+/* Now, so that nothing is computed in vain. */
+static enum wb_status prepare_folder(const char *folder, bool force, bool *made)
+{
+    const bool was_there = wb_file_exists(folder);
+
+    WB_TRY(wb_file_prepare_output(folder, force));
+    *made = !was_there;
+    return WB_OK;
+}
+
+static enum wb_status prepare_output(struct run *run)
+{
+    const struct wb_solve_options *o = run->options;
+
+    run->states.wants_surface = o->common.output;
+    run->states.wants_vtk = o->vtk;
+    run->states.every = o->vtk_every > 0 ? o->vtk_every : 1;
+    run->states.turn = run->model.run.rows;
+    if (o->common.output)
+        WB_TRY(prepare_folder(o->common.output, o->common.force, &run->made_output));
+    if (!o->vtk)
+        return WB_OK;
+    WB_TRY(prepare_folder(o->vtk, o->common.force, &run->made_vtk));
+    return wb_bundle_vtk_init(&run->states.series, o->vtk, run->model.name);
+}
 
 static enum wb_status prepare(struct run *run)
 {
@@ -45,13 +73,7 @@ static enum wb_status prepare(struct run *run)
     WB_TRY(wb_bundle_override_apply(&o->override, &run->model));
     run->mesh = wb_bundle_model_mesh(&run->model, run->model.run.mesh);
     WB_TRY(wb_bundle_run_init(&run->history, &run->model, MARKERS));
-    if (!o->common.output)
-        return WB_OK;
-    /* Now, so that nothing is computed in vain. */
-    const bool was_there = wb_file_exists(o->common.output);
-    WB_TRY(wb_file_prepare_output(o->common.output, o->common.force));
-    run->made_output = !was_there;
-    return WB_OK;
+    return prepare_output(run);
 }
 
 /* --- while it runs --- */
@@ -78,9 +100,20 @@ static bool report_progress(void *context, const struct wb_bundle_progress *now)
     return !wb_interrupted();
 }
 
+static enum wb_status report_place(void *context, const struct wb_bundle_history *history,
+                                   const struct wb_bundle_row *row, const struct wb_bundle *bundle)
+{
+    struct run *run = context;
+    return wb_bundle_states_take(&run->states, history, row, bundle);
+}
+
 static enum wb_status compute(struct run *run)
 {
-    const struct wb_bundle_observer observer = {.progress = report_progress, .context = run};
+    const struct wb_bundle_observer observer = {
+        .progress = report_progress,
+        .place = report_place,
+        .context = run,
+    };
     const struct wb_solve_time start = wb_solve_now();
     const enum wb_status status =
         wb_bundle_run(&run->history, &run->model, run->mesh->name, &observer);
@@ -88,7 +121,9 @@ static enum wb_status compute(struct run *run)
 
     if (run->attempt > 0)
         wb_progress_finish(&run->progress);
-    run->spent = (struct wb_solve_time){end.wall - start.wall, end.cpu - start.cpu};
+    /* Fields and files are not what is measured. */
+    run->spent.wall = end.wall - start.wall - run->states.spent.wall;
+    run->spent.cpu = end.cpu - start.cpu - run->states.spent.cpu;
     return status;
 }
 
@@ -101,6 +136,7 @@ static struct wb_simulated_bundle simulated(const struct run *run)
         .mesh = run->mesh,
         .history = &run->history,
         .override = &run->options->override,
+        .surface_deflection = run->states.deflection,
         .wall = run->spent.wall,
         .cpu = run->spent.cpu,
     };
@@ -119,6 +155,8 @@ static enum wb_status write_dataset(const struct run *run)
         status = wb_dataset_write(&dataset, folder, true);
     if (status == WB_OK)
         status = wb_simulated_bundle_write_energies(&dataset, &bundle, folder);
+    if (status == WB_OK)
+        status = wb_surface_write(&run->states.surface, folder);
     wb_dataset_release(&dataset);
     return status;
 }
@@ -213,9 +251,12 @@ int wb_solve_bundle(const struct wb_solve_options *options)
         status = compute(run);
     const int code = status == WB_OK ? deliver(run) : wb_command_exit(status);
 
-    /* A folder that was made for nothing goes again. */
+    /* Folders that were made for nothing go again. */
     if (run->made_output)
         (void)rmdir(options->common.output);
+    if (run->made_vtk)
+        (void)rmdir(options->vtk);
+    wb_bundle_states_release(&run->states);
     wb_bundle_run_release(&run->history);
     free(run);
     return code;

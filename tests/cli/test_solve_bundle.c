@@ -4,6 +4,8 @@
 #include <sys/wait.h>
 
 #include "analysis/dataset.h"
+#include "analysis/surface.h"
+#include "base/file.h"
 #include "base/json.h"
 #include "tests/check.h"
 
@@ -120,6 +122,86 @@ static void datasets_are_those_of_the_homogenised_beam(void **unused)
     assert_non_null(strstr(out, "kinetic_over_internal"));
 }
 
+static bool is_there(const char *name)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return wb_file_exists(path);
+}
+
+/* At the largest deflection; the tip's place is that of the last row. */
+static void datasets_have_the_bent_surface(void **unused)
+{
+    (void)unused;
+    struct wb_dataset dataset;
+    struct wb_surface surface;
+    struct wb_json *root = NULL;
+    char path[128];
+    assert_int_equal(tool("--duration-s 1.5 -o surface"), 0);
+    snprintf(path, sizeof path, "%s/surface", folder);
+    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
+    assert_int_equal(wb_surface_read(&surface, path), WB_OK);
+    assert_int_equal(surface.n, 1);
+    const struct wb_surface_body *wire = &surface.bodies[0];
+    assert_int_equal(wire->n_along, 16);
+    assert_int_equal(wire->n_around, 8);
+    double tip[2] = {0.0}, most = 0.0;
+    for (int k = 0; k < 8; k++)
+        for (int c = 0; c < 2; c++)
+            tip[c] += wire->nodes[15 * 8 + k].position[c] / 8;
+    assert_close(tip[0], dataset.rows[5].tip_x, 2e-6);
+    assert_close(tip[1], 10e-3, 20e-6); /* round the axis, not the mean over masses */
+    for (int i = 0; i < 16 * 8; i++)
+        most = fmax(most, wire->nodes[i].von_mises);
+    /* It yields a little, at 4.52 MPa; an elastic wire would have 3 E r v / L^2. */
+    assert_true(most > 4.6e6 && most < 3.0 * 4528e6 * 0.7e-3 * 0.01 / (0.114 * 0.114));
+    wb_surface_release(&surface);
+    wb_dataset_release(&dataset);
+    read_all("surface/dataset.json", out, sizeof out);
+    assert_int_equal(wb_json_parse(&root, out, "dataset.json"), WB_OK);
+    assert_close(number(wb_json_get(root, "simulation"), "surface_deflection_mm"), 10.0, 1e-3);
+    wb_json_destroy(root);
+}
+
+static int states_in(const char *name)
+{
+    int n = 0;
+    read_all(name, out, sizeof out);
+    for (const char *at = out; (at = strstr(at, "<DataSet ")); at++)
+        n++;
+    return n;
+}
+
+static void vtk_files_are_written_for_every_row_or_some(void **unused)
+{
+    (void)unused;
+    assert_int_equal(tool("--duration-s 1.5 --vtk all --json"), 0);
+    assert_int_equal(states_in("all/one.pvd"), 6);
+    assert_true(is_there("all/one-0000.vtu") && is_there("all/one-0005.vtu"));
+    assert_false(is_there("all/one-0006.vtu"));
+    assert_non_null(strstr(out, "timestep=\"0\""));
+
+    assert_int_not_equal(tool("--duration-s 1.5 --vtk all"), 0);
+    assert_non_null(strstr(err, "--force"));
+    assert_int_equal(tool("--duration-s 1.5 --vtk all --force"), 0);
+
+    /* Rows 0, 3 and the last, 5. */
+    assert_int_equal(tool("--duration-s 1.5 --vtk some --vtk-every 3"), 0);
+    assert_int_equal(states_in("some/one.pvd"), 3);
+    assert_false(is_there("some/one-0003.vtu"));
+
+    /* Runs that begin anew leave nothing behind. */
+    assert_int_equal(tool("--vtk anew --mass-scaling 400 --json"), 0);
+    struct wb_json *root = NULL;
+    assert_int_equal(wb_json_parse(&root, out, "output"), WB_OK);
+    assert_true(number(root, "attempts") >= 2.0);
+    wb_json_destroy(root);
+    assert_int_equal(states_in("anew/one.pvd"), 6);
+
+    assert_int_not_equal(tool("--vtk-every 2"), 0);
+    assert_non_null(strstr(err, "--vtk-every is for --vtk"));
+}
+
 static void what_was_overridden_is_told(void **unused)
 {
     (void)unused;
@@ -178,6 +260,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(json_has_the_curve_and_what_it_took),
         cmocka_unit_test(datasets_are_those_of_the_homogenised_beam),
+        cmocka_unit_test(datasets_have_the_bent_surface),
+        cmocka_unit_test(vtk_files_are_written_for_every_row_or_some),
         cmocka_unit_test(what_was_overridden_is_told),
         cmocka_unit_test(options_of_others_are_refused),
     };

@@ -1,0 +1,77 @@
+#include "cli/bundle_states.h"
+
+#define WB_LOG_DOMAIN "solve"
+
+/* A run that begins anew leaves nothing of the one before. */
+static enum wb_status begin_anew(struct wb_bundle_states *states, int attempt)
+{
+    states->attempt = attempt;
+    states->deflection = 0.0;
+    wb_surface_release(&states->surface);
+    return states->wants_vtk ? wb_bundle_vtk_restart(&states->series) : WB_OK;
+}
+
+static enum wb_status take_fields(struct wb_bundle_states *states, const struct wb_bundle *bundle)
+{
+    if (states->has_fields)
+        return wb_bundle_fields_take(&states->fields, bundle);
+    WB_TRY(wb_bundle_fields_init(&states->fields, bundle));
+    states->has_fields = true;
+    return WB_OK;
+}
+
+static enum wb_status take_surface(struct wb_bundle_states *states, double deflection)
+{
+    struct wb_surface surface;
+
+    WB_TRY(wb_surface_take(&surface, &states->fields));
+    wb_surface_release(&states->surface);
+    states->surface = surface;
+    states->deflection = deflection;
+    return WB_OK;
+}
+
+static enum wb_status take(struct wb_bundle_states *states, int number,
+                           const struct wb_bundle_row *row, const struct wb_bundle *bundle)
+{
+    /* Later cycles reach the same deflection: the first is kept. */
+    const bool surface = states->wants_surface && row->phase == WB_HISTORY_LOAD &&
+                         row->deflection > (1.0 + 1e-3) * states->deflection;
+    const bool vtk =
+        states->wants_vtk && (number % states->every == 0 || number % states->turn == 0);
+
+    if (!surface && !vtk)
+        return WB_OK;
+    WB_TRY(take_fields(states, bundle));
+    if (surface)
+        WB_TRY(take_surface(states, row->deflection));
+    return vtk ? wb_bundle_vtk_add(&states->series, row->time, row->deflection, &states->fields)
+               : WB_OK;
+}
+
+enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
+                                     const struct wb_bundle_history *history,
+                                     const struct wb_bundle_row *row,
+                                     const struct wb_bundle *bundle)
+{
+    const struct wb_solve_time start = wb_solve_now();
+    enum wb_status status = WB_OK;
+
+    if (history->attempts != states->attempt)
+        status = begin_anew(states, history->attempts);
+    if (status == WB_OK)
+        status = take(states, history->n_rows, row, bundle);
+    const struct wb_solve_time end = wb_solve_now();
+    states->spent.wall += end.wall - start.wall;
+    states->spent.cpu += end.cpu - start.cpu;
+    return status;
+}
+
+void wb_bundle_states_release(struct wb_bundle_states *states)
+{
+    wb_bundle_vtk_release(&states->series);
+    if (states->has_fields)
+        wb_bundle_fields_release(&states->fields);
+    wb_surface_release(&states->surface);
+    states->has_fields = false;
+}

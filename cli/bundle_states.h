@@ -1,0 +1,37 @@
+/* What `wirebench solve bundle` keeps of a run's states on the way: VTK files, and the surface at
+ * the largest deflection.
+ */
+#ifndef WB_CLI_BUNDLE_STATES_H
+#define WB_CLI_BUNDLE_STATES_H
+
+#include <stdbool.h>
+
+#include "analysis/surface.h"
+#include "base/status.h"
+#include "cli/solve.h"
+#include "fe/bundle_fields.h"
+#include "fe/bundle_run.h"
+#include "fe/bundle_vtk.h"
+
+struct wb_bundle_states {
+    bool wants_surface, wants_vtk; /* set by the caller */
+    int every;                     /* rows between VTK files; from 1 */
+    int turn;                      /* rows from turn to turn of the history, which have files too */
+    struct wb_bundle_vtk series;   /* initialised by the caller */
+    /* From here on made by wb_bundle_states_take(). */
+    int attempt;
+    bool has_fields;
+    struct wb_bundle_fields fields;
+    struct wb_surface surface;  /* no body: none yet */
+    double deflection;          /* m, of the surface */
+    struct wb_solve_time spent; /* on all this */
+};
+
+/* Takes what is wanted of a row's state; for wb_bundle_observer's `place`. */
+WB_MUST_CHECK enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
+                                                   const struct wb_bundle_history *history,
+                                                   const struct wb_bundle_row *row,
+                                                   const struct wb_bundle *bundle);
+void wb_bundle_states_release(struct wb_bundle_states *states); /* accepts a zeroed one */
+
+#endif
