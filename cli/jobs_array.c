@@ -34,7 +34,7 @@ static const char script[] =
     "fi\n"
     "export OMP_NUM_THREADS=\"${SLURM_CPUS_PER_TASK:-1}\"\n"
     "export OPENBLAS_NUM_THREADS=\"$OMP_NUM_THREADS\"\n"
-    "echo \"$line\"\n"
+    "echo \"$* -o $output.partial\"\n"
     "rm -rf -- \"$output.partial\"\n"
     "\"$@\" -o \"$output.partial\"\n"
     "code=$?\n"

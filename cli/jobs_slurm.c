@@ -180,11 +180,12 @@ static void give_up(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
     wb_jobs_plan_fail(plan, item, how, has_out ? out : NULL);
 }
 
-/* Files of another machine may take some time to be seen here. */
+/* Files of another machine may take some time to be seen here; what Slurm says of a task that it
+ * ended also comes a little later. */
 static bool is_hopeless(const struct wb_jobs_plan *plan, const struct wb_jobs_plan_item *item)
 {
     const bool may_come = !item->ending[0] || strcmp(item->ending, "COMPLETED") == 0;
-    const double patience = may_come ? 3.0 * longest_interval(plan) : 0.0;
+    const double patience = (may_come ? 3.0 : 1.0) * longest_interval(plan);
     return item->ended_ns != 0 &&
            wb_seconds_from_ns(wb_progress_now_ns() - item->ended_ns) >= patience;
 }
