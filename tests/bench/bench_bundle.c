@@ -167,7 +167,7 @@ static bool watch(void *context, const struct wb_bundle_progress *progress)
 static double run_loading(struct wb_bundle_history *history, double stop_at)
 {
     struct stop stop = {.at = stop_at};
-    const struct wb_bundle_observer observer = {watch, &stop};
+    const struct wb_bundle_observer observer = {.progress = watch, .context = &stop};
     const double start = cpu_now();
 
     if (wb_bundle_run(history, &model, NULL, &observer) != WB_OK || !history->converged) {
