@@ -338,11 +338,13 @@ static enum verdict go_to(struct wb_bundle_run_now *r, double share, bool look_t
     return look_there ? look(r, &energies) : GO_ON;
 }
 
-static enum verdict show_place(struct run *r)
+static enum verdict show_place(struct wb_bundle_run_now *r)
 {
-    if (!r->observer || !r->observer->place)
+    const struct wb_bundle_observer *observer = r->options.observer;
+
+    if (!observer || !observer->place)
         return GO_ON;
-    r->status = r->observer->place(r->observer->context, r->history, &r->row, r->bundle);
+    r->status = wb_team_agree(observer->place(observer->context, r->history, &r->row, r->bundle));
     return r->status == WB_OK ? GO_ON : NO_MEMORY;
 }
 
