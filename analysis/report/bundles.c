@@ -256,9 +256,6 @@ static enum wb_status read_study(struct wb_bundles *all, const struct wb_config_
     for (int i = 0; i < study->n; i++) {
         const char *const name = wb_config_scalar(wb_config_item(runs, i));
         WB_TRY(find_run(all, node, "runs", name ? name : "", &study->runs[i]));
-        if (strcmp(all->runs[study->runs[i]].model->name, all->runs[study->runs[0]].model->name))
-            return wb_config_refuse(node, "runs", "'%s' is of another bundle than '%s'", name,
-                                    all->runs[study->runs[0]].name);
     }
     return read_labels(all, node, labels, study);
 }

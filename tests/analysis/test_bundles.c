@@ -209,8 +209,11 @@ static void a_campaign_that_makes_no_sense_is_refused_with_its_line(void **state
          "c.yaml:7: constant: 'b' is of another bundle than 'a'"},
         {RUN "groups: []\n", "c.yaml:7: groups: expected a list of 1 to 8"},
         {RUN "groups: [{label: x, bundles: [{label: y, dynamic: a}]}]\n"
-             "studies: [{title: t, runs: [a, b]}]\n",
-         "c.yaml:8: runs: 'b' is of another bundle"},
+             "studies: [{title: t, runs: [a, c]}]\n",
+         "c.yaml:8: runs: there is no run 'c'"},
+        {RUN "groups: [{label: x, bundles: [{label: y, dynamic: a}]}]\n"
+             "studies: [{title: t, runs: [a, b], labels: [one]}]\n",
+         "c.yaml:8: labels: expected a list of 2 labels"},
         {RUN "groups: [{label: x, bundles: [{label: y, dynamic: a}]}]\ninset: z\n",
          "c.yaml:8: inset: there is no bundle with the label 'z'"},
         {RUN "groups: [{label: x, bundles: [{label: y, dynamic: a}]}]\nspeed: 3\n", "c.yaml:8: "},

@@ -24,7 +24,7 @@ if grep -q ': 0 of [0-9]* datasets used' "$folder/a.out" && [ ! -e "$2/simulatio
     exit 77
 fi
 [ $code -eq 0 ] || [ $code -eq 4 ] || fail "exit code $code: $(cat "$folder/a.err")"
-grep -q '21 of 21 datasets used' "$folder/a.out" || fail 'a dataset is missing or outdated'
+grep -qE ': ([0-9]+) of \1 datasets used' "$folder/a.out" || fail 'a dataset is missing or outdated'
 grep 'limit .* exceeded' "$folder/a.out" | grep -v rms_max && fail 'energy or cost is beyond its limit'
 
 cd /tmp || exit 1
