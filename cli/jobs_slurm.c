@@ -167,8 +167,10 @@ static void give_up(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
     if (!item->ending[0])
         wb_jobs_queue_ask_ending(item);
     if (!item->ending[0])
-        snprintf(how, sizeof how, "Slurm's task %s_%d is gone and left no output", item->array,
-                 item->task);
+        snprintf(how, sizeof how,
+                 "Slurm's task %s_%d is gone and left no output, as when it is cancelled before it "
+                 "begins",
+                 item->array, item->task);
     else
         snprintf(how, sizeof how, "Slurm's task %s_%d is %s%s", item->array, item->task,
                  item->ending,

@@ -413,6 +413,73 @@ static void refused_array_says_slurms_reason(void **unused)
     assert_false(jobs_fixture_is_there("a"));
 }
 
+/* One wire stands in for a bundle: it is solved in a second. */
+static const char small_bundle[] =
+    "name: one\n"
+    "title: One wire\n"
+    "wires: [{wire: type3, count: 1}]\n"
+    "packing: hexagon\n"
+    "length_mm: 85\n"
+    "interface: {cohesive_stiffness_N_mm3: 30, friction: 0.4}\n"
+    "meshes: [{name: coarse, core_quads: 2, rings: 1, elements_along: 20, formulation: 2x2x1}]\n"
+    "run: {mesh: coarse, deflection_mm: 10, rows: 20, mass_scaling: 25, "
+    "selective_mass_scaling: 10}\n"
+    "loads: {strand_mm: 760, weight: true}\n"
+    "published: {outer_diameter_mm: 1.4, density_g_cm3: 4.97, beam: type3}\n";
+static const char small_campaign[] =
+    "kind: bundles\n"
+    "title: One wire\n"
+    "simulations: sim\n"
+    "defaults: {dead_force: true, weight: false, duration_s: 1.5}\n"
+    "runs:\n"
+    "  - {name: one, bundle: ./one.yaml}\n"
+    "  - {name: one-0.2, bundle: ./one.yaml, friction: 0.2}\n"
+    "groups:\n"
+    "  - label: A wire\n"
+    "    bundles: [{label: one wire, dynamic: one, constant: one-0.2, rod: one-1d}]\n"
+    "fit: {elements: 10, fibres: 12}\n";
+
+/* `wirebench report c.yaml -o r OPTIONS`; its exit code. */
+static int report(const char *extra)
+{
+    char command[2 * WB_PATH];
+    snprintf(command, sizeof command, "%s report c.yaml -o r --slurm %s >out 2>err", wirebench,
+             extra);
+    const int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static void report_of_a_campaign_resumes_what_is_missing(void **unused)
+{
+    (void)unused;
+    jobs_fixture_write("one.yaml", small_bundle);
+    jobs_fixture_write("c.yaml", small_campaign);
+    /* Held until one of the tasks is killed. */
+    assert_int_equal(
+        system("(for i in $(seq 200); do\n"
+               "  id=$(sed -n 's/.*\"array\": \"\\(.*\\)\".*/\\1/p' r.jobs/slurm.json |"
+               " tail -n 1)\n"
+               "  [ -n \"$id\" ] && break; sleep 0.2; done; scancel ${id}_2; scontrol release $id)"
+               " >/dev/null 2>&1 &"),
+        0);
+    const int code = report("--slurm-partition=main --slurm-time=10 --slurm-option=--hold");
+    if (code != 3)
+        fail_msg("exit code %d: %s", code, jobs_fixture_text("err"));
+    /* Of a task that had not begun Slurm keeps nothing. */
+    if (!strstr(jobs_fixture_text("err"), "_2 is gone and left no output"))
+        fail_msg("no task was cancelled: %s", jobs_fixture_text("err"));
+    assert_non_null(strstr(jobs_fixture_text("err"), "tasks wait in Slurm's queue: JobHeld"));
+    assert_non_null(strstr(jobs_fixture_text("out"), "2 of 3 datasets used"));
+    assert_true(jobs_fixture_is_there("r/report.pdf"));
+
+    assert_int_equal(report("--force --slurm-partition=main"), 0);
+    assert_non_null(strstr(jobs_fixture_text("out"), "3 of 3 datasets used"));
+    /* Slurm opened a file for one task only. */
+    assert_int_equal(system("[ $(ls r.jobs/slurm-2/*.out | wc -l) -eq 1 ]"), 0);
+    assert_int_equal(report("--force"), 0);
+    assert_false(jobs_fixture_is_there("r.jobs/slurm-3"));
+}
+
 static int run_facts(void)
 {
     /* Orphans of the daemons come to us, who end them. */
@@ -424,6 +491,7 @@ static int run_facts(void)
         WITH_FOLDER(killed_task_is_named_and_made_by_the_next_call),
         WITH_FOLDER(interrupted_call_leaves_the_array_to_the_next),
         WITH_FOLDER(refused_array_says_slurms_reason),
+        WITH_FOLDER(report_of_a_campaign_resumes_what_is_missing),
     };
     return cmocka_run_group_tests_name("jobs_slurm", tests, start_cluster, stop_cluster);
 }
