@@ -60,11 +60,12 @@ static enum wb_status take_body(struct wb_surface_body *body, const struct wb_bu
 {
     const int around = from->is_tape ? from->n_nodes : from->n_outline;
     const int most = from->is_tape ? WB_SURFACE_AROUND_TAPE : WB_SURFACE_AROUND_WIRE;
+    const int most_along = from->closed ? WB_SURFACE_ALONG : WB_SURFACE_ALONG_STRIP;
 
     body->is_tape = from->is_tape;
     body->closed = from->closed;
     body->n_around = around < most ? around : most;
-    body->n_along = from->n_stations < WB_SURFACE_ALONG ? from->n_stations : WB_SURFACE_ALONG;
+    body->n_along = from->n_stations < most_along ? from->n_stations : most_along;
     body->nodes = calloc((size_t)body->n_along * (size_t)body->n_around, sizeof *body->nodes);
     if (!body->nodes)
         return wb_fail(WB_ERR_MEMORY, "no memory for a bundle's surface");

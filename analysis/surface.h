@@ -17,7 +17,8 @@
 #include "fe/bundle_fields.h"
 
 enum {
-    WB_SURFACE_ALONG = 41, /* stations and nodes at most that wb_surface_take() keeps */
+    WB_SURFACE_ALONG = 41,        /* stations and nodes at most that wb_surface_take() keeps */
+    WB_SURFACE_ALONG_STRIP = 241, /* it winds */
     WB_SURFACE_AROUND_WIRE = 24,
     WB_SURFACE_AROUND_TAPE = 48
 };

@@ -20,7 +20,7 @@ static const struct wb_colour cut = {0.84, 0.84, 0.82, 1.0}; /* of the wires' en
 static const double margin = 0.03;
 
 static const struct wb_view_camera from_side = {{0.22, 0.24, 1.0}, {0.0, 1.0, 0.0}};
-static const struct wb_view_camera from_tip = {{0.9, 0.45, 0.85}, {0.0, 1.0, 0.0}};
+static const struct wb_view_camera from_tip = {{0.75, 0.42, 1.0}, {0.0, 1.0, 0.0}};
 static const struct wb_view_camera from_clamp = {{-0.7, 0.7, 1.0}, {0.0, 1.0, 0.0}};
 
 /* What both pictures of a figure share; places in mm. */

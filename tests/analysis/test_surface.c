@@ -111,6 +111,7 @@ static void large_meshes_are_thinned(void **unused)
         assert_int_equal(wire->n_along, WB_SURFACE_ALONG);
         assert_int_equal(wire->n_around, WB_SURFACE_AROUND_WIRE);
         assert_int_equal(tape->n_around, WB_SURFACE_AROUND_TAPE);
+        assert_int_equal(tape->n_along, closed ? WB_SURFACE_ALONG : WB_SURFACE_ALONG_STRIP);
         const int last = (WB_SURFACE_ALONG - 1) * WB_SURFACE_AROUND_WIRE;
         assert_close(wire->nodes[0].position[0], 0.0, 0.0);
         assert_close(wire->nodes[last].position[0], 0.384, 1e-12);
