@@ -126,7 +126,13 @@ static enum wb_status add_forces(struct wb_panel *panel, const struct wb_bundles
         wb_bundles_results_usable(results, bundle->dynamic);
     const struct wb_bundles_result *const constant =
         wb_bundles_results_usable(results, bundle->constant);
-    WB_TRY(add_published(panel, "published", dynamic ? dynamic : constant));
+    const struct wb_bundles_result *const any = dynamic ? dynamic : constant;
+    double largest = any->published ? fmax(any->published_max, 0.0) : 0.0;
+    largest = fmax(largest, fmax(dynamic ? dynamic->curve.max_force : 0.0,
+                                 constant ? constant->curve.max_force : 0.0));
+    /* Room above for the legend, so that the panels are alike. */
+    wb_figure_set_y_range(panel, 0.0, 1.25 * largest);
+    WB_TRY(add_published(panel, "published", any));
     WB_TRY(add_run(panel, "constant", constant, &constant_style));
     return add_run(panel, "decaying", dynamic, &dynamic_style);
 }
@@ -238,6 +244,14 @@ static enum wb_status add_energies(struct wb_panel *panel, const struct wb_bundl
     return WB_OK;
 }
 
+static double largest_energy(const struct wb_bundles_result *run)
+{
+    double largest = 0.0;
+    for (int i = 0; i < run->n_energies; i++)
+        largest = fmax(largest, run->energies[i].internal);
+    return largest > 0.0 ? largest : millijoule;
+}
+
 static enum wb_status draw_energies(struct wb_figure **figure,
                                     const struct wb_bundles_results *results, int index)
 {
@@ -257,7 +271,8 @@ static enum wb_status draw_energies(struct wb_figure **figure,
         struct wb_panel *const panel = wb_figure_add_panel(*figure);
         set_title(panel, bundle->label);
         wb_figure_set_axes(panel, "Time of the model (s)", n++ == 0 ? "Energy (mJ)" : "");
-        wb_figure_set_y_range(panel, 0.0, (double)NAN);
+        /* Room above for the legend, so that the panels are alike. */
+        wb_figure_set_y_range(panel, 0.0, 1.3 * largest_energy(run) / millijoule);
         WB_TRY(add_energies(panel, run));
     }
     return WB_OK;
