@@ -46,7 +46,7 @@ struct wb_bundle_fields {
 WB_MUST_CHECK enum wb_status wb_bundle_fields_init(struct wb_bundle_fields *fields,
                                                    const struct wb_bundle *bundle);
 /* The present state of the same bundle, or of another of the same model and mesh. Takes as long as
- * some hundred steps. */
+ * about ten steps. */
 WB_MUST_CHECK enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
                                                    const struct wb_bundle *bundle);
 void wb_bundle_fields_release(struct wb_bundle_fields *fields); /* accepts a zeroed one */
