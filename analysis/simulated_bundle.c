@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "fe/team.h"
 
 #define WB_LOG_DOMAIN "dataset"
 
@@ -184,6 +185,8 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
     if (!h->converged)
         wb_json_set_text(object, "problem", h->problem);
     wb_json_set_number(object, "zero_force_N", h->zero_force);
+    wb_json_set_integer(object, "threads", h->parts > 0 ? h->parts / wb_team_ranks() : 1);
+    wb_json_set_integer(object, "ranks", wb_team_ranks());
     wb_json_set_number(object, "wall_s", bundle->wall);
     wb_json_set_number(object, "cpu_s", bundle->cpu);
     if (element_steps > 0.0)

@@ -1,5 +1,7 @@
 #include "cli/bundle_states.h"
 
+#include <stdlib.h>
+
 #define WB_LOG_DOMAIN "solve"
 
 /* A run that begins anew leaves nothing of the one before. */
@@ -65,6 +67,69 @@ enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
     states->spent.wall += end.wall - start.wall;
     states->spent.cpu += end.cpu - start.cpu;
     return status;
+}
+
+static void carry_body(struct wb_surface_body *body, struct wb_checkpoint *checkpoint)
+{
+    struct wb_surface_node *nodes = body->nodes;
+
+    wb_checkpoint_carry(checkpoint, body, sizeof *body);
+    const size_t size = (size_t)body->n_around * (size_t)body->n_along * sizeof *nodes;
+    if (checkpoint->restores) {
+        body->nodes = calloc(size > 0 ? size : 1, 1);
+        if (!body->nodes)
+            checkpoint->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
+    }
+    wb_checkpoint_carry(checkpoint, body->nodes, size);
+}
+
+static void carry_surface(struct wb_surface *surface, struct wb_checkpoint *checkpoint)
+{
+    int n = surface->n;
+
+    wb_checkpoint_carry(checkpoint, &n, sizeof n);
+    if (checkpoint->restores && n > 0 && checkpoint->status == WB_OK) {
+        wb_surface_release(surface);
+        surface->bodies = calloc((size_t)n, sizeof *surface->bodies);
+        if (!surface->bodies) {
+            checkpoint->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
+            return;
+        }
+        surface->n = n;
+    }
+    for (int i = 0; i < n && checkpoint->status == WB_OK; i++)
+        carry_body(&surface->bodies[i], checkpoint);
+}
+
+static void carry_series(struct wb_bundle_vtk *series, struct wb_checkpoint *checkpoint)
+{
+    size_t length = series->states.length;
+    char *bytes = series->states.bytes;
+
+    wb_checkpoint_carry(checkpoint, &series->n, sizeof series->n);
+    wb_checkpoint_carry(checkpoint, &length, sizeof length);
+    if (checkpoint->restores) {
+        bytes = malloc(length + 1);
+        if (!bytes) {
+            checkpoint->status = wb_fail(WB_ERR_MEMORY, "no memory for a VTK series");
+            return;
+        }
+    }
+    wb_checkpoint_carry(checkpoint, bytes, length);
+    if (!checkpoint->restores)
+        return;
+    if (checkpoint->status == WB_OK)
+        wb_text_append_bytes(&series->states, bytes, length);
+    free(bytes);
+}
+
+void wb_bundle_states_carry(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
+{
+    wb_checkpoint_carry(checkpoint, &states->attempt, sizeof states->attempt);
+    wb_checkpoint_carry(checkpoint, &states->deflection, sizeof states->deflection);
+    wb_checkpoint_carry(checkpoint, &states->spent, sizeof states->spent);
+    carry_surface(&states->surface, checkpoint);
+    carry_series(&states->series, checkpoint);
 }
 
 void wb_bundle_states_release(struct wb_bundle_states *states)

@@ -30,7 +30,10 @@ enum {
     KEY_SELECTIVE,
     KEY_FRICTION,
     KEY_COHESIVE_STIFFNESS,
-    KEY_VTK_EVERY
+    KEY_VTK_EVERY,
+    KEY_THREADS,
+    KEY_CHECKPOINT,
+    KEY_CHECKPOINT_MINUTES
 };
 
 static const double pa_per_m = 1e9; /* of one N/mm3 */
@@ -59,6 +62,14 @@ static const struct argp_option option_table[] = {
      0},
     {"mass-scaling", KEY_MASS_SCALING, "F", 0, "Factor on a bundle's masses (its file's)", 0},
     {"selective", KEY_SELECTIVE, "B", 0, "Selective mass scaling of its sections (its file's)", 0},
+    {"threads", KEY_THREADS, "N", 0,
+     "Compute a bundle in N parts along its axis, on as many cores (1); with mpirun, of each rank",
+     0},
+    {"checkpoint", KEY_CHECKPOINT, "FILE", 0,
+     "Keep a bundle's run in this file every so often; a run that was ended goes on from it when "
+     "the same command is given again",
+     0},
+    {"checkpoint-minutes", KEY_CHECKPOINT_MINUTES, "M", 0, "Time between checkpoints (10)", 0},
     {"friction", KEY_FRICTION, "S[,K,D]", 0,
      "Friction in a bundle: constant, or static, kinetic and decay in s/mm (its file's)", 0},
     {"cohesive-stiffness", KEY_COHESIVE_STIFFNESS, "K", 0,
@@ -167,6 +178,16 @@ static error_t take_bundle_option(int key, char *argument, struct argp_state *st
     case KEY_VTK_EVERY:
         options->vtk_every = wb_command_integer(state, "--vtk-every", argument, 1, 100000);
         return 0;
+    case KEY_THREADS:
+        options->threads = wb_command_integer(state, "--threads", argument, 1, 1024);
+        return 0;
+    case KEY_CHECKPOINT:
+        options->checkpoint = argument;
+        return 0;
+    case KEY_CHECKPOINT_MINUTES:
+        options->checkpoint_interval =
+            60.0 * wb_command_number(state, "--checkpoint-minutes", argument, 1e-3, 1e5);
+        return 0;
     case KEY_MESH:
         override->mesh = argument;
         return 0;
@@ -203,7 +224,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 
     if (key >= KEY_WIRE && key <= KEY_POINTS)
         o->cantilever_option = option_name(key);
-    if (key >= KEY_MESH && key <= KEY_VTK_EVERY) {
+    if (key >= KEY_MESH && key <= KEY_CHECKPOINT_MINUTES) {
         o->bundle_option = option_name(key);
         return take_bundle_option(key, argument, state, o);
     }

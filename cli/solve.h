@@ -34,8 +34,11 @@ struct wb_solve_options {
     const char *vtk;   /* folder; NULL: none; not of wire1d */
     /* Of bundles. */
     struct wb_bundle_override override;
-    int vtk_every;             /* rows */
-    const char *bundle_option; /* one of its options that was given; NULL: none */
+    int vtk_every;              /* rows */
+    int threads;                /* 0: 1 */
+    const char *checkpoint;     /* file; NULL: none */
+    double checkpoint_interval; /* s; 0: 600 */
+    const char *bundle_option;  /* one of its options that was given; NULL: none */
 };
 
 /* Each returns an exit code. */

@@ -13,6 +13,7 @@
 #include "cli/bundle_states.h"
 #include "cli/solve.h"
 #include "fe/bundle_run.h"
+#include "fe/team.h"
 
 #define WB_LOG_DOMAIN "solve"
 
@@ -55,12 +56,20 @@ static enum wb_status prepare_output(struct run *run)
     run->states.wants_vtk = o->vtk;
     run->states.every = o->vtk_every > 0 ? o->vtk_every : 1;
     run->states.turn = run->model.run.rows;
+    /* What a run that goes on has written is its own. */
+    const bool force = o->common.force || (o->checkpoint && wb_file_exists(o->checkpoint));
     if (o->common.output)
-        WB_TRY(prepare_folder(o->common.output, o->common.force, &run->made_output));
+        WB_TRY(prepare_folder(o->common.output, force, &run->made_output));
     if (!o->vtk)
         return WB_OK;
-    WB_TRY(prepare_folder(o->vtk, o->common.force, &run->made_vtk));
+    WB_TRY(prepare_folder(o->vtk, force, &run->made_vtk));
     return wb_bundle_vtk_init(&run->states.series, o->vtk, run->model.name);
+}
+
+/* Rank 0 alone writes and talks. */
+static bool is_first(void)
+{
+    return wb_team_rank() == 0;
 }
 
 static enum wb_status prepare(struct run *run)
@@ -73,7 +82,7 @@ static enum wb_status prepare(struct run *run)
     WB_TRY(wb_bundle_override_apply(&o->override, &run->model));
     run->mesh = wb_bundle_model_mesh(&run->model, run->model.run.mesh);
     WB_TRY(wb_bundle_run_init(&run->history, &run->model, MARKERS));
-    return prepare_output(run);
+    return is_first() ? prepare_output(run) : WB_OK;
 }
 
 /* --- while it runs --- */
@@ -83,6 +92,8 @@ static bool report_progress(void *context, const struct wb_bundle_progress *now)
     struct run *run = context;
     char note[128];
 
+    if (!is_first())
+        return true;
     if (now->attempt != run->attempt) {
         if (run->attempt > 0)
             wb_progress_finish(&run->progress);
@@ -104,7 +115,13 @@ static enum wb_status report_place(void *context, const struct wb_bundle_history
                                    const struct wb_bundle_row *row, const struct wb_bundle *bundle)
 {
     struct run *run = context;
-    return wb_bundle_states_take(&run->states, history, row, bundle);
+    return is_first() ? wb_bundle_states_take(&run->states, history, row, bundle) : WB_OK;
+}
+
+static void carry_states(void *context, struct wb_checkpoint *checkpoint)
+{
+    struct run *run = context;
+    wb_bundle_states_carry(&run->states, checkpoint);
 }
 
 static enum wb_status compute(struct run *run)
@@ -112,18 +129,23 @@ static enum wb_status compute(struct run *run)
     const struct wb_bundle_observer observer = {
         .progress = report_progress,
         .place = report_place,
+        .carry = carry_states,
         .context = run,
     };
-    const struct wb_solve_time start = wb_solve_now();
-    const enum wb_status status =
-        wb_bundle_run(&run->history, &run->model, run->mesh->name, &observer);
-    const struct wb_solve_time end = wb_solve_now();
+    const struct wb_bundle_run_options options = {
+        .mesh = run->mesh->name,
+        .threads = run->options->threads,
+        .checkpoint = run->options->checkpoint,
+        .checkpoint_interval = run->options->checkpoint_interval,
+        .observer = &observer,
+    };
+    const enum wb_status status = wb_bundle_run_with(&run->history, &run->model, &options);
 
     if (run->attempt > 0)
         wb_progress_finish(&run->progress);
     /* Fields and files are not what is measured. */
-    run->spent.wall = end.wall - start.wall - run->states.spent.wall;
-    run->spent.cpu = end.cpu - start.cpu - run->states.spent.cpu;
+    run->spent.wall = run->history.wall - run->states.spent.wall;
+    run->spent.cpu = run->history.cpu - run->states.spent.cpu;
     return status;
 }
 
@@ -228,6 +250,11 @@ static int deliver(const struct run *run)
     const struct wb_bundle_history *h = &run->history;
     int code = WB_EXIT_OK;
 
+    if (h->stopped && run->options->checkpoint) {
+        wb_warn("stopped after %d rows; the same command goes on from there ('%s')", h->n_rows,
+                run->options->checkpoint);
+        return WB_EXIT_INCOMPLETE;
+    }
     if (common->output && h->n_rows > 0)
         code = wb_command_exit(write_dataset(run));
     if (code == WB_EXIT_OK && common->json)
@@ -240,16 +267,19 @@ static int deliver(const struct run *run)
     return h->converged && !h->stopped ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
-int wb_solve_bundle(const struct wb_solve_options *options)
+static int solve(const struct wb_solve_options *options)
 {
     struct run *const run = calloc(1, sizeof *run);
     if (!run)
         return wb_command_exit(wb_fail(WB_ERR_MEMORY, "out of memory"));
     run->options = options;
-    enum wb_status status = prepare(run);
+    enum wb_status status = wb_team_agree(prepare(run));
     if (status == WB_OK)
         status = compute(run);
-    const int code = status == WB_OK ? deliver(run) : wb_command_exit(status);
+    int code = wb_command_exit(status);
+    if (status == WB_OK && is_first())
+        code = deliver(run);
+    wb_team_share(&code, sizeof code, 0);
 
     /* Folders that were made for nothing go again. */
     if (run->made_output)
@@ -259,5 +289,17 @@ int wb_solve_bundle(const struct wb_solve_options *options)
     wb_bundle_states_release(&run->states);
     wb_bundle_run_release(&run->history);
     free(run);
+    return code;
+}
+
+int wb_solve_bundle(const struct wb_solve_options *options)
+{
+    const enum wb_status status = wb_team_start();
+    if (status != WB_OK)
+        return wb_command_exit(status);
+    if (!is_first())
+        wb_log_set_threshold(WB_LOG_ERROR);
+    const int code = solve(options);
+    wb_team_end();
     return code;
 }

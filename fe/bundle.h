@@ -71,6 +71,10 @@ void wb_bundle_destroy(struct wb_bundle *bundle); /* accepts NULL */
 int wb_bundle_parts(const struct wb_bundle *bundle);
 int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *mesh, int threads);
 
+/* Brings the fields and histories of parts together, for those who read them; all ranks have them
+ * then. Nothing where it was done since the last step. */
+void wb_bundle_gather(const struct wb_bundle *bundle);
+
 /* Carries the state of a bundle of the same model, settings and number of parts to a checkpoint or
  * back: it goes on bit for bit. */
 void wb_bundle_carry(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);

@@ -94,6 +94,24 @@ int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *name, in
     return each * ranks;
 }
 
+int wb_bundle_parts_largest(const struct wb_bundle_model *model, const char *name, int count)
+{
+    const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(model, name);
+    int border[WB_BUNDLE_MOST_PARTS + 1], largest = 0;
+
+    if (!mesh || count < 1 || count > WB_BUNDLE_MOST_PARTS)
+        return 0;
+    const int halo = halo_of(model, mesh);
+    if (count > 1 && !find_borders(halo, mesh->elements_along + 1, count, border))
+        return 0;
+    for (int i = 0; i < count && count > 1; i++) {
+        const int halos = (i > 0) + (i < count - 1);
+        const int n = border[i + 1] - border[i] + halos * halo;
+        largest = n > largest ? n : largest;
+    }
+    return count == 1 ? mesh->elements_along + 1 : largest;
+}
+
 /* --- one part --- */
 
 static int bodies_of(struct wb_bundle *bundle, struct wb_bundle_body *body[WB_PACKING_MOST + 2])
@@ -141,6 +159,14 @@ static size_t packet_size(struct wb_bundle *bundle, int halo)
     for (int b = 0; b < n_bodies; b++)
         rows += 3 * (size_t)body[b]->layout.n_nodes;
     return rows * (size_t)halo;
+}
+
+size_t wb_bundle_parts_bytes(const struct wb_bundle *whole)
+{
+    struct wb_bundle *changeable;
+
+    memcpy(&changeable, &whole, sizeof changeable);
+    return packet_size(changeable, halo_of(whole->model, whole->mesh)) * sizeof(double);
 }
 
 static void swap(struct wb_bundle_parts *parts, int member)

@@ -25,6 +25,11 @@
 
 struct wb_bundle_parts; /* opaque */
 
+/* For estimates: stations of the largest of so many parts, with its halos, 0 where there is no room
+ * for them; and the bytes that two neighbours send each other in a step. */
+int wb_bundle_parts_largest(const struct wb_bundle_model *model, const char *mesh, int count);
+size_t wb_bundle_parts_bytes(const struct wb_bundle *whole);
+
 /* Of a bundle that is made and has not moved. `count` as of wb_bundle_parts_of(), above 1. */
 WB_MUST_CHECK enum wb_status wb_bundle_parts_create(struct wb_bundle_parts **out,
                                                     struct wb_bundle *whole, int count);

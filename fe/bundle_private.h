@@ -114,9 +114,6 @@ void wb_bundle_stop(struct wb_bundle *bundle);
 double wb_bundle_potential(const struct wb_bundle *bundle);
 double wb_bundle_plastic_work(const struct wb_bundle *bundle);
 
-/* Brings the fields and histories of parts together: before they are read from the bundle. */
-void wb_bundle_gather(const struct wb_bundle *bundle);
-
 /* A part of a whole from its station `first` on. */
 WB_MUST_CHECK enum wb_status wb_bundle_create_part(struct wb_bundle **out,
                                                    const struct wb_bundle *whole, int first,

@@ -78,6 +78,8 @@ void wb_bundle_run_carry(struct wb_bundle_run_now *r, struct wb_checkpoint *c)
     h->shape = own.shape;
     wb_checkpoint_carry(c, h->rows, rows * sizeof *h->rows);
     wb_checkpoint_carry(c, h->shape, places * sizeof *h->shape);
+    if (r->options.observer && r->options.observer->carry)
+        r->options.observer->carry(r->options.observer->context, c);
     wb_checkpoint_carry(c, &r->state, sizeof *r - offsetof(struct wb_bundle_run_now, state));
 }
 

@@ -1,0 +1,194 @@
+/* What threads and ranks gain: wall time of a step of seven taped wires, on one part and on two
+ * (this process's threads, or the ranks that mpirun started), with the same bundle (strong scaling)
+ * and with one twice as long (weak); and a model of more parts: the time of the largest one's
+ * vectors of stations, and of a swap of packets, measured by itself.
+ *
+ * The best of several blocks of steps, taken in turn: other work on the machine only adds. */
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "base/file.h"
+#include "fe/bundle_parts.h"
+#include "fe/swept.h"
+#include "fe/team.h"
+
+enum {
+    STEPS = 200, /* of a block */
+    BLOCKS = 12,
+    ROUNDS = 2000
+};
+
+static struct wb_bundle_model model;
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static int read_model(const char *mesh)
+{
+    char path[WB_PATH];
+    if (wb_file_find_fixture(path, "bundles", "7-type3", NULL) != WB_OK ||
+        wb_bundle_model_read(&model, path) != WB_OK)
+        return 1;
+    model.loads.weight = false;
+    model.loads.strand_length = 0.0;
+    snprintf(model.run.mesh, sizeof model.run.mesh, "%s", mesh);
+    return 0;
+}
+
+/* The same elements on a bundle so many times as long. */
+static void lengthen(int times)
+{
+    for (int i = 0; i < model.n_meshes; i++)
+        model.mesh[i].elements_along *= times;
+    model.length *= times;
+    model.run.deflection *= times;
+}
+
+static int make(struct wb_bundle **out, int threads)
+{
+    const struct wb_bundle_settings settings = {.duration = 1.0, .threads = threads};
+    if (wb_bundle_create(out, &model, &settings) != WB_OK)
+        return 1;
+    wb_bundle_lead(*out, model.run.deflection, settings.duration);
+    return wb_bundle_advance(*out, STEPS) != WB_OK;
+}
+
+/* Least seconds of a step in a block. */
+static int time_block(struct wb_bundle *bundle, double *best)
+{
+    const double start = now();
+    if (wb_bundle_advance(bundle, STEPS) != WB_OK)
+        return 1;
+    *best = fmin(*best, (now() - start) / STEPS);
+    return 0;
+}
+
+/* Packets of so many numbers, there and back. */
+struct swaps {
+    struct wb_team *team;
+};
+
+static void swap(void *context, int member)
+{
+    struct wb_team *team = ((struct swaps *)context)->team;
+    for (int i = 0; i < ROUNDS; i++) {
+        wb_team_post(team, member);
+        (void)wb_team_await(team, member, WB_TEAM_BEFORE);
+        (void)wb_team_await(team, member, WB_TEAM_AFTER);
+    }
+}
+
+static double swap_time(int threads, size_t numbers)
+{
+    struct swaps swaps;
+    double best = (double)INFINITY;
+    if (wb_team_create(&swaps.team, threads, numbers) != WB_OK)
+        return (double)NAN;
+    for (int i = 0; i < 5; i++) {
+        const double start = now();
+        wb_team_run(swaps.team, swap, &swaps);
+        best = fmin(best, (now() - start) / ROUNDS);
+    }
+    wb_team_destroy(swaps.team);
+    return best;
+}
+
+static int vectors(const char *mesh, int parts)
+{
+    const int stations = wb_bundle_parts_largest(&model, mesh, parts);
+    return (stations + WB_SWEPT_LANES - 2) / WB_SWEPT_LANES;
+}
+
+/* Seconds of a step on one part and on two, with a bundle `longer` times as long on two. */
+static int measure(const char *mesh, int threads, int longer, double *one, double *two,
+                   size_t *bytes)
+{
+    struct wb_bundle *bundle[2] = {NULL, NULL};
+    const bool alone = wb_team_ranks() == 1;
+    int failed;
+
+    *one = *two = (double)INFINITY;
+    if (read_model(mesh))
+        return 1;
+    /* A rank cannot be alone while others wait: one part is measured without mpirun. */
+    failed = alone && make(&bundle[0], 1);
+    static struct wb_bundle_model shorter;
+    shorter = model;
+    if (!failed && longer > 1) {
+        for (int i = 0; alone && i < BLOCKS && !failed; i++)
+            failed = time_block(bundle[0], one);
+        wb_bundle_destroy(bundle[0]);
+        bundle[0] = NULL;
+        lengthen(longer);
+    }
+    failed = failed || make(&bundle[1], threads);
+    for (int i = 0; i < BLOCKS && !failed; i++)
+        failed = (bundle[0] && time_block(bundle[0], one)) || time_block(bundle[1], two);
+    if (!failed)
+        *bytes = wb_bundle_parts_bytes(bundle[1]);
+    wb_bundle_destroy(bundle[0]);
+    wb_bundle_destroy(bundle[1]);
+    model = shorter;
+    return failed;
+}
+
+static void tell_model(const char *mesh, double step, double latency, double swapped, double two)
+{
+    const double of_vector = step / vectors(mesh, 1);
+    printf("  model: %.2f us a vector of %d stations, a swap %.2f us (%.2f us without data)\n",
+           1e6 * of_vector, WB_SWEPT_LANES, 1e6 * swapped, 1e6 * latency);
+    for (int parts = 2; parts <= 32; parts *= 2) {
+        if (wb_bundle_parts_largest(&model, mesh, parts) == 0)
+            break;
+        const double predicted = of_vector * vectors(mesh, parts) + swapped;
+        printf("  %2d parts: %8.2f us a step, speed-up %5.2f", parts, 1e6 * predicted,
+               step / predicted);
+        if (parts == 2)
+            printf("  (measured %.2f us, %.2f)", 1e6 * two, step / two);
+        printf("\n");
+    }
+}
+
+int main(void)
+{
+    static const char *const meshes[] = {"engineering", "paper"};
+    int failed = wb_team_start() != WB_OK;
+    const int ranks = wb_team_ranks(), threads = ranks > 1 ? 1 : 2;
+    const bool tells = wb_team_rank() == 0;
+
+    for (int m = 0; m < 2 && !failed; m++) {
+        double one, two, longer_one, longer_two;
+        size_t bytes = 0;
+        failed = measure(meshes[m], threads, 1, &one, &two, &bytes);
+        if (failed)
+            break;
+        const double latency = swap_time(threads, 0);
+        const double swapped = swap_time(threads, bytes / sizeof(double));
+        failed = measure(meshes[m], threads, 2, &longer_one, &longer_two, &bytes);
+        if (!tells || failed)
+            continue;
+        printf("%s mesh, %d stations, %zu kB to a neighbour and step:\n", meshes[m],
+               wb_bundle_parts_largest(&model, meshes[m], 1), bytes / 1000);
+        if (ranks == 1) {
+            printf("  strong: 1 part %.2f us a step, 2 threads %.2f us: %.2f times as fast\n",
+                   1e6 * one, 1e6 * two, one / two);
+            printf("  weak: 1 part %.2f us, twice the length on 2 threads %.2f us: efficiency "
+                   "%.2f\n",
+                   1e6 * longer_one, 1e6 * longer_two, longer_one / longer_two);
+            tell_model(meshes[m], one, latency, swapped, two);
+        } else {
+            printf("  %d ranks: %.2f us a step; twice the length %.2f us; a swap %.2f us (%.2f us "
+                   "without data)\n",
+                   ranks, 1e6 * two, 1e6 * longer_two, 1e6 * swapped, 1e6 * latency);
+        }
+    }
+    wb_team_end();
+    return failed;
+}

@@ -1,0 +1,67 @@
+#!/bin/sh
+# wirebench solve bundle in parts: on two threads and on two ranks the same dataset; a run that was
+# killed goes on from its checkpoint to the same dataset. Usage: bundle-parts.sh WIREBENCH
+set -eu
+tool=$(realpath "$1")
+here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+cat >three.yaml <<YAML
+name: three
+wires: [{wire: type3, count: 3}]
+packing: triangle
+tape: tape
+length_mm: 114
+interface: {cohesive_stiffness_N_mm3: 30, friction: 0.4}
+meshes: [{name: coarse, core_quads: 2, rings: 0, elements_along: 40}]
+run: {mesh: coarse, deflection_mm: 20, rows: 5, selective_mass_scaling: 100, duration_s: 0.04}
+loads: {weight: false, strand_mm: 760}
+YAML
+same() { # what two datasets have in common: all but the times
+    for file in force_deflection energies shape surface; do
+        cmp "$1/$file.csv" "$2/$file.csv" || { echo "$1 and $2 differ"; exit 1; }
+    done
+}
+"$tool" solve bundle three.yaml --threads 2 -o threads 2>log || { cat log; exit 1; }
+grep -q '"threads": 2' threads/dataset.json || { echo "the dataset does not name its threads"; exit 1; }
+
+# Killed as soon as there is a checkpoint and a row, again and again until it is through.
+kills=0
+while :; do
+    "$tool" solve bundle three.yaml --threads 2 -o killed --vtk vtk --checkpoint state \
+        --checkpoint-minutes 0.001 2>log &
+    process=$!
+    rows=$(ls vtk 2>/dev/null | wc -l)
+    while kill -0 $process 2>/dev/null && [ $kills -lt 2 ]; do
+        [ -f state ] && [ "$(ls vtk 2>/dev/null | wc -l)" -gt "$rows" ] && {
+            kill -9 $process 2>/dev/null || true
+            break
+        }
+        sleep 0.05
+    done
+    wait $process && break
+    [ -f state ] || { echo "it failed without a checkpoint:"; cat log; exit 1; }
+    kills=$((kills + 1))
+    [ $kills -lt 5 ] || { cat log; exit 1; }
+done
+[ $kills -gt 0 ] || { echo "it was never killed"; exit 1; }
+grep -q 'goes on at' log || { echo "it did not go on:"; cat log; exit 1; }
+[ ! -e state ] || { echo "the checkpoint was left behind"; exit 1; }
+same threads killed
+[ "$(ls vtk/*.vtu | wc -l)" -eq 6 ] || { echo "states are missing:"; ls vtk; exit 1; }
+
+# Another run's checkpoint is refused, and left alone.
+printf 'wirebench checkpoint 1\nanother\n0\n0\nend\n' >state
+! "$tool" solve bundle three.yaml --threads 2 -o other --checkpoint state 2>log || exit 1
+grep -q 'another run' log || { cat log; exit 1; }
+[ -f state ] || exit 1
+
+command -v mpirun >/dev/null || { echo "no mpirun: ranks were left out"; exit 0; }
+if ! "$here/../ranks.sh" 2 "$tool" solve bundle three.yaml -o ranks >log 2>&1; then
+    grep -q 'built without MPI' log || { cat log; exit 1; }
+    echo "built without MPI: ranks were left out"
+    exit 0
+fi
+grep -q '"ranks": 2' ranks/dataset.json || { echo "the dataset does not name its ranks"; exit 1; }
+same threads ranks
