@@ -8,7 +8,8 @@
  * Contact: neighbours touch along lines, k times the depth (k = 0.25 E as in fe/swept_contact.h),
  * between places that face each other across the mean section, found anew in every increment.
  * Friction acts along the wires only: an elastic spring on their slip, returned to mu times the
- * normal force, with a history along the path. A rate has no meaning here: mu is constant.
+ * normal force, with a history along the path. A rate has no meaning here: mu is constant. Open
+ * contact pulls back weakly (see open_stiffness).
  *
  * Tape: a membrane of plane stress (J2, power law, logarithmic strain) between lines of nodes on
  * the wires' arcs, one element across each straight piece. A node is tied to its wire's surface by
@@ -50,6 +51,9 @@ struct wb_bundle_static_settings {
                        if forces from outside pressed the wires together */
     double stiffness;          /* of contact, k / E; 0: 0.25 */
     double tangential_ratio;   /* k_t / k; 0: 0.5 */
+    double open_stiffness;     /* of contact while it is open, over that of pressure: a weak pull
+                                  without which the places of loose wires between others are not
+                                  determined; 0: 1e-3 */
     double largest_increment;  /* m of deflection; 0: 1/200 of the length */
     double smallest_increment; /* m; 0: 1/1000 of the largest */
     double force_tolerance;    /* residual over the largest force in a wire; 0: 1e-7 */

@@ -11,7 +11,7 @@ enum {
     FACE_ITERATIONS = 8
 };
 
-static const double usual_stiffness = 0.25, usual_ratio = 0.5;
+static const double usual_stiffness = 0.25, usual_ratio = 0.5, usual_open = 1e-3;
 
 enum wb_status wb_bundle_static_make_contact(struct wb_bundle_static *b)
 {
@@ -143,10 +143,12 @@ static struct answer press(const struct wb_bundle_static *b,
     struct answer out = {0};
     const bool glued = b->settings.contact == WB_BUNDLE_STATIC_GLUED;
 
-    if (depth > 0.0 || b->settings.contact != WB_BUNDLE_STATIC_TOUCHING) {
-        out.normal = pair->normal * depth;
-        out.normal_depth = pair->normal;
-    }
+    const bool open = depth <= 0.0 && b->settings.contact == WB_BUNDLE_STATIC_TOUCHING;
+    const double share = !open                              ? 1.0
+                         : b->settings.open_stiffness > 0.0 ? b->settings.open_stiffness
+                                                            : usual_open;
+    out.normal = share * pair->normal * depth;
+    out.normal_depth = share * pair->normal;
     out.drag = touch->drag + pair->tangential * slip;
     out.drag_slip = pair->tangential;
     const double limit = mu * fmax(0.0, (b->frozen ? touch->pressure : out.normal) + squeeze);
