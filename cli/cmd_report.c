@@ -305,54 +305,121 @@ static int finish_bundles(const struct options *o, const struct wb_bundles_resul
     return deliver(o, results->is_complete, results->exceeds_limit);
 }
 
-/* A job for each dataset that is to be made; returns how many. */
-static int list_jobs(const struct wb_bundles_results *results, struct wb_job *jobs)
+enum {
+    MORE_ARGUMENTS = 4, /* --threads N --checkpoint FILE */
+    MOST_JOBS = WB_BUNDLES_RUNS + WB_BUNDLES_BUNDLES
+};
+
+/* The jobs that make what is missing, with what their arguments point to. */
+struct bundle_jobs {
+    int n;
+    struct wb_job jobs[MOST_JOBS];
+    const char *arguments[MOST_JOBS][WB_BUNDLES_ARGUMENTS + MORE_ARGUMENTS];
+    char checkpoints[MOST_JOBS][WB_PATH];
+    char threads[16];
+    char folder[WB_PATH];
+    char program[WB_SHA256_TEXT];
+};
+
+/* A run that was ended goes on from its checkpoint, which fits one program, bundle and command. */
+static enum wb_status name_checkpoint(struct bundle_jobs *all, const struct wb_bundles_run *run,
+                                      char path[WB_PATH])
 {
-    const struct wb_bundles *const campaign = results->campaign;
+    char hash[WB_SHA256_TEXT], name[200];
+    struct wb_text text = {0};
+    wb_text_append(&text, "%s %s %s %s", all->program, all->threads, run->model->sha256,
+                   run->dataset.command);
+    wb_hash_bytes(wb_text_string(&text), text.length, hash);
+    wb_text_release(&text);
+    snprintf(name, sizeof name, "%.128s-%.12s.checkpoint", run->dataset.log, hash);
+    return wb_file_join(path, all->folder, name);
+}
+
+static enum wb_status add_run_job(struct bundle_jobs *all, const struct wb_bundles_run *run,
+                                  const struct wb_bundles_result *result)
+{
+    const char **const arguments = all->arguments[all->n];
     int n = 0;
-    for (int i = 0; i < campaign->n_runs + campaign->n_bundles; i++) {
-        const bool is_rod = i >= campaign->n_runs;
-        const struct wb_bundles_result *const result =
-            is_rod ? &results->rods[i - campaign->n_runs] : &results->runs[i];
-        const struct wb_bundles_dataset *const dataset =
-            is_rod ? &campaign->bundles[i - campaign->n_runs].rod : &campaign->runs[i].dataset;
-        if (!wb_bundles_run_is_missing(result))
-            continue;
-        jobs[n++] = (struct wb_job){
-            .name = dataset->log,
-            .arguments = dataset->arguments,
-            .output = dataset->path,
-            .cost = is_rod ? 0.0 : wb_bundles_run_cost(&campaign->runs[i]),
+    if (!wb_bundles_run_is_missing(result))
+        return WB_OK;
+    for (; run->dataset.arguments[n]; n++)
+        arguments[n] = run->dataset.arguments[n];
+    if (all->threads[0]) {
+        arguments[n++] = "--threads";
+        arguments[n++] = all->threads;
+    }
+    WB_TRY(name_checkpoint(all, run, all->checkpoints[all->n]));
+    arguments[n++] = "--checkpoint";
+    arguments[n++] = all->checkpoints[all->n];
+    all->jobs[all->n++] = (struct wb_job){
+        .name = run->dataset.log,
+        .arguments = arguments,
+        .output = run->dataset.path,
+        .cost = wb_bundles_run_cost(run),
+        .replace = result->state == WB_BUNDLES_STALE,
+    };
+    return WB_OK;
+}
+
+static void add_rod_job(struct bundle_jobs *all, const struct wb_bundles_dataset *rod,
+                        const struct wb_bundles_result *result)
+{
+    if (wb_bundles_run_is_missing(result))
+        all->jobs[all->n++] = (struct wb_job){
+            .name = rod->log,
+            .arguments = rod->arguments,
+            .output = rod->path,
             .replace = result->state == WB_BUNDLES_STALE,
         };
-    }
-    return n;
+}
+
+/* Logs and checkpoints lie beside the report's folder. */
+static enum wb_status list_jobs(struct bundle_jobs *all, const struct options *o,
+                                const struct wb_bundles_results *results)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    size_t length = strlen(o->common.output);
+    while (length > 1 && o->common.output[length - 1] == '/')
+        length--;
+    if (snprintf(all->folder, sizeof all->folder, "%.*s.jobs", (int)length, o->common.output) >=
+        (int)sizeof all->folder)
+        return wb_fail(WB_ERR_ARGUMENT, "the output's path is too long");
+    if (o->jobs.cores_per_job > 1)
+        snprintf(all->threads, sizeof all->threads, "%d", o->jobs.cores_per_job);
+    WB_TRY(wb_hash_file("/proc/self/exe", all->program));
+    for (int i = 0; i < campaign->n_runs; i++)
+        WB_TRY(add_run_job(all, &campaign->runs[i], &results->runs[i]));
+    for (int i = 0; i < campaign->n_bundles; i++)
+        add_rod_job(all, &campaign->bundles[i].rod, &results->rods[i]);
+    return WB_OK;
+}
+
+static enum wb_status run_jobs(struct bundle_jobs *all, const struct options *o,
+                               const struct wb_bundles_results *results,
+                               struct wb_jobs_outcome *outcome)
+{
+    struct wb_jobs_options options = o->jobs;
+    WB_TRY(list_jobs(all, o, results));
+    options.folder = all->folder;
+    return all->n > 0 ? wb_jobs_run(outcome, all->jobs, all->n, &options) : WB_OK;
 }
 
 /* Makes what is missing and reads it; *told is whether that is all that was asked for. */
 static int make_missing(const struct options *o, struct wb_bundles_results *results, bool *told)
 {
     const struct wb_bundles *const campaign = results->campaign;
-    static struct wb_job jobs[WB_BUNDLES_RUNS + WB_BUNDLES_BUNDLES];
-    struct wb_jobs_options options = o->jobs;
-    struct wb_jobs_outcome outcome;
-    char folder[WB_PATH];
-    const int n = list_jobs(results, jobs);
-    size_t length = strlen(o->common.output);
-    while (length > 1 && o->common.output[length - 1] == '/')
-        length--;
-    if (snprintf(folder, sizeof folder, "%.*s.jobs", (int)length, o->common.output) >=
-        (int)sizeof folder)
-        return wb_command_exit(wb_fail(WB_ERR_ARGUMENT, "the output's path is too long"));
-    options.folder = folder;
-    if (n == 0)
-        return WB_EXIT_OK;
-    const int code = wb_command_exit(wb_jobs_run(&outcome, jobs, n, &options));
-    if (code != WB_EXIT_OK)
+    struct wb_jobs_outcome outcome = {0};
+    struct bundle_jobs *const all = calloc(1, sizeof *all);
+    if (!all)
+        return wb_command_exit(wb_fail(WB_ERR_MEMORY, "out of memory"));
+    const int code = wb_command_exit(run_jobs(all, o, results, &outcome));
+    const bool any = all->n > 0;
+    free(all);
+    if (code != WB_EXIT_OK || !any)
         return code;
-    *told = options.dry_run || outcome.interrupted;
+    *told = o->jobs.dry_run || outcome.interrupted;
     if (*told)
-        return options.dry_run ? WB_EXIT_OK : refuse_interrupted();
+        return outcome.interrupted ? refuse_interrupted() : WB_EXIT_OK;
     wb_bundles_results_release(results);
     wb_bundles_results_load(results, campaign);
     return WB_EXIT_OK;

@@ -63,14 +63,17 @@ grep -qF 'wirebench solve bundle one.yaml --dead-force --no-weight --friction 0.
 grep -q '0 of 3 datasets used' out || fail 'datasets come from nowhere'
 
 # The command that is told makes it, in the campaign's folder.
+# shellcheck disable=SC2016 # $wirebench is expanded by eval
 eval "$(sed -n 's/^ *wirebench \(solve cantilever .*\)/"$wirebench" \1/p' out)" 2>/dev/null
 run 3 c.yaml -o r --force
 grep -q '1 of 3 datasets used' out || fail 'the told command did not make the dataset'
 
 # An array that is only written, and no report.
-run 0 c.yaml -o dry --slurm-dry-run
+run 0 c.yaml -o dry --slurm-dry-run --cores-per-run 2
 [ -e dry ] && fail 'a dry run wrote a report'
-find dry.jobs -type f | xargs grep -q -e '--dead-force' || fail 'no list of runs was written'
+grep -rq -e '--dead-force' dry.jobs || fail 'no list of runs was written'
+grep -rq -e '--checkpoint' dry.jobs || fail 'runs of the array cannot go on where they ended'
+grep -rq -e '--threads' dry.jobs || fail 'runs of the array do not use their cores'
 
 # The missing ones are made here.
 run 0 c.yaml -o r --force --solve --workers 2
