@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fe/swept_tape_contact_kernel.h"
-#include "fe/swept_tape_private.h"
+#include "fe/swept_tape_contact_private.h"
 
 #define WB_LOG_DOMAIN "swept"
 
@@ -18,36 +17,10 @@ enum {
 static const double default_margin = 0.05; /* of the smallest radius */
 static const int default_interval = 100;
 static const double most_slip = 4.0; /* stations; beyond, contact is lost */
-
-struct surface {
-    int n;
-    int *node;     /* (n) */
-    double radius; /* m */
-};
-
-struct wb_swept_tape_contact {
-    const struct wb_swept_tape *tape;         /* borrowed */
-    const struct wb_swept_cohesion *cohesion; /* borrowed; NULL: nothing is bonded */
-    struct wb_swept_tape_contact_settings settings;
-    const struct wb_swept_tape_contact_kernel *kernel;
-    struct wb_swept_tape_contact_kernel_model model;
-    int n_wires;
-    struct surface *surface;                   /* (n_wires) */
-    int *surface_nodes;                        /* of all wires */
-    double *centre;                            /* (n_wires x 3 x n_stations), when refreshed */
-    int *first;                                /* (n_blocks + 1) */
-    struct wb_swept_tape_contact_strip *strip; /* room for one a node and station */
-    void *rows, *history;
-    int *wire_of; /* (n_nodes x n_stations): touched or nearly; -1 */
-    int n_strips, n_near;
-    long long steps;
-};
-
-/* Where a node is near a wire. */
-struct near {
-    int wire, partner[2], station;
-    double gap, round, along, offset;
-};
+/* Radii that a node may slide before its place is found anew. Each time the gap along the director
+ * becomes that to the circle again, which is no work of the forces: a tape that vibrates on its
+ * contact would draw energy from that. */
+static const double kept_slip = 0.02;
 
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings)
 {
@@ -108,7 +81,7 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
     double check = 0.0;
 
     for (int w = 0; w < c->n_wires; w++) {
-        const struct surface *surface = &c->surface[w];
+        const struct wb_swept_tape_contact_surface *surface = &c->surface[w];
         for (int i = 0; i < 3; i++) {
             double *row = centre_row(c, w, i);
             for (int j = 0; j < layout->n_stations; j++)
@@ -131,7 +104,8 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
 /* The place along a wire opposite x at station j: whole stations into near->station and the rest
  * into near->along; the centre there and the axis, a unit vector. False beyond the ends. */
 static bool find_place_along(const struct wb_swept_tape_contact *c, const double x[3], int j,
-                             struct near *near, double centre[3], double axis[3])
+                             struct wb_swept_tape_contact_near_place *near, double centre[3],
+                             double axis[3])
 {
     const int last = layout_of(c)->n_stations - 1;
     const int before = j > 0 ? j - 1 : 0, after = j < last ? j + 1 : last;
@@ -161,7 +135,7 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
 
 /* A surface node of a wire there. */
 static void read_surface(const struct wb_swept_tape_contact *c, const double *position, int node,
-                         int j, const struct near *near, double out[3])
+                         int j, const struct wb_swept_tape_contact_near_place *near, double out[3])
 {
     double here[3], there[3];
 
@@ -175,9 +149,9 @@ static void read_surface(const struct wb_swept_tape_contact *c, const double *po
  * and where: the farther in that direction of two places. */
 static bool find_place_round(const struct wb_swept_tape_contact *c, const double *position,
                              const double x[3], const double direction[3], const double axis[3],
-                             int j, struct near *near, double place[3])
+                             int j, struct wb_swept_tape_contact_near_place *near, double place[3])
 {
-    const struct surface *surface = &c->surface[near->wire];
+    const struct wb_swept_tape_contact_surface *surface = &c->surface[near->wire];
     double across[3], before[3] = {0.0}, u_before = 0.0, v_before = 0.0,
                       farthest = -(double)INFINITY;
 
@@ -216,7 +190,8 @@ static bool is_bonded(const struct wb_swept_tape_contact *c, int k, int j, int w
 
 /* The wire nearest to a node, within the margin. */
 static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], int k, int j,
-                      struct near *best, double centre[3], double axis[3])
+                      struct wb_swept_tape_contact_near_place *best, double centre[3],
+                      double axis[3])
 {
     const double half = 0.5 * c->tape->model.thickness;
 
@@ -224,7 +199,7 @@ static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], 
     best->gap = c->settings.margin;
     for (int w = 0; w < c->n_wires; w++) {
         /* Far off beyond doubt, unless it has slipped by more than that. */
-        struct near near = {.wire = w};
+        struct wb_swept_tape_contact_near_place near = {.wire = w};
         double at[3], along[3], from[3];
         for (int i = 0; i < 3; i++)
             from[i] = x[i] - centre_row(c, w, i)[j];
@@ -248,20 +223,20 @@ static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], 
 
 /* --- strips --- */
 
-static int find_strip(struct wb_swept_tape_contact *c, int k, const struct near *near,
-                      double outwards, int from)
+static int find_strip(struct wb_swept_tape_contact *c, int k,
+                      const struct wb_swept_tape_contact_near_place *near, int from)
 {
     for (int s = from; s < c->n_strips; s++) {
         const struct wb_swept_tape_contact_strip *strip = &c->strip[s];
         if (strip->wire == near->wire && strip->partner[0] == near->partner[0] &&
             strip->partner[1] == near->partner[1] && strip->station == near->station &&
-            strip->outwards == outwards)
+            strip->outwards == near->outwards)
             return s;
     }
     const size_t size = ROWS * LANES * real_size(c);
     memset((unsigned char *)c->rows + (size_t)c->n_strips * size, 0, size);
     c->strip[c->n_strips] = (struct wb_swept_tape_contact_strip){
-        k, near->wire, {near->partner[0], near->partner[1]}, near->station, outwards};
+        k, near->wire, {near->partner[0], near->partner[1]}, near->station, near->outwards};
     return c->n_strips++;
 }
 
@@ -274,21 +249,26 @@ static void clear_friction(struct wb_swept_tape_contact *c, int k, int j)
 }
 
 /* Numbers of a node that is near, into its strip. */
-static void look_after(struct wb_swept_tape_contact *c, int k, int j, const struct near *near,
-                       int s, const double tangential[3])
+static void look_after(struct wb_swept_tape_contact *c, int k, int j,
+                       const struct wb_swept_tape_contact_near_place *near, int s)
 {
-    const size_t stride = (size_t)layout_of(c)->stride;
     const size_t at = (size_t)s * ROWS * LANES + (size_t)(j % LANES);
 
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ROUND * LANES, near->round);
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ALONG * LANES, near->along);
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_OFFSET * LANES, near->offset);
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_AREA * LANES, wb_swept_tape_area(c->tape, k, j));
+    c->n_near++;
+}
+
+static void begin_slip(struct wb_swept_tape_contact *c, int k, int j, const double aside[3])
+{
+    const size_t stride = (size_t)layout_of(c)->stride;
+
     for (int i = 0; i < 3; i++)
         put(c, c->history,
             (size_t)(k * HISTORY + WB_SWEPT_TAPE_CONTACT_BEFORE + i) * stride + (size_t)j,
-            tangential[i]);
-    c->n_near++;
+            aside[i]);
 }
 
 /* A vector without its part along a unit vector, and its length. */
@@ -301,51 +281,85 @@ static double take_out(double v[3], const double unit[3])
     return sqrt(dot(v, v));
 }
 
+/* Whether a node is still near the place found before. */
+static bool is_still_there(const struct wb_swept_tape_contact *c, const double *position,
+                           const struct wb_swept_tape_contact_near_place *near, int j,
+                           const double x[3], const double d[3])
+{
+    const double size = sqrt(dot(d, d));
+    double a[3], b[3], g[3], unit[3];
+
+    read_surface(c, position, near->partner[0], j, near, a);
+    read_surface(c, position, near->partner[1], j, near, b);
+    for (int i = 0; i < 3; i++) {
+        unit[i] = d[i] / size;
+        g[i] = x[i] - near->offset * d[i] - (1.0 - near->round) * a[i] - near->round * b[i];
+    }
+    return take_out(g, unit) < kept_slip * c->surface[near->wire].radius;
+}
+
+/* The place on the wire that a node faces. It is sought against the director, so that g has no part
+ * across it at first, or failing that towards the centre. False where there is none. */
+static bool find_place(const struct wb_swept_tape_contact *c, const double *position, int j,
+                       const double x[3], const double d[3], const double centre[3],
+                       const double axis[3], struct wb_swept_tape_contact_near_place *near,
+                       double aside[3])
+{
+    const double size = sqrt(dot(d, d));
+    double radial[3], direction[3], place[3] = {0.0};
+
+    for (int i = 0; i < 3; i++)
+        radial[i] = x[i] - centre[i];
+    (void)take_out(radial, axis);
+    near->outwards = dot(d, radial) < 0.0 ? -1.0 : 1.0;
+    for (int i = 0; i < 3; i++)
+        direction[i] = near->outwards * d[i];
+    const double length = take_out(direction, axis);
+    if (!(length > 0.1 && find_place_round(c, position, x, direction, axis, j, near, place)) &&
+        !find_place_round(c, position, x, radial, axis, j, near, place))
+        return false;
+
+    for (int i = 0; i < 3; i++) {
+        aside[i] = x[i] - place[i];
+        direction[i] = d[i] / size;
+    }
+    near->offset = (dot(aside, direction) - near->outwards * near->gap) / size;
+    (void)take_out(aside, direction);
+    return true;
+}
+
 /* Looks at a node at a station, and after it if it is near a wire. Strips of the node in this block
- * begin at `from`. The place is sought against the director, so that g has no part across it at
- * first, or failing that towards the centre. */
+ * begin at `from`. */
 static enum wb_status look_at(struct wb_swept_tape_contact *c,
                               const struct wb_swept_cohesion_fields *fields, int k, int j, int from)
 {
-    int *wire_of = &c->wire_of[k * layout_of(c)->n_stations + j];
-    double x[3], d[3], centre[3] = {0.0}, axis[3] = {0.0}, radial[3], direction[3], g[3];
-    double place[3] = {0.0};
-    struct near near = {.wire = -1};
+    struct wb_swept_tape_contact_near_place *now = &c->near[k * layout_of(c)->n_stations + j];
+    const struct wb_swept_tape_contact_near_place before = *now;
+    double x[3], d[3], centre[3] = {0.0}, axis[3] = {0.0}, aside[3];
+    struct wb_swept_tape_contact_near_place near = {.wire = -1};
 
     read_node(c, fields->tape.position, k, j, x);
     read_node(c, fields->tape.director, k, j, d);
     if (!isfinite(dot(x, x) + dot(d, d)))
         return wb_fail(WB_ERR_DATA, "positions of the tape are not finite");
-    const int was = *wire_of;
-    *wire_of = -1;
+    now->wire = -1;
     if (!find_wire(c, x, k, j, &near, centre, axis))
         return WB_OK;
     if (near.gap < -0.5 * c->surface[near.wire].radius)
         return wb_fail(WB_ERR_DATA, "the tape is %.3g mm deep in wire %d", -1e3 * near.gap,
                        near.wire + 1);
-    for (int i = 0; i < 3; i++)
-        radial[i] = x[i] - centre[i];
-    (void)take_out(radial, axis);
-    const double outwards = dot(d, radial) < 0.0 ? -1.0 : 1.0;
-    for (int i = 0; i < 3; i++)
-        direction[i] = outwards * d[i];
-    const double length = take_out(direction, axis);
     const double *position = fields->position[near.wire];
-    if (!(length > 0.1 && find_place_round(c, position, x, direction, axis, j, &near, place)) &&
-        !find_place_round(c, position, x, radial, axis, j, &near, place))
+    if (before.wire == near.wire && is_still_there(c, position, &before, j, x, d)) {
+        near = before;
+    } else if (find_place(c, position, j, x, d, centre, axis, &near, aside)) {
+        if (before.wire != near.wire)
+            clear_friction(c, k, j);
+        begin_slip(c, k, j, aside);
+    } else {
         return WB_OK;
-
-    const double size = sqrt(dot(d, d));
-    for (int i = 0; i < 3; i++) {
-        g[i] = x[i] - place[i];
-        direction[i] = d[i] / size;
     }
-    near.offset = (dot(g, direction) - outwards * near.gap) / size;
-    (void)take_out(g, direction);
-    if (was != near.wire)
-        clear_friction(c, k, j);
-    look_after(c, k, j, &near, find_strip(c, k, &near, outwards, from), g);
-    *wire_of = near.wire;
+    look_after(c, k, j, &near, find_strip(c, k, &near, from));
+    *now = near;
     return WB_OK;
 }
 
@@ -427,8 +441,8 @@ static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     nodes = 0;
     for (int w = 0; w < c->n_wires; w++) {
-        c->surface[w] =
-            (struct surface){wires[w].n_surface, c->surface_nodes + nodes, wires[w].radius};
+        c->surface[w] = (struct wb_swept_tape_contact_surface){
+            wires[w].n_surface, c->surface_nodes + nodes, wires[w].radius};
         memcpy(c->surface[w].node, wires[w].surface,
                (size_t)wires[w].n_surface * sizeof *c->surface[w].node);
         nodes += (size_t)wires[w].n_surface;
@@ -447,9 +461,9 @@ static enum wb_status allocate(struct wb_swept_tape_contact *c)
 
     c->first = calloc(n_blocks + 1, sizeof *c->first);
     c->strip = calloc(places, sizeof *c->strip);
-    c->wire_of = calloc(places, sizeof *c->wire_of);
+    c->near = calloc(places, sizeof *c->near);
     c->centre = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->centre);
-    if (!c->first || !c->strip || !c->wire_of || !c->centre)
+    if (!c->first || !c->strip || !c->near || !c->centre)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     WB_TRY(wb_swept_allocate(&c->rows, places * ROWS * LANES, real_size(c)));
     return wb_swept_allocate(
@@ -520,7 +534,7 @@ void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact)
     free(contact->centre);
     free(contact->first);
     free(contact->strip);
-    free(contact->wire_of);
+    free(contact->near);
     free(contact->rows);
     free(contact->history);
     free(contact);
@@ -533,7 +547,7 @@ void wb_swept_tape_contact_reset(struct wb_swept_tape_contact *contact)
     contact->steps = 0;
     contact->n_strips = contact->n_near = 0;
     for (int i = 0; i < layout->n_nodes * layout->n_stations; i++)
-        contact->wire_of[i] = -1;
+        contact->near[i].wire = -1;
 }
 
 enum wb_status wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *contact,
@@ -556,127 +570,4 @@ enum wb_status wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *co
 int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact)
 {
     return contact->n_near;
-}
-
-/* --- checkpoints --- */
-
-struct piece {
-    void *data;
-    size_t size;
-};
-
-enum {
-    PIECES = 8
-};
-
-/* All there is room for, so that the size is fixed. */
-static void list_pieces(const struct wb_swept_tape_contact *c, struct piece out[PIECES])
-{
-    struct wb_swept_tape_contact *changeable;
-    const struct wb_swept_layout *layout = layout_of(c);
-    const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
-    const size_t blocks = (size_t)layout->stride / LANES;
-
-    memcpy(&changeable, &c, sizeof changeable);
-    const struct piece pieces[PIECES] = {
-        {&changeable->steps, sizeof c->steps},
-        {&changeable->n_strips, sizeof c->n_strips},
-        {&changeable->n_near, sizeof c->n_near},
-        {c->first, (blocks + 1) * sizeof *c->first},
-        {c->strip, places * sizeof *c->strip},
-        {c->wire_of, places * sizeof *c->wire_of},
-        {c->rows, places * ROWS * LANES * real_size(c)},
-        {c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride * real_size(c)},
-    };
-    memcpy(out, pieces, sizeof pieces);
-}
-
-size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact)
-{
-    struct piece pieces[PIECES];
-    size_t size = 0;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++)
-        size += pieces[i].size;
-    return size;
-}
-
-void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state)
-{
-    struct piece pieces[PIECES];
-    unsigned char *at = state;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++) {
-        memcpy(at, pieces[i].data, pieces[i].size);
-        at += pieces[i].size;
-    }
-}
-
-void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state)
-{
-    struct piece pieces[PIECES];
-    const unsigned char *at = state;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++) {
-        memcpy(pieces[i].data, at, pieces[i].size);
-        at += pieces[i].size;
-    }
-}
-
-/* --- stable step --- */
-
-static double largest_stiffness(const struct wb_swept_tape_contact *c)
-{
-    return fmax(c->settings.normal_stiffness, c->settings.shear_stiffness);
-}
-
-/* See fe/swept_cohesion.c. */
-static const double both_sides = 2.0;
-
-static double largest_area(const struct wb_swept_tape_contact *c)
-{
-    const struct wb_swept_layout *layout = layout_of(c);
-    double area = 0.0;
-
-    for (int k = 0; k < layout->n_nodes; k++) {
-        for (int j = 1; j < layout->n_stations - 1; j++)
-            area = fmax(area, wb_swept_tape_area(c->tape, k, j));
-        for (int j = 0; j < layout->n_stations; j += layout->n_stations - 1)
-            area = fmax(area, 2.0 * wb_swept_tape_area(c->tape, k, j));
-    }
-    return area;
-}
-
-double wb_swept_tape_contact_stiffness_per_mass(const struct wb_swept_tape_contact *contact,
-                                                const double *mass, const double *inertia)
-{
-    double most = 0.0;
-
-    for (int w = 0; w < contact->n_wires; w++) {
-        /* The place lies on a chord, at most so far below the circle. */
-        const double below = contact->surface[w].radius * (1.0 - cos(M_PI / contact->surface[w].n));
-        const double o = 0.5 * contact->tape->model.thickness + below;
-        for (int k = 0; k < layout_of(contact)->n_nodes; k++)
-            most = fmax(most, 1.0 / mass[k] + o * o / inertia[k]);
-    }
-    return both_sides * largest_stiffness(contact) * largest_area(contact) * most;
-}
-
-double wb_swept_tape_contact_wire_stiffness_per_mass(const struct wb_swept_tape_contact *contact,
-                                                     int wire, const double *mass)
-{
-    const struct surface *surface = &contact->surface[wire];
-    const double spacing = contact->tape->model.spacing, area = largest_area(contact);
-    /* A surface node has the tape's nodes on the two chords beside it, by weights from 0 to 1: at
-     * most one more than those of a chord. */
-    const double chord = 2.0 * surface->radius * sin(M_PI / surface->n);
-    const double nodes = chord * spacing / area + 1.0;
-    double least = (double)INFINITY;
-
-    for (int s = 0; s < surface->n; s++)
-        least = fmin(least, mass[surface->node[s]]);
-    return both_sides * largest_stiffness(contact) * area * nodes / least;
 }

@@ -3,9 +3,10 @@
  *
  * A node of the ring touches the nearest wire, a circle of its contact radius round the centre of
  * its surface nodes. The place y that it faces, between two of these nodes and between stations,
- * and its distance from the tape's middle surface there, o, are found anew every so many steps; in
- * between g = x - o d - y is what it is for cohesion: pressure K_nn against -g.d, which is the gap
- * between circle and tape, friction against what g slides across d, an elastic spring returned to
+ * and its distance from the tape's middle surface there, o, are found when it comes near, and anew
+ * whenever it has slid by a fiftieth of the radius (looked at every so many steps). With them
+ * g = x - o d - y is what it is for cohesion: pressure K_nn against -g.d, which is the gap between
+ * circle and tape, friction against what g slides across d, an elastic spring returned to
  *
  *     mu = mu_k + (mu_s - mu_k) exp(-decay slip rate)                               (eq. 20).
  *
