@@ -111,6 +111,28 @@ static void parts_are_the_whole(void **unused)
     }
 }
 
+/* The tape comes off where it bends most, and lies on the wires. */
+static void weaken(void)
+{
+    model.interface.has_damage = true;
+    model.interface.damage =
+        (struct wb_bundle_damage){.strength = 2e4, .shear_strength = 2e4, .fracture_energy = 0.1};
+}
+
+static void parts_break_the_same_bonds(void **unused)
+{
+    (void)unused;
+    struct result whole, parted;
+    read_model(FINE);
+    weaken();
+    bend(1, &whole);
+    bend(2, &parted);
+    check_same(&parted, &whole);
+    assert_true(whole.limits.debonded > 0.0 && whole.limits.tape_deepest > 0.0);
+    assert_close_relative(parted.limits.debonded, whole.limits.debonded, 1e-9);
+    assert_close_relative(parted.limits.tape_deepest, whole.limits.tape_deepest, 1e-2);
+}
+
 static void the_same_parts_are_the_same_bit_for_bit(void **unused)
 {
     (void)unused;
@@ -222,10 +244,12 @@ static void a_lost_part_ends_the_run(void **unused)
 
 /* --- checkpoints --- */
 
+/* With bonds that break, so that the tape's contact has something to keep, too. */
 static void a_checkpoint_goes_on_bit_for_bit(void **unused)
 {
     (void)unused;
     read_model(FINE);
+    weaken();
     for (int threads = 1; threads <= 2; threads++) {
         struct result straight, resumed;
         struct wb_checkpoint checkpoint;
@@ -246,6 +270,7 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
         advance(bundle, 4);
         take(bundle, &resumed);
         assert_memory_equal(&straight, &resumed, sizeof straight);
+        assert_true(straight.limits.debonded > 0.0 && straight.limits.tape_deepest > 0.0);
         wb_bundle_destroy(bundle);
         wb_checkpoint_release(&checkpoint);
     }
@@ -371,6 +396,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_are_the_whole),
+        cmocka_unit_test(parts_break_the_same_bonds),
         cmocka_unit_test(the_same_parts_are_the_same_bit_for_bit),
         cmocka_unit_test(momentum_comes_from_outside_alone),
         cmocka_unit_test(a_capped_end_belongs_to_the_last_part),
