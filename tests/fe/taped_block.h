@@ -18,8 +18,12 @@ static const double block_node[CORNERS][2] = {{0.0, 1.5e-3},  {0.0, 0.7e-3},  {0
                                               {0.0, -0.6e-3}, {0.0, -1.4e-3}, {-1e-3, -1.4e-3},
                                               {-1e-3, 0.0},   {-1e-3, 1.5e-3}};
 static const int block_surface[CORNERS] = {0, 1, 2, 3, 4, 5, 6, 7};
-static const struct wb_swept_cohesion_wire block = {0.0,     0.0,     block_node,
-                                                    CORNERS, CORNERS, block_surface};
+static const struct wb_swept_cohesion_wire block = {
+    .node = block_node,
+    .n_nodes = CORNERS,
+    .n_surface = CORNERS,
+    .surface = block_surface,
+};
 
 struct pair {
     struct test_tape tape;
