@@ -2,8 +2,8 @@
 #include "fe/bundle_static.h"
 #include "tests/fe/bundles.h"
 
-/* Seven wires with their tape to 53 mm. A run of 2 s is 4 % too stiff at 2 mm, which is in the
- * bound; friction of 0.1, as wires roll in the explicit model only. */
+/* Seven wires with their tape to 53 mm. Friction of 0.1, as wires roll in the explicit
+ * model only. */
 static void static_and_explicit_curves_agree_within_five_percent(void **unused)
 {
     (void)unused;
