@@ -549,6 +549,13 @@ enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
 
     if (options)
         r.options = *options;
+    if (model->run.cycles > 1 && model->loads.strand_length > 0.0)
+        return wb_fail(
+            WB_ERR_UNSUPPORTED,
+            "%s: cycles: %d with a strand: it goes slack at the end of the first, the tip "
+            "swings and is caught with a jerk, so later cycles would be wrong; use "
+            "cycles: 1, or a vertical force (no strand_mm, or --dead-force)",
+            model->path, model->run.cycles);
     if (r.options.checkpoint_interval == 0.0)
         r.options.checkpoint_interval = usual_interval;
     if (history->capacity < wb_bundle_run_planned_rows(model))

@@ -124,7 +124,8 @@ struct wb_bundle_run_options {
 };
 
 /* Runs the model's test on its mesh `mesh` (NULL: its own). A run that is lost on the way is a
- * result: converged is false, completed rows stay. `observer` may be NULL. */
+ * result: converged is false, completed rows stay. `observer` may be NULL. WB_ERR_UNSUPPORTED for
+ * more than one cycle with a strand: the tip swings while it is slack and is caught with a jerk. */
 WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_history *history,
                                            const struct wb_bundle_model *model, const char *mesh,
                                            const struct wb_bundle_observer *observer);

@@ -255,6 +255,20 @@ static void options_of_others_are_refused(void **unused)
     assert_int_not_equal(tool("--friction 11"), 0);
 }
 
+/* The last one: it changes the model. */
+static void later_cycles_with_a_strand_are_refused(void **unused)
+{
+    char command[256];
+    (void)unused;
+    snprintf(command, sizeof command, "cd %s && sed -i 's/rows: 5/rows: 5, cycles: 2/' one.yaml",
+             folder);
+    assert_int_equal(system(command), 0);
+    assert_int_not_equal(tool("-o cycles"), 0);
+    assert_non_null(strstr(err, "one.yaml: cycles: 2 with a strand"));
+    snprintf(command, sizeof command, "%s/cycles", folder);
+    assert_false(wb_file_exists(command));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -264,6 +278,7 @@ int main(void)
         cmocka_unit_test(vtk_files_are_written_for_every_row_or_some),
         cmocka_unit_test(what_was_overridden_is_told),
         cmocka_unit_test(options_of_others_are_refused),
+        cmocka_unit_test(later_cycles_with_a_strand_are_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
