@@ -16,6 +16,7 @@ static const double pi = 3.14159265358979323846;
 enum {
     CIRCLE = 96,          /* points of one */
     OUTLINE = 720,        /* points of the tape's faces */
+    TITLE = 38,           /* bytes of one beside others */
     BONDS = 1440,         /* places looked at for bonds */
     MOST_POINTS = 1 << 15 /* of a series */
 };
@@ -287,10 +288,13 @@ static void add_scale_bar(struct pen *pen, const struct drawing *drawing, double
     wb_figure_add_text(pen->panel, x, y + 7.0 * drawing->point, -1, text);
 }
 
-static void set_title(struct wb_panel *panel, const struct wb_bundle_model *model)
+/* Beside others only a short one has room. */
+static void set_title(struct wb_panel *panel, const struct wb_bundle_model *model, bool alone)
 {
+    const size_t length = strlen(model->title);
+    const bool fits = length > 0 && (alone || length <= TITLE);
     struct wb_text title = {0};
-    wb_text_append_escaped(&title, model->title[0] ? model->title : model->name);
+    wb_text_append_escaped(&title, fits ? model->title : model->name);
     wb_figure_set_title(panel, wb_text_string(&title));
     wb_text_release(&title);
 }
@@ -341,7 +345,7 @@ static enum wb_status draw_panels(struct wb_figure *figure, struct pen *pen,
         wb_figure_set_equal_aspect(pen->panel);
         wb_figure_set_x_range(pen->panel, -half, half);
         wb_figure_set_y_range(pen->panel, foot - below * point, head);
-        set_title(pen->panel, models[i]);
+        set_title(pen->panel, models[i], n == 1);
         WB_TRY(draw_section(pen, drawing));
         if (i == 0)
             add_scale_bar(pen, drawing, -half + 2.0 * point, head - 12.0 * point);
