@@ -295,6 +295,7 @@ static void mark(struct wb_jobs_plan *plan, const char *list, int first, int siz
         item->queued = true;
         item->task = task;
         item->ended_ns = 0;
+        item->ending[0] = '\0';
         snprintf(item->array, sizeof item->array, "%s", array);
         snprintf(item->cluster, sizeof item->cluster, "%s", cluster);
         snprintf(item->list, sizeof item->list, "%s", list);

@@ -149,18 +149,24 @@ static bool is_patient(const char *reason)
     return is_one_of(reason, usual);
 }
 
-/* The item of "12_3" among those of the array. */
-static struct wb_jobs_plan_item *find(struct wb_jobs_plan *plan, const char *array,
-                                      const char *task)
+/* Clusters number their arrays each for itself. */
+static bool are_of_one_array(const struct wb_jobs_plan_item *a, const struct wb_jobs_plan_item *b)
 {
-    const size_t n = strlen(array);
+    return strcmp(a->array, b->array) == 0 && strcmp(a->cluster, b->cluster) == 0;
+}
+
+/* The item of "12_3" among those of one item's array. */
+static struct wb_jobs_plan_item *find(struct wb_jobs_plan *plan,
+                                      const struct wb_jobs_plan_item *one, const char *task)
+{
+    const size_t n = strlen(one->array);
     long number;
-    if (strncmp(task, array, n) != 0 || task[n] != '_' ||
+    if (strncmp(task, one->array, n) != 0 || task[n] != '_' ||
         !wb_number_parse_integer(task + n + 1, &number))
         return NULL;
     for (int i = 0; i < plan->n; i++) {
         struct wb_jobs_plan_item *const item = &plan->items[i];
-        if (item->queued && item->task == number && strcmp(item->array, array) == 0)
+        if (item->queued && item->task == number && are_of_one_array(item, one))
             return item;
     }
     return NULL;
@@ -188,8 +194,8 @@ static void note_live(struct wb_jobs_plan_item *item, bool waits)
 }
 
 /* One line, "12_3|PENDING|Resources|/path/of/the/script". */
-static void take_line(struct wb_jobs_plan *plan, const char *array, char *line, bool *seen,
-                      struct wb_jobs_queue_look *look)
+static void take_line(struct wb_jobs_plan *plan, const struct wb_jobs_plan_item *one, char *line,
+                      bool *seen, struct wb_jobs_queue_look *look)
 {
     char *const state = strchr(line, '|');
     char *const reason = state ? strchr(state + 1, '|') : NULL;
@@ -197,7 +203,7 @@ static void take_line(struct wb_jobs_plan *plan, const char *array, char *line, 
     if (!command)
         return;
     *state = *reason = *command = '\0';
-    struct wb_jobs_plan_item *const item = find(plan, array, line);
+    struct wb_jobs_plan_item *const item = find(plan, one, line);
     /* Numbers begin anew when a cluster is set up again: then the task is somebody else's. */
     if (!item || strncmp(command + 1, plan->folder, strlen(plan->folder)) != 0)
         return;
@@ -211,16 +217,16 @@ static void take_line(struct wb_jobs_plan *plan, const char *array, char *line, 
         snprintf(look->reason, sizeof look->reason, "%s", reason + 1);
 }
 
-static void take_lines(struct wb_jobs_plan *plan, const char *array, char *text,
+static void take_lines(struct wb_jobs_plan *plan, const struct wb_jobs_plan_item *one, char *text,
                        struct wb_jobs_queue_look *look, bool *seen)
 {
     char *rest = NULL;
     for (char *line = text ? strtok_r(text, "\n", &rest) : NULL; line;
          line = strtok_r(NULL, "\n", &rest))
-        take_line(plan, array, line, seen, look);
+        take_line(plan, one, line, seen, look);
     for (int i = 0; i < plan->n; i++) {
         struct wb_jobs_plan_item *const item = &plan->items[i];
-        if (item->queued && !seen[i] && strcmp(item->array, array) == 0)
+        if (item->queued && !seen[i] && are_of_one_array(item, one))
             note_ended(item, "");
     }
 }
@@ -259,7 +265,7 @@ static enum wb_status look_at(struct wb_jobs_plan *plan, const struct wb_jobs_pl
     if (answer.out.failed)
         note_lost(look, "out of memory");
     else if (answer.code == 0 || unknown)
-        take_lines(plan, one->array, answer.out.bytes, look, seen);
+        take_lines(plan, one, answer.out.bytes, look, seen);
     else
         note_lost(look, wb_text_string(&answer.err));
     wb_jobs_queue_answer_release(&answer);
@@ -270,7 +276,7 @@ static enum wb_status look_at(struct wb_jobs_plan *plan, const struct wb_jobs_pl
 static bool was_asked(const struct wb_jobs_plan *plan, int index)
 {
     for (int i = 0; i < index; i++)
-        if (plan->items[i].queued && strcmp(plan->items[i].array, plan->items[index].array) == 0)
+        if (plan->items[i].queued && are_of_one_array(&plan->items[i], &plan->items[index]))
             return true;
     return false;
 }

@@ -12,7 +12,9 @@
 
 static const struct wb_jobs_options slurm = {.where = WB_JOBS_SLURM, .poll_interval = 0.05};
 
-/* Notes its arguments; runs the tasks of a list "1,3-4" at once unless there is a file `hold`. */
+/* Notes its arguments; runs the tasks of a list "1,3-4" at once unless there is a file `hold`. Of
+ * the clusters that a file of this name lists, each takes one array, the number of all is 12. With
+ * a file `forget` squeue is told nothing. */
 static const char sbatch[] =
     "#!/bin/sh\n"
     "cd \"$FAKE\" || exit 1\n"
@@ -20,6 +22,8 @@ static const char sbatch[] =
     "printf '%s\\n' \"$@\" >> sbatch.said\n"
     "echo . >> sbatch.count\n"
     "id=$((11 + $(wc -l < sbatch.count)))\n"
+    "cluster=\n"
+    "[ ! -e clusters ] || { cluster=$(sed -n \"$((id - 11))p\" clusters); id=12; }\n"
     "for a in \"$@\"; do\n"
     "    case $a in --array=*) tasks=${a#--array=} ;; --chdir=*) folder=${a#--chdir=} ;; esac\n"
     "done\n"
@@ -32,10 +36,10 @@ static const char sbatch[] =
     "            (cd \"$folder\" && SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=3 sh \"$@\") \\\n"
     "                && state=COMPLETED\n"
     "        }\n"
-    "        echo \"${id}_$task|$state|None|$1\" >> queue.$id\n"
+    "        [ -e forget ] || echo \"${id}_$task|$state|None|$1\" >> queue.$id$cluster\n"
     "    done\n"
     "done\n"
-    "echo $id\n";
+    "echo \"$id${cluster:+;$cluster}\"\n";
 
 /* Answers from the file that sbatch wrote, or as long as the file `mute` is not empty takes a line
  * of it and fails. */
@@ -47,7 +51,10 @@ static const char squeue[] =
     "    echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2\n"
     "    exit 1\n"
     "fi\n"
-    "for a in \"$@\"; do case $a in --jobs=*) id=${a#--jobs=} ;; esac; done\n"
+    "for a in \"$@\"; do\n"
+    "    case $a in --jobs=*) id=${a#--jobs=} ;; --clusters=*) cluster=${a#--clusters=} ;; esac\n"
+    "done\n"
+    "id=$id$cluster\n"
     "[ -e \"queue.$id\" ] || {\n"
     "    echo 'slurm_load_jobs error: Invalid job id specified' >&2\n"
     "    exit 1\n"
@@ -336,6 +343,37 @@ static void number_of_somebody_elses_job_is_not_ours(void **unused)
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
 }
 
+static void arrays_of_two_clusters_may_have_one_number(void **unused)
+{
+    (void)unused;
+    struct jobs_fixture_run runs[4] = {five[0], five[2], five[3], five[1]};
+    jobs_fixture_write("fake/largest", "3");
+    jobs_fixture_write("fake/clusters", "east\nwest\n");
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 4, &slurm, WB_OK);
+    expect(&outcome, 0, 3, 1, 0);
+    assert_true(jobs_fixture_is_there("fake/queue.12east"));
+    assert_true(jobs_fixture_is_there("fake/queue.12west"));
+    assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is FAILED"));
+}
+
+/* Nothing is known of the second array but what accounting says. */
+static void how_an_earlier_task_ended_is_not_told_of_the_next(void **unused)
+{
+    (void)unused;
+    char queue[256];
+    jobs_fixture_write("fake/hold", "");
+    interrupt_a_call(&five[1], 1);
+    unlink("fake/hold");
+    snprintf(queue, sizeof queue, "12_1|TIMEOUT|TimeLimit|%s/logs/slurm-1/array.sh\n",
+             jobs_fixture_folder);
+    jobs_fixture_write("fake/queue.12", queue);
+    jobs_fixture_write("fake/forget", "");
+    jobs_fixture_write("fake/accounting", "OUT_OF_MEMORY\n");
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(&five[1], 1, &slurm, WB_OK);
+    expect(&outcome, 0, 0, 1, 0);
+    assert_non_null(strstr(jobs_fixture_said, "Slurm's task 13_1 is OUT_OF_MEMORY"));
+}
+
 static void reason_that_may_last_for_ever_is_told_once(void **unused)
 {
     (void)unused;
@@ -384,6 +422,8 @@ int main(int argc, char **argv)
         WITH_SLURM(next_call_waits_for_what_an_interrupted_one_submitted),
         WITH_SLURM(forgotten_tasks_are_judged_by_their_outputs),
         WITH_SLURM(number_of_somebody_elses_job_is_not_ours),
+        WITH_SLURM(arrays_of_two_clusters_may_have_one_number),
+        WITH_SLURM(how_an_earlier_task_ended_is_not_told_of_the_next),
         WITH_SLURM(reason_that_may_last_for_ever_is_told_once),
         WITH_SLURM(queue_that_cannot_be_asked_about_earlier_runs_stops_the_call),
     };
