@@ -1,4 +1,5 @@
 /* wirebench info BUNDLE.yaml: what a bundle is. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,10 @@
 #include "fe/bundle_model.h"
 
 #define WB_LOG_DOMAIN "info"
+
+enum {
+    OUTLINE = 20000 /* places looked at round a tape on a circle */
+};
 
 static const double pixels_of_a_point = 3.0;
 
@@ -39,10 +44,40 @@ static const char *formulation(const struct wb_bundle_mesh *mesh)
     return mesh->formulation == WB_BUNDLE_ONE_POINT ? "one-point" : "2x2x1";
 }
 
-static double contact(const struct wb_bundle_model *model, int wire, bool *touches)
+/* Where the tape lies on a wire, seen from the wire's middle. */
+struct contact {
+    bool touches;
+    double angle; /* rad */
+};
+
+/* The outline of a tape on a circle is that of no wire: it is bonded to what is within reach. */
+static void find_round_contacts(const struct wb_bundle_model *model, struct contact *contacts)
 {
-    *touches = false;
-    return model->has_tape ? wb_hull_contact(&model->tape.hull, wire, touches) / WB_DEGREE : 0.0;
+    const struct wb_hull *const hull = &model->tape.hull;
+    const double step = wb_hull_length(hull, 0.0) / OUTLINE;
+
+    for (int i = 0; i < OUTLINE; i++) {
+        const struct wb_hull_point at = wb_hull_at(hull, 0.0, (i + 0.5) * step);
+        const int wire = wb_bundle_model_tape_wire(model, at.y, at.z, 0.0);
+        if (wire < 0)
+            continue;
+        /* The piece of the circle, turned to face the wire's middle. */
+        const double y = at.y - model->packing.wire[wire].y;
+        const double z = at.z - model->packing.wire[wire].z;
+        const double facing = y * sin(at.normal) + z * cos(at.normal);
+        contacts[wire].touches = true;
+        contacts[wire].angle += step * facing / (y * y + z * z);
+    }
+}
+
+static void find_contacts(const struct wb_bundle_model *model,
+                          struct contact contacts[WB_PACKING_MOST])
+{
+    memset(contacts, 0, WB_PACKING_MOST * sizeof *contacts);
+    if (model->has_tape && model->tape.round)
+        find_round_contacts(model, contacts);
+    for (int i = 0; i < model->packing.n && model->has_tape && !model->tape.round; i++)
+        contacts[i].angle = wb_hull_contact(&model->tape.hull, i, &contacts[i].touches);
 }
 
 /* --- as text --- */
@@ -108,6 +143,7 @@ static void print_text(const struct wb_bundle_model *model, const char *figure)
 
 static void set_wires(struct wb_json *root, const struct wb_bundle_model *model)
 {
+    struct contact contacts[WB_PACKING_MOST];
     struct wb_json *const types = wb_json_set_array(root, "types");
     for (int i = 0; i < model->n_types; i++) {
         struct wb_json *const type = wb_json_append_object(types);
@@ -115,16 +151,15 @@ static void set_wires(struct wb_json *root, const struct wb_bundle_model *model)
         wb_json_set_integer(type, "count", wb_bundle_model_count(model, i));
         wb_json_set_number(type, "outer_diameter_mm", model->type[i].outer_diameter / WB_MM);
     }
+    find_contacts(model, contacts);
     struct wb_json *const wires = wb_json_set_array(root, "wires");
     for (int i = 0; i < model->packing.n; i++) {
         struct wb_json *const wire = wb_json_append_object(wires);
-        bool touches;
-        const double degrees = contact(model, i, &touches);
         wb_json_set_text(wire, "wire", model->type[model->type_of[i]].name);
         wb_json_set_number(wire, "y_mm", model->packing.wire[i].y / WB_MM);
         wb_json_set_number(wire, "z_mm", model->packing.wire[i].z / WB_MM);
-        wb_json_set_boolean(wire, "touches_tape", touches);
-        wb_json_set_number(wire, "tape_contact_degrees", degrees);
+        wb_json_set_boolean(wire, "touches_tape", contacts[i].touches);
+        wb_json_set_number(wire, "tape_contact_degrees", contacts[i].angle / WB_DEGREE);
     }
 }
 

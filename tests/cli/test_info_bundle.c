@@ -115,6 +115,32 @@ static void json_has_the_numbers(void **state)
     wb_json_destroy(root);
 }
 
+/* The circle lies on no wire but along lines, and is bonded to the outer ones within reach: seen
+ * from a wire's middle, by the law of cosines. */
+static void a_circle_is_bonded_to_what_is_within_reach(void **state)
+{
+    (void)state;
+    struct wb_json *root;
+    const double R = 2.1, r = 0.7, a = 1.4, reach = 0.005, far = r + reach;
+    const double expected = 2.0 * acos((R * R - a * a - far * far) / (2.0 * a * far));
+    expect("info fixtures/bundles/7-type3-circle.yaml --json", 0, "");
+    assert_int_equal(wb_json_parse(&root, o.out, "info"), WB_OK);
+    const struct wb_json *const wires = wb_json_get(root, "wires");
+    int touching = 0;
+    for (int i = 0; i < 7; i++) {
+        const struct wb_json *const wire = wb_json_item(wires, i);
+        const bool outer = hypot(number(wire, "y_mm"), number(wire, "z_mm")) > 1.0;
+        bool touches = false;
+        assert_true(wb_json_get_boolean(wire, "touches_tape", &touches));
+        assert_int_equal(touches, outer);
+        touching += touches;
+        assert_close(number(wire, "tape_contact_degrees"), outer ? expected * 180.0 / M_PI : 0.0,
+                     0.05);
+    }
+    assert_close(number(root, "wires_at_tape"), touching, 0.0);
+    wb_json_destroy(root);
+}
+
 static void a_section_is_drawn(void **state)
 {
     (void)state;
@@ -160,6 +186,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bundle_is_described),
         cmocka_unit_test(json_has_the_numbers),
+        cmocka_unit_test(a_circle_is_bonded_to_what_is_within_reach),
         cmocka_unit_test(a_section_is_drawn),
         cmocka_unit_test(wrong_usage_and_files_are_refused),
     };
