@@ -226,6 +226,15 @@ static double allowed(const struct wb_bundle_static *b, const double *d)
     return turn > most_rotation ? most_rotation / turn : 1.0;
 }
 
+/* The saved state and a share of an increment; returns its residual. */
+static double try_share(struct wb_bundle_static *b, double scale, double force)
+{
+    memcpy(b->trial, b->saved, b->state_size * sizeof *b->saved);
+    advance(b, b->solution, scale);
+    b->trial[b->force_at] += scale * force;
+    return evaluate(b);
+}
+
 /* Moves the trial state by the increment in `solution`. Contact that opens and closes may make
  * Newton's step a bad one: it is halved as long as that lowers the residual; the first one, which
  * moves the tip, is taken as it is. */
@@ -245,12 +254,13 @@ static bool take_step(struct wb_bundle_static *b, double gap, bool first,
         return false;
     memcpy(b->saved, b->trial, b->state_size * sizeof *b->saved);
     for (int i = 0; i < MOST_HALVINGS; i++) {
-        memcpy(b->trial, b->saved, b->state_size * sizeof *b->saved);
-        advance(b, d, scale);
-        b->trial[b->force_at] += scale * force;
-        point->residual = evaluate(b);
-        if (first || point->residual < was || point->residual > best)
+        point->residual = try_share(b, scale, force);
+        if (first || point->residual < was)
             break;
+        if (point->residual > best) {
+            point->residual = try_share(b, 2.0 * scale, force);
+            break;
+        }
         best = point->residual;
         scale *= 0.5;
     }

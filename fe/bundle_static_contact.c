@@ -108,7 +108,8 @@ void wb_bundle_static_face(struct wb_bundle_static *b)
         const struct wb_bundle_static_pair *pair = &b->pair[p];
         for (int j = b->held; j < b->n_stations; j++) {
             struct wb_bundle_static_touch *touch = &pair->touch[j];
-            touch->active = put(b, touch, j, touch->shift);
+            /* What lay off a wire's end is looked for anew. */
+            touch->active = put(b, touch, j, touch->shift) || put(b, touch, j, 0.0);
             for (int i = 0; i < FACE_ITERATIONS && touch->active; i++) {
                 const double off = look(b, b->trial, pair, touch).along;
                 if (fabs(off) < 1e-9 * b->h)

@@ -51,6 +51,10 @@ enum wb_status wb_bundle_static_make_tape(struct wb_bundle_static *b)
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "%s: the static model has no helix; use taping layout: sleeve",
                        b->model->path);
+    if (tape->round)
+        return wb_fail(WB_ERR_UNSUPPORTED,
+                       "%s: the static model has no tape on a circle; use taping outline: hull",
+                       b->model->path);
     if (b->model->interface.has_damage)
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "%s: the static model has no damage; leave out interface.damage",

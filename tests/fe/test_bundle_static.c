@@ -1,5 +1,6 @@
 /* The static bundle against beams and closed forms. */
 #include "fe/bundle_static.h"
+#include "fe/bundle_static_private.h"
 #include "tests/fe/bundles.h"
 
 #define OVER_EACH_OTHER                                                                            \
@@ -309,6 +310,41 @@ static void sections_without_mirror_image_are_refused(void **unused)
     wb_log_set_sink(NULL, NULL);
 }
 
+static void tape_on_a_circle_is_refused(void **unused)
+{
+    (void)unused;
+    static const struct wb_bundle_static_settings bare = {.no_tape = true};
+    struct wb_bundle_static *none = NULL;
+
+    read_model(SEVEN "taping: {layout: sleeve, layers: 2, outline: circle}\n" NO_WEIGHT);
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_bundle_static_create(&none, &model, NULL), WB_ERR_UNSUPPORTED);
+    assert_null(none);
+    wb_log_set_sink(NULL, NULL);
+    create(&bare);
+}
+
+/* --- contact --- */
+
+/* What faced each other beyond a wire's end faces each other again when both lie straight. */
+static void places_off_a_wires_end_come_back(void **unused)
+{
+    (void)unused;
+    read_model(SEVEN NO_WEIGHT);
+    create(NULL);
+    assert_true(bundle->n_pairs > 0);
+    for (int p = 0; p < bundle->n_pairs; p++) {
+        struct wb_bundle_static_touch *tip = &bundle->pair[p].touch[bundle->n_stations - 1];
+        tip->shift = p % 2 ? 1.5 : -1.5;
+        tip->active = false;
+    }
+    wb_bundle_static_face(bundle);
+    for (int p = 0; p < bundle->n_pairs; p++) {
+        assert_true(bundle->pair[p].touch[bundle->n_stations - 1].active);
+        assert_close(bundle->pair[p].touch[bundle->n_stations - 1].shift, 0.0, 1e-9);
+    }
+}
+
 static void what_does_not_converge_says_so_and_stays_in_equilibrium(void **unused)
 {
     (void)unused;
@@ -339,6 +375,8 @@ int main(void)
         TEST(more_bond_more_tape_and_more_friction_are_stiffer),
         TEST(elements_and_lines_are_enough),
         TEST(sections_without_mirror_image_are_refused),
+        TEST(tape_on_a_circle_is_refused),
+        TEST(places_off_a_wires_end_come_back),
         TEST(what_does_not_converge_says_so_and_stays_in_equilibrium),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
