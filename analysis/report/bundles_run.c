@@ -229,6 +229,9 @@ static enum wb_status parse_energies(struct wb_bundles_result *result, char *tex
             return wb_fail(WB_ERR_FORMAT, "%s:%d: expected %d numbers", path, n + 2, COLUMNS);
         result->n_energies++;
     }
+    if (result->n_energies != (int)result->dataset.n_rows)
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: expected a row: force_deflection.csv has %zu", path,
+                       result->n_energies + 2, result->dataset.n_rows);
     return WB_OK;
 }
 

@@ -488,6 +488,13 @@ static void something_else_in_a_datasets_place_is_left_alone(void **state)
     compute();
     assert_problem(WB_BUNDLES_REFUSED, "sim/x/energies.csv:1: expected the columns");
     release();
+    read_small("", "");
+    make_run(0, 1.0);
+    snprintf(text, sizeof text, "sed -i '3,$d' '%s'", in_folder("sim/x/energies.csv"));
+    assert_int_equal(system(text), 0);
+    compute();
+    assert_problem(WB_BUNDLES_REFUSED, "sim/x/energies.csv:3: expected a row");
+    release();
 }
 
 static void a_rod_with_other_properties_is_outdated(void **state)
