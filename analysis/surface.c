@@ -26,6 +26,12 @@ static const char file_name[] = "surface.csv";
 static const char *const column_names[COLUMNS] = {"body", "kind", "station", "node",
                                                   "x_mm", "y_mm", "z_mm",    "von_mises_MPa"};
 static const int value_shifts[VALUES] = {3, 3, 3, -6};
+/* Larger ones are no bundle's: m, Pa. */
+static const double most_values[VALUES] = {100.0, 100.0, 100.0, 1e15};
+static const char *const expected_values[VALUES] = {
+    "a number from -1e5 to 1e5", "a number from -1e5 to 1e5", "a number from -1e5 to 1e5",
+    "a number from -1e9 to 1e9"};
+static const double least_extent = 1e-9; /* m, of a station */
 
 static const char *kind_of(const struct wb_surface_body *body)
 {
@@ -222,14 +228,27 @@ static enum wb_status parse_row(const struct reader *reader, char *line, struct 
     row->is_tape = !is_wire;
     row->closed = is_wire || is_tape;
     for (int i = 0; i < VALUES; i++)
-        if (!wb_dataset_csv_parse_number(fields[INTEGERS + i], value_shifts[i], &values[i]))
-            return refuse(reader, INTEGERS + i, "a number", fields[INTEGERS + i]);
+        if (!wb_dataset_csv_parse_number(fields[INTEGERS + i], value_shifts[i], &values[i]) ||
+            !(fabs(values[i]) <= most_values[i]))
+            return refuse(reader, INTEGERS + i, expected_values[i], fields[INTEGERS + i]);
     memcpy(row->at.position, values, sizeof row->at.position);
     row->at.von_mises = values[3];
     return WB_OK;
 }
 
-/* Whether the last body is whole: at least two stations of three nodes, a strip two. */
+static bool has_extent(const struct wb_surface_body *body, int station)
+{
+    const struct wb_surface_node *node = &body->nodes[station * body->n_around];
+    double largest = 0.0;
+
+    for (int k = 1; k < body->n_around; k++)
+        for (int i = 0; i < 3; i++)
+            largest = fmax(largest, fabs(node[k].position[i] - node[0].position[i]));
+    return largest >= least_extent;
+}
+
+/* Whether the last body is whole: at least two stations of three nodes, a strip two, and ends that
+ * can be drawn. */
 static enum wb_status check_last(const struct reader *reader)
 {
     if (reader->surface->n == 0)
@@ -237,8 +256,14 @@ static enum wb_status check_last(const struct reader *reader)
     const struct wb_surface_body *body = &reader->surface->bodies[reader->surface->n - 1];
     const int least = body->closed ? 3 : 2;
     if (body->n_along >= 2 && body->n_around >= least &&
-        reader->n_nodes == body->n_along * body->n_around)
-        return WB_OK;
+        reader->n_nodes == body->n_along * body->n_around) {
+        if (has_extent(body, 0) && has_extent(body, body->n_along - 1))
+            return WB_OK;
+        return wb_fail(WB_ERR_FORMAT,
+                       "%s:%d: body %d: the nodes of its first or its last station lie at one "
+                       "place",
+                       reader->path, reader->line, reader->surface->n - 1);
+    }
     return wb_fail(WB_ERR_FORMAT,
                    "%s:%d: body %d ends with %d nodes: expected at least 2 stations of at least %d "
                    "nodes, all alike",
@@ -297,7 +322,8 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     } else {
         body->n_along = row->station + 1;
     }
-    if (row->node >= body->n_around || reader->n_nodes != row->station * body->n_around + row->node)
+    const long long place = (long long)row->station * body->n_around + row->node;
+    if (row->node >= body->n_around || reader->n_nodes != place)
         return wb_fail(WB_ERR_FORMAT, "%s:%d: node: station %d, node %d is not the next one",
                        reader->path, reader->line, row->station, row->node);
     return append_to_body(reader, body, &row->at);

@@ -12,6 +12,7 @@
 
 static const double default_width = 470.0, default_height = 165.0; /* pt */
 static const double pixels_of_point = 2.5;
+static const double most_pixels = 8000.0;          /* of wb_view_draw(), along and up */
 static const double bar = 46.0, close_part = 0.21; /* pt; of the width: each end from nearby */
 static const double glass_opacity = 0.22;
 static const struct wb_colour glass = {0.62, 0.68, 0.76, 1.0};
@@ -198,8 +199,12 @@ static enum wb_status add_picture(struct wb_panel *panel, const struct drawing *
                                   double width)
 {
     const double size[2] = {window->high[0] - window->low[0], window->high[1] - window->low[1]};
-    const int across = (int)ceil(pixels_of_point * width);
-    const int down = (int)ceil(across * size[1] / size[0]);
+    const double wide = ceil(pixels_of_point * width), high = ceil(wide * size[1] / size[0]);
+    if (!(size[0] > 0.0 && size[1] > 0.0 && wide >= 1.0 && wide <= most_pixels && high >= 1.0 &&
+          high <= most_pixels))
+        return wb_fail(WB_ERR_DATA, "a bundle's surface of %g mm x %g mm cannot be drawn", size[0],
+                       size[1]);
+    const int across = (int)wide, down = (int)high;
     struct wb_view_scene scene = {
         .camera = *camera,
         .n_sheets = d->surface->n,

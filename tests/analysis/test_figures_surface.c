@@ -162,6 +162,24 @@ static void without_a_body_there_is_no_figure(void **unused)
     wb_log_set_sink(NULL, NULL);
 }
 
+/* As a file that somebody changed may have them. */
+static void what_has_no_size_is_refused(void **unused)
+{
+    (void)unused;
+    struct wb_surface_node nodes[2 * 3] = {0};
+    struct wb_surface_body body = {.closed = true, .n_around = 3, .n_along = 2, .nodes = nodes};
+    const struct wb_surface point = {1, &body};
+    struct wb_figure *figure;
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_figures_surface_draw(&figure, "point", &point, NULL), WB_ERR_DATA);
+    assert_null(figure);
+    for (int i = 0; i < 6; i++)
+        nodes[i].position[1] = i % 2 ? 1e305 : -1e305;
+    assert_int_equal(wb_figures_surface_draw(&figure, "huge", &point, NULL), WB_ERR_DATA);
+    assert_null(figure);
+    wb_log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -169,6 +187,7 @@ int main(void)
         cmocka_unit_test(colours_end_at_the_wires_largest_stress_or_as_asked_for),
         cmocka_unit_test(the_same_surface_gives_the_same_files),
         cmocka_unit_test(without_a_body_there_is_no_figure),
+        cmocka_unit_test(what_has_no_size_is_refused),
     };
     return cmocka_run_group_tests(tests, make_surface, release_surface);
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "tests/check.h"
 
 static char folder[] = "/tmp/wirebench-surface-XXXXXX";
@@ -183,7 +184,17 @@ static void what_is_not_finite_is_not_written(void **unused)
     wb_bundle_fields_release(&f);
 }
 
+static char said[512];
+
+static void keep_message(void *context, enum wb_log_level level, const char *domain,
+                         const char *message)
+{
+    (void)context, (void)level, (void)domain;
+    snprintf(said, sizeof said, "%s", message);
+}
+
 #define HEAD "body,kind,station,node,x_mm,y_mm,z_mm,von_mises_MPa\n"
+#define AT(j, k, y, z) "0,wire," j "," k ",0," y "," z ",1\n"
 #define RING(j) "0,wire," j ",0,0,0,0,1\n0,wire," j ",1,0,1,0,1\n0,wire," j ",2,0,0,1,1\n"
 
 static void bad_files_are_refused(void **unused)
@@ -207,6 +218,12 @@ static void bad_files_are_refused(void **unused)
         HEAD RING("0") "1,wire,0,0,0,0,0,1\n",           /* the next too early */
         HEAD "0,wire,0,0,0,0,0,1\n0,wire,0,1,0,0,0,1\n"  /* a ring of two */
              "0,wire,1,0,0,0,0,1\n0,wire,1,1,0,0,0,1\n",
+        /* a station at one place, the first or the last */
+        HEAD AT("0", "0", "1", "1") AT("0", "1", "1", "1") AT("0", "2", "1", "1") RING("1"),
+        HEAD RING("0") AT("1", "0", "1", "1") AT("1", "1", "1", "1") AT("1", "2", "1", "1"),
+        HEAD RING("0") AT("1", "0", "1e300", "0") AT("1", "1", "0", "0") AT("1", "2", "0", "1"),
+        HEAD RING("0") AT("1", "0", "-100001", "0") AT("1", "1", "0", "0") AT("1", "2", "0", "1"),
+        HEAD RING("0") "0,wire,1,0,0,0,0,1e10\n0,wire,1,1,0,1,0,1\n0,wire,1,2,0,0,1,1\n",
     };
     struct wb_surface surface;
     wb_log_set_sink(discard_message, NULL);
@@ -216,6 +233,18 @@ static void bad_files_are_refused(void **unused)
             fail_msg("was taken: %s", bad[i]);
         assert_int_equal(surface.n, 0);
     }
+    /* The place of a node that is beyond int, and 100000 modulo 2^32. */
+    struct wb_text text = {0};
+    wb_text_append(&text, "%s", HEAD);
+    for (int k = 0; k < 100000; k++)
+        wb_text_append(&text, "0,wire,0,%d,0,%d,0,1\n", k, k % 2);
+    wb_text_append(&text, "0,wire,42950,67296,0,0,0,1\n");
+    assert_int_equal(wb_file_write(path_of_file(), wb_text_string(&text), text.length), WB_OK);
+    wb_log_set_sink(keep_message, NULL);
+    assert_int_equal(wb_surface_read(&surface, folder), WB_ERR_FORMAT);
+    assert_non_null(strstr(said, ":100002: node: station 42950, node 67296 is not the next one"));
+    wb_text_release(&text);
+
     static const char good[] = HEAD RING("0") RING("1");
     assert_int_equal(wb_file_write(path_of_file(), good, strlen(good)), WB_OK);
     assert_int_equal(wb_surface_read(&surface, folder), WB_OK);
