@@ -5,6 +5,7 @@
 #include "fe/bundle_private.h"
 #include "fe/bundle_tape.h"
 #include "fe/swept_frequency.h"
+#include "fe/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -248,7 +249,7 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
     bundle->gravity = model->loads.weight ? WB_STANDARD_GRAVITY : 0.0;
 
     const int parts = wb_bundle_parts_of(model, name, settings->threads);
-    enum wb_status status = build(bundle);
+    enum wb_status status = wb_team_agree(build(bundle));
     if (status == WB_OK && parts > 1)
         status = wb_bundle_parts_create(&bundle->parts, bundle, parts);
     if (status != WB_OK)

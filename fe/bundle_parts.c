@@ -605,10 +605,10 @@ static void restore_part(struct wb_bundle_parts *parts, int member, struct wb_ch
     size_t size = 0;
 
     wb_checkpoint_carry(in, &size, sizeof size);
-    if (in->status != WB_OK || size > in->size - in->at) {
-        in->at = in->size + 1;
+    if (in->status == WB_OK && size > in->size - in->at)
+        in->status = wb_fail(WB_ERR_DATA, "the checkpoint ends early, in part %d", member + 1);
+    if (in->status != WB_OK)
         return;
-    }
     if (part) {
         struct wb_checkpoint own = {.restores = true, .bytes = in->bytes + in->at, .size = size};
         wb_bundle_carry_fields(part->bundle, &own);
