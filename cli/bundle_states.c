@@ -1,6 +1,11 @@
 #include "cli/bundle_states.h"
 
+#include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "fe/team.h"
 
 #define WB_LOG_DOMAIN "solve"
 
@@ -123,8 +128,52 @@ static void carry_series(struct wb_bundle_vtk *series, struct wb_checkpoint *che
     free(bytes);
 }
 
+/* Where and which states are written: a series of two folders would be of no use. */
+struct purpose {
+    int wants_surface, wants_vtk, every;
+    char folder[PATH_MAX]; /* without links; "": there are no files */
+};
+
+static void find_purpose(struct purpose *purpose, const struct wb_bundle_states *states)
+{
+    memset(purpose, 0, sizeof *purpose);
+    purpose->wants_surface = states->wants_surface;
+    purpose->wants_vtk = states->wants_vtk;
+    purpose->every = states->wants_vtk ? states->every : 0;
+    if (states->wants_vtk && !realpath(states->series.folder, purpose->folder))
+        snprintf(purpose->folder, sizeof purpose->folder, "%s", states->series.folder);
+}
+
+static void carry_purpose(const struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
+{
+    struct purpose own, carried;
+
+    find_purpose(&own, states);
+    carried = own;
+    wb_checkpoint_carry(checkpoint, &carried, sizeof carried);
+    /* Other ranks keep no states. */
+    if (checkpoint->status != WB_OK || !checkpoint->restores || wb_team_rank() > 0)
+        return;
+    carried.folder[sizeof carried.folder - 1] = '\0';
+    if (own.wants_surface != carried.wants_surface)
+        checkpoint->status =
+            wb_fail(WB_ERR_DATA, "the checkpoint is of a run %s -o: remove it to begin anew",
+                    carried.wants_surface ? "with" : "without");
+    else if (own.wants_vtk != carried.wants_vtk || own.every != carried.every ||
+             strcmp(own.folder, carried.folder) != 0)
+        checkpoint->status =
+            carried.wants_vtk
+                ? wb_fail(WB_ERR_DATA,
+                          "the checkpoint is of a run with --vtk=%s --vtk-every=%d: remove it to "
+                          "begin anew",
+                          carried.folder, carried.every)
+                : wb_fail(WB_ERR_DATA, "the checkpoint is of a run without --vtk: remove it to "
+                                       "begin anew");
+}
+
 void wb_bundle_states_carry(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
 {
+    carry_purpose(states, checkpoint);
     wb_checkpoint_carry(checkpoint, &states->attempt, sizeof states->attempt);
     wb_checkpoint_carry(checkpoint, &states->deflection, sizeof states->deflection);
     wb_checkpoint_carry(checkpoint, &states->spent, sizeof states->spent);

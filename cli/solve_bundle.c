@@ -1,4 +1,5 @@
 /* wirebench solve bundle: a bundle file in explicit dynamics. */
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,6 +49,19 @@ static enum wb_status prepare_folder(const char *folder, bool force, bool *made)
     return WB_OK;
 }
 
+static enum wb_status try_checkpoint(const char *file)
+{
+    char beside[WB_PATH];
+
+    wb_file_folder(beside, file);
+    if (wb_file_is_folder(file))
+        return wb_fail(WB_ERR_ARGUMENT, "--checkpoint: '%s' is a folder: expected a file", file);
+    if (access(beside, W_OK | X_OK) != 0)
+        return wb_fail(WB_ERR_IO, "--checkpoint: no file can be written in '%s': %s", beside,
+                       strerror(errno));
+    return WB_OK;
+}
+
 static enum wb_status prepare_output(struct run *run)
 {
     const struct wb_solve_options *o = run->options;
@@ -56,12 +70,14 @@ static enum wb_status prepare_output(struct run *run)
     run->states.wants_vtk = o->vtk;
     run->states.every = o->vtk_every > 0 ? o->vtk_every : 1;
     run->states.turn = run->model.run.rows;
-    /* What a run that goes on has written is its own. */
-    const bool force = o->common.force || (o->checkpoint && wb_file_exists(o->checkpoint));
+    if (o->checkpoint)
+        WB_TRY(try_checkpoint(o->checkpoint));
     if (o->common.output)
-        WB_TRY(prepare_folder(o->common.output, force, &run->made_output));
+        WB_TRY(prepare_folder(o->common.output, o->common.force, &run->made_output));
     if (!o->vtk)
         return WB_OK;
+    /* States that a run which goes on has written are its own; its dataset comes at the end. */
+    const bool force = o->common.force || (o->checkpoint && wb_file_exists(o->checkpoint));
     WB_TRY(prepare_folder(o->vtk, force, &run->made_vtk));
     return wb_bundle_vtk_init(&run->states.series, o->vtk, run->model.name);
 }
@@ -247,12 +263,13 @@ static void warn(const struct run *run)
 static int deliver(const struct run *run)
 {
     const struct wb_command_common *common = &run->options->common;
+    const char *checkpoint = run->options->checkpoint;
     const struct wb_bundle_history *h = &run->history;
     int code = WB_EXIT_OK;
 
-    if (h->stopped && run->options->checkpoint) {
+    if (h->kept) {
         wb_warn("stopped after %d rows; the same command goes on from there ('%s')", h->n_rows,
-                run->options->checkpoint);
+                checkpoint);
         return WB_EXIT_INCOMPLETE;
     }
     if (common->output && h->n_rows > 0)
@@ -263,6 +280,9 @@ static int deliver(const struct run *run)
         print_csv(run);
     if (code != WB_EXIT_OK)
         return code;
+    /* Not before the result is safe. */
+    if (checkpoint && !h->stopped)
+        (void)unlink(checkpoint);
     warn(run);
     return h->converged && !h->stopped ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

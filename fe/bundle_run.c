@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/log.h"
 #include "base/units.h"
@@ -288,11 +287,13 @@ static enum verdict report(struct wb_bundle_run_now *r)
                                                       r->options.checkpoint_interval)};
 
     wb_team_share(choice, sizeof choice, 0);
-    if (choice[1] && wb_bundle_run_save(r) != WB_OK)
-        wb_warn("%s: the run goes on without this checkpoint", file);
+    const bool saved = choice[1] && wb_bundle_run_save(r) == WB_OK;
+    if (choice[1] && !saved)
+        wb_warn("%s: this checkpoint is not written", file);
     if (choice[0])
         return GO_ON;
     r->history->stopped = true;
+    r->history->kept = saved;
     return DONE;
 }
 
@@ -526,7 +527,7 @@ static void begin_history(struct wb_bundle_run_now *r)
     h->chosen = r->model->run.duration == 0.0;
     h->duration = h->chosen ? guess_duration(r->model, r->from) : r->model->run.duration;
     h->converged = true;
-    h->stopped = h->resumed = false;
+    h->stopped = h->kept = h->resumed = false;
     h->problem[0] = '\0';
     h->attempts = 0;
     h->all_steps = 0;
@@ -561,6 +562,8 @@ enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
     if (history->capacity < wb_bundle_run_planned_rows(model))
         return wb_fail(WB_ERR_ARGUMENT, "a history of %d rows for a test of %d", history->capacity,
                        wb_bundle_run_planned_rows(model));
+    if (r.options.checkpoint)
+        WB_TRY(wb_team_agree(wb_hash_file("/proc/self/exe", r.program)));
     begin_history(&r);
     do {
         verdict = attempt(&r);
@@ -568,8 +571,6 @@ enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
             history->duration = r.next;
     } while (verdict == ANEW);
     wb_bundle_run_take_time(&r);
-    if (r.options.checkpoint && r.status == WB_OK && !history->stopped && wb_team_rank() == 0)
-        (void)unlink(r.options.checkpoint);
     return r.status;
 }
 

@@ -67,6 +67,7 @@ struct wb_bundle_history {
     double (*shape)[3];  /* (n_rows x n_shape), m, owned */
     bool converged;      /* false: ends early */
     bool stopped;        /* by the observer */
+    bool kept;           /* stopped, and the checkpoint holds all until then */
     bool resumed;        /* from a checkpoint */
     char problem[320];   /* where and why it was lost; "" otherwise */
     double zero_force;   /* N: subtracted from `force` */
@@ -130,7 +131,8 @@ WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_history *history,
                                            const struct wb_bundle_model *model, const char *mesh,
                                            const struct wb_bundle_observer *observer);
 
-/* The same, with all that can be chosen; NULL: nothing is. */
+/* The same, with all that can be chosen; NULL: nothing is. The checkpoint's file stays: the caller
+ * removes it when a run that was not stopped is safe elsewhere. */
 WB_MUST_CHECK enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
                                                 const struct wb_bundle_model *model,
                                                 const struct wb_bundle_run_options *options);

@@ -59,9 +59,9 @@ static void identify(const struct wb_bundle_run_now *r, char text[MOST_IDENTITY]
     wb_hash_bytes(settings, strlen(settings), hash);
     snprintf(text, MOST_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
-             "wirebench %s",
+             "wirebench %s, program %.12s",
              m->name, mesh, hash, r->history->n_shape,
-             wb_bundle_parts_of(m, mesh, r->options.threads), wb_version_revision());
+             wb_bundle_parts_of(m, mesh, r->options.threads), wb_version_revision(), r->program);
 }
 
 /* Memory of the history stays; what it holds comes and goes. */

@@ -2,6 +2,7 @@
 #ifndef WB_FE_BUNDLE_RUN_PRIVATE_H
 #define WB_FE_BUNDLE_RUN_PRIVATE_H
 
+#include "base/hash.h"
 #include "fe/bundle_run.h"
 #include "fe/checkpoint.h"
 
@@ -25,6 +26,7 @@ struct wb_bundle_run_now {
     double wall_before;                      /* s, in the processes before */
     double cpu_before;
     bool may_resume;
+    char program[WB_SHA256_TEXT]; /* this binary's, where there are checkpoints */
 
     /* From here on all is in a checkpoint. */
     struct wb_bundle_state state;

@@ -57,6 +57,44 @@ printf 'wirebench checkpoint 1\nanother\n0\n0\nend\n' >state
 grep -q 'another run' log || { cat log; exit 1; }
 [ -f state ] || exit 1
 
+# A run that was stopped goes on by the same binary, with the same --vtk, over no other's dataset.
+rm state
+mkdir other
+"$tool" solve bundle three.yaml --threads 2 -o other --vtk states --checkpoint state 2>log &
+process=$!
+until ls states/*-0001.vtu >/dev/null 2>&1; do sleep 0.05; done
+kill -INT $process
+wait $process && { echo "it was not stopped"; exit 1; }
+grep -q 'the same command goes on' log || { cat log; exit 1; }
+refused() { # WHY COMMAND...
+    why=$1
+    shift
+    ! "$@" 2>log || { echo "not refused: $why"; exit 1; }
+    grep -q -e "$why" log || { echo "not refused with '$why':"; cat log; exit 1; }
+    [ -f state ] || { echo "the checkpoint is gone: $why"; exit 1; }
+}
+set -- solve bundle three.yaml --threads 2 --checkpoint state
+refused "of a run with --vtk=.*states" "$tool" "$@" -o other --vtk vtk
+refused "of a run with --vtk=.*states" "$tool" "$@" -o other --vtk states --vtk-every 2
+refused "of a run with --vtk=.*states" "$tool" "$@" -o other
+refused "of a run with -o" "$tool" "$@" --vtk states
+cp "$tool" changed
+printf 'x' >>changed
+refused "another run" ./changed "$@" -o other --vtk states
+refused "or --force" "$tool" "$@" -o threads --vtk states
+refused "cannot\|can be written" "$tool" solve bundle three.yaml -o other --checkpoint nowhere/state
+"$tool" "$@" -o other --vtk states 2>log || { cat log; exit 1; }
+same threads other
+[ ! -e state ] || { echo "the checkpoint was left behind"; exit 1; }
+
+# A result that cannot be written leaves the checkpoint.
+"$tool" "$@" -o whole --checkpoint-minutes 0.001 2>log &
+process=$!
+until [ -f state ]; do sleep 0.05; done
+rmdir whole && touch whole
+! wait $process || { echo "it wrote into a file"; exit 1; }
+[ -f state ] || { echo "the checkpoint went with its result"; exit 1; }
+
 command -v mpirun >/dev/null || { echo "no mpirun: ranks were left out"; exit 0; }
 if ! "$here/../ranks.sh" 2 "$tool" solve bundle three.yaml -o ranks >log 2>&1; then
     grep -q 'built without MPI' log || { cat log; exit 1; }

@@ -276,6 +276,29 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
     }
 }
 
+static void a_checkpoint_that_ends_early_is_refused(void **unused)
+{
+    (void)unused;
+    struct wb_checkpoint checkpoint;
+    read_model(FINE);
+    struct wb_bundle *bundle = create(2);
+    wb_bundle_lead(bundle, way, duration);
+    wb_checkpoint_init(&checkpoint);
+    wb_bundle_carry(bundle, &checkpoint);
+    assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
+    char messages[1024] = "";
+    checkpoint.size /= 4; /* in the first part */
+    wb_checkpoint_rewind(&checkpoint);
+    wb_log_set_sink(keep_message, messages);
+    wb_bundle_carry(bundle, &checkpoint);
+    wb_log_set_sink(NULL, NULL);
+    assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_ERR_DATA);
+    assert_true(checkpoint.at <= checkpoint.size);
+    assert_non_null(strstr(messages, "in part 1"));
+    wb_bundle_destroy(bundle);
+    wb_checkpoint_release(&checkpoint);
+}
+
 /* Stops a run as a signal does, after so many looks of the observer. */
 static bool stop_after(void *context, const struct wb_bundle_progress *progress)
 {
@@ -340,12 +363,13 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
         do {
             left = 7 + 200 * (++stops % 3);
             run_with(&options);
-            assert_true(history.stopped == wb_file_exists(file));
+            assert_true(history.stopped == history.kept && wb_file_exists(file));
             assert_true(history.resumed == (stops > 1));
         } while (history.stopped);
         assert_true(stops > 3);
         check_history(&history, &straight);
         assert_true(history.wall > 0.0 && history.cpu > 0.0);
+        assert_int_equal(unlink(file), 0);
         wb_bundle_run_release(&history);
         history = straight;
     }
@@ -370,6 +394,22 @@ static void another_models_checkpoint_is_refused(void **unused)
     assert_non_null(strstr(messages, "another run"));
     assert_true(wb_file_exists(file));
     assert_int_equal(unlink(file), 0);
+}
+
+static void a_stop_without_its_checkpoint_is_told(void **unused)
+{
+    (void)unused;
+    char file[64], messages[1024] = "";
+    int left = 2;
+    const struct wb_bundle_observer observer = {.progress = stop_after, .context = &left};
+    snprintf(file, sizeof file, "%s/nowhere/state", folder);
+    const struct wb_bundle_run_options options = {.checkpoint = file, .observer = &observer};
+    read_model(ONE RUN("rows: 2, duration_s: 0.5") "loads: {weight: false}\n");
+    wb_log_set_sink(keep_message, messages);
+    run_with(&options);
+    wb_log_set_sink(NULL, NULL);
+    assert_true(history.stopped && !history.kept);
+    assert_non_null(strstr(messages, file));
 }
 
 /* --- by mpirun --- */
@@ -404,8 +444,10 @@ int main(int argc, char **argv)
         cmocka_unit_test(there_are_no_more_parts_than_there_is_room_for),
         cmocka_unit_test(a_lost_part_ends_the_run),
         cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
+        cmocka_unit_test(a_checkpoint_that_ends_early_is_refused),
         cmocka_unit_test_teardown(a_stopped_run_ends_with_the_same_result, release),
         cmocka_unit_test_teardown(another_models_checkpoint_is_refused, release),
+        cmocka_unit_test_teardown(a_stop_without_its_checkpoint_is_told, release),
     };
     int failed;
     if (wb_team_start() != WB_OK)
