@@ -1,7 +1,9 @@
 /* wirebench report: a campaign's recordings, or its simulations, become its report. */
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "analysis/report/bundles_report.h"
 #include "analysis/report/comparison_report.h"
@@ -335,6 +337,45 @@ static enum wb_status name_checkpoint(struct bundle_jobs *all, const struct wb_b
     return wb_file_join(path, all->folder, name);
 }
 
+/* Whether a file is a checkpoint of a run by any program, or one that was being written. */
+static bool is_checkpoint_of(const char *file, const char *run)
+{
+    static const char ending[] = ".checkpoint";
+    enum {
+        DIGITS = 12
+    };
+    const size_t length = strlen(run);
+    if (strncmp(file, run, length) != 0 || file[length] != '-')
+        return false;
+    const char *const hash = file + length + 1;
+    if (strspn(hash, "0123456789abcdef") != DIGITS)
+        return false;
+    const char *const rest = hash + DIGITS;
+    return strncmp(rest, ending, strlen(ending)) == 0 &&
+           (rest[strlen(ending)] == '\0' || rest[strlen(ending)] == '.');
+}
+
+/* A changed program or bundle leaves checkpoints that nothing goes on from. They are let be until
+ * their run is there. */
+static void remove_checkpoints(const struct bundle_jobs *all,
+                               const struct wb_bundles_results *results)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    DIR *const folder = opendir(all->folder);
+    if (!folder)
+        return;
+    for (const struct dirent *entry; (entry = readdir(folder));) {
+        for (int i = 0; i < campaign->n_runs; i++) {
+            if (results->runs[i].state != WB_BUNDLES_USABLE ||
+                !is_checkpoint_of(entry->d_name, campaign->runs[i].dataset.log))
+                continue;
+            (void)unlinkat(dirfd(folder), entry->d_name, 0);
+            break;
+        }
+    }
+    closedir(folder);
+}
+
 static enum wb_status add_run_job(struct bundle_jobs *all, const struct wb_bundles_run *run,
                                   const struct wb_bundles_result *result)
 {
@@ -413,16 +454,15 @@ static int make_missing(const struct options *o, struct wb_bundles_results *resu
     if (!all)
         return wb_command_exit(wb_fail(WB_ERR_MEMORY, "out of memory"));
     const int code = wb_command_exit(run_jobs(all, o, results, &outcome));
-    const bool any = all->n > 0;
+    *told = code == WB_EXIT_OK && all->n > 0 && (o->jobs.dry_run || outcome.interrupted);
+    if (code == WB_EXIT_OK && all->n > 0 && !*told) {
+        wb_bundles_results_release(results);
+        wb_bundles_results_load(results, campaign);
+    }
+    if (code == WB_EXIT_OK && !*told)
+        remove_checkpoints(all, results);
     free(all);
-    if (code != WB_EXIT_OK || !any)
-        return code;
-    *told = o->jobs.dry_run || outcome.interrupted;
-    if (*told)
-        return outcome.interrupted ? refuse_interrupted() : WB_EXIT_OK;
-    wb_bundles_results_release(results);
-    wb_bundles_results_load(results, campaign);
-    return WB_EXIT_OK;
+    return *told && outcome.interrupted ? refuse_interrupted() : code;
 }
 
 static int compute_bundles(const struct options *o, struct wb_bundles_results *results,

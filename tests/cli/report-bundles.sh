@@ -83,7 +83,12 @@ rms=$(sed -n 's/^one wire .* published curve \([0-9.]*\) .*/\1/p' out)
 awk -v rms="$rms" 'BEGIN { exit !(rms > 0 && rms < 0.02) }' ||
     fail "one wire is $rms from its own beam"
 before=$(sha256sum sim/*/dataset.json)
+mkdir -p again.jobs
+touch again.jobs/one-0123456789ab.checkpoint again.jobs/one-0123456789ab.checkpoint.Ab1234 \
+    again.jobs/one-more-0123456789ab.checkpoint again.jobs/one-0123456789ab.log
 run 0 c.yaml -o again --solve
+[ "$(ls again.jobs)" = "$(printf 'one-0123456789ab.log\none-more-0123456789ab.checkpoint')" ] ||
+    fail "checkpoints of runs that are there: $(ls again.jobs)"
 [ "$before" = "$(sha256sum sim/*/dataset.json)" ] || fail 'datasets that are there were made again'
 diff -r r again >/dev/null || fail 'another run gave other bytes'
 run 0 c.yaml -o json --json
