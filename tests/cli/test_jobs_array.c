@@ -31,7 +31,7 @@ static const char sbatch[] =
     "for range in $(echo \"${tasks%\\%*}\" | tr , ' '); do\n"
     "    for task in $(seq \"${range%-*}\" \"${range#*-}\"); do\n"
     "        state=PENDING\n"
-    "        [ -e hold ] || {\n"
+    "        [ -e \"hold$cluster\" ] || {\n"
     "            state=FAILED\n"
     "            (cd \"$folder\" && SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=3 sh \"$@\") \\\n"
     "                && state=COMPLETED\n"
@@ -349,6 +349,11 @@ static void arrays_of_two_clusters_may_have_one_number(void **unused)
     struct jobs_fixture_run runs[4] = {five[0], five[2], five[3], five[1]};
     jobs_fixture_write("fake/largest", "3");
     jobs_fixture_write("fake/clusters", "east\nwest\n");
+    /* The east ends long after the west. */
+    jobs_fixture_write("fake/holdeast", "");
+    assert_int_equal(system("(sleep 1; mkdir a c; echo x >a/dataset.json; echo x >c/dataset.json; "
+                            "sed -i s/PENDING/COMPLETED/ fake/queue.12east) &"),
+                     0);
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 4, &slurm, WB_OK);
     expect(&outcome, 0, 3, 1, 0);
     assert_true(jobs_fixture_is_there("fake/queue.12east"));
