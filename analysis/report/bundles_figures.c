@@ -455,10 +455,12 @@ static enum wb_status draw_fit(struct wb_figure **figure, const struct wb_bundle
 {
     const struct wb_bundles *const campaign = results->campaign;
     double largest = 0.0;
+    bool some_rod = false; /* then variants without one would only crowd the figure */
     for (int i = 0; i < campaign->n_bundles; i++) {
         const struct wb_bundles_result *const run =
             wb_bundles_results_usable(results, campaign->bundles[i].dynamic);
         largest = fmax(largest, run ? run->curve.max_force : 0.0);
+        some_rod = some_rod || campaign->bundles[i].has_rod;
     }
     if (!(largest > 0.0))
         return WB_OK;
@@ -468,7 +470,8 @@ static enum wb_status draw_fit(struct wb_figure **figure, const struct wb_bundle
     /* Room above for legend and inset. */
     wb_figure_set_y_range(panel, 0.0, 1.3 * largest);
     for (int i = 0; i < campaign->n_bundles; i++)
-        WB_TRY(add_fit(panel, results, i));
+        if (campaign->bundles[i].has_rod || !some_rod)
+            WB_TRY(add_fit(panel, results, i));
     if (campaign->inset < 0 || !wb_bundles_results_fit(results, campaign->inset))
         return WB_OK;
     const struct wb_figure_style solid = solid_style(campaign->inset),
