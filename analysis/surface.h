@@ -47,8 +47,9 @@ WB_MUST_CHECK enum wb_status wb_surface_take(struct wb_surface *surface,
 void wb_surface_release(struct wb_surface *surface); /* accepts a zeroed one */
 
 /* surface.csv in a dataset's folder, written whole or not at all; without a body the file is
- * removed. Writing refuses what is not finite. Reading errors name file, line and column; a folder
- * without surface.csv reads as no bodies. */
+ * removed. Writing refuses what is not finite. Reading refuses places farther than 100 m, stresses
+ * beyond 1e15 Pa, and bodies whose first or last station lies at one place; errors name file, line
+ * and column. A folder without surface.csv reads as no bodies. */
 WB_MUST_CHECK enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder);
 WB_MUST_CHECK enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder);
 
