@@ -62,7 +62,7 @@ rm state
 mkdir other
 "$tool" solve bundle three.yaml --threads 2 -o other --vtk states --checkpoint state 2>log &
 process=$!
-until ls states/*-0001.vtu >/dev/null 2>&1; do sleep 0.05; done
+until ls states/*-0001.vtu >/dev/null 2>&1 || ! kill -0 $process 2>/dev/null; do sleep 0.05; done
 kill -INT $process
 wait $process && { echo "it was not stopped"; exit 1; }
 grep -q 'the same command goes on' log || { cat log; exit 1; }
@@ -90,7 +90,7 @@ same threads other
 # A result that cannot be written leaves the checkpoint.
 "$tool" "$@" -o whole --checkpoint-minutes 0.001 2>log &
 process=$!
-until [ -f state ]; do sleep 0.05; done
+until [ -f state ] || ! kill -0 $process 2>/dev/null; do sleep 0.05; done
 rmdir whole && touch whole
 ! wait $process || { echo "it wrote into a file"; exit 1; }
 [ -f state ] || { echo "the checkpoint went with its result"; exit 1; }
