@@ -33,8 +33,8 @@ TZ=Asia/Kathmandu LC_ALL=de_DE.UTF-8 LANG=de_DE.UTF-8 "$wirebench" report \
 [ $? -eq $code ] || fail 'another run ended otherwise'
 diff -r "$folder/a" "$folder/deeper/b" >/dev/null || fail 'another run gave other bytes'
 
-# Two of sections, forces, errors, energies and studies, five bent bundles, and 3D beside 1D.
-[ "$(find "$folder/a/figures" -name '*.svg' | wc -l)" -eq 16 ] || fail 'figures are missing'
+# Of four groups: sections, forces, errors, energies; two studies, nine bent bundles, 3D beside 1D.
+[ "$(find "$folder/a/figures" -name '*.svg' | wc -l)" -eq 28 ] || fail 'figures are missing'
 grep -qiE "$folder|$2/" "$folder/a/report.html" "$folder/a/report.json" &&
     fail 'a path that must not be there'
 
