@@ -12,8 +12,8 @@
 
 enum {
     SAMPLES = 64,      /* of the outline, for each node of the ring */
-    LOOK_INTERVAL = 10 /* steps between searches for contact: few beside a vibration of the tape on
-                          its contact (some twenty), or searches feed it */
+    LOOK_INTERVAL = 20 /* steps between searches for contact, about those of a vibration of the tape
+                          on its contact */
 };
 
 struct wb_bundle_bond {

@@ -22,7 +22,7 @@ static void a_tape_that_came_loose_stays_round_its_wire(void **unused)
     lead_and_check(bundle, 30e-3, settings.duration, 0.005);
     wb_bundle_get_limits(bundle, &limits);
     wb_bundle_get_energies(bundle, &e);
-    assert_true(limits.debonded > 0.8);
+    assert_true(limits.debonded > 0.7); /* what is pressed on it stays */
     assert_true(limits.tape_deepest > 0.0 && limits.tape_deepest < 1e-6);
     assert_true(e.contact > 0.0 && e.friction > 0.0 && e.cohesive > 0.0);
     wb_bundle_destroy(bundle);
