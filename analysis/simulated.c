@@ -6,8 +6,8 @@
 #include "base/units.h"
 #include "base/version.h"
 
-/* m/s, of the paper's stage */
-static const double stage_speed = 1e-3;
+static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
+static const double shortest_row = 1e-3; /* s */
 
 enum wb_phase wb_simulated_phase(enum wb_history_phase phase)
 {
@@ -20,6 +20,38 @@ enum wb_phase wb_simulated_phase(enum wb_history_phase phase)
         return WB_PHASE_SLACK;
     }
     return WB_PHASE_LOAD;
+}
+
+double wb_simulated_time(const double from[3], const double to[3])
+{
+    const double way = hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
+    return fmax(way / stage_speed, shortest_row);
+}
+
+enum wb_status wb_simulated_add_shape(struct wb_dataset *dataset, double t, double deflection,
+                                      int n, const double *s, double (*place)[3])
+{
+    for (int k = 0; k < n; k++) {
+        const struct wb_shape_row shape = {
+            .t = t,
+            .deflection = deflection,
+            .marker = k,
+            .s = s[k],
+            .x = place[k][0],
+            .y = place[k][1],
+            .z = place[k][2],
+        };
+        WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
+    }
+    return WB_OK;
+}
+
+void wb_simulated_describe_tool(struct wb_json *document)
+{
+    struct wb_json *const tool = wb_json_set_object(document, "tool");
+    wb_json_set_text(tool, "name", "wirebench");
+    wb_json_set_text(tool, "version", wb_version());
+    wb_json_set_text(tool, "revision", wb_version_revision());
 }
 
 static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_history *history,
@@ -84,10 +116,7 @@ static void describe(struct wb_json *document, const struct wb_test_info *info,
     wb_json_set_number(simulation, "wall_s", origin->wall);
     wb_json_set_number(simulation, "cpu_s", origin->cpu);
 
-    struct wb_json *tool = wb_json_set_object(document, "tool");
-    wb_json_set_text(tool, "name", "wirebench");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_simulated_describe_tool(document);
 }
 
 enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,

@@ -32,6 +32,18 @@ WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
 /* A history's phase as a dataset's. */
 enum wb_phase wb_simulated_phase(enum wb_history_phase phase);
 
+/* Bench time, s, in which a free tip goes from one place to the next, m: at least 1 ms. */
+double wb_simulated_time(const double from[3], const double to[3]);
+
+/* Appends the n places (m) of a shape in space, at bench time t (s) and a deflection (m), as those
+ * of n markers at the arc lengths s (m). */
+WB_MUST_CHECK enum wb_status wb_simulated_add_shape(struct wb_dataset *dataset, double t,
+                                                    double deflection, int n, const double *s,
+                                                    double (*place)[3]);
+
+/* dataset.json's `tool`: this program. */
+void wb_simulated_describe_tool(struct wb_json *document);
+
 /* How a wire model was computed. */
 struct wb_simulated_wire {
     const char *solver; /* "wire3d" or "wire1d" */

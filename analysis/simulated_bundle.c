@@ -4,59 +4,20 @@
 #include <stdio.h>
 
 #include "analysis/dataset_csv.h"
+#include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "base/version.h"
 #include "fe/team.h"
 
 #define WB_LOG_DOMAIN "dataset"
 
-static const double stage_speed = 1e-3;   /* m/s, of the paper's stage */
-static const double shortest_row = 1e-3;  /* s */
 static const double pa_per_m = 1e9;       /* of one N/mm3 */
 static const double s_per_m = 1e3;        /* of one s/mm */
 static const double j_per_m2 = 1e3;       /* of one N/mm */
 static const double poissons_ratio = 0.3; /* of the homogenised beam, as the paper has it */
 
-static enum wb_phase phase_of(enum wb_history_phase phase)
-{
-    switch (phase) {
-    case WB_HISTORY_LOAD:
-        return WB_PHASE_LOAD;
-    case WB_HISTORY_UNLOAD:
-        return WB_PHASE_UNLOAD;
-    case WB_HISTORY_SLACK:
-        return WB_PHASE_SLACK;
-    }
-    return WB_PHASE_LOAD;
-}
-
 /* --- rows --- */
-
-static double way(const double from[3], const double to[3])
-{
-    return hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
-}
-
-static enum wb_status add_shape(struct wb_dataset *dataset, const struct wb_bundle_history *history,
-                                int row, double t)
-{
-    for (int k = 0; k < history->n_shape; k++) {
-        const double *at = history->shape[(size_t)row * (size_t)history->n_shape + (size_t)k];
-        const struct wb_shape_row shape = {
-            .t = t,
-            .deflection = history->rows[row].deflection,
-            .marker = k,
-            .s = history->shape_s[k],
-            .x = at[0],
-            .y = at[1],
-            .z = at[2],
-        };
-        WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
-    }
-    return WB_OK;
-}
 
 static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundle_history *history)
 {
@@ -65,11 +26,11 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundl
     for (int i = 0; i < history->n_rows; i++) {
         const struct wb_bundle_row *row = &history->rows[i];
         if (i > 0)
-            t += fmax(way(history->rows[i - 1].tip, row->tip) / stage_speed, shortest_row);
+            t += wb_simulated_time(history->rows[i - 1].tip, row->tip);
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
-            .phase = phase_of(row->phase),
+            .phase = wb_simulated_phase(row->phase),
             .deflection = row->deflection,
             .tension = row->tension,
             .force = row->force,
@@ -78,7 +39,9 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundl
             .tip_angle = row->tip_angle,
         };
         WB_TRY(wb_dataset_add_row(dataset, &out));
-        WB_TRY(add_shape(dataset, history, i, t));
+        WB_TRY(wb_simulated_add_shape(dataset, t, row->deflection, history->n_shape,
+                                      history->shape_s,
+                                      history->shape + (size_t)i * (size_t)history->n_shape));
     }
     return WB_OK;
 }
@@ -248,10 +211,7 @@ static void describe(struct wb_json *document, const struct wb_simulated_bundle 
         wb_json_set_number(simulation, "surface_deflection_mm", bundle->surface_deflection / WB_MM);
     wb_simulated_bundle_describe(simulation, bundle);
 
-    struct wb_json *const tool = wb_json_set_object(document, "tool");
-    wb_json_set_text(tool, "name", "wirebench");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_simulated_describe_tool(document);
 }
 
 enum wb_status wb_simulated_bundle_fill(struct wb_dataset *dataset,

@@ -6,12 +6,9 @@
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/units.h"
-#include "base/version.h"
 
-static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
-static const double shortest_row = 1e-3; /* s */
-static const double megabyte = 1e6;      /* bytes */
-static const double pa_per_m = 1e9;      /* of one N/mm3 */
+static const double megabyte = 1e6; /* bytes */
+static const double pa_per_m = 1e9; /* of one N/mm3 */
 
 static const char *const kind_names[] = {
     [WB_WIRE_STEP_LOADS] = "loads",
@@ -19,38 +16,13 @@ static const char *const kind_names[] = {
     [WB_WIRE_STEP_RELEASE] = "release",
 };
 
-/* Way of the tip, m. */
-static double way(const double from[3], const double to[3])
-{
-    return hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
-}
-
-static enum wb_status add_shape(struct wb_dataset *dataset, const struct wb_wire_run *run, int row,
-                                double t)
-{
-    for (int k = 0; k < run->n_shape; k++) {
-        const double *const at = run->shape[(size_t)row * (size_t)run->n_shape + (size_t)k];
-        const struct wb_shape_row shape = {
-            .t = t,
-            .deflection = run->rows[row].tip[1],
-            .marker = k,
-            .s = run->shape_s[k],
-            .x = at[0],
-            .y = at[1],
-            .z = at[2],
-        };
-        WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
-    }
-    return WB_OK;
-}
-
 static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_wire_run *run)
 {
     double t = 0.0;
     for (int i = 0; i < run->n_rows; i++) {
         const struct wb_wire_row *const row = &run->rows[i];
         if (i > 0)
-            t += fmax(way(run->rows[i - 1].tip, row->tip) / stage_speed, shortest_row);
+            t += wb_simulated_time(run->rows[i - 1].tip, row->tip);
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
@@ -63,7 +35,8 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_wire_
             .tip_angle = row->tip_angle,
         };
         WB_TRY(wb_dataset_add_row(dataset, &out));
-        WB_TRY(add_shape(dataset, run, i, t));
+        WB_TRY(wb_simulated_add_shape(dataset, t, row->tip[1], run->n_shape, run->shape_s,
+                                      run->shape + (size_t)i * (size_t)run->n_shape));
     }
     return WB_OK;
 }
@@ -219,10 +192,7 @@ static void describe(struct wb_dataset *dataset, const struct wb_simulated_wire 
     describe_run(simulation, wire);
     describe_steps(simulation, dataset, wire->model, wire->run);
 
-    struct wb_json *const tool = wb_json_set_object(document, "tool");
-    wb_json_set_text(tool, "name", "wirebench");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_simulated_describe_tool(document);
 }
 
 enum wb_status wb_simulated_fill_wire(struct wb_dataset *dataset,
