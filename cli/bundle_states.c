@@ -15,7 +15,7 @@ static enum wb_status begin_anew(struct wb_bundle_states *states, int attempt)
     states->attempt = attempt;
     states->deflection = 0.0;
     wb_surface_release(&states->surface);
-    return states->wants_vtk ? wb_bundle_vtk_restart(&states->series) : WB_OK;
+    return states->wants_vtk ? wb_vtk_file_series_restart(&states->series) : WB_OK;
 }
 
 static enum wb_status take_fields(struct wb_bundle_states *states, const struct wb_bundle *bundle)
@@ -106,7 +106,7 @@ static void carry_surface(struct wb_surface *surface, struct wb_checkpoint *chec
         carry_body(&surface->bodies[i], checkpoint);
 }
 
-static void carry_series(struct wb_bundle_vtk *series, struct wb_checkpoint *checkpoint)
+static void carry_series(struct wb_vtk_file_series *series, struct wb_checkpoint *checkpoint)
 {
     size_t length = series->states.length;
     char *bytes = series->states.bytes;
@@ -183,7 +183,7 @@ void wb_bundle_states_carry(struct wb_bundle_states *states, struct wb_checkpoin
 
 void wb_bundle_states_release(struct wb_bundle_states *states)
 {
-    wb_bundle_vtk_release(&states->series);
+    wb_vtk_file_series_release(&states->series);
     if (states->has_fields)
         wb_bundle_fields_release(&states->fields);
     wb_surface_release(&states->surface);

@@ -17,7 +17,7 @@ struct wb_bundle_states {
     bool wants_surface, wants_vtk; /* set by the caller */
     int every;                     /* rows between VTK files; from 1 */
     int turn;                      /* rows from turn to turn of the history, which have files too */
-    struct wb_bundle_vtk series;   /* initialised by the caller */
+    struct wb_vtk_file_series series; /* initialised by the caller */
     /* From here on made by wb_bundle_states_take(). */
     int attempt;
     bool has_fields;

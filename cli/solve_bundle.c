@@ -79,7 +79,7 @@ static enum wb_status prepare_output(struct run *run)
     /* States that a run which goes on has written are its own; its dataset comes at the end. */
     const bool force = o->common.force || (o->checkpoint && wb_file_exists(o->checkpoint));
     WB_TRY(prepare_folder(o->vtk, force, &run->made_vtk));
-    return wb_bundle_vtk_init(&run->states.series, o->vtk, run->model.name);
+    return wb_vtk_file_series_init(&run->states.series, o->vtk, run->model.name);
 }
 
 /* Rank 0 alone writes and talks. */

@@ -32,7 +32,7 @@ struct run {
     struct wb_wire1d *rod;
     struct wb_wire_run run;
     struct wb_fields fields;
-    struct wb_vtk_series series;
+    struct wb_vtk_file_series series;
     bool made_output, made_vtk; /* folders that were not there before */
     struct wb_progress progress;
     int increments;
@@ -62,7 +62,7 @@ static enum wb_status prepare(struct run *run)
     if (!o->vtk)
         return WB_OK;
     WB_TRY(prepare_folder(o->vtk, o->common.force, &run->made_vtk));
-    return wb_vtk_series_init(&run->series, o->vtk, run->model.name);
+    return wb_vtk_file_series_init(&run->series, o->vtk, run->model.name);
 }
 
 /* --- while it runs --- */
@@ -121,7 +121,7 @@ static enum wb_status take_solid(struct run *run, const char *state)
     if (state)
         status = wb_wire_fields_solid(&run->fields, &run->model, state, mesh, &fields);
     if (status == WB_OK && run->options->vtk)
-        status = wb_vtk_series_add(&run->series, run->series.n, mesh, &fields);
+        status = wb_vtk_add(&run->series, run->series.n, mesh, &fields);
     wb_wire3d_fields_release(&fields);
     return status;
 }
@@ -311,7 +311,7 @@ int wb_solve_wire(const struct wb_solve_options *options)
     const int code = status == WB_OK ? deliver(run) : wb_command_exit(status);
 
     clean_up(run);
-    wb_vtk_series_release(&run->series);
+    wb_vtk_file_series_release(&run->series);
     wb_fields_release(&run->fields);
     wb_wire_run_release(&run->run);
     wb_wire1d_destroy(run->rod);

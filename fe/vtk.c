@@ -3,11 +3,9 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "vtk"
@@ -23,12 +21,6 @@ struct points {
     int n;
     int *number;                /* (n_parts x n_nodes), -1 where a part does not have the node */
     int *node, *element, *slot; /* (n): where a point's values come from */
-};
-
-/* Writing: the XML head tells where in the bytes behind it each array begins. */
-struct writer {
-    struct wb_text text;
-    uint64_t offset;
 };
 
 static void points_release(struct points *points)
@@ -85,22 +77,6 @@ static enum wb_status check_fields(const struct wb_solid_mesh *mesh,
     return finite ? WB_OK : wb_fail(WB_ERR_DATA, "a field has values that are not finite");
 }
 
-/* Integers and doubles, least byte first on any machine. */
-static void put_integer(struct writer *w, uint64_t value, int n_bytes)
-{
-    unsigned char bytes[8];
-    for (int k = 0; k < n_bytes; k++)
-        bytes[k] = (unsigned char)(value >> (8 * k));
-    wb_text_append_bytes(&w->text, bytes, (size_t)n_bytes);
-}
-
-static void put_double(struct writer *w, double value)
-{
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_integer(w, bits, 8);
-}
-
 /* Bytes of each array, in the order in which the head and the data have them. */
 struct sizes {
     uint64_t displacement, stress, von_mises, plastic, part, points, connectivity, offsets, types;
@@ -123,49 +99,31 @@ static struct sizes sizes_of(const struct wb_solid_mesh *mesh, const struct poin
     return sizes;
 }
 
-/* Declares an array; `more` are further attributes. */
-static void declare(struct writer *w, const char *type, const char *name, uint64_t bytes,
-                    const char *more)
-{
-    wb_text_append(&w->text,
-                   "        <DataArray type=\"%s\" Name=\"%s\"%s format=\"appended\" "
-                   "offset=\"%llu\"/>\n",
-                   type, name, more, (unsigned long long)w->offset);
-    w->offset += BLOCK_HEAD + bytes;
-}
-
-static void put_head(struct writer *w, const struct wb_solid_mesh *mesh,
+static void put_head(struct wb_vtk_file *w, const struct wb_solid_mesh *mesh,
                      const struct points *points, const struct sizes *sizes)
 {
     const char *vector = " NumberOfComponents=\"3\"";
+    wb_vtk_file_begin(w);
     wb_text_append(&w->text,
-                   "<?xml version=\"1.0\"?>\n"
-                   "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
-                   "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-                   "  <UnstructuredGrid>\n"
                    "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n"
                    "      <PointData>\n",
                    points->n, mesh->n_elements);
-    declare(w, "Float64", "displacement_mm", sizes->displacement, vector);
-    declare(w, "Float64", "stress_MPa", sizes->stress,
-            " NumberOfComponents=\"6\" ComponentName0=\"xx\" ComponentName1=\"yy\" "
-            "ComponentName2=\"zz\" ComponentName3=\"xy\" ComponentName4=\"yz\" "
-            "ComponentName5=\"xz\"");
-    declare(w, "Float64", "von_mises_MPa", sizes->von_mises, "");
-    declare(w, "Float64", "plastic_strain", sizes->plastic, "");
+    wb_vtk_file_declare(w, "Float64", "displacement_mm", sizes->displacement, vector);
+    wb_vtk_file_declare(w, "Float64", "stress_MPa", sizes->stress,
+                        " NumberOfComponents=\"6\" ComponentName0=\"xx\" ComponentName1=\"yy\" "
+                        "ComponentName2=\"zz\" ComponentName3=\"xy\" ComponentName4=\"yz\" "
+                        "ComponentName5=\"xz\"");
+    wb_vtk_file_declare(w, "Float64", "von_mises_MPa", sizes->von_mises, "");
+    wb_vtk_file_declare(w, "Float64", "plastic_strain", sizes->plastic, "");
     wb_text_append(&w->text, "      </PointData>\n      <CellData>\n");
-    declare(w, "Int32", "part", sizes->part, "");
+    wb_vtk_file_declare(w, "Int32", "part", sizes->part, "");
     wb_text_append(&w->text, "      </CellData>\n      <Points>\n");
-    declare(w, "Float64", "position_mm", sizes->points, vector);
+    wb_vtk_file_declare(w, "Float64", "position_mm", sizes->points, vector);
     wb_text_append(&w->text, "      </Points>\n      <Cells>\n");
-    declare(w, "Int32", "connectivity", sizes->connectivity, "");
-    declare(w, "Int32", "offsets", sizes->offsets, "");
-    declare(w, "UInt8", "types", sizes->types, "");
-    wb_text_append(&w->text, "      </Cells>\n"
-                             "    </Piece>\n"
-                             "  </UnstructuredGrid>\n"
-                             "  <AppendedData encoding=\"raw\">\n"
-                             "_");
+    wb_vtk_file_declare(w, "Int32", "connectivity", sizes->connectivity, "");
+    wb_vtk_file_declare(w, "Int32", "offsets", sizes->offsets, "");
+    wb_vtk_file_declare(w, "UInt8", "types", sizes->types, "");
+    wb_vtk_file_end_head(w);
 }
 
 static double von_mises(const double s[6])
@@ -174,131 +132,77 @@ static double von_mises(const double s[6])
     return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
-static void put_point_data(struct writer *w, const struct wb_solid_mesh *mesh,
+static void put_point_data(struct wb_vtk_file *w, const struct wb_solid_mesh *mesh,
                            const struct wb_wire3d_fields *fields, const struct points *points,
                            const struct sizes *sizes)
 {
-    put_integer(w, sizes->displacement, BLOCK_HEAD);
+    wb_vtk_file_put_size(w, sizes->displacement);
     for (int i = 0; i < points->n; i++) {
         const int node = points->node[i];
         for (int k = 0; k < 3; k++)
-            put_double(w, (fields->position[node][k] - mesh->node[node][k]) / WB_MM);
+            wb_vtk_file_put_double(w, (fields->position[node][k] - mesh->node[node][k]) / WB_MM);
     }
-    put_integer(w, sizes->stress, BLOCK_HEAD);
+    wb_vtk_file_put_size(w, sizes->stress);
     for (int i = 0; i < points->n; i++) {
         for (int k = 0; k < 6; k++)
-            put_double(w, fields->stress[points->element[i]][points->slot[i]][k] / WB_MPA);
+            wb_vtk_file_put_double(w,
+                                   fields->stress[points->element[i]][points->slot[i]][k] / WB_MPA);
     }
-    put_integer(w, sizes->von_mises, BLOCK_HEAD);
+    wb_vtk_file_put_size(w, sizes->von_mises);
     for (int i = 0; i < points->n; i++)
-        put_double(w, von_mises(fields->stress[points->element[i]][points->slot[i]]) / WB_MPA);
-    put_integer(w, sizes->plastic, BLOCK_HEAD);
+        wb_vtk_file_put_double(w, von_mises(fields->stress[points->element[i]][points->slot[i]]) /
+                                      WB_MPA);
+    wb_vtk_file_put_size(w, sizes->plastic);
     for (int i = 0; i < points->n; i++)
-        put_double(w, fields->plastic[points->element[i]][points->slot[i]]);
+        wb_vtk_file_put_double(w, fields->plastic[points->element[i]][points->slot[i]]);
 }
 
-static void put_grid(struct writer *w, const struct wb_solid_mesh *mesh,
+static void put_grid(struct wb_vtk_file *w, const struct wb_solid_mesh *mesh,
                      const struct points *points, const struct sizes *sizes)
 {
-    put_integer(w, sizes->part, BLOCK_HEAD);
+    wb_vtk_file_put_size(w, sizes->part);
     for (int e = 0; e < mesh->n_elements; e++)
-        put_integer(w, (uint64_t)mesh->part[e], 4);
-    put_integer(w, sizes->points, BLOCK_HEAD);
+        wb_vtk_file_put_integer(w, (uint64_t)mesh->part[e], 4);
+    wb_vtk_file_put_size(w, sizes->points);
     for (int i = 0; i < points->n; i++) {
         for (int k = 0; k < 3; k++)
-            put_double(w, mesh->node[points->node[i]][k] / WB_MM);
+            wb_vtk_file_put_double(w, mesh->node[points->node[i]][k] / WB_MM);
     }
-    put_integer(w, sizes->connectivity, BLOCK_HEAD);
+    wb_vtk_file_put_size(w, sizes->connectivity);
     for (int e = 0; e < mesh->n_elements; e++) {
         const int *number = points->number + mesh->part[e] * mesh->n_nodes;
         for (int k = 0; k < CELL_NODES; k++)
-            put_integer(w, (uint64_t)number[mesh->element[e][k]], 4);
+            wb_vtk_file_put_integer(w, (uint64_t)number[mesh->element[e][k]], 4);
     }
-    put_integer(w, sizes->offsets, BLOCK_HEAD);
+    wb_vtk_file_put_size(w, sizes->offsets);
     for (int e = 0; e < mesh->n_elements; e++)
-        put_integer(w, (uint64_t)(e + 1) * CELL_NODES, 4);
-    put_integer(w, sizes->types, BLOCK_HEAD);
+        wb_vtk_file_put_integer(w, (uint64_t)(e + 1) * CELL_NODES, 4);
+    wb_vtk_file_put_size(w, sizes->types);
     for (int e = 0; e < mesh->n_elements; e++)
-        put_integer(w, QUADRATIC_HEXAHEDRON, 1);
-}
-
-static enum wb_status write_text(const char *path, struct wb_text *text)
-{
-    const enum wb_status status = text->failed ? wb_fail(WB_ERR_MEMORY, "no memory for %s", path)
-                                               : wb_file_write(path, text->bytes, text->length);
-    wb_text_release(text);
-    return status;
+        wb_vtk_file_put_integer(w, QUADRATIC_HEXAHEDRON, 1);
 }
 
 enum wb_status wb_vtk_write(const char *path, const struct wb_solid_mesh *mesh,
                             const struct wb_wire3d_fields *fields)
 {
-    struct writer writer = {{0}, 0};
+    struct wb_vtk_file file = {{0}, 0};
     struct points points;
     WB_TRY(check_fields(mesh, fields));
     WB_TRY(points_init(&points, mesh));
 
     const struct sizes sizes = sizes_of(mesh, &points);
-    put_head(&writer, mesh, &points, &sizes);
-    put_point_data(&writer, mesh, fields, &points, &sizes);
-    put_grid(&writer, mesh, &points, &sizes);
-    wb_text_append(&writer.text, "\n  </AppendedData>\n</VTKFile>\n");
+    put_head(&file, mesh, &points, &sizes);
+    put_point_data(&file, mesh, fields, &points, &sizes);
+    put_grid(&file, mesh, &points, &sizes);
     points_release(&points);
-    return write_text(path, &writer.text);
+    return wb_vtk_file_write(&file, path);
 }
 
-enum wb_status wb_vtk_series_init(struct wb_vtk_series *series, const char *folder,
-                                  const char *name)
+enum wb_status wb_vtk_add(struct wb_vtk_file_series *series, double time,
+                          const struct wb_solid_mesh *mesh, const struct wb_wire3d_fields *fields)
 {
-    if (name[0] == '\0' || strlen(name) >= WB_VTK_NAME || strchr(name, '/'))
-        return wb_fail(WB_ERR_ARGUMENT, "\"%s\" cannot be the name of VTK files", name);
-    if (strlen(folder) >= WB_PATH)
-        return wb_fail(WB_ERR_ARGUMENT, "the path of the folder for VTK files is too long");
-    *series = (struct wb_vtk_series){0};
-    strcpy(series->folder, folder);
-    strcpy(series->name, name);
-    return WB_OK;
-}
-
-void wb_vtk_series_release(struct wb_vtk_series *series)
-{
-    wb_text_release(&series->states);
-    memset(series, 0, sizeof *series);
-}
-
-/* The .pvd file with the states so far. */
-static enum wb_status write_series(const struct wb_vtk_series *series)
-{
-    char file[WB_VTK_NAME + 8], path[WB_PATH];
-    struct wb_text text = {0};
-    snprintf(file, sizeof file, "%s.pvd", series->name);
-    WB_TRY(wb_file_join(path, series->folder, file));
-    wb_text_append(&text, "<?xml version=\"1.0\"?>\n"
-                          "<VTKFile type=\"Collection\" version=\"1.0\" "
-                          "byte_order=\"LittleEndian\">\n"
-                          "  <Collection>\n");
-    wb_text_append_bytes(&text, series->states.bytes, series->states.length);
-    wb_text_append(&text, "  </Collection>\n</VTKFile>\n");
-    return write_text(path, &text);
-}
-
-enum wb_status wb_vtk_series_add(struct wb_vtk_series *series, double time,
-                                 const struct wb_solid_mesh *mesh,
-                                 const struct wb_wire3d_fields *fields)
-{
-    char file[WB_VTK_NAME + 24], path[WB_PATH], number[WB_NUMBER_TEXT];
-    if (!isfinite(time))
-        return wb_fail(WB_ERR_ARGUMENT, "a state of a VTK series has no finite time");
-    snprintf(file, sizeof file, "%s-%04d.vtu", series->name, series->n);
-    WB_TRY(wb_file_join(path, series->folder, file));
+    char path[WB_PATH];
+    WB_TRY(wb_vtk_file_series_path(series, time, path));
     WB_TRY(wb_vtk_write(path, mesh, fields));
-
-    wb_text_append(&series->states, "    <DataSet timestep=\"%s\" part=\"0\" file=\"",
-                   wb_number_format(time, number));
-    wb_text_append_escaped(&series->states, file);
-    wb_text_append(&series->states, "\"/>\n");
-    if (series->states.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the VTK series %s", series->name);
-    series->n++;
-    return write_series(series);
+    return wb_vtk_file_series_count(series, time);
 }

@@ -191,29 +191,29 @@ static void series_grow_and_begin_anew(void **unused)
 {
     (void)unused;
     static const double times[3] = {0.0, 0.1, 2.5}, later[1] = {0.7};
-    struct wb_bundle_vtk series;
-    assert_int_equal(wb_bundle_vtk_init(&series, folder, "a&b"), WB_OK);
-    assert_int_equal(wb_bundle_vtk_restart(&series), WB_OK);
+    struct wb_vtk_file_series series;
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, "a&b"), WB_OK);
+    assert_int_equal(wb_vtk_file_series_restart(&series), WB_OK);
     assert_false(wb_file_exists(path_of("a&b.pvd")));
     for (int i = 0; i < 3; i++) {
         assert_int_equal(wb_bundle_vtk_add(&series, times[i], 10e-3 * times[i], &fields), WB_OK);
         check_series(i + 1, times);
     }
-    assert_int_equal(wb_bundle_vtk_restart(&series), WB_OK);
+    assert_int_equal(wb_vtk_file_series_restart(&series), WB_OK);
     assert_false(wb_file_exists(path_of("a&b.pvd")));
     assert_false(wb_file_exists(path_of("a&b-0000.vtu")));
     assert_false(wb_file_exists(path_of("a&b-0002.vtu")));
     assert_int_equal(wb_bundle_vtk_add(&series, later[0], 7e-3, &fields), WB_OK);
     check_series(1, later);
-    wb_bundle_vtk_release(&series);
-    wb_bundle_vtk_release(&series);
+    wb_vtk_file_series_release(&series);
+    wb_vtk_file_series_release(&series);
 }
 
 static void what_is_not_finite_is_refused(void **unused)
 {
     (void)unused;
     const char *path = path_of("bad.vtu");
-    struct wb_bundle_vtk series;
+    struct wb_vtk_file_series series;
     double *places[] = {&fields.position[3][1], &fields.von_mises[5], &fields.plastic[2]};
     wb_log_set_sink(discard_message, NULL);
     for (int i = 0; i < 3; i++) {
@@ -223,26 +223,26 @@ static void what_is_not_finite_is_refused(void **unused)
         assert_false(wb_file_exists(path));
         *places[i] = good;
     }
-    assert_int_equal(wb_bundle_vtk_init(&series, folder, "s"), WB_OK);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, "s"), WB_OK);
     assert_int_equal(wb_bundle_vtk_add(&series, (double)NAN, 0.0, &fields), WB_ERR_ARGUMENT);
     assert_int_equal(series.n, 0);
-    wb_bundle_vtk_release(&series);
+    wb_vtk_file_series_release(&series);
 }
 
 static void impossible_names_are_refused(void **unused)
 {
     (void)unused;
-    char lengthy[WB_BUNDLE_VTK_NAME + 1] = {0};
-    struct wb_bundle_vtk series;
-    memset(lengthy, 'x', WB_BUNDLE_VTK_NAME);
+    char lengthy[WB_VTK_FILE_NAME + 1] = {0};
+    struct wb_vtk_file_series series;
+    memset(lengthy, 'x', WB_VTK_FILE_NAME);
     wb_log_set_sink(discard_message, NULL);
-    assert_int_equal(wb_bundle_vtk_init(&series, folder, ""), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_bundle_vtk_init(&series, folder, "a/b"), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_bundle_vtk_init(&series, folder, lengthy), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_bundle_vtk_init(&series, path_of("nowhere"), "s"), WB_OK);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, ""), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, "a/b"), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, lengthy), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_vtk_file_series_init(&series, path_of("nowhere"), "s"), WB_OK);
     assert_int_not_equal(wb_bundle_vtk_add(&series, 0.0, 0.0, &fields), WB_OK);
     assert_int_equal(series.n, 0);
-    wb_bundle_vtk_release(&series);
+    wb_vtk_file_series_release(&series);
 }
 
 /* What is said of the size, so that the paper's mesh of 225,792 hexahedra and its tape take 19 MB a

@@ -268,22 +268,22 @@ static void series_can_be_read_after_each_state(void **unused)
 {
     (void)unused;
     static const double times[3] = {0.0, 0.1, 2.5};
-    struct wb_vtk_series series;
-    assert_int_equal(wb_vtk_series_init(&series, folder, "a&b"), WB_OK);
+    struct wb_vtk_file_series series;
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, "a&b"), WB_OK);
     assert_false(wb_file_exists(path_of("a&b.pvd")));
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(wb_vtk_series_add(&series, times[i], &mesh, &fields), WB_OK);
+        assert_int_equal(wb_vtk_add(&series, times[i], &mesh, &fields), WB_OK);
         check_series(i + 1, times);
     }
-    wb_vtk_series_release(&series);
-    wb_vtk_series_release(&series);
+    wb_vtk_file_series_release(&series);
+    wb_vtk_file_series_release(&series);
 }
 
 static void values_that_are_not_finite_are_refused(void **unused)
 {
     (void)unused;
     const char *path = path_of("bad.vtu");
-    struct wb_vtk_series series;
+    struct wb_vtk_file_series series;
     double *places[] = {&fields.position[3][1], &fields.stress[5][19][5], &fields.plastic[2][7]};
     wb_log_set_sink(discard_message, NULL);
     for (int i = 0; i < 3; i++) {
@@ -293,26 +293,26 @@ static void values_that_are_not_finite_are_refused(void **unused)
         assert_false(wb_file_exists(path));
         *places[i] = good;
     }
-    assert_int_equal(wb_vtk_series_init(&series, folder, "s"), WB_OK);
-    assert_int_equal(wb_vtk_series_add(&series, (double)NAN, &mesh, &fields), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, "s"), WB_OK);
+    assert_int_equal(wb_vtk_add(&series, (double)NAN, &mesh, &fields), WB_ERR_ARGUMENT);
     assert_int_equal(series.n, 0);
-    wb_vtk_series_release(&series);
+    wb_vtk_file_series_release(&series);
 }
 
 static void impossible_names_are_refused(void **unused)
 {
     (void)unused;
-    char lengthy[WB_VTK_NAME + 1] = {0};
-    struct wb_vtk_series series;
-    memset(lengthy, 'x', WB_VTK_NAME);
+    char lengthy[WB_VTK_FILE_NAME + 1] = {0};
+    struct wb_vtk_file_series series;
+    memset(lengthy, 'x', WB_VTK_FILE_NAME);
     wb_log_set_sink(discard_message, NULL);
-    assert_int_equal(wb_vtk_series_init(&series, folder, ""), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_vtk_series_init(&series, folder, "a/b"), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_vtk_series_init(&series, folder, lengthy), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_vtk_series_init(&series, path_of("nowhere"), "s"), WB_OK);
-    assert_int_not_equal(wb_vtk_series_add(&series, 0.0, &mesh, &fields), WB_OK);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, ""), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, "a/b"), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_vtk_file_series_init(&series, folder, lengthy), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_vtk_file_series_init(&series, path_of("nowhere"), "s"), WB_OK);
+    assert_int_not_equal(wb_vtk_add(&series, 0.0, &mesh, &fields), WB_OK);
     assert_int_equal(series.n, 0);
-    wb_vtk_series_release(&series);
+    wb_vtk_file_series_release(&series);
 }
 
 int main(void)
