@@ -1,15 +1,13 @@
 #include "analysis/fields.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "analysis/csv_table.h"
 #include "analysis/dataset_csv.h"
 #include "base/file.h"
-#include "base/number.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "fields"
@@ -155,17 +153,12 @@ static enum wb_status format(const struct wb_fields *fields, struct wb_text *tex
 
 enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folder)
 {
-    char path[WB_PATH];
     struct wb_text text = {0};
-    WB_TRY(wb_file_join(path, folder, file_name));
-    if (fields->n == 0) {
-        if (unlink(path) != 0 && errno != ENOENT)
-            return wb_fail(WB_ERR_IO, "cannot remove '%s': %s", path, strerror(errno));
-        return WB_OK;
-    }
+    if (fields->n == 0)
+        return wb_csv_table_write(folder, file_name, NULL, 0);
     enum wb_status status = format(fields, &text);
     if (status == WB_OK)
-        status = wb_file_write(path, wb_text_string(&text), text.length);
+        status = wb_csv_table_write(folder, file_name, wb_text_string(&text), text.length);
     wb_text_release(&text);
     return status;
 }
@@ -173,10 +166,10 @@ enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folde
 /* --- reading --- */
 
 struct reader {
-    const char *path;
-    int line;
+    struct wb_csv_table table;
     struct wb_fields *fields;
     int capacity; /* faces of the last field */
+    int due;      /* node of a face that comes next */
 };
 
 /* A row as it stands in the file. */
@@ -187,65 +180,30 @@ struct row {
     double values[VALUES];
 };
 
-static enum wb_status refuse(const struct reader *reader, int column, const char *expected,
-                             const char *text)
+static enum wb_status parse_row(const struct wb_csv_table *table, char *const *fields,
+                                struct row *row)
 {
-    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", reader->path, reader->line,
-                   column_names[column], expected, text);
-}
-
-static enum wb_status parse_integer(const struct reader *reader, int column, char *const *fields,
-                                    int most, int *value)
-{
-    long number;
-    char expected[64];
-    if (wb_number_parse_integer(fields[column], &number) && number >= 0 && number <= most) {
-        *value = (int)number;
-        return WB_OK;
-    }
-    snprintf(expected, sizeof expected, "a whole number from 0 to %d", most);
-    return refuse(reader, column, expected, fields[column]);
-}
-
-static enum wb_status split(const struct reader *reader, char *line, char *fields[COLUMNS])
-{
-    int n = 0;
-    for (char *next = line; next;) {
-        char *const field = strsep(&next, ",");
-        if (n < COLUMNS)
-            fields[n] = field;
-        n++;
-    }
-    if (n != COLUMNS)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", reader->path, reader->line,
-                       n, COLUMNS);
-    return WB_OK;
-}
-
-static enum wb_status parse_row(const struct reader *reader, char *line, struct row *row)
-{
-    char *fields[COLUMNS];
-    WB_TRY(split(reader, line, fields));
     row->state = fields[0];
-    if (fields[0][0] == '\0' || strlen(fields[0]) >= sizeof reader->fields->items->state)
-        return refuse(reader, 0, "the name of a step", fields[0]);
+    if (fields[0][0] == '\0' || strlen(fields[0]) >= sizeof((struct wb_field *)NULL)->state)
+        return wb_csv_table_refuse(table, 0, "the name of a step", fields[0]);
 
     const bool cross = strcmp(fields[1], "cross") == 0;
     if (!cross && strcmp(fields[1], "longitudinal") != 0)
-        return refuse(reader, 1, "longitudinal or cross", fields[1]);
+        return wb_csv_table_refuse(table, 1, "longitudinal or cross", fields[1]);
     row->x = (double)NAN;
     if (cross && !wb_dataset_csv_parse_number(fields[2], 3, &row->x))
-        return refuse(reader, 2, "a number", fields[2]);
+        return wb_csv_table_refuse(table, 2, "a number", fields[2]);
     if (!cross && fields[2][0] != '\0')
-        return refuse(reader, 2, "nothing for a longitudinal section", fields[2]);
+        return wb_csv_table_refuse(table, 2, "nothing for a longitudinal section", fields[2]);
 
-    WB_TRY(parse_integer(reader, 3, fields, MOST_FACES - 1, &row->face));
-    WB_TRY(parse_integer(reader, 4, fields, MOST_PARTS - 1, &row->part));
-    WB_TRY(parse_integer(reader, 5, fields, 7, &row->node));
+    WB_TRY(wb_csv_table_integer(table, 3, fields, MOST_FACES - 1, &row->face));
+    WB_TRY(wb_csv_table_integer(table, 4, fields, MOST_PARTS - 1, &row->part));
+    WB_TRY(wb_csv_table_integer(table, 5, fields, 7, &row->node));
     for (int i = 0; i < VALUES; i++)
         if (!wb_dataset_csv_parse_number(fields[TEXT_COLUMNS + i], value_shifts[i],
                                          &row->values[i]))
-            return refuse(reader, TEXT_COLUMNS + i, "a number", fields[TEXT_COLUMNS + i]);
+            return wb_csv_table_refuse(table, TEXT_COLUMNS + i, "a number",
+                                       fields[TEXT_COLUMNS + i]);
     return WB_OK;
 }
 
@@ -280,12 +238,12 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
                       (isnan(field->x) ? isnan(row->x) : field->x == row->x);
     if (expected != row->node || (expected > 0 && !same))
         return wb_fail(WB_ERR_FORMAT, "%s:%d: node: expected node %d of a face, not %d of %s",
-                       reader->path, reader->line, expected, row->node,
+                       reader->table.path, reader->table.line, expected, row->node,
                        same ? "it" : "another field");
     if (expected == 0 && !same) {
         if (has_field(fields, row))
             return wb_fail(WB_ERR_FORMAT, "%s:%d: section: this field of state %s stood before",
-                           reader->path, reader->line, row->state);
+                           reader->table.path, reader->table.line, row->state);
         WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field));
         reader->capacity = 1;
     } else if (expected == 0) {
@@ -294,50 +252,29 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
 
     struct wb_field_face *const face = &field->faces[field->n_faces - 1];
     if (row->face != field->n_faces - 1 || (expected > 0 && row->part != face->part))
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: face: expected face %d in one part", reader->path,
-                       reader->line, field->n_faces - 1);
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: face: expected face %d in one part",
+                       reader->table.path, reader->table.line, field->n_faces - 1);
     face->part = row->part;
     set_values(&face->node[row->node], row->values);
     return WB_OK;
 }
 
-static enum wb_status check_header(const struct reader *reader, char *line)
+static enum wb_status take_fields(void *context, const struct wb_csv_table *table,
+                                  char *const *fields)
 {
-    char *fields[COLUMNS];
-    WB_TRY(split(reader, line, fields));
-    for (int i = 0; i < COLUMNS; i++)
-        if (strcmp(fields[i], column_names[i]) != 0)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: expected column '%s', not '%.40s'", reader->path,
-                           reader->line, column_names[i], fields[i]);
+    struct reader *const reader = context;
+    struct row row;
+    WB_TRY(parse_row(table, fields, &row));
+    WB_TRY(take_row(reader, &row, reader->due));
+    reader->due = (reader->due + 1) % 8;
     return WB_OK;
 }
 
-static enum wb_status parse(struct reader *reader, char *text, size_t size)
+static enum wb_status check_end(const struct reader *reader)
 {
-    int due = 0;
-    if (memchr(text, '\0', size))
-        return wb_fail(WB_ERR_FORMAT, "%s: a byte 0: not a text file", reader->path);
-    if (size == 0)
-        return wb_fail(WB_ERR_FORMAT, "%s:1: empty file, expected a line of column names",
-                       reader->path);
-    for (char *next = text; next && *next;) {
-        char *const line = strsep(&next, "\n");
-        const size_t length = strlen(line);
-        if (length > 0 && line[length - 1] == '\r')
-            line[length - 1] = '\0';
-        reader->line++;
-        if (reader->line == 1) {
-            WB_TRY(check_header(reader, line));
-            continue;
-        }
-        struct row row;
-        WB_TRY(parse_row(reader, line, &row));
-        WB_TRY(take_row(reader, &row, due));
-        due = (due + 1) % 8;
-    }
-    if (due != 0)
+    if (reader->due != 0)
         return wb_fail(WB_ERR_FORMAT, "%s:%d: node: the last face ends before node %d",
-                       reader->path, reader->line, due);
+                       reader->table.path, reader->table.line, reader->due);
     return WB_OK;
 }
 
@@ -353,8 +290,15 @@ enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder)
         return WB_OK;
     }
     WB_TRY(wb_file_read(path, &text, &size));
-    struct reader reader = {.path = path, .fields = &read};
-    const enum wb_status status = parse(&reader, text, size);
+    struct reader reader = {.fields = &read};
+    reader.table = (struct wb_csv_table){.path = path,
+                                         .n_columns = COLUMNS,
+                                         .columns = column_names,
+                                         .take = take_fields,
+                                         .context = &reader};
+    enum wb_status status = wb_csv_table_parse(&reader.table, text, size);
+    if (status == WB_OK)
+        status = check_end(&reader);
     free(text);
     if (status != WB_OK)
         wb_fields_release(&read);

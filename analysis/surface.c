@@ -1,15 +1,13 @@
 #include "analysis/surface.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "analysis/csv_table.h"
 #include "analysis/dataset_csv.h"
 #include "base/file.h"
-#include "base/number.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "surface"
@@ -145,18 +143,13 @@ static enum wb_status format(const struct wb_surface *surface, struct wb_text *t
 
 enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder)
 {
-    char path[WB_PATH];
     struct wb_text text = {0};
 
-    WB_TRY(wb_file_join(path, folder, file_name));
-    if (surface->n == 0) {
-        if (unlink(path) != 0 && errno != ENOENT)
-            return wb_fail(WB_ERR_IO, "cannot remove '%s': %s", path, strerror(errno));
-        return WB_OK;
-    }
+    if (surface->n == 0)
+        return wb_csv_table_write(folder, file_name, NULL, 0);
     enum wb_status status = format(surface, &text);
     if (status == WB_OK)
-        status = wb_file_write(path, wb_text_string(&text), text.length);
+        status = wb_csv_table_write(folder, file_name, wb_text_string(&text), text.length);
     wb_text_release(&text);
     return status;
 }
@@ -164,8 +157,7 @@ enum wb_status wb_surface_write(const struct wb_surface *surface, const char *fo
 /* --- reading --- */
 
 struct reader {
-    const char *path;
-    int line;
+    struct wb_csv_table table;
     struct wb_surface *surface;
     int n_nodes, capacity; /* of the last body */
 };
@@ -177,60 +169,24 @@ struct row {
     struct wb_surface_node at;
 };
 
-static enum wb_status refuse(const struct reader *reader, int column, const char *expected,
-                             const char *text)
+static enum wb_status parse_row(const struct wb_csv_table *table, char *const *fields,
+                                struct row *row)
 {
-    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", reader->path, reader->line,
-                   column_names[column], expected, text);
-}
-
-static enum wb_status split(const struct reader *reader, char *line, char *fields[COLUMNS])
-{
-    int n = 0;
-    for (char *next = line; next;) {
-        char *const field = strsep(&next, ",");
-        if (n < COLUMNS)
-            fields[n] = field;
-        n++;
-    }
-    if (n != COLUMNS)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", reader->path, reader->line,
-                       n, COLUMNS);
-    return WB_OK;
-}
-
-static enum wb_status parse_integer(const struct reader *reader, int column, char *const *fields,
-                                    int most, int *value)
-{
-    char expected[64];
-    long number;
-
-    if (wb_number_parse_integer(fields[column], &number) && number >= 0 && number < most) {
-        *value = (int)number;
-        return WB_OK;
-    }
-    snprintf(expected, sizeof expected, "a whole number from 0 to %d", most - 1);
-    return refuse(reader, column, expected, fields[column]);
-}
-
-static enum wb_status parse_row(const struct reader *reader, char *line, struct row *row)
-{
-    char *fields[COLUMNS];
     double values[VALUES];
 
-    WB_TRY(split(reader, line, fields));
-    WB_TRY(parse_integer(reader, 0, fields, MOST_BODIES, &row->body));
-    WB_TRY(parse_integer(reader, 2, fields, MOST_NODES, &row->station));
-    WB_TRY(parse_integer(reader, 3, fields, MOST_NODES, &row->node));
+    WB_TRY(wb_csv_table_integer(table, 0, fields, MOST_BODIES - 1, &row->body));
+    WB_TRY(wb_csv_table_integer(table, 2, fields, MOST_NODES - 1, &row->station));
+    WB_TRY(wb_csv_table_integer(table, 3, fields, MOST_NODES - 1, &row->node));
     const bool is_wire = strcmp(fields[1], "wire") == 0, is_tape = strcmp(fields[1], "tape") == 0;
     if (!is_wire && !is_tape && strcmp(fields[1], "strip") != 0)
-        return refuse(reader, 1, "wire, tape or strip", fields[1]);
+        return wb_csv_table_refuse(table, 1, "wire, tape or strip", fields[1]);
     row->is_tape = !is_wire;
     row->closed = is_wire || is_tape;
     for (int i = 0; i < VALUES; i++)
         if (!wb_dataset_csv_parse_number(fields[INTEGERS + i], value_shifts[i], &values[i]) ||
             !(fabs(values[i]) <= most_values[i]))
-            return refuse(reader, INTEGERS + i, expected_values[i], fields[INTEGERS + i]);
+            return wb_csv_table_refuse(table, INTEGERS + i, expected_values[i],
+                                       fields[INTEGERS + i]);
     memcpy(row->at.position, values, sizeof row->at.position);
     row->at.von_mises = values[3];
     return WB_OK;
@@ -262,12 +218,13 @@ static enum wb_status check_last(const struct reader *reader)
         return wb_fail(WB_ERR_FORMAT,
                        "%s:%d: body %d: the nodes of its first or its last station lie at one "
                        "place",
-                       reader->path, reader->line, reader->surface->n - 1);
+                       reader->table.path, reader->table.line, reader->surface->n - 1);
     }
     return wb_fail(WB_ERR_FORMAT,
                    "%s:%d: body %d ends with %d nodes: expected at least 2 stations of at least %d "
                    "nodes, all alike",
-                   reader->path, reader->line, reader->surface->n - 1, reader->n_nodes, least);
+                   reader->table.path, reader->table.line, reader->surface->n - 1, reader->n_nodes,
+                   least);
 }
 
 static enum wb_status begin_body(struct reader *reader, const struct row *row)
@@ -310,12 +267,12 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     if (row->body == surface->n)
         WB_TRY(begin_body(reader, row));
     if (row->body != surface->n - 1)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: body: %d after %d", reader->path, reader->line,
-                       row->body, surface->n - 1);
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: body: %d after %d", reader->table.path,
+                       reader->table.line, row->body, surface->n - 1);
     struct wb_surface_body *body = &surface->bodies[row->body];
     if (row->is_tape != body->is_tape || row->closed != body->closed)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: kind: not that of the body's first row", reader->path,
-                       reader->line);
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: kind: not that of the body's first row",
+                       reader->table.path, reader->table.line);
     if (row->station == 0) {
         body->n_around = row->node + 1;
         body->n_along = 1;
@@ -325,43 +282,18 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     const long long place = (long long)row->station * body->n_around + row->node;
     if (row->node >= body->n_around || reader->n_nodes != place)
         return wb_fail(WB_ERR_FORMAT, "%s:%d: node: station %d, node %d is not the next one",
-                       reader->path, reader->line, row->station, row->node);
+                       reader->table.path, reader->table.line, row->station, row->node);
     return append_to_body(reader, body, &row->at);
 }
 
-static enum wb_status check_header(const struct reader *reader, char *line)
+static enum wb_status take_fields(void *context, const struct wb_csv_table *table,
+                                  char *const *fields)
 {
-    char *fields[COLUMNS];
+    struct reader *const reader = context;
+    struct row row;
 
-    WB_TRY(split(reader, line, fields));
-    for (int i = 0; i < COLUMNS; i++)
-        if (strcmp(fields[i], column_names[i]) != 0)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: expected column '%s', not '%.40s'", reader->path,
-                           reader->line, column_names[i], fields[i]);
-    return WB_OK;
-}
-
-static enum wb_status parse(struct reader *reader, char *text, size_t size)
-{
-    if (memchr(text, '\0', size))
-        return wb_fail(WB_ERR_FORMAT, "%s: a byte 0: not a text file", reader->path);
-    if (size == 0)
-        return wb_fail(WB_ERR_FORMAT, "%s:1: empty file, expected a line of column names",
-                       reader->path);
-    for (char *next = text; next && *next;) {
-        char *const line = strsep(&next, "\n");
-        const size_t length = strlen(line);
-        struct row row;
-        if (length > 0 && line[length - 1] == '\r')
-            line[length - 1] = '\0';
-        if (++reader->line == 1) {
-            WB_TRY(check_header(reader, line));
-            continue;
-        }
-        WB_TRY(parse_row(reader, line, &row));
-        WB_TRY(take_row(reader, &row));
-    }
-    return check_last(reader);
+    WB_TRY(parse_row(table, fields, &row));
+    return take_row(reader, &row);
 }
 
 enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder)
@@ -377,8 +309,15 @@ enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder)
         return WB_OK;
     }
     WB_TRY(wb_file_read(path, &text, &size));
-    struct reader reader = {.path = path, .surface = &read};
-    const enum wb_status status = parse(&reader, text, size);
+    struct reader reader = {.surface = &read};
+    reader.table = (struct wb_csv_table){.path = path,
+                                         .n_columns = COLUMNS,
+                                         .columns = column_names,
+                                         .take = take_fields,
+                                         .context = &reader};
+    enum wb_status status = wb_csv_table_parse(&reader.table, text, size);
+    if (status == WB_OK)
+        status = check_last(&reader);
     free(text);
     if (status != WB_OK)
         wb_surface_release(&read);

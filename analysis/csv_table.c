@@ -1,0 +1,91 @@
+#include "analysis/csv_table.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/number.h"
+
+#define WB_LOG_DOMAIN "table"
+
+enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
+                                   const char *expected, const char *text)
+{
+    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", table->path, table->line,
+                   table->columns[column], expected, text);
+}
+
+enum wb_status wb_csv_table_integer(const struct wb_csv_table *table, int column,
+                                    char *const *fields, int most, int *value)
+{
+    long number;
+    char expected[64];
+    if (wb_number_parse_integer(fields[column], &number) && number >= 0 && number <= most) {
+        *value = (int)number;
+        return WB_OK;
+    }
+    snprintf(expected, sizeof expected, "a whole number from 0 to %d", most);
+    return wb_csv_table_refuse(table, column, expected, fields[column]);
+}
+
+static enum wb_status split(const struct wb_csv_table *table, char *line, char **fields)
+{
+    int n = 0;
+    for (char *next = line; next;) {
+        char *const field = strsep(&next, ",");
+        if (n < table->n_columns)
+            fields[n] = field;
+        n++;
+    }
+    if (n != table->n_columns)
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", table->path, table->line, n,
+                       table->n_columns);
+    return WB_OK;
+}
+
+static enum wb_status check_header(const struct wb_csv_table *table, char *const *fields)
+{
+    for (int i = 0; i < table->n_columns; i++)
+        if (strcmp(fields[i], table->columns[i]) != 0)
+            return wb_fail(WB_ERR_FORMAT, "%s:%d: expected column '%s', not '%.40s'", table->path,
+                           table->line, table->columns[i], fields[i]);
+    return WB_OK;
+}
+
+enum wb_status wb_csv_table_parse(struct wb_csv_table *table, char *text, size_t size)
+{
+    if (table->n_columns > WB_CSV_TABLE_MOST)
+        return wb_fail(WB_ERR_ARGUMENT, "%s: a table of %d columns, at most %d", table->path,
+                       table->n_columns, WB_CSV_TABLE_MOST);
+    if (memchr(text, '\0', size))
+        return wb_fail(WB_ERR_FORMAT, "%s: a byte 0: not a text file", table->path);
+    if (size == 0)
+        return wb_fail(WB_ERR_FORMAT, "%s:1: empty file, expected a line of column names",
+                       table->path);
+    for (char *next = text; next && *next;) {
+        char *fields[WB_CSV_TABLE_MOST];
+        char *const line = strsep(&next, "\n");
+        const size_t length = strlen(line);
+        if (length > 0 && line[length - 1] == '\r')
+            line[length - 1] = '\0';
+        table->line++;
+        WB_TRY(split(table, line, fields));
+        WB_TRY(table->line == 1 ? check_header(table, fields)
+                                : table->take(table->context, table, fields));
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_csv_table_write(const char *folder, const char *name, const char *text,
+                                  size_t size)
+{
+    char path[WB_PATH];
+    WB_TRY(wb_file_join(path, folder, name));
+    if (text)
+        return wb_file_write(path, text, size);
+    if (unlink(path) != 0 && errno != ENOENT)
+        return wb_fail(WB_ERR_IO, "cannot remove '%s': %s", path, strerror(errno));
+    return WB_OK;
+}

@@ -1,0 +1,42 @@
+/* Strict CSV tables beside a dataset's own: fields.csv, surface.csv. Comma-separated, no quotes, a
+ * header line with the columns' names, every line with as many fields. Errors name file, line and
+ * column.
+ */
+#ifndef WB_ANALYSIS_CSV_TABLE_H
+#define WB_ANALYSIS_CSV_TABLE_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+enum {
+    WB_CSV_TABLE_MOST = 32 /* columns */
+};
+
+struct wb_csv_table {
+    const char *path; /* for messages */
+    int n_columns;
+    const char *const *columns; /* their names */
+    int line;                   /* that was read last; 0 at first */
+    /* Takes the fields of the next line. */
+    enum wb_status (*take)(void *context, const struct wb_csv_table *table, char *const *fields);
+    void *context;
+};
+
+/* Reads a table's text, which is taken apart in place. */
+WB_MUST_CHECK enum wb_status wb_csv_table_parse(struct wb_csv_table *table, char *text,
+                                                size_t size);
+
+/* For take(): refuses a field, or reads a whole number from 0 to `most`. */
+enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
+                                   const char *expected, const char *text);
+WB_MUST_CHECK enum wb_status wb_csv_table_integer(const struct wb_csv_table *table, int column,
+                                                  char *const *fields, int most, int *value);
+
+/* --- files --- */
+
+/* Writes the text of a folder's table, or removes the file when there is none (NULL). */
+WB_MUST_CHECK enum wb_status wb_csv_table_write(const char *folder, const char *name,
+                                                const char *text, size_t size);
+
+#endif
