@@ -369,19 +369,7 @@ void wb_bundles_pages_provenance(struct wb_document *document,
                                  const struct wb_bundles_results *results)
 {
     const struct wb_bundles *const campaign = results->campaign;
-    char text[2600], name[600], notes[2200], command[400];
-    wb_document_new_page(document);
-    wb_document_heading(document, 1, "provenance", "Provenance");
-    snprintf(text, sizeof text,
-             "Campaign <tt>%s</tt>, SHA-256 <tt>%s</tt>. Written by wirebench %s, revision "
-             "<tt>%s</tt>. The same datasets and the same revision give the same bytes:",
-             wb_pages_escape(name, sizeof name, campaign->name), campaign->sha256, wb_version(),
-             wb_version_revision());
-    wb_document_paragraph(document, text);
-    snprintf(command, sizeof command, "wirebench report %s -o DIR", campaign->name);
-    wb_document_code(document, command);
-    if (campaign->notes[0])
-        wb_document_paragraph(document, wb_pages_escape(notes, sizeof notes, campaign->notes));
+    wb_pages_put_origin(document, campaign->name, campaign->sha256, campaign->notes, "datasets");
     put_models(document, campaign);
     put_datasets(document, results);
 }

@@ -362,19 +362,8 @@ void wb_comparison_pages_provenance(struct wb_document *document,
                                     const struct wb_comparison_results *results)
 {
     const struct wb_comparison *const comparison = results->comparison;
-    char text[2600], name[600], notes[2200], command[400];
-    wb_document_new_page(document);
-    wb_document_heading(document, 1, "provenance", "Provenance");
-    snprintf(text, sizeof text,
-             "Campaign <tt>%s</tt>, SHA-256 <tt>%s</tt>. Written by wirebench %s, revision "
-             "<tt>%s</tt>. The same datasets and the same revision give the same bytes:",
-             wb_pages_escape(name, sizeof name, comparison->name), comparison->sha256, wb_version(),
-             wb_version_revision());
-    wb_document_paragraph(document, text);
-    snprintf(command, sizeof command, "wirebench report %s -o DIR", comparison->name);
-    wb_document_code(document, command);
-    if (comparison->notes[0])
-        wb_document_paragraph(document, wb_pages_escape(notes, sizeof notes, comparison->notes));
+    wb_pages_put_origin(document, comparison->name, comparison->sha256, comparison->notes,
+                        "datasets");
     put_materials(document, comparison);
     put_models(document, comparison);
     put_datasets(document, results);

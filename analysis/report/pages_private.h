@@ -27,6 +27,11 @@ void wb_pages_put_row(struct wb_document *document, struct wb_document_table *ta
 /* Escapes into a buffer, cut where it ends (never within an entity). Returns the buffer. */
 char *wb_pages_escape(char *buffer, size_t size, const char *raw);
 
+/* The heading of a report's last chapter: campaign, checksum, program, the command that makes it
+ * again, notes. `same` is what it was made from, "recordings". */
+void wb_pages_put_origin(struct wb_document *document, const char *campaign, const char *sha256,
+                         const char *notes, const char *same);
+
 /* "1 recording", "2 recordings". */
 const char *wb_pages_plural(int n, const char *one, const char *many);
 

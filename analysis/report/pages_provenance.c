@@ -121,22 +121,28 @@ static void put_settings(struct wb_document *document, const struct wb_results *
                 "<i>F</i><sub>max</sub>");
 }
 
-void wb_pages_provenance(struct wb_document *document, const struct wb_results *results)
+void wb_pages_put_origin(struct wb_document *document, const char *campaign, const char *sha256,
+                         const char *notes, const char *same)
 {
-    const struct wb_campaign *const campaign = results->campaign;
-    char text[2600], name[600], notes[2200], command[400];
+    char text[2600], name[600], escaped[2200], command[400];
     wb_document_new_page(document);
     wb_document_heading(document, 1, "provenance", "Provenance");
     snprintf(text, sizeof text,
              "Campaign <tt>%s</tt>, SHA-256 <tt>%s</tt>. Written by wirebench %s, revision "
-             "<tt>%s</tt>. The same recordings and the same revision give the same bytes:",
-             wb_pages_escape(name, sizeof name, campaign->name), campaign->sha256, wb_version(),
-             wb_version_revision());
+             "<tt>%s</tt>. The same %s and the same revision give the same bytes:",
+             wb_pages_escape(name, sizeof name, campaign), sha256, wb_version(),
+             wb_version_revision(), same);
     wb_document_paragraph(document, text);
-    snprintf(command, sizeof command, "wirebench report %s -o DIR", campaign->name);
+    snprintf(command, sizeof command, "wirebench report %s -o DIR", campaign);
     wb_document_code(document, command);
-    if (campaign->notes[0])
-        wb_document_paragraph(document, wb_pages_escape(notes, sizeof notes, campaign->notes));
+    if (notes[0])
+        wb_document_paragraph(document, wb_pages_escape(escaped, sizeof escaped, notes));
+}
+
+void wb_pages_provenance(struct wb_document *document, const struct wb_results *results)
+{
+    const struct wb_campaign *const campaign = results->campaign;
+    wb_pages_put_origin(document, campaign->name, campaign->sha256, campaign->notes, "recordings");
     put_settings(document, results);
     put_recordings(document, results);
 }
