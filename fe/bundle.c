@@ -175,16 +175,13 @@ static void lead_tip(struct wb_bundle *bundle, double half)
 
 /* --- steps --- */
 
+/* Of all but the wires' elements, which add theirs (advance_wire()). */
 static enum wb_status find_forces(struct wb_bundle *bundle, bool look)
 {
-    bundle->wires = (struct wb_swept_hex_sums){0};
     bundle->shells = (struct wb_swept_tape_sums){0};
-    for (int w = 0; w < bundle->n_wires; w++) {
-        struct wb_bundle_body *body = &bundle->wire[w];
-        const struct wb_swept_hex *hex = bundle->type[bundle->model->type_of[w]].hex;
-        wb_swept_hex_forces(bundle->history[w], body->position, body->force, 0,
-                            wb_swept_hex_blocks(hex), look ? &bundle->wires : NULL);
-    }
+    for (int w = 0; w < bundle->n_wires; w++)
+        memset(bundle->wire[w].force, 0,
+               wb_swept_size(&bundle->wire[w].layout) * sizeof *bundle->wire[w].force);
     if (bundle->has_tape) {
         const struct wb_swept_tape_fields fields = {
             .position = bundle->ring.position,
@@ -208,15 +205,37 @@ static enum wb_status find_forces(struct wb_bundle *bundle, bool look)
     return WB_OK;
 }
 
-static void update(struct wb_bundle *bundle, struct wb_bundle_body *body, double half,
-                   struct wb_swept_step_sums *sums)
+/* Blocks of the stations that are its own. */
+static struct wb_swept_range own_blocks(const struct wb_bundle *bundle)
+{
+    return (struct wb_swept_range){bundle->own.first / WB_SWEPT_LANES,
+                                   (bundle->own.end + WB_SWEPT_LANES - 1) / WB_SWEPT_LANES};
+}
+
+static void update(const struct wb_bundle *bundle, struct wb_bundle_body *body, double half,
+                   struct wb_swept_range blocks, struct wb_swept_step_sums *sums)
 {
     const struct wb_swept_step_fields fields = {body->position, body->velocity, body->force};
     const double times[2] = {half * bundle->time_step, bundle->time_step};
-    const int first = bundle->own.first / WB_SWEPT_LANES;
-    const int end = (bundle->own.end + WB_SWEPT_LANES - 1) / WB_SWEPT_LANES;
 
-    wb_swept_step_update(body->step, &fields, times, first, end, sums);
+    wb_swept_step_update(body->step, &fields, times, blocks.first, blocks.end, sums);
+}
+
+/* The elements' forces of one wire, and its step, block by block: each is read and written while it
+ * is near. The blocks from `last` on wait for the tip's force. */
+static void advance_wire(struct wb_bundle *bundle, int w, double half, int last, bool look,
+                         struct wb_swept_step_sums *sums)
+{
+    struct wb_bundle_body *body = &bundle->wire[w];
+    const struct wb_swept_range own = own_blocks(bundle);
+    const int n = wb_swept_hex_blocks(bundle->type[bundle->model->type_of[w]].hex);
+
+    for (int b = 0; b < n; b++) {
+        wb_swept_hex_add_forces(bundle->history[w], body->position, body->force, b, b + 1,
+                                look ? &bundle->wires : NULL);
+        if (b >= own.first && b < own.end && b < last)
+            update(bundle, body, half, (struct wb_swept_range){b, b + 1}, sums);
+    }
 }
 
 /* Where the tip belongs to another part. */
@@ -240,10 +259,15 @@ static void count_tip_work(struct wb_bundle *bundle, const struct tip *before)
 enum wb_status wb_bundle_step(struct wb_bundle *bundle, bool look)
 {
     const double half = bundle->has_moved ? 1.0 : 0.5;
-    struct wb_swept_step_sums sums = {0};
+    const struct wb_swept_range own = own_blocks(bundle);
+    const int last = has_tip(bundle) ? own.end - 1 : own.end;
+    struct wb_swept_step_sums sums = {0}, *wanted = look ? &sums : NULL;
     struct tip before = {0};
 
     WB_TRY(find_forces(bundle, look));
+    bundle->wires = (struct wb_swept_hex_sums){0};
+    for (int w = 0; w < bundle->n_wires; w++)
+        advance_wire(bundle, w, half, last, look, wanted);
     if (has_tip(bundle)) {
         look_at_tip(bundle, &before);
         lead_tip(bundle, half);
@@ -251,10 +275,10 @@ enum wb_status wb_bundle_step(struct wb_bundle *bundle, bool look)
     if (bundle->cap)
         wb_bundle_cap_advance(bundle->cap, half);
     for (int w = 0; w < bundle->n_wires; w++)
-        update(bundle, &bundle->wire[w], half, look ? &sums : NULL);
+        update(bundle, &bundle->wire[w], half, (struct wb_swept_range){last, own.end}, wanted);
     if (bundle->has_tape) {
-        update(bundle, &bundle->ring, half, look ? &sums : NULL);
-        update(bundle, &bundle->directors, half, look ? &sums : NULL);
+        update(bundle, &bundle->ring, half, own, wanted);
+        update(bundle, &bundle->directors, half, own, wanted);
     }
     bundle->has_moved = true;
     if (look)

@@ -374,17 +374,31 @@ void wb_swept_hex_state_reset(struct wb_swept_hex_state *state)
     memset(state->history, 0, state->history_size * real_size(state->hex));
 }
 
-void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                         int first, int end, struct wb_swept_hex_sums *sums)
+static void find_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+                        bool adds, const struct wb_swept_range *blocks,
+                        struct wb_swept_hex_sums *sums)
 {
     const struct wb_swept_hex *hex = state->hex;
-    const struct wb_swept_hex_kernel_call call = {&hex->numbers,    position, force, state->history,
-                                                  state->workspace, first,    end,   sums};
+    const struct wb_swept_hex_kernel_call call = {&hex->numbers, position,       force,
+                                                  adds,          state->history, state->workspace,
+                                                  blocks->first, blocks->end,    sums};
 
     if (hex->model.formulation == WB_SWEPT_HEX_ONE_POINT)
         hex->kernel->one_point(&call);
     else
         hex->kernel->four_points(&call);
+}
+
+void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+                         int first, int end, struct wb_swept_hex_sums *sums)
+{
+    find_forces(state, position, force, false, &(struct wb_swept_range){first, end}, sums);
+}
+
+void wb_swept_hex_add_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+                             int first, int end, struct wb_swept_hex_sums *sums)
+{
+    find_forces(state, position, force, true, &(struct wb_swept_range){first, end}, sums);
 }
 
 double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,

@@ -98,6 +98,9 @@ void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
  * double precision. Threads may work on different states. */
 void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                          int first, int end, struct wb_swept_hex_sums *sums);
+/* The same, added to what is there. */
+void wb_swept_hex_add_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+                             int first, int end, struct wb_swept_hex_sums *sums);
 
 /* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);

@@ -372,6 +372,37 @@ static void all_instructions_agree(void **unused)
     wb_swept_section_release(&section);
 }
 
+/* What is added to the same forces doubles them, to the bit. */
+static void forces_are_added_to_what_is_there(void **unused)
+{
+    (void)unused;
+    struct wb_swept_section section = swept_distorted_section(1e-3);
+    for (int f = 0; f < 2; f++) {
+        const struct wb_swept_hex_model model = small_model(&section, 37, formulations[f]);
+        struct swept_body once = swept_body_create(&model), twice = swept_body_create(&model);
+        const int n = wb_swept_hex_blocks(once.hex);
+        uint64_t seed = 3, same = 3;
+        shake(&once, 5e-4, 1.0, &seed);
+        shake(&twice, 5e-4, 1.0, &same);
+        wb_swept_hex_forces(once.state, once.position, once.force, 0, n, NULL);
+        memcpy(twice.force, once.force, wb_swept_size(&once.layout) * sizeof(double));
+        for (int b = 0; b < n; b++)
+            wb_swept_hex_add_forces(twice.state, twice.position, twice.force, b, b + 1, NULL);
+        double size = 0.0;
+        for (int k = 0; k < once.layout.n_nodes; k++) {
+            for (int j = 0; j < once.layout.n_stations; j++) {
+                const double force = swept_force(&once, k, 1, j);
+                assert_true(swept_force(&twice, k, 1, j) == 2.0 * force);
+                size += fabs(force);
+            }
+        }
+        assert_true(size > 0.0);
+        swept_body_destroy(&once);
+        swept_body_destroy(&twice);
+    }
+    wb_swept_section_release(&section);
+}
+
 /* Along a path through yielding and back: work of the nodes' forces (trapezoidal) is what is
  * stored, plastic and artificial. */
 static void work_is_stored_or_plastic(void **unused)
@@ -565,6 +596,7 @@ int main(void)
         cmocka_unit_test(linear_fields_pass_the_patch_test),
         cmocka_unit_test(bar_in_tension_follows_the_power_law),
         cmocka_unit_test(all_instructions_agree),
+        cmocka_unit_test(forces_are_added_to_what_is_there),
         cmocka_unit_test(work_is_stored_or_plastic),
         cmocka_unit_test(hourglass_modes_are_stiff),
         cmocka_unit_test(strains_beyond_the_limit_are_counted),
