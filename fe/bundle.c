@@ -152,6 +152,12 @@ static void lead_tip(struct wb_bundle *bundle, double half)
     struct tip tip;
     double lean[2] = {0.0, 0.0}, upright = 1.0;
 
+    if (bundle->let_go) {
+        bundle->slack = true;
+        bundle->tension = bundle->vertical = 0.0;
+        memset(bundle->pull, 0, sizeof bundle->pull);
+        return;
+    }
     look_at_tip(bundle, &tip);
     const double wanted = (target_at(bundle, bundle->time + dt) - tip.position[1]) / dt;
     const double gravity = bundle->gravity / bundle->model->run.mass_scaling;
@@ -311,6 +317,7 @@ void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration
     bundle->to = deflection;
     bundle->way_start = bundle->time;
     bundle->way_duration = duration;
+    bundle->let_go = false;
 }
 
 /* --- settling --- */
@@ -362,40 +369,61 @@ double wb_bundle_potential(const struct wb_bundle *bundle)
     return sum + (bundle->has_tape ? potential_of(bundle, &bundle->ring) : 0.0);
 }
 
-enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
+/* Motion is stopped whenever its energy begins to fall, until it is small beside the work that was
+ * done; whoever stops it takes its energy away. */
+static enum wb_status come_to_rest(struct wb_bundle *bundle)
 {
     double last = 0.0;
     int quiet = 0;
 
-    bundle->from = bundle->to = 0.0;
-    bundle->way_start = 0.0;
-    bundle->way_duration = 1.0;
-    bundle->weight_zero = wb_bundle_potential(bundle);
-    if (bundle->gravity == 0.0)
-        return WB_OK;
     for (int done = 0; quiet < SETTLE_QUIET; done += SETTLE_BLOCK) {
         if (done > SETTLE_MOST)
             return wb_fail(WB_ERR_CONVERGENCE,
-                           "%s: the bundle does not come to rest under its "
-                           "weight within %d steps",
+                           "%s: the bundle does not come to rest within %d "
+                           "steps",
                            bundle->model->path, SETTLE_MOST);
         WB_TRY(wb_bundle_advance(bundle, SETTLE_BLOCK));
         if (bundle->kinetic >= last) {
             last = bundle->kinetic;
             continue;
         }
-        const double work = bundle->weight_zero - wb_bundle_potential(bundle);
-        quiet = last < settled * fabs(work) ? quiet + 1 : 0;
+        const double work =
+            fabs(bundle->weight_zero - wb_bundle_potential(bundle)) + fabs(bundle->tip_work);
+        quiet = last < settled * work ? quiet + 1 : 0;
         wb_bundle_stop(bundle);
-        last = 0.0;
+        bundle->tip_work -= bundle->kinetic;
+        bundle->kinetic = last = 0.0;
     }
-    /* What motion was stopped took its energy with it: the account begins here. */
+    return WB_OK;
+}
+
+enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
+{
+    bundle->from = bundle->to = 0.0;
+    bundle->way_start = 0.0;
+    bundle->way_duration = 1.0;
+    bundle->weight_zero = wb_bundle_potential(bundle);
+    if (bundle->gravity == 0.0)
+        return WB_OK;
+    WB_TRY(come_to_rest(bundle));
+    /* The account begins here. */
     struct wb_bundle_energies now;
     wb_bundle_get_energies(bundle, &now);
     bundle->tip_work +=
         now.kinetic + wb_bundle_internal(&now) + now.artificial + now.friction - now.external;
     bundle->time = 0.0;
     bundle->way_start = 0.0;
+    return WB_OK;
+}
+
+enum wb_status wb_bundle_let_go(struct wb_bundle *bundle)
+{
+    struct wb_bundle_state state;
+
+    bundle->let_go = true;
+    WB_TRY(come_to_rest(bundle));
+    wb_bundle_get_state(bundle, &state);
+    bundle->from = bundle->to = state.deflection;
     return WB_OK;
 }
 

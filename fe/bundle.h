@@ -40,7 +40,7 @@ struct wb_bundle_energies {
     double contact;    /* stored in contact, normal and tangential */
     double friction;   /* dissipated */
     double cohesive;   /* stored in the interface, and dissipated by its damage */
-    double external;   /* work of the tip's force and the weight */
+    double external;   /* work of the tip's force, of the weight, of what stops a slack tip */
 };
 /* stored + plastic + contact + cohesive. */
 double wb_bundle_internal(const struct wb_bundle_energies *energies);
@@ -87,6 +87,11 @@ int wb_bundle_shells(const struct wb_bundle *bundle);
  * begins to fall, until it is small. Nothing without weight. WB_ERR_CONVERGENCE when it does not
  * come to rest. */
 WB_MUST_CHECK enum wb_status wb_bundle_settle(struct wb_bundle *bundle);
+
+/* Lets go of the tip, as a slack strand does: it comes to rest where nothing acts on it but the
+ * weight. Motion is stopped as in settling; the energy this takes is counted as work from outside.
+ * The tip's target is where it rests. WB_ERR_CONVERGENCE when it does not come to rest. */
+WB_MUST_CHECK enum wb_status wb_bundle_let_go(struct wb_bundle *bundle);
 
 /* Leads the tip from its present target to `deflection` (m) within the time given (s), by a smooth
  * step, from now on. */

@@ -468,6 +468,7 @@ static void hand_down(struct wb_bundle_parts *parts)
         b->to = whole->to;
         b->way_start = whole->way_start;
         b->way_duration = whole->way_duration;
+        b->let_go = whole->let_go;
         b->time = whole->time;
         b->steps = whole->steps;
         b->has_moved = whole->has_moved;

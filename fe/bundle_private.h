@@ -73,6 +73,7 @@ struct wb_bundle {
 
     /* The way of the tip: a smooth step from `from` to `to`. */
     double from, to, way_start, way_duration;
+    bool let_go; /* of the tip: no force acts there */
     double time; /* s, of all steps since creation but settling */
     long long steps;
     bool has_moved; /* velocities are half a step behind positions */

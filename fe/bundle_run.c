@@ -25,6 +25,7 @@ static const double margin = 1.04;            /* on a duration that follows from
 static const double late_margin = 1.1;        /* on one that follows from a later ratio */
 static const double too_slow = 0.75;          /* a needed duration over the present one */
 static const double usual_interval = 600.0;   /* s between checkpoints */
+static const double slack_gap = 1e-3;         /* over the deflection: the strand is slack, surely */
 static const double lost_balance = 0.05;      /* imbalance over work: the run is no solution */
 
 /* --- memory --- */
@@ -101,18 +102,39 @@ static enum verdict lose(struct wb_bundle_run_now *r)
     return DONE;
 }
 
-static enum verdict advance(struct wb_bundle_run_now *r, int n)
+enum motion {
+    STEPS,
+    SETTLING,
+    LETTING_GO
+};
+
+static enum verdict move(struct wb_bundle_run_now *r, enum motion motion, int n)
 {
     r->history->problem[0] = '\0';
     wb_log_set_tap(keep_reason, r);
     const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
-    r->status = n > 0 ? wb_bundle_advance(r->bundle, n) : wb_bundle_settle(r->bundle);
+    switch (motion) {
+    case STEPS:
+        r->status = wb_bundle_advance(r->bundle, n);
+        break;
+    case SETTLING:
+        r->status = wb_bundle_settle(r->bundle);
+        break;
+    case LETTING_GO:
+        r->status = wb_bundle_let_go(r->bundle);
+        break;
+    }
     wb_log_set_gravest(before);
     wb_log_set_tap(NULL, NULL);
     if (r->status != WB_OK)
         return lose(r);
     wb_bundle_get_state(r->bundle, &r->state);
     return GO_ON;
+}
+
+static enum verdict advance(struct wb_bundle_run_now *r, int n)
+{
+    return move(r, STEPS, n);
 }
 
 /* --- energies --- */
@@ -314,16 +336,39 @@ static double time_of(double share)
     return 0.5 * (low + high);
 }
 
-/* Goes on to a share of the way, sampling; energies are looked at four times a row. Here, between
- * two blocks of steps, checkpoints are made, and here a run goes on from one. */
-static enum verdict go_to(struct wb_bundle_run_now *r, double share, bool look_there)
+static bool unloads(const struct wb_bundle_run_now *r)
+{
+    return r->branch % 2 == 1;
+}
+
+/* The target at a place of the way, m: 0 is its begin, the rows are at 1, 2, ... */
+static double target_of(const struct wb_bundle_run_now *r, double place)
+{
+    const double share = place / r->model->run.rows;
+    return r->model->run.deflection * (unloads(r) ? 1.0 - share : share);
+}
+
+/* On its way back a strand is slack when the tip stays behind the target; a single force below
+ * zero is an oscillation. */
+static bool went_slack(const struct wb_bundle_run_now *r)
+{
+    return unloads(r) && r->model->loads.strand_length > 0.0 && !r->hangs &&
+           r->state.deflection - r->state.target > slack_gap * r->model->run.deflection;
+}
+
+/* Goes on to a place of the way, sampling; energies are looked at four times a row. Here, between
+ * two blocks of steps, checkpoints are made, and here a run goes on from one. Where the strand goes
+ * slack the tip comes to rest, and nothing moves any more on this way. */
+static enum verdict go_to(struct wb_bundle_run_now *r, double place, bool look_there)
 {
     const double dt = r->history->time_step;
+    const double share =
+        fmin(1.0, fmax(0.0, (target_of(r, place) - r->way[0]) / (r->way[1] - r->way[0])));
     const double end = r->way_time + r->history->duration * time_of(share);
     struct wb_bundle_energies energies;
 
     if (r->left < 0)
-        r->left = llround((end - r->state.time) / dt);
+        r->left = r->hangs ? 0 : llround((end - r->state.time) / dt);
     while (r->left > 0) {
         const int n = (int)(r->left < r->block ? r->left : r->block);
         enum verdict verdict = advance(r, n);
@@ -331,6 +376,13 @@ static enum verdict go_to(struct wb_bundle_run_now *r, double share, bool look_t
             return verdict;
         sample(r);
         r->left -= n;
+        if (went_slack(r)) {
+            verdict = move(r, LETTING_GO, 0);
+            if (verdict != GO_ON)
+                return verdict;
+            r->hangs = true;
+            r->left = 0;
+        }
         verdict = report(r);
         if (verdict != GO_ON)
             return verdict;
@@ -353,15 +405,14 @@ static enum verdict show_place(struct wb_bundle_run_now *r)
 /* From half a step before a row's place to half a step after it. */
 static enum verdict pass_row(struct wb_bundle_run_now *r)
 {
-    const int rows = r->model->run.rows;
     enum verdict verdict = GO_ON;
 
     for (; r->looks <= LOOKS_OF_A_ROW && verdict == GO_ON; r->looks++) {
         const double at = r->place - 0.5 + (double)r->looks / LOOKS_OF_A_ROW;
         const bool there = 2 * r->looks == LOOKS_OF_A_ROW;
-        if (at > rows)
+        if (at > r->model->run.rows)
             break;
-        verdict = go_to(r, at / rows, !there);
+        verdict = go_to(r, at, !there);
         if (verdict == GO_ON && there) {
             take_place(r);
             verdict = look(r, &r->row.energies);
@@ -379,11 +430,13 @@ static void begin_way(struct wb_bundle_run_now *r)
     const double duration = r->history->duration;
     const double steps =
         duration / (1.875 * r->model->run.rows * r->history->time_step * SAMPLES_OF_A_ROW);
-    const bool unloads = r->branch % 2 == 1;
 
     r->block = (int)fmin(fmax(steps, 1.0), MOST_BLOCK);
     r->way_time = r->state.time;
-    wb_bundle_lead(r->bundle, unloads ? 0.0 : r->model->run.deflection, duration);
+    r->way[0] = r->hangs ? r->state.target : target_of(r, 0.0);
+    r->way[1] = target_of(r, r->model->run.rows);
+    wb_bundle_lead(r->bundle, r->way[1], duration);
+    r->hangs = false;
     r->under_way = true;
     r->place = 0;
     r->left = -1;
@@ -397,7 +450,7 @@ static enum verdict make_way(struct wb_bundle_run_now *r)
     if (!r->under_way)
         begin_way(r);
     if (r->place == 0) {
-        verdict = go_to(r, 0.5 / rows, false);
+        verdict = go_to(r, 0.5, false);
         if (verdict != GO_ON)
             return verdict;
         /* What is nearer to where the last way ended belongs to its last row, not to the first. */
@@ -419,7 +472,7 @@ static enum verdict make_way(struct wb_bundle_run_now *r)
 /* Row 0: at rest, with the weight on. The strand is taut: it carries part of it. */
 static enum verdict rest(struct wb_bundle_run_now *r)
 {
-    enum verdict verdict = advance(r, 0);
+    enum verdict verdict = move(r, SETTLING, 0);
 
     if (verdict != GO_ON)
         return verdict;
@@ -450,7 +503,7 @@ static void begin_attempt(struct wb_bundle_run_now *r)
     h->exceeded = false;
     h->largest = (struct wb_bundle_extremes){0};
     h->attempts++;
-    r->counting = r->judged = r->under_way = false;
+    r->counting = r->judged = r->under_way = r->hangs = false;
     r->kinetic = r->artificial = (double)NAN;
     r->most_external = 0.0;
     r->vertical = r->tension = (struct wb_bundle_run_line){0};
@@ -550,13 +603,6 @@ enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
 
     if (options)
         r.options = *options;
-    if (model->run.cycles > 1 && model->loads.strand_length > 0.0)
-        return wb_fail(
-            WB_ERR_UNSUPPORTED,
-            "%s: cycles: %d with a strand: it goes slack at the end of the first, the tip "
-            "swings and is caught with a jerk, so later cycles would be wrong; use "
-            "cycles: 1, or a vertical force (no strand_mm, or --dead-force)",
-            model->path, model->run.cycles);
     if (r.options.checkpoint_interval == 0.0)
         r.options.checkpoint_interval = usual_interval;
     if (history->capacity < wb_bundle_run_planned_rows(model))

@@ -5,8 +5,9 @@
  * and, with cycles, down to zero again. Shapes, energies and the tip's place are those of the
  * moment at which the target is there. The force is a mean: the value there of the straight line
  * through the forces against the target from half a step before to half a step after, so that
- * vibration averages out (at both ends of a way the half on its side). In slack rows the strand
- * carries nothing and the tip is where it is; what is slack in another row's window is left out.
+ * vibration averages out (at both ends of a way the half on its side). What is slack in a window is
+ * left out. Where the strand goes slack on the way back the tip comes to rest: in slack rows it
+ * hangs there, and the next loading begins there.
  *
  * Quasi-static control: where the model leaves the duration open it is chosen so that kinetic over
  * internal energy stays below run.kinetic_limit from 2 mm on (half the deflection, if that is
@@ -125,8 +126,7 @@ struct wb_bundle_run_options {
 };
 
 /* Runs the model's test on its mesh `mesh` (NULL: its own). A run that is lost on the way is a
- * result: converged is false, completed rows stay. `observer` may be NULL. WB_ERR_UNSUPPORTED for
- * more than one cycle with a strand: the tip swings while it is slack and is caught with a jerk. */
+ * result: converged is false, completed rows stay. `observer` may be NULL. */
 WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_history *history,
                                            const struct wb_bundle_model *model, const char *mesh,
                                            const struct wb_bundle_observer *observer);

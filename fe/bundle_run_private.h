@@ -44,6 +44,7 @@ struct wb_bundle_run_now {
     int looks;       /* the next look in it, from 1 */
     long long left;  /* steps to there; -1: not begun */
     double way[2];   /* m: from, to */
+    bool hangs;      /* the strand went slack on this way, the tip rests */
     double way_time; /* s: its begin */
     int block;       /* steps between samples */
     struct wb_bundle_run_line vertical, tension;

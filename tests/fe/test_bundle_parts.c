@@ -348,11 +348,12 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
         read_model("  - {name: fine, core_quads: 2, rings: 0, elements_along: 24}\n"
                    "wires: [{wire: type3, count: 3}]\npacking: triangle\ntape: tape\n"
                    "run: {mesh: fine, selective_mass_scaling: 100, deflection_mm: 20, rows: 4, "
-                   "cycles: 1, duration_s: 0.03}\n"
-                   "loads: {weight: true}\n");
+                   "cycles: 2, duration_s: 0.03}\n"
+                   "loads: {weight: true, strand_mm: 760}\n");
         const struct wb_bundle_run_options plain = {.threads = threads};
         run_with(&plain);
         assert_int_equal(history.parts, threads);
+        assert_int_equal(history.rows[8].phase, WB_HISTORY_SLACK);
         const struct wb_bundle_history straight = history;
         history = (struct wb_bundle_history){0};
 
