@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <pthread.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -31,9 +32,10 @@ void wb_log(enum wb_log_level level, const char *domain, const char *format, ...
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
 
+    const bool is_grave = level <= WB_LOG_WARNING;
     if (level < gravest)
         level = gravest;
-    if (thread_tap && level <= WB_LOG_WARNING)
+    if (thread_tap && is_grave)
         thread_tap(tap_context, level, domain, message);
     pthread_mutex_lock(&lock);
     if (level <= threshold) {

@@ -36,8 +36,9 @@ void wb_log_set_tap(wb_log_sink *tap, void *context);
 /* The tap that is set, and its context, for those who set another for a while. */
 wb_log_sink *wb_log_get_tap(void **context);
 
-/* From now on graver messages of the calling thread are delivered, and seen by its tap, as `level`:
- * for those who try what may well fail. WB_LOG_ERROR ends it. Returns what was set before. */
+/* From now on graver messages of the calling thread are delivered as `level`, also to its tap
+ * (which sees them even so): for those who try what may well fail. WB_LOG_ERROR ends it. Returns
+ * what was set before. */
 enum wb_log_level wb_log_set_gravest(enum wb_log_level level);
 
 /* Sets the highest level that is delivered; WB_LOG_INFO at start. */

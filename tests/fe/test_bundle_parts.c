@@ -239,6 +239,7 @@ static void a_lost_part_ends_the_run(void **unused)
     assert_int_equal(status, WB_ERR_DATA);
     assert_non_null(strchr(messages, '\n'));
     assert_string_equal(strchr(messages, '\n'), "\n");
+    assert_true(strlen(messages) > 10);
     wb_bundle_destroy(bundle);
 }
 
@@ -312,6 +313,22 @@ static void run_with(const struct wb_bundle_run_options *options)
     assert_int_equal(wb_bundle_run_init(&history, &model, 5), WB_OK);
     assert_int_equal(wb_bundle_run_with(&history, &model, options), WB_OK);
     assert_true(history.converged);
+}
+
+static void a_lost_run_tells_its_reason(void **unused)
+{
+    (void)unused;
+    for (int threads = 1; threads <= 2; threads++) {
+        const struct wb_bundle_run_options options = {.threads = threads};
+        read_model(FINE);
+        model.run.duration = 1e-4;
+        wb_bundle_run_release(&history);
+        assert_int_equal(wb_bundle_run_init(&history, &model, 0), WB_OK);
+        assert_int_equal(wb_bundle_run_with(&history, &model, &options), WB_OK);
+        assert_int_equal(history.parts, threads);
+        assert_false(history.converged);
+        assert_true(strlen(history.problem) > 10);
+    }
 }
 
 /* Rows and shapes; the times it took differ. */
@@ -444,6 +461,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(parts_settle_under_the_weight),
         cmocka_unit_test(there_are_no_more_parts_than_there_is_room_for),
         cmocka_unit_test(a_lost_part_ends_the_run),
+        cmocka_unit_test(a_lost_run_tells_its_reason),
         cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
         cmocka_unit_test(a_checkpoint_that_ends_early_is_refused),
         cmocka_unit_test_teardown(a_stopped_run_ends_with_the_same_result, release),
