@@ -50,7 +50,8 @@ struct wb_bundle_tape {
     struct wb_taping taping;
     double gap;          /* m, from the wires it touches to its inner face */
     bool round;          /* on a circle round all wires, not taut on their hull */
-    double reach;        /* m: bonded where no farther from a wire than gap and this */
+    double reach;        /* m: bonded where no farther from a wire than gap and this; 0: where it
+                            lies on one */
     struct wb_hull hull; /* of the wires, or of the one circle round them; the tape's middle is gap
                             + half its thickness outside */
 };

@@ -9,8 +9,6 @@
 #define WB_LOG_DOMAIN "bundle"
 
 static const double touching = 1e-9; /* m: wires so near to the tape touch it */
-/* What a row of facets of a fine mesh (0.17 mm on a wire of 1.4 mm) touches beside a line. */
-static const double usual_reach = 5e-6; /* m */
 static const double largest_poisson = 0.499;
 /* Of a tape whose material says none. With 0.39 for the wires and voids that count as zero it gives
  * the bundles of Table 4 the 0.3 on average that section 5.5 takes by the rule of mixtures. */
@@ -229,7 +227,7 @@ static enum wb_status read_packing(struct wb_bundle_model_reader *reader,
 struct taping_settings {
     int layout, layers, hand, outline;
     double width, lap, poissons_ratio, reach;
-    bool has_layers, has_width, has_lap, has_hand, has_poisson;
+    bool has_layers, has_width, has_lap, has_hand, has_poisson, has_reach;
 };
 
 static enum wb_status check_taping(const struct wb_config_node *map,
@@ -246,6 +244,11 @@ static enum wb_status check_taping(const struct wb_config_node *map,
                                 : settings->has_lap ? "lap_percent"
                                                     : "hand",
                                 "only with layout: helix");
+    if (settings->outline == 1 && !settings->has_reach)
+        return wb_config_refuse(map, "bond_reach_mm",
+                                "this key is missing: a tape on a circle touches wires along lines "
+                                "only; say how far it may be off a wire where it is bonded "
+                                "(0: it is bonded nowhere)");
     return WB_OK;
 }
 
@@ -268,6 +271,7 @@ static enum wb_status read_taping(const struct wb_config_node *map,
     keys[3].present = &settings->has_lap;
     keys[4].present = &settings->has_hand;
     keys[5].present = &settings->has_poisson;
+    keys[7].present = &settings->has_reach;
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     return check_taping(map, settings);
 }
@@ -314,7 +318,7 @@ static enum wb_status lay_tape(struct wb_bundle_model_reader *reader,
 static enum wb_status read_tape(struct wb_bundle_model_reader *reader, const char *name,
                                 const struct wb_config_node *map)
 {
-    struct taping_settings settings = {.layers = 2, .lap = 0.5, .reach = usual_reach};
+    struct taping_settings settings = {.layers = 2, .lap = 0.5};
     if (*name == '\0') {
         if (map)
             return wb_config_refuse(reader->root, "taping", "there is no tape");

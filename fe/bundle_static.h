@@ -87,8 +87,8 @@ struct wb_bundle_static_point {
 struct wb_bundle_static; /* opaque */
 
 /* `model` is borrowed and must outlive it; `settings` may be NULL. WB_ERR_UNSUPPORTED for sections
- * without mirror symmetry, capped tips, damage, and tapes that are not sleeves or lie on a circle.
- * On failure *out is NULL. */
+ * without mirror symmetry, capped tips, damage, and tapes that are not sleeves, lie on a circle, or
+ * are bonded beside where they lie. On failure *out is NULL. */
 WB_MUST_CHECK enum wb_status
 wb_bundle_static_create(struct wb_bundle_static **out, const struct wb_bundle_model *model,
                         const struct wb_bundle_static_settings *settings);

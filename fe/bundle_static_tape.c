@@ -55,6 +55,11 @@ enum wb_status wb_bundle_static_make_tape(struct wb_bundle_static *b)
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "%s: the static model has no tape on a circle; use taping outline: hull",
                        b->model->path);
+    if (tape->reach > 0.0)
+        return wb_fail(WB_ERR_UNSUPPORTED,
+                       "%s: the static model's tape is bonded where it lies on wires; leave out "
+                       "taping.bond_reach_mm",
+                       b->model->path);
     if (b->model->interface.has_damage)
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "%s: the static model has no damage; leave out interface.damage",

@@ -359,11 +359,17 @@ static void a_tape_on_a_circle_is_bonded_along_lines(void **state)
     assert_close(fact(n, "bonded_length_mm"), 12.0 * 2.1 * half, 0.01);
 }
 
-static void wires_that_the_tape_touches_in_passing_are_bonded(void **state)
+/* Three of twelve are in the middle of straight sides: the tape touches them along lines. What is
+ * nearer than 1 nm touches. */
+static void wires_that_the_tape_touches_in_passing_are_bonded_by_a_reach(void **state)
 {
     (void)state;
-    read_shipped("12-type3"); /* three of them in the middle of straight sides */
-    const int n = wb_bundle_model_facts(&model, facts);
+    read_shipped("12-type3");
+    int n = wb_bundle_model_facts(&model, facts);
+    assert_close(fact(n, "bonded_length_mm"),
+                 1.4 * M_PI + 18.0 * sqrt(0.700001 * 0.700001 - 0.7 * 0.7), 0.005);
+    read_shipped("12-type3-wider-bond");
+    n = wb_bundle_model_facts(&model, facts);
     assert_close(fact(n, "wires_at_tape"), 9.0, 0.0);
     assert_close(fact(n, "bonded_length_mm"), 1.4 * M_PI + 18.0 * sqrt(0.705 * 0.705 - 0.7 * 0.7),
                  0.02);
@@ -485,9 +491,9 @@ static void facts_are_in_the_units_of_their_keys(void **state)
     assert_close(fact(n, "filled_percent"), 700.0 / 9.0, 1e-9);
     assert_close(fact(n, "touching_pairs"), 12.0, 0.0);
     assert_close(fact(n, "wires_at_tape"), 6.0, 0.0);
-    /* Arcs of 60 degrees, and what is within reach beside them. */
-    const double reach = 1.4 / 2.0 * (M_PI / 3.0) + 2.0 * sqrt(0.705 * 0.705 - 0.7 * 0.7);
-    assert_close(fact(n, "bonded_length_mm"), 6.0 * reach, 0.01);
+    /* Arcs of 60 degrees, and what is nearer than 1 nm beside them. */
+    const double arc = 1.4 / 2.0 * (M_PI / 3.0) + 2.0 * sqrt(0.700001 * 0.700001 - 0.7 * 0.7);
+    assert_close(fact(n, "bonded_length_mm"), 6.0 * arc, 0.005);
     assert_close(fact(n, "tape_length_round_mm"), 1.4 * (6.0 + M_PI) + 0.2 * M_PI, 1e-9);
     assert_close(fact(n, "tape_thickness_mm"), 0.2, 1e-12);
     assert_close(fact(n, "tape_mass_g_m"), 0.25 * (1.4 * (6.0 + M_PI) + 0.2 * M_PI), 1e-9);
@@ -584,6 +590,7 @@ static void wrong_tapes_are_refused(void **state)
     refuse(full, "sleeve, layers: 4", "helix", ":12: width_mm: this key is missing");
     refuse(full, "sleeve, layers: 4", "helix, width_mm: 30", ":12: width_mm: a tape 30 mm wide");
     refuse(full, "poissons_ratio: 0.4", "poissons_ratio: 0.5", ":12: poissons_ratio: ");
+    refuse(full, "layers: 4", "outline: circle", ":12: bond_reach_mm: this key is missing");
 }
 
 static void wrong_interfaces_are_refused(void **state)
@@ -681,7 +688,7 @@ int main(void)
         cmocka_unit_test(shear_is_as_strong_unless_said_otherwise),
         cmocka_unit_test(a_helix_is_half_lapped),
         cmocka_unit_test(a_tape_on_a_circle_is_bonded_along_lines),
-        cmocka_unit_test(wires_that_the_tape_touches_in_passing_are_bonded),
+        cmocka_unit_test(wires_that_the_tape_touches_in_passing_are_bonded_by_a_reach),
         cmocka_unit_test(densities_are_those_of_table_4),
         cmocka_unit_test(diameters_are_those_of_the_notes),
         cmocka_unit_test(rigidity_of_seven_wires_by_hand),

@@ -310,14 +310,19 @@ static void sections_without_mirror_image_are_refused(void **unused)
     wb_log_set_sink(NULL, NULL);
 }
 
-static void tape_on_a_circle_is_refused(void **unused)
+static void tape_on_a_circle_or_bonded_beside_is_refused(void **unused)
 {
     (void)unused;
     static const struct wb_bundle_static_settings bare = {.no_tape = true};
     struct wb_bundle_static *none = NULL;
 
-    read_model(SEVEN "taping: {layout: sleeve, layers: 2, outline: circle}\n" NO_WEIGHT);
+    read_model(
+        SEVEN
+        "taping: {layout: sleeve, layers: 2, outline: circle, bond_reach_mm: 0.01}\n" NO_WEIGHT);
     wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_bundle_static_create(&none, &model, NULL), WB_ERR_UNSUPPORTED);
+    assert_null(none);
+    read_model(SEVEN "taping: {layout: sleeve, layers: 2, bond_reach_mm: 0.01}\n" NO_WEIGHT);
     assert_int_equal(wb_bundle_static_create(&none, &model, NULL), WB_ERR_UNSUPPORTED);
     assert_null(none);
     wb_log_set_sink(NULL, NULL);
@@ -375,7 +380,7 @@ int main(void)
         TEST(more_bond_more_tape_and_more_friction_are_stiffer),
         TEST(elements_and_lines_are_enough),
         TEST(sections_without_mirror_image_are_refused),
-        TEST(tape_on_a_circle_is_refused),
+        TEST(tape_on_a_circle_or_bonded_beside_is_refused),
         TEST(places_off_a_wires_end_come_back),
         TEST(what_does_not_converge_says_so_and_stays_in_equilibrium),
     };
