@@ -9,8 +9,10 @@
 
 #define WB_LOG_DOMAIN "bundle"
 
-static const double most_turned = 1.0 / 12.0; /* turns of a helix from station to station */
-static const double most_lacking = 0.02;      /* of a helix's mass */
+static const double most_turned = 1.0 / 12.0;  /* turns of a helix from station to station */
+static const double most_lacking = 0.02;       /* of a helix's mass */
+static const double usual_turned = 1.0 / 25.0; /* with which that much is lacking of the paper's */
+static const double lacking_power = 1.3;       /* of elements' length, found for these */
 
 /* --- geometry --- */
 
@@ -88,10 +90,11 @@ static void place_ring(struct wb_bundle *bundle)
 /* --- creation --- */
 
 /* Elements along for which the strip's facets, which cut the outline's corners, are nearly as large
- * as it is: what they lack goes as the square of their length. */
+ * as it is. */
 static int elements_needed(const struct wb_bundle *bundle, double lacking)
 {
-    return (int)ceil(1.05 * bundle->mesh->elements_along * sqrt(lacking / most_lacking));
+    return (int)ceil(1.05 * bundle->mesh->elements_along *
+                     pow(lacking / most_lacking, 1.0 / lacking_power));
 }
 
 static enum wb_status refuse_mesh(const struct wb_bundle *bundle, int needed)
@@ -111,7 +114,7 @@ static enum wb_status check_twist(const struct wb_bundle *bundle)
 
     if (turned <= most_turned)
         return WB_OK;
-    return refuse_mesh(bundle, (int)ceil(bundle->mesh->elements_along * turned / most_turned));
+    return refuse_mesh(bundle, (int)ceil(bundle->mesh->elements_along * turned / usual_turned));
 }
 
 static enum wb_status check_mass(const struct wb_bundle *bundle)
