@@ -292,11 +292,11 @@ static void load(struct wb_bundles_result *result, const struct wb_bundles_datas
         wb_text_append(&result->problem, "there is no such dataset");
         return;
     }
-    struct wb_reasons reasons = {&result->problem, wanted->path, wanted->name};
+    struct wb_reasons reasons = {&result->problem, wanted->path, wanted->name, true};
     wb_reasons_begin(&reasons);
     const enum wb_status status =
         is_rod ? read_rod(result, wanted, run, &stale) : read_run(result, run, &stale);
-    wb_reasons_end();
+    wb_reasons_tell(&reasons);
     result->state = status == WB_OK ? WB_BUNDLES_USABLE
                     : stale         ? WB_BUNDLES_STALE
                                     : WB_BUNDLES_REFUSED;

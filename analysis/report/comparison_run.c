@@ -187,10 +187,10 @@ void wb_comparison_run_load(struct wb_comparison_run *run, const struct wb_compa
         wb_text_append(&run->problem, "there is no such dataset");
         return;
     }
-    struct wb_reasons reasons = {&run->problem, wanted->path, wanted->name};
+    struct wb_reasons reasons = {&run->problem, wanted->path, wanted->name, true};
     wb_reasons_begin(&reasons);
     const enum wb_status status = read_run(run, item, solver);
-    wb_reasons_end();
+    wb_reasons_tell(&reasons);
     run->state = status == WB_OK ? WB_COMPARISON_USABLE : WB_COMPARISON_REFUSED;
     if (status != WB_OK && run->problem.length == 0)
         wb_text_append(&run->problem, "%s", wb_status_text(status));
