@@ -84,6 +84,7 @@ struct wb_bundles_run {
     struct wb_bundle_model *model; /* with the run's own settings; owned */
     const struct wb_bundle_mesh *mesh;
     struct wb_bundles_dataset dataset;
+    bool judged; /* the limits of energies are meant for it */
 };
 
 /* A bundle with its runs (index of them; -1: none). */

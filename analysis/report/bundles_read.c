@@ -197,7 +197,9 @@ static enum wb_status read_run(const struct wb_bundles_reading *reading,
     keys[0] = (struct wb_config_key)WB_CONFIG_TEXT("name", run->name);
     keys[1] = (struct wb_config_key)WB_CONFIG_TEXT("bundle", bundle);
     keys[2] = (struct wb_config_key)WB_CONFIG_OPTIONAL_TEXT("label", run->label);
-    WB_TRY(read_settings(s, node, keys, 3));
+    run->judged = true;
+    keys[3] = (struct wb_config_key)WB_CONFIG_OPTIONAL_BOOLEAN("judged", &run->judged);
+    WB_TRY(read_settings(s, node, keys, 4));
     WB_TRY(read_model(reading, node, bundle, run, path));
     WB_TRY(apply(s, node, run));
     set_label(run);

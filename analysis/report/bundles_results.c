@@ -65,7 +65,7 @@ static double ratio_of(const struct wb_bundles_numbers *numbers, enum ratio rati
                                  : numbers->imbalance;
 }
 
-/* The worst of all usable runs; a NaN is worse than any. */
+/* The worst of all usable runs that are judged; a NaN is worse than any. */
 static void judge_energy(const struct wb_bundles_results *results,
                          struct wb_bundles_verdict *verdicts, int *n, enum ratio ratio)
 {
@@ -85,7 +85,7 @@ static void judge_energy(const struct wb_bundles_results *results,
     for (int i = 0; i < results->campaign->n_runs; i++) {
         const struct wb_bundles_result *const run = wb_bundles_results_usable(results, i);
         const double value = run ? ratio_of(&run->numbers, ratio) : (double)NAN;
-        if (!run || (verdict.label && value <= verdict.value))
+        if (!run || !results->campaign->runs[i].judged || (verdict.label && value <= verdict.value))
             continue;
         verdict.value = value;
         verdict.label = results->campaign->runs[i].name;
