@@ -21,7 +21,7 @@ enum {
 
 static const double usual_from = 2.0 * WB_MM; /* where ratios begin to count */
 static const double pilot_share = 1.5;        /* of that, where a duration is judged */
-static const double margin = 1.04;            /* on a duration that follows from a ratio */
+static const double margin = 1.06;            /* on a duration that follows from a ratio */
 static const double late_margin = 1.1;        /* on one that follows from a later ratio */
 static const double too_slow = 0.75;          /* a needed duration over the present one */
 static const double usual_interval = 600.0;   /* s between checkpoints */
