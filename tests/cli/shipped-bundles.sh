@@ -15,7 +15,7 @@ grep -qE ': ([0-9]+) of \1 datasets used' "$folder/a.out" || fail 'a dataset is 
 grep 'limit .* exceeded' "$folder/a.out" | grep -v rms_max && fail 'energy or cost is beyond its limit'
 make_it_again "$campaign"
 # Of four groups: sections, forces, errors, energies; studies, nine bent bundles, 3D beside 1D.
-expect_figures 28
+expect_figures 30
 forbid "$folder|$root/"
 
 finish 'report of the shipped bundles'
