@@ -181,13 +181,23 @@ static void lead_tip(struct wb_bundle *bundle, double half)
 
 /* --- steps --- */
 
+/* Nothing but the elements acts on nodes inside a section. */
+static void clear_outline(struct wb_bundle *bundle, int w)
+{
+    const struct wb_swept_layout *layout = &bundle->wire[w].layout;
+    const int first = wb_swept_hex_first_added(bundle->type[bundle->model->type_of[w]].hex);
+    const size_t inside = 3 * (size_t)first * (size_t)layout->stride;
+
+    memset(bundle->wire[w].force + inside, 0,
+           (wb_swept_size(layout) - inside) * sizeof *bundle->wire[w].force);
+}
+
 /* Of all but the wires' elements, which add theirs (advance_wire()). */
 static enum wb_status find_forces(struct wb_bundle *bundle, bool look)
 {
     bundle->shells = (struct wb_swept_tape_sums){0};
     for (int w = 0; w < bundle->n_wires; w++)
-        memset(bundle->wire[w].force, 0,
-               wb_swept_size(&bundle->wire[w].layout) * sizeof *bundle->wire[w].force);
+        clear_outline(bundle, w);
     if (bundle->has_tape) {
         const struct wb_swept_tape_fields fields = {
             .position = bundle->ring.position,

@@ -29,6 +29,7 @@ struct wb_swept_hex {
     void *constants; /* the same in the kernel's type */
     void *table;
     int n_points;
+    int first_added; /* node */
 };
 
 struct wb_swept_hex_state {
@@ -270,6 +271,19 @@ static enum wb_status fill(struct wb_swept_hex *hex)
     return WB_OK;
 }
 
+static int find_first_added(const struct wb_swept_section *section)
+{
+    int first = section->n_outline > 0 ? section->n_nodes : 0;
+    for (int i = 0; i < section->n_outline; i++)
+        first = section->outline[i] < first ? section->outline[i] : first;
+    return first;
+}
+
+int wb_swept_hex_first_added(const struct wb_swept_hex *hex)
+{
+    return hex->first_added;
+}
+
 enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
                                    const struct wb_swept_hex_model *model)
 {
@@ -280,6 +294,7 @@ enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
     hex->model = *model;
     if (hex->model.hourglass == 0.0)
         hex->model.hourglass = default_hourglass;
+    hex->first_added = find_first_added(model->section);
     const enum wb_status status = fill(hex);
     if (status != WB_OK) {
         wb_swept_hex_destroy(hex);
@@ -375,12 +390,12 @@ void wb_swept_hex_state_reset(struct wb_swept_hex_state *state)
 }
 
 static void find_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                        bool adds, const struct wb_swept_range *blocks,
+                        int first_added, const struct wb_swept_range *blocks,
                         struct wb_swept_hex_sums *sums)
 {
     const struct wb_swept_hex *hex = state->hex;
     const struct wb_swept_hex_kernel_call call = {&hex->numbers, position,       force,
-                                                  adds,          state->history, state->workspace,
+                                                  first_added,   state->history, state->workspace,
                                                   blocks->first, blocks->end,    sums};
 
     if (hex->model.formulation == WB_SWEPT_HEX_ONE_POINT)
@@ -392,13 +407,15 @@ static void find_forces(struct wb_swept_hex_state *state, const double *position
 void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                          int first, int end, struct wb_swept_hex_sums *sums)
 {
-    find_forces(state, position, force, false, &(struct wb_swept_range){first, end}, sums);
+    find_forces(state, position, force, state->hex->numbers.layout.n_nodes,
+                &(struct wb_swept_range){first, end}, sums);
 }
 
 void wb_swept_hex_add_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                              int first, int end, struct wb_swept_hex_sums *sums)
 {
-    find_forces(state, position, force, true, &(struct wb_swept_range){first, end}, sums);
+    find_forces(state, position, force, state->hex->first_added,
+                &(struct wb_swept_range){first, end}, sums);
 }
 
 double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,

@@ -98,7 +98,9 @@ void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
  * double precision. Threads may work on different states. */
 void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                          int first, int end, struct wb_swept_hex_sums *sums);
-/* The same, added to what is there. */
+/* The same, but on nodes from wb_swept_hex_first_added() on, the section's outline among them,
+ * forces are added to what is there. */
+int wb_swept_hex_first_added(const struct wb_swept_hex *hex);
 void wb_swept_hex_add_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                              int first, int end, struct wb_swept_hex_sums *sums);
 

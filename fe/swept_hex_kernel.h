@@ -60,7 +60,7 @@ struct wb_swept_hex_kernel_call {
     const struct wb_swept_hex_kernel_model *model;
     const double *position;
     void *force;
-    bool adds; /* to what is there */
+    int first_added; /* node: from here on forces are added to what is there */
     void *history;
     void *workspace; /* ((NODE + CARRY) x n_nodes x WB_SWEPT_LANES), kept between calls */
     int first_block, end_block;

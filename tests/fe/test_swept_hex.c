@@ -403,6 +403,31 @@ static void forces_are_added_to_what_is_there(void **unused)
     wb_swept_section_release(&section);
 }
 
+/* Of a circle's section only the outline's are added to, and what is inside is written. */
+static void forces_inside_a_circle_are_written(void **unused)
+{
+    (void)unused;
+    struct wb_swept_section section;
+    assert_int_equal(wb_swept_section_init_circle(&section, 1.4e-3, 2, 1), WB_OK);
+    const struct wb_swept_hex_model model = small_model(&section, 37, formulations[0]);
+    struct swept_body once = swept_body_create(&model), again = swept_body_create(&model);
+    uint64_t seed = 3, same = 3;
+    const int first = wb_swept_hex_first_added(once.hex), n = wb_swept_hex_blocks(once.hex);
+    assert_int_equal(first, section.n_nodes - section.n_outline);
+    shake(&once, 5e-4, 1.0, &seed);
+    shake(&again, 5e-4, 1.0, &same);
+    wb_swept_hex_forces(once.state, once.position, once.force, 0, n, NULL);
+    memcpy(again.force, once.force, wb_swept_size(&once.layout) * sizeof(double));
+    wb_swept_hex_add_forces(again.state, again.position, again.force, 0, n, NULL);
+    for (int k = 0; k < once.layout.n_nodes; k++)
+        for (int j = 0; j < once.layout.n_stations; j++)
+            assert_true(swept_force(&again, k, 1, j) ==
+                        (k < first ? 1.0 : 2.0) * swept_force(&once, k, 1, j));
+    swept_body_destroy(&once);
+    swept_body_destroy(&again);
+    wb_swept_section_release(&section);
+}
+
 /* Along a path through yielding and back: work of the nodes' forces (trapezoidal) is what is
  * stored, plastic and artificial. */
 static void work_is_stored_or_plastic(void **unused)
@@ -597,6 +622,7 @@ int main(void)
         cmocka_unit_test(bar_in_tension_follows_the_power_law),
         cmocka_unit_test(all_instructions_agree),
         cmocka_unit_test(forces_are_added_to_what_is_there),
+        cmocka_unit_test(forces_inside_a_circle_are_written),
         cmocka_unit_test(work_is_stored_or_plastic),
         cmocka_unit_test(hourglass_modes_are_stiff),
         cmocka_unit_test(strains_beyond_the_limit_are_counted),
