@@ -16,7 +16,10 @@ enum {
 
 static const double default_margin = 0.05; /* of the smallest radius */
 static const int default_interval = 100;
-static const double most_slip = 4.0; /* stations; beyond, contact is lost */
+/* A wire that is farther from a node than this times what would be near is far off beyond doubt,
+ * even when it bends as sharply as to so many of its radii. */
+static const double far_off = 1.25;
+static const double sharpest_bend = 10.0;
 /* Radii that a node may slide before its place is found anew. Each time the gap along the director
  * becomes that to the circle again, which is no work of the forces: a tape that vibrates on its
  * contact would draw energy from that. */
@@ -75,6 +78,29 @@ static double *centre_row(const struct wb_swept_tape_contact *c, int wire, int i
     return c->centre + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
 }
 
+static double *axis_row(const struct wb_swept_tape_contact *c, int wire, int i)
+{
+    return c->axis + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
+}
+
+/* Unit vectors along the centre lines. */
+static void find_axes(struct wb_swept_tape_contact *c)
+{
+    const int last = layout_of(c)->n_stations - 1;
+
+    for (int w = 0; w < c->n_wires; w++) {
+        for (int j = 0; j <= last; j++) {
+            const int before = j > 0 ? j - 1 : 0, after = j < last ? j + 1 : last;
+            double axis[3];
+            for (int i = 0; i < 3; i++)
+                axis[i] = centre_row(c, w, i)[after] - centre_row(c, w, i)[before];
+            const double length = sqrt(dot(axis, axis));
+            for (int i = 0; i < 3; i++)
+                axis_row(c, w, i)[j] = axis[i] / length;
+        }
+    }
+}
+
 static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double *const *position)
 {
     const struct wb_swept_layout *layout = layout_of(c);
@@ -98,6 +124,7 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
     }
     if (!isfinite(check))
         return wb_fail(WB_ERR_DATA, "positions of a wire under the tape are not finite");
+    find_axes(c);
     return WB_OK;
 }
 
@@ -188,6 +215,23 @@ static bool is_bonded(const struct wb_swept_tape_contact *c, int k, int j, int w
            wb_swept_cohesion_damage(c->cohesion, k, j) < 1.0;
 }
 
+/* Whether a wire's centre line may come as near to x as `reach`: seen from its station j, from
+ * where it runs on along its axis and bends away by no more than it can. */
+static bool may_be_near(const struct wb_swept_tape_contact *c, const double x[3], int w, int j,
+                        double reach)
+{
+    double square = 0.0, shift = 0.0;
+
+    for (int i = 0; i < 3; i++) {
+        const double from = x[i] - centre_row(c, w, i)[j];
+        square += from * from;
+        shift += from * axis_row(c, w, i)[j];
+    }
+    const double sag = shift * shift / (2.0 * sharpest_bend * c->surface[w].radius);
+    const double beside = far_off * reach + sag;
+    return square - shift * shift <= beside * beside;
+}
+
 /* The wire nearest to a node, within the margin. */
 static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], int k, int j,
                       struct wb_swept_tape_contact_near_place *best, double centre[3],
@@ -198,15 +242,10 @@ static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], 
     best->wire = -1;
     best->gap = c->settings.margin;
     for (int w = 0; w < c->n_wires; w++) {
-        /* Far off beyond doubt, unless it has slipped by more than that. */
         struct wb_swept_tape_contact_near_place near = {.wire = w};
         double at[3], along[3], from[3];
-        for (int i = 0; i < 3; i++)
-            from[i] = x[i] - centre_row(c, w, i)[j];
-        const double reach = c->surface[w].radius + half + best->gap;
-        const double slipped = most_slip * c->tape->model.spacing;
-        if (dot(from, from) > reach * reach + slipped * slipped || is_bonded(c, k, j, w) ||
-            !find_place_along(c, x, j, &near, at, along))
+        if (!may_be_near(c, x, w, j, c->surface[w].radius + half + best->gap) ||
+            is_bonded(c, k, j, w) || !find_place_along(c, x, j, &near, at, along))
             continue;
         for (int i = 0; i < 3; i++)
             from[i] = x[i] - at[i];
@@ -463,7 +502,8 @@ static enum wb_status allocate(struct wb_swept_tape_contact *c)
     c->strip = calloc(places, sizeof *c->strip);
     c->near = calloc(places, sizeof *c->near);
     c->centre = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->centre);
-    if (!c->first || !c->strip || !c->near || !c->centre)
+    c->axis = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->axis);
+    if (!c->first || !c->strip || !c->near || !c->centre || !c->axis)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     WB_TRY(wb_swept_allocate(&c->rows, places * ROWS * LANES, real_size(c)));
     return wb_swept_allocate(
@@ -532,6 +572,7 @@ void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact)
     free(contact->surface);
     free(contact->surface_nodes);
     free(contact->centre);
+    free(contact->axis);
     free(contact->first);
     free(contact->strip);
     free(contact->near);

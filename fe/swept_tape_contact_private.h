@@ -27,7 +27,7 @@ struct wb_swept_tape_contact {
     int n_wires;
     struct wb_swept_tape_contact_surface *surface; /* (n_wires) */
     int *surface_nodes;                            /* of all wires */
-    double *centre;                                /* (n_wires x 3 x n_stations), when refreshed */
+    double *centre, *axis;                         /* (n_wires x 3 x n_stations), when refreshed */
     int *first;                                    /* (n_blocks + 1) */
     struct wb_swept_tape_contact_strip *strip;     /* room for one a node and station */
     void *rows, *history;
