@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -75,7 +76,23 @@ enum wb_status wb_csv_table_parse(struct wb_csv_table *table, char *text, size_t
         WB_TRY(table->line == 1 ? check_header(table, fields)
                                 : table->take(table->context, table, fields));
     }
-    return WB_OK;
+    return table->finish ? table->finish(table->context, table) : WB_OK;
+}
+
+enum wb_status wb_csv_table_read(struct wb_csv_table *table, const char *folder, const char *name)
+{
+    char path[WB_PATH];
+    char *text;
+    size_t size;
+    WB_TRY(wb_file_join(path, folder, name));
+    if (!wb_file_exists(path))
+        return WB_OK;
+    WB_TRY(wb_file_read(path, &text, &size));
+    table->path = path;
+    const enum wb_status status = wb_csv_table_parse(table, text, size);
+    table->path = NULL;
+    free(text);
+    return status;
 }
 
 enum wb_status wb_csv_table_write(const char *folder, const char *name, const char *text,

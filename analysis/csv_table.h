@@ -20,6 +20,8 @@ struct wb_csv_table {
     int line;                   /* that was read last; 0 at first */
     /* Takes the fields of the next line. */
     enum wb_status (*take)(void *context, const struct wb_csv_table *table, char *const *fields);
+    /* Checks what was taken, after the last line. NULL: nothing is to be checked. */
+    enum wb_status (*finish)(void *context, const struct wb_csv_table *table);
     void *context;
 };
 
@@ -34,6 +36,11 @@ WB_MUST_CHECK enum wb_status wb_csv_table_integer(const struct wb_csv_table *tab
                                                   char *const *fields, int most, int *value);
 
 /* --- files --- */
+
+/* Reads a folder's table, whose path the table has meanwhile; nothing where there is no such file.
+ */
+WB_MUST_CHECK enum wb_status wb_csv_table_read(struct wb_csv_table *table, const char *folder,
+                                               const char *name);
 
 /* Writes the text of a folder's table, or removes the file when there is none (NULL). */
 WB_MUST_CHECK enum wb_status wb_csv_table_write(const char *folder, const char *name,

@@ -7,7 +7,6 @@
 
 #include "analysis/csv_table.h"
 #include "analysis/dataset_csv.h"
-#include "base/file.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "fields"
@@ -270,36 +269,25 @@ static enum wb_status take_fields(void *context, const struct wb_csv_table *tabl
     return WB_OK;
 }
 
-static enum wb_status check_end(const struct reader *reader)
+static enum wb_status check_end(void *context, const struct wb_csv_table *table)
 {
+    const struct reader *const reader = context;
     if (reader->due != 0)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: node: the last face ends before node %d",
-                       reader->table.path, reader->table.line, reader->due);
+        return wb_fail(WB_ERR_FORMAT, "%s:%d: node: the last face ends before node %d", table->path,
+                       table->line, reader->due);
     return WB_OK;
 }
 
 enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder)
 {
-    char path[WB_PATH];
-    char *text;
-    size_t size;
     struct wb_fields read = {0};
-    WB_TRY(wb_file_join(path, folder, file_name));
-    if (!wb_file_exists(path)) {
-        *fields = read;
-        return WB_OK;
-    }
-    WB_TRY(wb_file_read(path, &text, &size));
     struct reader reader = {.fields = &read};
-    reader.table = (struct wb_csv_table){.path = path,
-                                         .n_columns = COLUMNS,
+    reader.table = (struct wb_csv_table){.n_columns = COLUMNS,
                                          .columns = column_names,
                                          .take = take_fields,
+                                         .finish = check_end,
                                          .context = &reader};
-    enum wb_status status = wb_csv_table_parse(&reader.table, text, size);
-    if (status == WB_OK)
-        status = check_end(&reader);
-    free(text);
+    const enum wb_status status = wb_csv_table_read(&reader.table, folder, file_name);
     if (status != WB_OK)
         wb_fields_release(&read);
     *fields = read;

@@ -7,7 +7,6 @@
 
 #include "analysis/csv_table.h"
 #include "analysis/dataset_csv.h"
-#include "base/file.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "surface"
@@ -296,29 +295,23 @@ static enum wb_status take_fields(void *context, const struct wb_csv_table *tabl
     return take_row(reader, &row);
 }
 
+static enum wb_status check_end(void *context, const struct wb_csv_table *table)
+{
+    (void)table;
+    return check_last(context);
+}
+
 enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder)
 {
-    char path[WB_PATH];
-    char *text;
-    size_t size;
     struct wb_surface read = {0};
-
-    WB_TRY(wb_file_join(path, folder, file_name));
-    if (!wb_file_exists(path)) {
-        *surface = read;
-        return WB_OK;
-    }
-    WB_TRY(wb_file_read(path, &text, &size));
     struct reader reader = {.surface = &read};
-    reader.table = (struct wb_csv_table){.path = path,
-                                         .n_columns = COLUMNS,
+
+    reader.table = (struct wb_csv_table){.n_columns = COLUMNS,
                                          .columns = column_names,
                                          .take = take_fields,
+                                         .finish = check_end,
                                          .context = &reader};
-    enum wb_status status = wb_csv_table_parse(&reader.table, text, size);
-    if (status == WB_OK)
-        status = check_last(&reader);
-    free(text);
+    const enum wb_status status = wb_csv_table_read(&reader.table, folder, file_name);
     if (status != WB_OK)
         wb_surface_release(&read);
     *surface = read;

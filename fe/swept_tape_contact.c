@@ -83,20 +83,17 @@ static double *axis_row(const struct wb_swept_tape_contact *c, int wire, int i)
     return c->axis + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
 }
 
-/* Unit vectors along the centre lines. */
+/* Tangents to the centre lines, m a station. */
 static void find_axes(struct wb_swept_tape_contact *c)
 {
     const int last = layout_of(c)->n_stations - 1;
 
-    for (int w = 0; w < c->n_wires; w++) {
+    for (int row = 0; row < 3 * c->n_wires; row++) {
+        const double *centre = centre_row(c, row / 3, row % 3);
+        double *axis = axis_row(c, row / 3, row % 3);
         for (int j = 0; j <= last; j++) {
             const int before = j > 0 ? j - 1 : 0, after = j < last ? j + 1 : last;
-            double axis[3];
-            for (int i = 0; i < 3; i++)
-                axis[i] = centre_row(c, w, i)[after] - centre_row(c, w, i)[before];
-            const double length = sqrt(dot(axis, axis));
-            for (int i = 0; i < 3; i++)
-                axis_row(c, w, i)[j] = axis[i] / length;
+            axis[j] = (centre[after] - centre[before]) / (after - before);
         }
     }
 }
@@ -135,13 +132,11 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
                              double axis[3])
 {
     const int last = layout_of(c)->n_stations - 1;
-    const int before = j > 0 ? j - 1 : 0, after = j < last ? j + 1 : last;
     double from[3];
 
     for (int i = 0; i < 3; i++) {
-        const double *row = centre_row(c, near->wire, i);
-        axis[i] = (row[after] - row[before]) / (after - before);
-        from[i] = x[i] - row[j];
+        axis[i] = axis_row(c, near->wire, i)[j];
+        from[i] = x[i] - centre_row(c, near->wire, i)[j];
     }
     const double length = dot(axis, axis), shift = dot(from, axis) / length;
     const double slack = 0.01; /* beyond the ends, in stations */
@@ -220,16 +215,16 @@ static bool is_bonded(const struct wb_swept_tape_contact *c, int k, int j, int w
 static bool may_be_near(const struct wb_swept_tape_contact *c, const double x[3], int w, int j,
                         double reach)
 {
-    double square = 0.0, shift = 0.0;
+    double from[3], axis[3];
 
     for (int i = 0; i < 3; i++) {
-        const double from = x[i] - centre_row(c, w, i)[j];
-        square += from * from;
-        shift += from * axis_row(c, w, i)[j];
+        from[i] = x[i] - centre_row(c, w, i)[j];
+        axis[i] = axis_row(c, w, i)[j];
     }
-    const double sag = shift * shift / (2.0 * sharpest_bend * c->surface[w].radius);
+    const double along = dot(from, axis), shift_square = along * along / dot(axis, axis);
+    const double sag = shift_square / (2.0 * sharpest_bend * c->surface[w].radius);
     const double beside = far_off * reach + sag;
-    return square - shift * shift <= beside * beside;
+    return dot(from, from) - shift_square <= beside * beside;
 }
 
 /* The wire nearest to a node, within the margin. */
