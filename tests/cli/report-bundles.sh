@@ -3,28 +3,7 @@
 # it, runs again only what has changed, and the report comes out. One wire stands in for a bundle: it
 # is solved in a second, and its published beam is the wire's own.
 # Usage: report-bundles.sh WIREBENCH
-set -u
-
-wirebench=$(realpath "$1")
-folder=$(mktemp -d /tmp/wb-bundles-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
-    local expected=$1 code
-    shift
-    "$wirebench" report "$@" >"$folder/out" 2>"$folder/err"
-    code=$?
-    [ $code -eq "$expected" ] || {
-        fail "report $*: exit code $code, expected $expected"
-        cat "$folder/err"
-    }
-}
+. "$(dirname "$0")/reports.sh"
 
 cat >"$folder/one.yaml" <<'YAML'
 name: one
@@ -121,5 +100,4 @@ sed 's/^kind: .*/kind: comparison/' c.yaml >other.yaml
 run 1 other.yaml -o other --solve
 grep -q 'kind bundles' err || fail 'it is not told which campaigns can be solved'
 
-[ $failures -eq 0 ] && echo 'report of bundles: all good'
-exit $((failures > 0))
+finish 'report of bundles'

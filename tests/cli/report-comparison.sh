@@ -3,25 +3,7 @@
 # changed, limits. Solids take long to solve, so rods stand in for them: the same files, but for the
 # solver's name.
 # Usage: report-comparison.sh WIREBENCH
-set -u
-
-wirebench=$(realpath "$1")
-folder=$(mktemp -d /tmp/wb-comparison-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
-    local expected=$1 code
-    shift
-    "$wirebench" report "$@" >"$folder/out" 2>"$folder/err"
-    code=$?
-    [ $code -eq "$expected" ] || fail "report $*: exit code $code, expected $expected"
-}
+. "$(dirname "$0")/reports.sh"
 
 cat >"$folder/c.yaml" <<'YAML'
 kind: comparison
@@ -76,5 +58,4 @@ grep -q 'have changed since' "$folder/out" || fail 'the changed model is not tol
 grep -q 'have changed since' "$folder/r/report.html" || fail 'the report hides the changed model'
 grep -q 'no fitted rod' "$folder/out" || fail 'the missing fit is not told'
 
-[ $failures -eq 0 ] && echo 'report of a comparison: all good'
-exit $((failures > 0))
+finish 'report of a comparison'

@@ -1,25 +1,7 @@
 #!/bin/bash
 # `wirebench report` as a user meets it: exit codes, what it prints, what it leaves alone.
 # Usage: report.sh WIREBENCH
-set -u
-
-wirebench=$(realpath "$1")
-folder=$(mktemp -d /tmp/wb-report-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
-    local expected=$1 code
-    shift
-    "$wirebench" report "$@" >"$folder/out" 2>"$folder/err"
-    code=$?
-    [ $code -eq "$expected" ] || fail "report $*: exit code $code, expected $expected"
-}
+. "$(dirname "$0")/reports.sh"
 
 cat >"$folder/empty.yaml" <<'YAML'
 title: Nothing there
@@ -66,5 +48,4 @@ echo text >"$folder/file"
 run 1 "$folder/empty.yaml" -o "$folder/file/r"
 run 1 "$folder/empty.yaml" -o /proc/wirebench
 
-[ $failures -eq 0 ] && echo 'report: all good'
-exit $((failures > 0))
+finish 'report'

@@ -1,16 +1,6 @@
 # Sourced by the tests of shipped reports, with WIREBENCH and SOURCE_ROOT as arguments.
-set -u
-
-wirebench=$(realpath "$1")
+. "$(dirname "$0")/reports.sh"
 root=$2
-folder=$(mktemp -d /tmp/wb-shipped-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
 
 # Makes the report in $folder/a; $code is how that ended.
 make_report() { # CAMPAIGN
@@ -38,9 +28,4 @@ expect_figures() { # NUMBER
 forbid() { # EXTENDED REGULAR EXPRESSION: words and paths that must not be in the report
     grep -qiE "$1" "$folder/a/report.html" "$folder/a/report.json" &&
         fail 'a word or path that must not be there'
-}
-
-finish() { # WHAT
-    [ $failures -eq 0 ] && echo "$1: all good"
-    exit $((failures > 0))
 }

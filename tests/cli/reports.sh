@@ -1,0 +1,28 @@
+# Sourced by tests of reports, with WIREBENCH as the first argument.
+set -u
+
+wirebench=$(realpath "$1")
+folder=$(mktemp -d /tmp/wb-report-XXXXXX)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+run() { # EXPECTED ARGUMENTS...: output in $folder/out and $folder/err
+    local expected=$1 code
+    shift
+    "$wirebench" report "$@" >"$folder/out" 2>"$folder/err"
+    code=$?
+    [ $code -eq "$expected" ] || {
+        fail "report $*: exit code $code, expected $expected"
+        cat "$folder/err"
+    }
+}
+
+finish() { # WHAT
+    [ $failures -eq 0 ] && echo "$1: all good"
+    exit $((failures > 0))
+}
