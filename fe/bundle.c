@@ -245,9 +245,11 @@ static void advance_wire(struct wb_bundle *bundle, int w, double half, int last,
     struct wb_bundle_body *body = &bundle->wire[w];
     const struct wb_swept_range own = own_blocks(bundle);
     const int n = wb_swept_hex_blocks(bundle->type[bundle->model->type_of[w]].hex);
+    const struct wb_swept_hex_fields fields = {body->position, body->force,
+                                               bundle->is_large ? body->velocity : NULL};
 
     for (int b = 0; b < n; b++) {
-        wb_swept_hex_add_forces(bundle->history[w], body->position, body->force, b, b + 1,
+        wb_swept_hex_add_forces(bundle->history[w], &fields, b, b + 1,
                                 look ? &bundle->wires : NULL);
         if (b >= own.first && b < own.end && b < last)
             update(bundle, body, half, (struct wb_swept_range){b, b + 1}, sums);

@@ -205,12 +205,25 @@ static enum wb_status find_time_step(struct wb_bundle *bundle)
                : wb_fail(WB_ERR_ARGUMENT, "%s: there is no stable time step", bundle->model->path);
 }
 
+/* Smaller ones gain nothing by fetching ahead: seven wires of the engineering mesh, 0.7 MB, lose
+ * 3 %. */
+static bool is_large(const struct wb_bundle *bundle)
+{
+    const size_t near = 4u << 20; /* bytes */
+    size_t n = 0;
+
+    for (int w = 0; w < bundle->n_wires; w++)
+        n += wb_swept_size(&bundle->wire[w].layout);
+    return n * (2 * sizeof(double) + sizeof(float)) > near;
+}
+
 static enum wb_status build(struct wb_bundle *bundle)
 {
     for (int t = 0; t < bundle->model->n_types; t++)
         WB_TRY(make_type(bundle, t));
     for (int w = 0; w < bundle->n_wires; w++)
         WB_TRY(make_wire(bundle, w));
+    bundle->is_large = is_large(bundle);
     WB_TRY(make_contact(bundle));
     if (bundle->model->has_tape)
         WB_TRY(wb_bundle_tape_create(bundle));

@@ -55,6 +55,7 @@ struct wb_bundle {
     struct wb_swept_contact *contact; /* NULL with one wire */
     const double *positions[WB_PACKING_MOST];
     void *forces[WB_PACKING_MOST];
+    bool is_large; /* its fields do not stay in a core's cache from step to step */
 
     bool has_tape;
     struct wb_swept_tape *tape;

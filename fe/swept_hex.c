@@ -389,14 +389,21 @@ void wb_swept_hex_state_reset(struct wb_swept_hex_state *state)
     memset(state->history, 0, state->history_size * real_size(state->hex));
 }
 
-static void find_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+static void find_forces(struct wb_swept_hex_state *state, const struct wb_swept_hex_fields *fields,
                         int first_added, const struct wb_swept_range *blocks,
                         struct wb_swept_hex_sums *sums)
 {
     const struct wb_swept_hex *hex = state->hex;
-    const struct wb_swept_hex_kernel_call call = {&hex->numbers, position,       force,
-                                                  first_added,   state->history, state->workspace,
-                                                  blocks->first, blocks->end,    sums};
+    const struct wb_swept_hex_kernel_call call = {
+        .model = &hex->numbers,
+        .fields = *fields,
+        .first_added = first_added,
+        .history = state->history,
+        .workspace = state->workspace,
+        .first_block = blocks->first,
+        .end_block = blocks->end,
+        .sums = sums,
+    };
 
     if (hex->model.formulation == WB_SWEPT_HEX_ONE_POINT)
         hex->kernel->one_point(&call);
@@ -407,15 +414,17 @@ static void find_forces(struct wb_swept_hex_state *state, const double *position
 void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                          int first, int end, struct wb_swept_hex_sums *sums)
 {
-    find_forces(state, position, force, state->hex->numbers.layout.n_nodes,
+    const struct wb_swept_hex_fields fields = {.position = position, .force = force};
+
+    find_forces(state, &fields, state->hex->numbers.layout.n_nodes,
                 &(struct wb_swept_range){first, end}, sums);
 }
 
-void wb_swept_hex_add_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                             int first, int end, struct wb_swept_hex_sums *sums)
+void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
+                             const struct wb_swept_hex_fields *fields, int first, int end,
+                             struct wb_swept_hex_sums *sums)
 {
-    find_forces(state, position, force, state->hex->first_added,
-                &(struct wb_swept_range){first, end}, sums);
+    find_forces(state, fields, state->hex->first_added, &(struct wb_swept_range){first, end}, sums);
 }
 
 double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,

@@ -58,6 +58,13 @@ struct wb_swept_hex_model {
     enum wb_swept_hex_instructions instructions;
 };
 
+struct wb_swept_hex_fields {
+    const double *position;
+    void *force;        /* float, or double of double precision */
+    const double *soon; /* NULL, or what the caller goes through next, block by block, such as
+                           velocities: it is fetched into the processor's cache meanwhile */
+};
+
 struct wb_swept_hex_sums {
     double stored, artificial; /* J: elastic and of the hourglass stiffness */
     double largest_strain;     /* largest component of Green's strain in size */
@@ -101,8 +108,9 @@ void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *positio
 /* The same, but on nodes from wb_swept_hex_first_added() on, the section's outline among them,
  * forces are added to what is there. */
 int wb_swept_hex_first_added(const struct wb_swept_hex *hex);
-void wb_swept_hex_add_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                             int first, int end, struct wb_swept_hex_sums *sums);
+void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
+                             const struct wb_swept_hex_fields *fields, int first, int end,
+                             struct wb_swept_hex_sums *sums);
 
 /* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);

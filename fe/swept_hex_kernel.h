@@ -58,8 +58,7 @@ struct wb_swept_hex_kernel_model {
 
 struct wb_swept_hex_kernel_call {
     const struct wb_swept_hex_kernel_model *model;
-    const double *position;
-    void *force;
+    struct wb_swept_hex_fields fields;
     int first_added; /* node: from here on forces are added to what is there */
     void *history;
     void *workspace; /* ((NODE + CARRY) x n_nodes x WB_SWEPT_LANES), kept between calls */

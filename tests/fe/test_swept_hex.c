@@ -386,8 +386,9 @@ static void forces_are_added_to_what_is_there(void **unused)
         shake(&twice, 5e-4, 1.0, &same);
         wb_swept_hex_forces(once.state, once.position, once.force, 0, n, NULL);
         memcpy(twice.force, once.force, wb_swept_size(&once.layout) * sizeof(double));
+        const struct wb_swept_hex_fields fields = {twice.position, twice.force, twice.position};
         for (int b = 0; b < n; b++)
-            wb_swept_hex_add_forces(twice.state, twice.position, twice.force, b, b + 1, NULL);
+            wb_swept_hex_add_forces(twice.state, &fields, b, b + 1, NULL);
         double size = 0.0;
         for (int k = 0; k < once.layout.n_nodes; k++) {
             for (int j = 0; j < once.layout.n_stations; j++) {
@@ -418,7 +419,8 @@ static void forces_inside_a_circle_are_written(void **unused)
     shake(&again, 5e-4, 1.0, &same);
     wb_swept_hex_forces(once.state, once.position, once.force, 0, n, NULL);
     memcpy(again.force, once.force, wb_swept_size(&once.layout) * sizeof(double));
-    wb_swept_hex_add_forces(again.state, again.position, again.force, 0, n, NULL);
+    const struct wb_swept_hex_fields fields = {.position = again.position, .force = again.force};
+    wb_swept_hex_add_forces(again.state, &fields, 0, n, NULL);
     for (int k = 0; k < once.layout.n_nodes; k++)
         for (int j = 0; j < once.layout.n_stations; j++)
             assert_true(swept_force(&again, k, 1, j) ==
