@@ -263,14 +263,17 @@ static int find_strip(struct wb_swept_tape_contact *c, int k,
     for (int s = from; s < c->n_strips; s++) {
         const struct wb_swept_tape_contact_strip *strip = &c->strip[s];
         if (strip->wire == near->wire && strip->partner[0] == near->partner[0] &&
-            strip->partner[1] == near->partner[1] && strip->station == near->station &&
-            strip->outwards == near->outwards)
+            strip->partner[1] == near->partner[1] && strip->station == near->station)
             return s;
     }
     const size_t size = ROWS * LANES * real_size(c);
     memset((unsigned char *)c->rows + (size_t)c->n_strips * size, 0, size);
     c->strip[c->n_strips] = (struct wb_swept_tape_contact_strip){
-        k, near->wire, {near->partner[0], near->partner[1]}, near->station, near->outwards};
+        k,
+        near->wire,
+        {near->partner[0], near->partner[1]},
+        near->station,
+        c->surface[near->wire].radius + 0.5 * c->tape->model.thickness};
     return c->n_strips++;
 }
 
@@ -291,6 +294,8 @@ static void look_after(struct wb_swept_tape_contact *c, int k, int j,
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ROUND * LANES, near->round);
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ALONG * LANES, near->along);
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_OFFSET * LANES, near->offset);
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ASIDE * LANES, near->aside);
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_INWARDS * LANES, near->inwards);
     put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_AREA * LANES, wb_swept_tape_area(c->tape, k, j));
     c->n_near++;
 }
@@ -332,6 +337,26 @@ static bool is_still_there(const struct wb_swept_tape_contact *c, const double *
     return take_out(g, unit) < kept_slip * c->surface[near->wire].radius;
 }
 
+/* The centre seen from the middle between the two surface nodes, in the frame that turns with them
+ * (as the kernel's find_depth() has it). */
+static void find_centre_beside(const struct wb_swept_tape_contact *c, const double *position, int j,
+                               const double centre[3], const double axis[3],
+                               struct wb_swept_tape_contact_near_place *near)
+{
+    double a[3], b[3], chord[3], across[3], from[3];
+
+    read_surface(c, position, near->partner[0], j, near, a);
+    read_surface(c, position, near->partner[1], j, near, b);
+    for (int i = 0; i < 3; i++) {
+        chord[i] = b[i] - a[i];
+        from[i] = centre[i] - 0.5 * (a[i] + b[i]);
+    }
+    const double length = take_out(chord, axis);
+    cross(axis, chord, across);
+    near->aside = dot(from, chord) / length;
+    near->inwards = dot(from, across) / length;
+}
+
 /* The place on the wire that a node faces. It is sought against the director, so that g has no part
  * across it at first, or failing that towards the centre. False where there is none. */
 static bool find_place(const struct wb_swept_tape_contact *c, const double *position, int j,
@@ -359,6 +384,7 @@ static bool find_place(const struct wb_swept_tape_contact *c, const double *posi
     }
     near->offset = (dot(aside, direction) - near->outwards * near->gap) / size;
     (void)take_out(aside, direction);
+    find_centre_beside(c, position, j, centre, axis, near);
     return true;
 }
 

@@ -2,15 +2,18 @@
  * spans a gap and comes to lie on a wire, and after its bond broke (fe/swept_cohesion.h).
  *
  * A node of the ring touches the nearest wire, a circle of its contact radius round the centre of
- * its surface nodes. The place y that it faces, between two of these nodes and between stations,
- * and its distance from the tape's middle surface there, o, are found when it comes near, and anew
- * whenever it has slid by a fiftieth of the radius (looked at every so many steps). With them
- * g = x - o d - y is what it is for cohesion: pressure K_nn against -g.d, which is the gap between
- * circle and tape, friction against what g slides across d, an elastic spring returned to
+ * its surface nodes. Pressure is K_nn times the depth, half the tape's thickness and the radius less
+ * the distance from that centre, and the derivative of its energy: it acts along the radius, and
+ * wherever the tape slides, what it does is what is stored. The place y that the node faces,
+ * between two surface nodes and between stations, and its distance from the tape's middle surface
+ * there, o, are found when it comes near, and anew whenever it has slid by a fiftieth of the radius
+ * (looked at every so many steps). The centre is seen from these two nodes until then. Friction
+ * acts against what g = x - o d - y slides across d, an elastic spring returned to
  *
  *     mu = mu_k + (mu_s - mu_k) exp(-decay slip rate)                               (eq. 20).
  *
- * Forces on both sides balance exactly, moments of pressure too, of friction to g beside o. A node
+ * Forces on both sides balance exactly, moments of pressure to round-off of places that are found
+ * anew, of friction to g beside o. A node
  * may slip by four stations along a wire; then it loses it.
  */
 #ifndef WB_FE_SWEPT_TAPE_CONTACT_H

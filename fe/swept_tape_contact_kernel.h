@@ -18,6 +18,8 @@ enum {
     WB_SWEPT_TAPE_CONTACT_ALONG,     /* weight of the second station */
     WB_SWEPT_TAPE_CONTACT_OFFSET,    /* o, m */
     WB_SWEPT_TAPE_CONTACT_AREA,      /* m2 */
+    WB_SWEPT_TAPE_CONTACT_ASIDE, /* the centre from between the two nodes, m: towards the second, */
+    WB_SWEPT_TAPE_CONTACT_INWARDS, /* and across, by the axis times that direction */
     WB_SWEPT_TAPE_CONTACT_ROWS
 };
 
@@ -31,8 +33,8 @@ enum {
 
 struct wb_swept_tape_contact_strip {
     int node, wire, partner[2];
-    int station;     /* of the first, beside the node's own */
-    double outwards; /* 1 or -1: how directors point */
+    int station;   /* of the first, beside the node's own */
+    double radius; /* m: distance from the wire's centre to the tape's middle surface in touch */
 };
 
 struct wb_swept_tape_contact_kernel_model {

@@ -16,6 +16,7 @@ struct wb_swept_tape_contact_surface {
 struct wb_swept_tape_contact_near_place {
     int wire, partner[2], station;
     double gap, round, along, offset, outwards;
+    double aside, inwards; /* the centre, seen from between the partners */
 };
 
 struct wb_swept_tape_contact {

@@ -211,7 +211,7 @@ static void forces_are_the_derivatives_of_the_pressures_energy(void **unused)
     grip_create(&g, &settings, 3e-6, true, NULL);
     (void)step(&g, 1e-6);
     for (size_t i = 0; i < wb_swept_size(&g.layout); i++)
-        g.position[i] += 3e-6 * (test_random(&seed) - 0.5);
+        g.position[i] += 5e-7 * (test_random(&seed) - 0.5);
     for (size_t i = 0; i < wb_swept_size(&g.tape.layout); i++)
         g.tape.director[i] += 0.02 * (test_random(&seed) - 0.5);
     (void)step(&g, 1e-6);
@@ -231,10 +231,75 @@ static void forces_are_the_derivatives_of_the_pressures_energy(void **unused)
             field[f][at] = saved - by;
             const double below = step(&g, 1e-6).normal;
             field[f][at] = saved;
-            /* Forces are about 0.01 N, moments 1e-6 N m. */
-            assert_close(found, -(above - below) / (2.0 * by), f == 1 ? 1e-11 : 2e-6);
+            /* Forces are about 0.01 N; what is left out turns the frame of the wire's centre. */
+            assert_close(found, -(above - below) / (2.0 * by),
+                         f == 0   ? 1e-9
+                         : f == 1 ? 1e-12
+                                  : 4e-6);
         }
     }
+    grip_destroy(&g);
+}
+
+/* The sleeve, turned round the wire by `angle` and moved across it, with directors that lean. */
+static void move_sleeve(struct grip *g, const double *start, double angle, double y, double z)
+{
+    const double lean = 0.3;
+    for (int k = 0; k < RING; k++) {
+        for (int j = 0; j < STATIONS; j++) {
+            double x[3];
+            for (int i = 0; i < 3; i++)
+                x[i] = start[swept_at(&g->tape.layout, k, i, j)];
+            const double at[2] = {x[1] * cos(angle) - x[2] * sin(angle) + y,
+                                  x[1] * sin(angle) + x[2] * cos(angle) + z};
+            const double direction = atan2(x[2], x[1]) + angle + lean;
+            tape_put(&g->tape.layout, g->tape.position, k, j, x[0], at[0], at[1]);
+            tape_put(&g->tape.layout, g->tape.director, k, j, 0.0, cos(direction), sin(direction));
+        }
+    }
+}
+
+/* Without friction the work on a closed way is nothing, whatever places are found anew on it, and
+ * on the way there it is what is stored: a sleeve slides round a wire on which it lies askew. */
+static void a_tape_that_slides_round_a_wire_gets_no_energy(void **unused)
+{
+    (void)unused;
+    struct wb_swept_tape_contact_settings settings = usual();
+    settings.friction_static = settings.friction_kinetic = 0.0;
+    settings.refresh_interval = 5;
+    enum {
+        STEPS = 4000
+    };
+    struct grip g;
+    grip_create(&g, &settings, 2e-6, true, NULL);
+    const size_t n = wb_swept_size(&g.tape.layout);
+    double *start = swept_field(&g.tape.layout), *before = swept_field(&g.tape.layout);
+    double *load = swept_field(&g.tape.layout);
+    memcpy(start, g.tape.position, n * sizeof *start);
+    move_sleeve(&g, start, 0.0, 0.0, 0.0);
+    const double first = step(&g, 1e-6).normal;
+    double work = 0.0, most = 0.0, worst = 0.0, stored = 0.0;
+    memcpy(load, g.tape.force, n * sizeof *load);
+    memcpy(before, g.tape.position, n * sizeof *before);
+    for (int i = 1; i <= STEPS; i++) {
+        const double t = 2.0 * M_PI * i / STEPS;
+        move_sleeve(&g, start, 0.4 * sin(t), 3e-6 * (1.0 - cos(t)), 4e-6 * sin(2.0 * t));
+        stored = step(&g, 1e-6).normal;
+        for (size_t at = 0; at < n; at++)
+            work += 0.5 * (((double *)g.tape.force)[at] + load[at]) *
+                    (g.tape.position[at] - before[at]);
+        memcpy(load, g.tape.force, n * sizeof *load);
+        memcpy(before, g.tape.position, n * sizeof *before);
+        most = fmax(most, stored);
+        worst = fmax(worst, fabs(stored - first + work));
+    }
+    print_message("stored up to %.3g J; energy that comes from nowhere: %.2g of it\n", most,
+                  worst / most);
+    assert_true(most > 2.0 * first);
+    assert_close(worst, 0.0, 1e-4 * most);
+    free(start);
+    free(before);
+    free(load);
     grip_destroy(&g);
 }
 
@@ -330,12 +395,10 @@ static void sticking_is_elastic(void **unused)
     const double force = 10e9 * slip * area_of(&g);
     assert_close_relative(sum_on_wire(&g, 0), -force, 0.002); /* the end nodes have slipped off */
     assert_true(dissipated == 0.0);
-    /* It pulls at the tape's lower side: moments are o times the forces, and what the pressure
-     * turns by, which stays with the places that were opposite at first. */
+    /* It pulls at the tape's lower side: moments are o times the forces. */
     const double pull = tape_load(&g.tape, g.tape.force, 3, 0, 9);
     const double below = 1.0 - cos(M_PI / SURFACE);
-    const double more = 30e9 * depth / 10e9;
-    const double turning = -tape_load(&g.tape, g.tape.moment, 3, 0, 9) / pull - more;
+    const double turning = -tape_load(&g.tape, g.tape.moment, 3, 0, 9) / pull;
     assert_true(turning > 0.5 * thickness && turning < 0.5 * thickness + radius * below);
     for (int i = 1; i <= 100; i++) {
         slide_wire(&g, slip * (1.0 - i / 100.0));
@@ -533,6 +596,7 @@ int main(void)
         cmocka_unit_test(pressure_is_stiffness_times_depth),
         cmocka_unit_test(nothing_acts_across_a_gap),
         cmocka_unit_test(forces_are_the_derivatives_of_the_pressures_energy),
+        cmocka_unit_test(a_tape_that_slides_round_a_wire_gets_no_energy),
         cmocka_unit_test(sliding_is_resisted_by_mu_times_the_pressure),
         cmocka_unit_test(a_checkpoint_goes_on_bit_for_bit),
         cmocka_unit_test(sticking_is_elastic),
