@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/csv_table.h"
 #include "analysis/dataset_csv.h"
-#include "analysis/fields.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -284,35 +284,69 @@ static enum wb_status write_file(const char *folder, const char *name, const cha
     return wb_file_write(path, bytes, size);
 }
 
-/* Those of another dataset that is overwritten. */
-static enum wb_status remove_fields(const char *folder)
+enum wb_status wb_dataset_begin(const char *folder, bool force)
 {
-    const struct wb_fields none = {0};
-    return wb_fields_write(&none, folder);
+    /* The first says that the others are there. */
+    static const char *const names[] = {"dataset.json", "fields.csv", "energies.csv",
+                                        "surface.csv"};
+
+    WB_TRY(wb_file_prepare_output(folder, force));
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        WB_TRY(wb_csv_table_write(folder, names[i], NULL, 0));
+    return WB_OK;
 }
 
-enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder, bool force)
-{
+struct texts {
     char *document;
-    struct wb_text rows = {0}, shapes = {0};
+    struct wb_text rows, shapes;
+};
+
+static void release_texts(struct texts *texts)
+{
+    free(texts->document);
+    wb_text_release(&texts->rows);
+    wb_text_release(&texts->shapes);
+}
+
+static enum wb_status format_texts(const struct wb_dataset *dataset, struct texts *texts)
+{
+    *texts = (struct texts){.document = NULL};
     if (dataset->info.is_follower && dataset->info.strand_length != 0.0)
         return wb_fail(WB_ERR_ARGUMENT, "a dataset with a follower force and a strand");
-    WB_TRY(format_document(dataset, &document));
-    enum wb_status status = wb_dataset_csv_format(dataset, &rows, &shapes);
+    WB_TRY(format_document(dataset, &texts->document));
+    return wb_dataset_csv_format(dataset, &texts->rows, &texts->shapes);
+}
+
+static enum wb_status write_texts(const struct texts *texts, const char *folder)
+{
+    WB_TRY(write_file(folder, "force_deflection.csv", wb_text_string(&texts->rows),
+                      texts->rows.length));
+    WB_TRY(write_file(folder, "shape.csv", wb_text_string(&texts->shapes), texts->shapes.length));
+    return write_file(folder, "dataset.json", texts->document, strlen(texts->document));
+}
+
+enum wb_status wb_dataset_finish(const struct wb_dataset *dataset, const char *folder)
+{
+    struct texts texts;
+
+    enum wb_status status = format_texts(dataset, &texts);
     if (status == WB_OK)
-        status = wb_file_prepare_output(folder, force);
+        status = write_texts(&texts, folder);
+    release_texts(&texts);
+    return status;
+}
+
+/* What cannot be written leaves what is there alone. */
+enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder, bool force)
+{
+    struct texts texts;
+
+    enum wb_status status = format_texts(dataset, &texts);
     if (status == WB_OK)
-        status = remove_fields(folder);
+        status = wb_dataset_begin(folder, force);
     if (status == WB_OK)
-        status = write_file(folder, "force_deflection.csv", wb_text_string(&rows), rows.length);
-    if (status == WB_OK)
-        status = write_file(folder, "shape.csv", wb_text_string(&shapes), shapes.length);
-    /* Last, so that a folder with a dataset.json is whole. */
-    if (status == WB_OK)
-        status = write_file(folder, "dataset.json", document, strlen(document));
-    wb_text_release(&rows);
-    wb_text_release(&shapes);
-    free(document);
+        status = write_texts(&texts, folder);
+    release_texts(&texts);
     return status;
 }
 

@@ -108,9 +108,15 @@ WB_MUST_CHECK enum wb_status wb_dataset_add_shape_row(struct wb_dataset *dataset
                                                       const struct wb_shape_row *row);
 
 /* Reads or writes a folder. Writing makes it (refused when not empty unless `force`) and writes
- * each file atomically. Reading errors name file, line and column. */
+ * each file atomically, dataset.json last: a folder that has it is whole. Reading errors name file,
+ * line and column. */
 WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder,
                                               bool force);
+/* The same in two steps, for those who add tables of their own between them: the first makes the
+ * folder and removes dataset.json and the tables of another dataset that is overwritten. */
+WB_MUST_CHECK enum wb_status wb_dataset_begin(const char *folder, bool force);
+WB_MUST_CHECK enum wb_status wb_dataset_finish(const struct wb_dataset *dataset,
+                                               const char *folder);
 WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder);
 
 /* Rows farther apart than this, s, have a gap between them, which a drawn line leaves open: several

@@ -140,6 +140,8 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
     wb_json_set_boolean(object, "limit_kept", !h->exceeded);
     wb_json_set_number(object, "mass_scaling", bundle->model->run.mass_scaling);
     wb_json_set_number(object, "selective_mass_scaling", bundle->model->run.selective);
+    wb_json_set_text(object, "precision",
+                     bundle->model->run.double_precision ? "double" : "single");
     if (h->n_rows > 0)
         describe_energies(wb_json_set_object(object, "energy"), &h->rows[h->n_rows - 1].energies);
     describe_largest(object, bundle);

@@ -32,6 +32,11 @@ void wb_progress_start(struct wb_progress *progress, const char *label, const ch
     };
 }
 
+void wb_progress_resume(struct wb_progress *progress, double done)
+{
+    progress->begun = done;
+}
+
 void wb_progress_update(struct wb_progress *progress, double done, const char *note)
 {
     if (!progress->on_terminal)
@@ -42,7 +47,7 @@ void wb_progress_update(struct wb_progress *progress, double done, const char *n
     progress->drawn = true;
     progress->drawn_ns = now_ns;
     const double elapsed = wb_seconds_from_ns(now_ns - progress->started_ns);
-    const double rate = elapsed > 0.0 ? done / elapsed : 0.0;
+    const double rate = elapsed > 0.0 ? (done - progress->begun) / elapsed : 0.0;
     fprintf(stderr, "\r\033[K%s: ", progress->label);
     if (progress->total > 0.0 && rate > 0.0)
         fprintf(stderr, "%.0f of %.0f %s, %.3g/s, %.0f s left", done, progress->total,

@@ -9,6 +9,7 @@
 struct wb_progress {
     const char *label, *unit; /* borrowed */
     double total;             /* 0: unknown */
+    double begun;             /* done before it was started */
     int64_t started_ns, drawn_ns;
     bool on_terminal, drawn;
 };
@@ -16,6 +17,10 @@ struct wb_progress {
 /* `unit` is the plural of what is counted ("steps"). */
 void wb_progress_start(struct wb_progress *progress, const char *label, const char *unit,
                        double total);
+
+/* What was done before, when something goes on that was begun earlier: the rate is of what follows.
+ * Right after wb_progress_start(). */
+void wb_progress_resume(struct wb_progress *progress, double done);
 
 /* Tells how much is done; `note` (may be NULL) is put at the end of the line. */
 void wb_progress_update(struct wb_progress *progress, double done, const char *note);

@@ -106,24 +106,26 @@ static enum wb_status prepare(struct run *run)
 static bool report_progress(void *context, const struct wb_bundle_progress *now)
 {
     struct run *run = context;
-    char note[128];
+    const double rows = wb_bundle_run_planned_rows(&run->model);
+    char note[160];
 
     if (!is_first())
         return true;
     if (now->attempt != run->attempt) {
         if (run->attempt > 0)
             wb_progress_finish(&run->progress);
-        wb_progress_start(&run->progress, "solve", "rows", wb_bundle_run_planned_rows(&run->model));
+        wb_progress_start(&run->progress, "solve", "rows", rows);
+        wb_progress_resume(&run->progress, now->done * rows);
         run->attempt = now->attempt;
     }
-    snprintf(note, sizeof note, "T %.3g s, step %lld, %.2f mm", run->history.duration, now->steps,
-             now->deflection / WB_MM);
+    snprintf(note, sizeof note, "T %.3g s, step %lld, %.2f mm%s", run->history.duration, now->steps,
+             now->deflection / WB_MM, now->rests ? ", coming to rest" : "");
     if (isfinite(now->kinetic)) {
         const size_t used = strlen(note);
         snprintf(note + used, sizeof note - used, ", kinetic %.2g, artificial %.2g", now->kinetic,
                  now->artificial);
     }
-    wb_progress_update(&run->progress, now->done * wb_bundle_run_planned_rows(&run->model), note);
+    wb_progress_update(&run->progress, now->done * rows, note);
     return !wb_interrupted();
 }
 
@@ -190,11 +192,13 @@ static enum wb_status write_dataset(const struct run *run)
     enum wb_status status = wb_simulated_bundle_fill(&dataset, &bundle);
     /* Whether it may be overwritten was asked before the computation. */
     if (status == WB_OK)
-        status = wb_dataset_write(&dataset, folder, true);
+        status = wb_dataset_begin(folder, true);
     if (status == WB_OK)
         status = wb_simulated_bundle_write_energies(&dataset, &bundle, folder);
     if (status == WB_OK)
         status = wb_surface_write(&run->states.surface, folder);
+    if (status == WB_OK)
+        status = wb_dataset_finish(&dataset, folder);
     wb_dataset_release(&dataset);
     return status;
 }

@@ -201,9 +201,11 @@ static enum wb_status write_dataset(const struct run *run)
     enum wb_status status = wb_simulated_fill_wire(&dataset, &wire);
     /* Whether it may be overwritten was asked before the computation. */
     if (status == WB_OK)
-        status = wb_dataset_write(&dataset, folder, true);
+        status = wb_dataset_begin(folder, true);
     if (status == WB_OK)
         status = wb_fields_write(&run->fields, folder);
+    if (status == WB_OK)
+        status = wb_dataset_finish(&dataset, folder);
     wb_dataset_release(&dataset);
     return status;
 }

@@ -13,6 +13,7 @@
 
 enum {
     SETTLE_BLOCK = 20,    /* steps between looks at the kinetic energy */
+    SETTLE_WATCH = 200,   /* steps between looks of the caller */
     SETTLE_MOST = 400000, /* steps */
     SETTLE_QUIET = 10     /* stops in a row with little motion */
 };
@@ -67,6 +68,25 @@ static double tip_mean(const struct wb_bundle *bundle, const struct wb_bundle_bo
     return sum / body->mass;
 }
 
+double wb_bundle_force_at(const struct wb_bundle_body *body, size_t at)
+{
+    return body->is_double ? ((const double *)body->force)[at]
+                           : (double)((const float *)body->force)[at];
+}
+
+void wb_bundle_add_force(struct wb_bundle_body *body, size_t at, double force)
+{
+    if (body->is_double)
+        ((double *)body->force)[at] += force;
+    else
+        ((float *)body->force)[at] += (float)force;
+}
+
+size_t wb_bundle_force_size(const struct wb_bundle_body *body)
+{
+    return body->is_double ? sizeof(double) : sizeof(float);
+}
+
 static double tip_force(const struct wb_bundle *bundle, const struct wb_bundle_body *body,
                         int component)
 {
@@ -74,7 +94,7 @@ static double tip_force(const struct wb_bundle *bundle, const struct wb_bundle_b
     double sum = 0.0;
 
     for (int k = 0; k < body->layout.n_nodes; k++)
-        sum += (double)body->force[(3 * k + component) * stride + j];
+        sum += wb_bundle_force_at(body, (size_t)((3 * k + component) * stride + j));
     return sum;
 }
 
@@ -86,7 +106,8 @@ static void push_tip(struct wb_bundle *bundle, struct wb_bundle_body *body, cons
 
     for (int k = 0; k < body->layout.n_nodes; k++)
         for (int c = 0; c < 3; c++)
-            body->force[(3 * k + c) * stride + j] += (float)(force[c] * body->node_mass[k] / whole);
+            wb_bundle_add_force(body, (size_t)((3 * k + c) * stride + j),
+                                force[c] * body->node_mass[k] / whole);
 }
 
 /* Calls for every body that has mass at the tip. */
@@ -144,8 +165,9 @@ static double target_at(const struct wb_bundle *bundle, double time)
 
 /* The force that brings the tip's mean height to its target in this step. A strand leans as the
  * tip comes nearer and only pulls. */
-static void lead_tip(struct wb_bundle *bundle, double half)
+static enum wb_status lead_tip(struct wb_bundle *bundle, double half)
 {
+    const double least_upright = 0.1;
     const double dt = bundle->time_step, length = bundle->model->loads.strand_length;
     struct wb_bundle_body *body[WB_PACKING_MOST + 1];
     const int n = tip_bodies(bundle, body);
@@ -156,7 +178,7 @@ static void lead_tip(struct wb_bundle *bundle, double half)
         bundle->slack = true;
         bundle->tension = bundle->vertical = 0.0;
         memset(bundle->pull, 0, sizeof bundle->pull);
-        return;
+        return WB_OK;
     }
     look_at_tip(bundle, &tip);
     const double wanted = (target_at(bundle, bundle->time + dt) - tip.position[1]) / dt;
@@ -167,6 +189,13 @@ static void lead_tip(struct wb_bundle *bundle, double half)
         lean[0] = (bundle->model->length - tip.position[0]) / length;
         lean[1] = -tip.position[2] / length;
         upright = sqrt(fmax(0.0, 1.0 - lean[0] * lean[0] - lean[1] * lean[1]));
+        if (upright < least_upright)
+            return wb_fail(
+                WB_ERR_DATA,
+                "%s: the run is lost after %lld steps: the tip is %.3g mm from where the "
+                "strand of %.3g mm would hang upright; it has to be longer",
+                bundle->model->path, bundle->steps, hypot(lean[0], lean[1]) * length / WB_MM,
+                length / WB_MM);
     }
     bundle->slack = length > 0.0 && vertical < 0.0;
     bundle->vertical = bundle->slack ? 0.0 : vertical;
@@ -177,6 +206,7 @@ static void lead_tip(struct wb_bundle *bundle, double half)
     bundle->pull[2] = bundle->tension * lean[1];
     for (int i = 0; i < n; i++)
         push_tip(bundle, body[i], bundle->pull, tip.weight);
+    return WB_OK;
 }
 
 /* --- steps --- */
@@ -184,12 +214,13 @@ static void lead_tip(struct wb_bundle *bundle, double half)
 /* Nothing but the elements acts on nodes inside a section. */
 static void clear_outline(struct wb_bundle *bundle, int w)
 {
-    const struct wb_swept_layout *layout = &bundle->wire[w].layout;
+    struct wb_bundle_body *body = &bundle->wire[w];
+    const size_t size = wb_bundle_force_size(body);
     const int first = wb_swept_hex_first_added(bundle->type[bundle->model->type_of[w]].hex);
-    const size_t inside = 3 * (size_t)first * (size_t)layout->stride;
+    const size_t inside = 3 * (size_t)first * (size_t)body->layout.stride;
 
-    memset(bundle->wire[w].force + inside, 0,
-           (wb_swept_size(layout) - inside) * sizeof *bundle->wire[w].force);
+    memset((unsigned char *)body->force + inside * size, 0,
+           (wb_swept_size(&body->layout) - inside) * size);
 }
 
 /* Of all but the wires' elements, which add theirs (advance_wire()). */
@@ -264,14 +295,12 @@ static bool has_tip(const struct wb_bundle *bundle)
 
 static void count_tip_work(struct wb_bundle *bundle, const struct tip *before)
 {
-    const double length = bundle->model->loads.strand_length;
     struct tip after;
 
     look_at_tip(bundle, &after);
     bundle->tip_work += bundle->vertical * (after.position[1] - before->position[1]);
-    if (length > 0.0)
-        bundle->tip_work += bundle->tension * (bundle->model->length - before->position[0]) /
-                            length * (after.position[0] - before->position[0]);
+    bundle->tip_work += bundle->pull[0] * (after.position[0] - before->position[0]) +
+                        bundle->pull[2] * (after.position[2] - before->position[2]);
 }
 
 enum wb_status wb_bundle_step(struct wb_bundle *bundle, bool look)
@@ -288,7 +317,7 @@ enum wb_status wb_bundle_step(struct wb_bundle *bundle, bool look)
         advance_wire(bundle, w, half, last, look, wanted);
     if (has_tip(bundle)) {
         look_at_tip(bundle, &before);
-        lead_tip(bundle, half);
+        WB_TRY(lead_tip(bundle, half));
     }
     if (bundle->cap)
         wb_bundle_cap_advance(bundle->cap, half);
@@ -383,7 +412,7 @@ double wb_bundle_potential(const struct wb_bundle *bundle)
 
 /* Motion is stopped whenever its energy begins to fall, until it is small beside the work that was
  * done; whoever stops it takes its energy away. */
-static enum wb_status come_to_rest(struct wb_bundle *bundle)
+static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bundle_watch *watch)
 {
     double last = 0.0;
     int quiet = 0;
@@ -394,6 +423,8 @@ static enum wb_status come_to_rest(struct wb_bundle *bundle)
                            "%s: the bundle does not come to rest within %d "
                            "steps",
                            bundle->model->path, SETTLE_MOST);
+        if (watch && done % SETTLE_WATCH == 0 && !watch->goes_on(watch->context))
+            return WB_OK;
         WB_TRY(wb_bundle_advance(bundle, SETTLE_BLOCK));
         if (bundle->kinetic >= last) {
             last = bundle->kinetic;
@@ -409,7 +440,7 @@ static enum wb_status come_to_rest(struct wb_bundle *bundle)
     return WB_OK;
 }
 
-enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
+enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle_watch *watch)
 {
     bundle->from = bundle->to = 0.0;
     bundle->way_start = 0.0;
@@ -417,7 +448,7 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
     bundle->weight_zero = wb_bundle_potential(bundle);
     if (bundle->gravity == 0.0)
         return WB_OK;
-    WB_TRY(come_to_rest(bundle));
+    WB_TRY(come_to_rest(bundle, watch));
     /* The account begins here. */
     struct wb_bundle_energies now;
     wb_bundle_get_energies(bundle, &now);
@@ -428,12 +459,12 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle)
     return WB_OK;
 }
 
-enum wb_status wb_bundle_let_go(struct wb_bundle *bundle)
+enum wb_status wb_bundle_let_go(struct wb_bundle *bundle, const struct wb_bundle_watch *watch)
 {
     struct wb_bundle_state state;
 
     bundle->let_go = true;
-    WB_TRY(come_to_rest(bundle));
+    WB_TRY(come_to_rest(bundle, watch));
     wb_bundle_get_state(bundle, &state);
     bundle->from = bundle->to = state.deflection;
     return WB_OK;
@@ -505,7 +536,7 @@ static void add_outside(const struct wb_bundle *bundle, const struct wb_bundle_b
         for (int i = 0; i < 3 * body->layout.n_nodes; i++) {
             const size_t at = (size_t)i * (size_t)stride + (size_t)j;
             if (j <= held)
-                out->clamp[i % 3] -= (double)body->force[at];
+                out->clamp[i % 3] -= wb_bundle_force_at(body, at);
             out->momentum[i % 3] += mass * body->node_mass[i / 3] / body->mass * body->velocity[at];
         }
     }

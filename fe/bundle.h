@@ -83,15 +83,24 @@ double wb_bundle_time_step(const struct wb_bundle *bundle); /* s */
 long wb_bundle_hexahedra(const struct wb_bundle *bundle);
 int wb_bundle_shells(const struct wb_bundle *bundle);
 
+/* Asked again and again while a bundle comes to rest; false: it stays as it is, not at rest. */
+struct wb_bundle_watch {
+    bool (*goes_on)(void *context);
+    void *context;
+};
+
 /* Brings the weight on with the tip held at zero, at rest: motion is stopped whenever its energy
  * begins to fall, until it is small. Nothing without weight. WB_ERR_CONVERGENCE when it does not
- * come to rest. */
-WB_MUST_CHECK enum wb_status wb_bundle_settle(struct wb_bundle *bundle);
+ * come to rest. `watch` may be NULL. */
+WB_MUST_CHECK enum wb_status wb_bundle_settle(struct wb_bundle *bundle,
+                                              const struct wb_bundle_watch *watch);
 
 /* Lets go of the tip, as a slack strand does: it comes to rest where nothing acts on it but the
  * weight. Motion is stopped as in settling; the energy this takes is counted as work from outside.
- * The tip's target is where it rests. WB_ERR_CONVERGENCE when it does not come to rest. */
-WB_MUST_CHECK enum wb_status wb_bundle_let_go(struct wb_bundle *bundle);
+ * The tip's target is where it rests. WB_ERR_CONVERGENCE when it does not come to rest. `watch` may
+ * be NULL. */
+WB_MUST_CHECK enum wb_status wb_bundle_let_go(struct wb_bundle *bundle,
+                                              const struct wb_bundle_watch *watch);
 
 /* Leads the tip from its present target to `deflection` (m) within the time given (s), by a smooth
  * step, from now on. */

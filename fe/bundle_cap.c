@@ -200,7 +200,7 @@ static void add_loads(const struct part *part, double R[3][3], double force[3], 
     for (int k = 0; k < part->body->layout.n_nodes; k++) {
         double f[3], r[3], moment[3];
         for (int c = 0; c < 3; c++)
-            f[c] = (double)part->body->force[end_of(part, k, c)];
+            f[c] = wb_bundle_force_at(part->body, end_of(part, k, c));
         apply(R, part->arm[k], r);
         cross(r, f, moment);
         for (int c = 0; c < 3; c++) {

@@ -13,7 +13,7 @@ static void carry_body(struct wb_bundle_body *body, struct wb_checkpoint *checkp
 
     wb_checkpoint_carry(checkpoint, body->position, n * sizeof *body->position);
     wb_checkpoint_carry(checkpoint, body->velocity, n * sizeof *body->velocity);
-    wb_checkpoint_carry(checkpoint, body->force, n * sizeof *body->force);
+    wb_checkpoint_carry(checkpoint, body->force, n * wb_bundle_force_size(body));
 }
 
 static void carry_contact(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint)

@@ -45,6 +45,7 @@ enum wb_status wb_bundle_create_step(const struct wb_bundle *bundle, struct wb_s
         .mass_scaling = run->mass_scaling,
         .selective = run->selective,
         .gravity = {0.0, -gravity, 0.0},
+        .double_precision = run->double_precision,
     };
     return wb_swept_step_create(out, &model);
 }
@@ -65,6 +66,7 @@ static enum wb_status make_type(struct wb_bundle *bundle, int t)
         .element_length = bundle->spacing,
         .counted = bundle->own,
         .formulation = formulation,
+        .double_precision = bundle->model->run.double_precision,
     };
     WB_TRY(wb_swept_hex_create(&type->hex, &model));
     WB_TRY(share_mass(type, wire));
@@ -72,14 +74,16 @@ static enum wb_status make_type(struct wb_bundle *bundle, int t)
                                  bundle->gravity, &type->step);
 }
 
-enum wb_status wb_bundle_create_fields(struct wb_bundle_body *body, struct wb_swept_layout layout)
+enum wb_status wb_bundle_create_fields(const struct wb_bundle *bundle, struct wb_bundle_body *body,
+                                       struct wb_swept_layout layout)
 {
     const size_t n = wb_swept_size(&layout);
 
     body->layout = layout;
+    body->is_double = bundle->model->run.double_precision;
     WB_TRY(wb_swept_allocate((void **)&body->position, n, sizeof *body->position));
     WB_TRY(wb_swept_allocate((void **)&body->velocity, n, sizeof *body->velocity));
-    return wb_swept_allocate((void **)&body->force, n, sizeof *body->force);
+    return wb_swept_allocate(&body->force, n, wb_bundle_force_size(body));
 }
 
 /* A straight body: section points at every station, padding too. */
@@ -101,7 +105,7 @@ static enum wb_status make_wire(struct wb_bundle *bundle, int w)
     struct wb_bundle_body *body = &bundle->wire[w];
 
     WB_TRY(wb_swept_hex_state_create(&bundle->history[w], type->hex));
-    WB_TRY(wb_bundle_create_fields(body, wb_swept_hex_layout(type->hex)));
+    WB_TRY(wb_bundle_create_fields(bundle, body, wb_swept_hex_layout(type->hex)));
     body->step = type->step;
     body->node_mass = type->node_mass;
     for (int k = 0; k < body->layout.n_nodes; k++) {
@@ -129,6 +133,7 @@ static enum wb_status make_contact(struct wb_bundle *bundle)
     settings.friction_kinetic = interface->friction_kinetic;
     settings.friction_decay = interface->friction_decay;
     settings.counted = bundle->own;
+    settings.double_precision = bundle->model->run.double_precision;
     for (int w = 0; w < bundle->n_wires; w++) {
         const struct wb_bundle_type *type = &bundle->type[bundle->model->type_of[w]];
         const struct wb_wire *wire = &bundle->model->type[bundle->model->type_of[w]];
@@ -210,11 +215,12 @@ static enum wb_status find_time_step(struct wb_bundle *bundle)
 static bool is_large(const struct wb_bundle *bundle)
 {
     const size_t near = 4u << 20; /* bytes */
-    size_t n = 0;
+    size_t bytes = 0;
 
     for (int w = 0; w < bundle->n_wires; w++)
-        n += wb_swept_size(&bundle->wire[w].layout);
-    return n * (2 * sizeof(double) + sizeof(float)) > near;
+        bytes += wb_swept_size(&bundle->wire[w].layout) *
+                 (2 * sizeof(double) + wb_bundle_force_size(&bundle->wire[w]));
+    return bytes > near;
 }
 
 static enum wb_status build(struct wb_bundle *bundle)
@@ -228,8 +234,9 @@ static enum wb_status build(struct wb_bundle *bundle)
     if (bundle->model->has_tape)
         WB_TRY(wb_bundle_tape_create(bundle));
     hold_stations(bundle);
+    /* Not where it is only in the halo. */
     if (bundle->model->tip == WB_BUNDLE_TIP_CAPPED &&
-        bundle->first + bundle->n_stations == bundle->n_whole)
+        bundle->first + bundle->own.end == bundle->n_whole)
         WB_TRY(wb_bundle_cap_create(&bundle->cap, bundle));
     if (!bundle->whole)
         return find_time_step(bundle);

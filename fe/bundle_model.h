@@ -98,14 +98,15 @@ struct wb_bundle_mesh {
 };
 
 struct wb_bundle_run {
-    char mesh[32];        /* its name */
-    double deflection;    /* m, of the tip */
-    int rows;             /* of the dataset, in equal steps of a loading */
-    int cycles;           /* down and back; 0: once up to the deflection */
-    double duration;      /* s, of a loading; 0: chosen by the limit below */
-    double mass_scaling;  /* f_m of eq. 29, at least 1; weight is not scaled */
-    double selective;     /* beta of the selective mass scaling, at least 1; 1: none */
-    double kinetic_limit; /* largest kinetic over internal energy */
+    char mesh[32];         /* its name */
+    double deflection;     /* m, of the tip */
+    int rows;              /* of the dataset, in equal steps of a loading */
+    int cycles;            /* down and back; 0: once up to the deflection */
+    double duration;       /* s, of a loading; 0: chosen by the limit below */
+    double mass_scaling;   /* f_m of eq. 29, at least 1; weight is not scaled */
+    double selective;      /* beta of the selective mass scaling, at least 1; 1: none */
+    double kinetic_limit;  /* largest kinetic over internal energy */
+    bool double_precision; /* of forces and histories; positions are always double */
 };
 
 struct wb_bundle_loads {

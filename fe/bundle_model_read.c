@@ -21,6 +21,7 @@ static const double largest_poisson = 0.499;
 static const char *const length_sources[] = {"own", "printed", "inferred", NULL};
 static const char *const tips[] = {"free", "capped", NULL};
 static const char *const formulations[] = {"2x2x1", "one-point", NULL};
+static const char *const precisions[] = {"single", "double", NULL};
 
 static const struct wb_bundle_mesh own_meshes[2] = {
     {.name = "engineering",
@@ -220,6 +221,7 @@ static enum wb_status read_run(struct wb_bundle_model_reader *reader,
 {
     struct wb_bundle_model *const m = reader->model;
     struct wb_bundle_run *const run = &m->run;
+    int precision = 0;
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_TEXT("mesh", run->mesh),
         WB_CONFIG_OPTIONAL_NUMBER("deflection_mm", &run->deflection, WB_MM, 1e-6, 1e6),
@@ -229,9 +231,11 @@ static enum wb_status read_run(struct wb_bundle_model_reader *reader,
         WB_CONFIG_OPTIONAL_NUMBER("mass_scaling", &run->mass_scaling, 1.0, 1.0, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("selective_mass_scaling", &run->selective, 1.0, 1.0, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("kinetic_energy_limit", &run->kinetic_limit, 1.0, 1e-6, 1.0),
+        WB_CONFIG_OPTIONAL_CHOICE("precision", &precision, precisions),
     };
     if (map)
         WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    run->double_precision = precision == 1;
     if (!wb_bundle_model_mesh(m, run->mesh))
         return wb_config_refuse(map, "mesh", "there is no mesh %s", run->mesh);
     if (run->deflection < m->length)

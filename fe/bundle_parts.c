@@ -371,18 +371,18 @@ static void load_field(struct cargo *cargo, void *field, size_t size,
 }
 
 /* Histories are in rows of as many elements as a block has stations, block by block. */
-static void load_history(struct cargo *cargo, void *history, size_t bytes, int stride,
-                         struct wb_swept_range range)
+static void load_history(struct cargo *cargo, void *history, size_t bytes,
+                         const struct wb_bundle_body *body, struct wb_swept_range range)
 {
-    const size_t row = LANES * sizeof(float), per_block = bytes / (size_t)(stride / LANES);
+    const size_t size = wb_bundle_force_size(body), row = LANES * size;
+    const size_t per_block = bytes / (size_t)(body->layout.stride / LANES);
 
     for (int j = range.first; j < range.end;) {
         const int block = j / LANES, left = LANES - j % LANES;
         const int n = range.end - j < left ? range.end - j : left;
         unsigned char *at = (unsigned char *)history + (size_t)block * per_block;
         for (size_t i = 0; i < per_block; i += row)
-            load_column(cargo, at + i + (size_t)(j % LANES) * sizeof(float),
-                        (size_t)n * sizeof(float));
+            load_column(cargo, at + i + (size_t)(j % LANES) * size, (size_t)n * size);
         j += n;
     }
 }
@@ -399,15 +399,15 @@ static void load(struct wb_bundle *bundle, struct wb_swept_range range, bool his
         const struct wb_swept_layout *layout = &body[b]->layout;
         load_field(cargo, body[b]->position, sizeof(double), layout, range);
         load_field(cargo, body[b]->velocity, sizeof(double), layout, range);
-        load_field(cargo, body[b]->force, sizeof(float), layout, range);
+        load_field(cargo, body[b]->force, wb_bundle_force_size(body[b]), layout, range);
     }
     for (int w = 0; histories && w < bundle->n_wires; w++) {
         void *history = wb_swept_hex_state_data(bundle->history[w], &bytes);
-        load_history(cargo, history, bytes, bundle->wire[w].layout.stride, range);
+        load_history(cargo, history, bytes, &bundle->wire[w], range);
     }
     if (histories && bundle->has_tape) {
         void *history = wb_swept_tape_state_data(bundle->tape_history, &bytes);
-        load_history(cargo, history, bytes, bundle->ring.layout.stride, range);
+        load_history(cargo, history, bytes, &bundle->ring, range);
     }
 }
 

@@ -20,7 +20,8 @@ enum {
 struct wb_bundle_body {
     struct wb_swept_layout layout;
     double *position, *velocity;
-    float *force;
+    void *force; /* float, or double of a run in double precision */
+    bool is_double;
     const struct wb_swept_step *step; /* owned elsewhere */
     const double *node_mass;          /* (n_nodes) kg/m, unscaled; owned elsewhere */
     double mass;                      /* kg/m, unscaled */
@@ -98,12 +99,18 @@ double wb_bundle_station_mass(const struct wb_bundle *bundle, const struct wb_bu
                               int station);
 
 /* Zeroed fields of a body; its steps. */
-WB_MUST_CHECK enum wb_status wb_bundle_create_fields(struct wb_bundle_body *body,
+WB_MUST_CHECK enum wb_status wb_bundle_create_fields(const struct wb_bundle *bundle,
+                                                     struct wb_bundle_body *body,
                                                      struct wb_swept_layout layout);
 WB_MUST_CHECK enum wb_status wb_bundle_create_step(const struct wb_bundle *bundle,
                                                    struct wb_swept_layout layout,
                                                    const double *node_mass, double gravity,
                                                    struct wb_swept_step **out);
+
+/* A place of the force field, N; bytes of one. */
+double wb_bundle_force_at(const struct wb_bundle_body *body, size_t at);
+void wb_bundle_add_force(struct wb_bundle_body *body, size_t at, double force);
+size_t wb_bundle_force_size(const struct wb_bundle_body *body);
 
 /* The last station that the clamp holds, of the whole. */
 int wb_bundle_last_held(const struct wb_bundle *bundle);

@@ -102,6 +102,38 @@ static enum verdict lose(struct wb_bundle_run_now *r)
     return DONE;
 }
 
+/* Whether the caller wants to go on. */
+static bool is_wanted(const struct wb_bundle_run_now *r, bool rests)
+{
+    const struct wb_bundle_history *h = r->history;
+    const struct wb_bundle_observer *observer = r->options.observer;
+    const double whole = h->duration * branches_of(r->model);
+    const struct wb_bundle_progress progress = {
+        .attempt = h->attempts,
+        .steps = r->state.steps,
+        .done = h->n_rows == 0 ? 0.0 : fmin(1.0, (r->state.time - r->begin) / whole),
+        .rests = rests,
+        .deflection = r->state.deflection,
+        .kinetic = r->kinetic,
+        .artificial = r->artificial,
+    };
+
+    return !observer || !observer->progress || observer->progress(observer->context, &progress);
+}
+
+/* While it comes to rest there are no checkpoints: with rows behind it, it stops at the next place
+ * where there are. Rank 0 decides. */
+static bool rest_is_wanted(void *context)
+{
+    struct wb_bundle_run_now *r = context;
+
+    wb_bundle_get_state(r->bundle, &r->state);
+    bool wanted = is_wanted(r, true) || r->history->n_rows > 0;
+    wb_team_share(&wanted, sizeof wanted, 0);
+    r->history->stopped = !wanted;
+    return wanted;
+}
+
 enum motion {
     STEPS,
     SETTLING,
@@ -110,6 +142,8 @@ enum motion {
 
 static enum verdict move(struct wb_bundle_run_now *r, enum motion motion, int n)
 {
+    const struct wb_bundle_watch watch = {rest_is_wanted, r};
+
     r->history->problem[0] = '\0';
     wb_log_set_tap(keep_reason, r);
     const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
@@ -118,10 +152,10 @@ static enum verdict move(struct wb_bundle_run_now *r, enum motion motion, int n)
         r->status = wb_bundle_advance(r->bundle, n);
         break;
     case SETTLING:
-        r->status = wb_bundle_settle(r->bundle);
+        r->status = wb_bundle_settle(r->bundle, &watch);
         break;
     case LETTING_GO:
-        r->status = wb_bundle_let_go(r->bundle);
+        r->status = wb_bundle_let_go(r->bundle, &watch);
         break;
     }
     wb_log_set_gravest(before);
@@ -129,7 +163,7 @@ static enum verdict move(struct wb_bundle_run_now *r, enum motion motion, int n)
     if (r->status != WB_OK)
         return lose(r);
     wb_bundle_get_state(r->bundle, &r->state);
-    return GO_ON;
+    return r->history->stopped ? DONE : GO_ON;
 }
 
 static enum verdict advance(struct wb_bundle_run_now *r, int n)
@@ -232,6 +266,11 @@ static double value_at(const struct wb_bundle_run_line *line, double x, double *
     return mean + slope * (x - at);
 }
 
+static enum wb_history_phase phase_of(const struct wb_bundle_run_now *r)
+{
+    return r->branch % 2 == 0 ? WB_HISTORY_LOAD : WB_HISTORY_UNLOAD;
+}
+
 static void take_place(struct wb_bundle_run_now *r)
 {
     struct wb_bundle_row *row = &r->row;
@@ -243,9 +282,7 @@ static void take_place(struct wb_bundle_run_now *r)
     *row = (struct wb_bundle_row){
         .time = r->state.time - r->begin,
         .cycle = 1 + r->branch / 2,
-        .phase = r->state.slack       ? WB_HISTORY_SLACK
-                 : r->branch % 2 == 0 ? WB_HISTORY_LOAD
-                                      : WB_HISTORY_UNLOAD,
+        .phase = r->state.slack ? WB_HISTORY_SLACK : phase_of(r),
         .deflection = r->state.deflection,
         .tip = {ends[1][0], ends[1][1], ends[1][2]},
         .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
@@ -254,6 +291,23 @@ static void take_place(struct wb_bundle_run_now *r)
         wb_bundle_shape(r->bundle, r->history->n_shape, r->history->shape_s,
                         r->history->shape +
                             (size_t)r->history->n_rows * (size_t)r->history->n_shape);
+    r->samples_before = r->vertical.n + r->slack_samples > 0.0;
+}
+
+static void sample(struct wb_bundle_run_now *r)
+{
+    if (r->state.slack) {
+        r->slack_samples++;
+        return;
+    }
+    add_to_line(&r->vertical, r->state.target, r->state.vertical);
+    add_to_line(&r->tension, r->state.target, r->state.tension);
+}
+
+static void begin_line(struct wb_bundle_run_now *r)
+{
+    r->vertical = r->tension = (struct wb_bundle_run_line){0};
+    r->slack_samples = 0;
 }
 
 static void finish_row(struct wb_bundle_run_now *r)
@@ -262,6 +316,14 @@ static void finish_row(struct wb_bundle_run_now *r)
     struct wb_bundle_row *row = &r->row;
     double ignored;
 
+    /* A strand that swings about zero is slack for a step and taut for the next. Where the tip
+     * hangs there are no samples: it was slack there, whatever comes after. */
+    if (!r->hangs && r->samples_before)
+        row->phase = r->slack_samples > r->vertical.n ? WB_HISTORY_SLACK : phase_of(r);
+    if (r->vertical.n == 0.0)
+        sample(r);
+    if (r->vertical.n == 0.0)
+        row->phase = WB_HISTORY_SLACK;
     /* Where the strand is taut the target is the deflection. */
     if (row->phase != WB_HISTORY_SLACK) {
         row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
@@ -271,40 +333,14 @@ static void finish_row(struct wb_bundle_run_now *r)
         h->zero_force = row->vertical_force;
     row->force = row->vertical_force - h->zero_force;
     h->rows[h->n_rows++] = *row;
-    r->vertical = r->tension = (struct wb_bundle_run_line){0};
-}
-
-static void sample(struct wb_bundle_run_now *r)
-{
-    if (r->state.slack)
-        return;
-    add_to_line(&r->vertical, r->state.target, r->state.vertical);
-    add_to_line(&r->tension, r->state.target, r->state.tension);
-}
-
-/* Whether the caller wants to go on. */
-static bool is_wanted(const struct wb_bundle_run_now *r)
-{
-    const struct wb_bundle_history *h = r->history;
-    const struct wb_bundle_observer *observer = r->options.observer;
-    const double whole = h->duration * branches_of(r->model);
-    const struct wb_bundle_progress progress = {
-        .attempt = h->attempts,
-        .steps = r->state.steps,
-        .done = fmin(1.0, (r->state.time - r->begin) / whole),
-        .deflection = r->state.deflection,
-        .kinetic = r->kinetic,
-        .artificial = r->artificial,
-    };
-
-    return !observer || !observer->progress || observer->progress(observer->context, &progress);
+    begin_line(r);
 }
 
 /* Rank 0 decides: clocks and signals differ. */
 static enum verdict report(struct wb_bundle_run_now *r)
 {
     const char *file = r->options.checkpoint;
-    const bool wanted = is_wanted(r);
+    const bool wanted = is_wanted(r, false);
     bool choice[2] = {wanted, file && (!wanted || wb_bundle_run_clock().wall - r->saved.wall >=
                                                       r->options.checkpoint_interval)};
 
@@ -454,7 +490,7 @@ static enum verdict make_way(struct wb_bundle_run_now *r)
         if (verdict != GO_ON)
             return verdict;
         /* What is nearer to where the last way ended belongs to its last row, not to the first. */
-        r->vertical = r->tension = (struct wb_bundle_run_line){0};
+        begin_line(r);
         r->place = r->looks = 1;
     }
     while (r->place <= rows && verdict == GO_ON) {
@@ -506,7 +542,7 @@ static void begin_attempt(struct wb_bundle_run_now *r)
     r->counting = r->judged = r->under_way = r->hangs = false;
     r->kinetic = r->artificial = (double)NAN;
     r->most_external = 0.0;
-    r->vertical = r->tension = (struct wb_bundle_run_line){0};
+    begin_line(r);
     r->branch = 0;
 }
 

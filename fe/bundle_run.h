@@ -91,6 +91,7 @@ struct wb_bundle_progress {
     int attempt;                /* from 1 */
     long long steps;            /* of this attempt */
     double done;                /* of this attempt's whole history, 0 to 1 */
+    bool rests;                 /* it comes to rest, under its weight or let go by the strand */
     double deflection;          /* m */
     double kinetic, artificial; /* over internal energy, as last looked at; NaN at first */
 };

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "base/version.h"
 #include "fe/bundle_run_private.h"
+#include "fe/swept_hex.h"
 #include "fe/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -59,9 +60,11 @@ static void identify(const struct wb_bundle_run_now *r, char text[MOST_IDENTITY]
     wb_hash_bytes(settings, strlen(settings), hash);
     snprintf(text, MOST_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
-             "wirebench %s, program %.12s",
+             "%s precision, %s, wirebench %s, program %.12s",
              m->name, mesh, hash, r->history->n_shape,
-             wb_bundle_parts_of(m, mesh, r->options.threads), wb_version_revision(), r->program);
+             wb_bundle_parts_of(m, mesh, r->options.threads),
+             m->run.double_precision ? "double" : "single", wb_swept_hex_best_instructions(),
+             wb_version_revision(), r->program);
 }
 
 /* Memory of the history stays; what it holds comes and goes. */

@@ -48,6 +48,8 @@ struct wb_bundle_run_now {
     double way_time; /* s: its begin */
     int block;       /* steps between samples */
     struct wb_bundle_run_line vertical, tension;
+    int slack_samples;        /* beside these */
+    bool samples_before;      /* the row's place */
     struct wb_bundle_row row; /* passed, its mean not complete */
 };
 

@@ -134,8 +134,8 @@ static enum wb_status make_ring(struct wb_bundle *bundle)
     const struct wb_swept_layout layout =
         wb_swept_layout(elements_of(bundle) + !closed, bundle->n_stations);
 
-    WB_TRY(wb_bundle_create_fields(&bundle->ring, layout));
-    WB_TRY(wb_bundle_create_fields(&bundle->directors, layout));
+    WB_TRY(wb_bundle_create_fields(bundle, &bundle->ring, layout));
+    WB_TRY(wb_bundle_create_fields(bundle, &bundle->directors, layout));
     place_ring(bundle);
     const struct wb_swept_tape_model model = {
         .material = tape->material.material,
@@ -146,6 +146,7 @@ static enum wb_status make_ring(struct wb_bundle *bundle)
         .spacing = bundle->spacing,
         .counted = bundle->own,
         .closed = closed,
+        .double_precision = bundle->model->run.double_precision,
     };
     WB_TRY(wb_swept_tape_create(&bundle->tape, &model));
     return wb_swept_tape_state_create(&bundle->tape_history, bundle->tape);

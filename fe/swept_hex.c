@@ -334,6 +334,12 @@ const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex)
     return hex->kernel->name;
 }
 
+const char *wb_swept_hex_best_instructions(void)
+{
+    const struct wb_swept_hex_model model = {.instructions = WB_SWEPT_HEX_BEST};
+    return find_kernel(&model)->name;
+}
+
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4])
 {
     const double *row = hex->rows + quad * CONSTANTS;

@@ -84,6 +84,8 @@ const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_he
 struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
 int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
 const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex);
+/* Of those that this processor has the best. */
+const char *wb_swept_hex_best_instructions(void);
 
 /* Stiffness of the section's hourglass vector, N/m, and of the three along, xi, eta, xi eta, which
  * are 0 of four points. */

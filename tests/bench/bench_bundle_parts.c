@@ -1,7 +1,7 @@
 /* What threads and ranks gain: wall time of a step of seven taped wires, on one part and on two
  * (this process's threads, or the ranks that mpirun started), with the same bundle (strong scaling)
- * and with one twice as long (weak); and a model of more parts: CPU time of a step of the largest
- * part alone, and the time of a swap of packets, each measured by itself.
+ * and with one twice as long (weak); and a model of more parts, strong and weak: CPU time of
+ * a step of the largest part alone, and the time of a swap of packets, each measured by itself.
  *
  * The best of several blocks of steps, taken in turn: other work on the machine only adds. On a
  * machine that is busy the wall times tell of that; the model does not. */
@@ -163,6 +163,30 @@ static int measure(const char *mesh, int threads, int longer, double *one, doubl
     return failed;
 }
 
+/* A bundle that is longer by a length for each part: all but the two at its ends have a neighbour
+ * on both sides, so that it does not matter how many there are. */
+static void tell_weak_model(const char *mesh, double one, double swapped)
+{
+    enum {
+        PARTS = 3
+    };
+    const struct wb_bundle_settings settings = {.duration = 1.0};
+    static struct wb_bundle_model shorter;
+    struct wb_bundle *whole;
+
+    shorter = model;
+    lengthen(PARTS);
+    if (wb_bundle_create(&whole, &model, &settings) == WB_OK) {
+        const double of_part = part_time(whole, mesh, PARTS), sum = of_part + swapped;
+        printf(
+            "  weak, %d parts or more, each as long as the whole above: %d stations, %.2f us and a "
+            "swap, efficiency %.2f\n",
+            PARTS, wb_bundle_parts_largest(&model, mesh, PARTS), 1e6 * of_part, one / sum);
+        wb_bundle_destroy(whole);
+    }
+    model = shorter;
+}
+
 static void tell_model(const char *mesh, double latency, double swapped)
 {
     const struct wb_bundle_settings settings = {.duration = 1.0};
@@ -182,6 +206,7 @@ static void tell_model(const char *mesh, double latency, double swapped)
                one / sum / parts);
     }
     wb_bundle_destroy(whole);
+    tell_weak_model(mesh, one, swapped);
 }
 
 int main(void)

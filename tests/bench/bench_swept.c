@@ -191,16 +191,24 @@ static double bytes_of(const struct bench *b)
     return (2.0 * (double)history + nodes * (sizeof(double) + real)) / elements;
 }
 
+/* And of the step: forces read, positions and velocities read and written. */
+static double bytes_with_step(const struct bench *b)
+{
+    const double real = b->model.double_precision ? sizeof(double) : sizeof(float);
+    const double nodes = (double)wb_swept_size(&b->layout);
+    return bytes_of(b) + nodes * (real + 4.0 * sizeof(double)) / (ELEMENTS * QUADS);
+}
+
 static bool print_row(const struct wb_swept_hex_model *model, double twin)
 {
     struct bench b;
     const bool good = bench_create(&b, model, 1.0);
     if (good) {
         const double kernel = time_kernel(&b, false), step = time_kernel(&b, true);
-        printf("%-12s %-7s %-9s %8.2f %11.2f %9.0f %16.4f\n",
+        printf("%-12s %-7s %-9s %8.2f %11.2f %9.0f %12.0f %16.4f\n",
                model->formulation == WB_SWEPT_HEX_ONE_POINT ? "one point" : "2x2x1",
                model->double_precision ? "double" : "float", wb_swept_hex_instructions(b.hex),
-               kernel, step, bytes_of(&b), kernel / twin);
+               kernel, step, bytes_of(&b), bytes_with_step(&b), kernel / twin);
     }
     bench_destroy(&b);
     return good;
@@ -241,7 +249,8 @@ int main(void)
     wb_log_set_sink(discard, NULL); /* of instructions that this processor does not have */
     printf("%d wires of %d x %d hexahedra, all yielding; CPU nanoseconds an element and step on "
            "one core\n\n"
-           "formulation  numbers instr.      forces    and step     bytes  ratio to the twin\n",
+           "formulation  numbers instr.      forces    and step     bytes    with step  ratio to "
+           "the twin\n",
            WIRES, QUADS, ELEMENTS);
     for (int f = 0; f < 2; f++) {
         struct wb_swept_hex_model model = {.material = material,

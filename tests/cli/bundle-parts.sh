@@ -23,7 +23,13 @@ same() { # what two datasets have in common: all but the times
         cmp "$1/$file.csv" "$2/$file.csv" || { echo "$1 and $2 differ"; exit 1; }
     done
 }
-"$tool" solve bundle three.yaml --threads 2 -o threads 2>log || { cat log; exit 1; }
+same_states() { # of two folders of VTK files
+    [ "$(ls "$1"/*.vtu | wc -l)" -eq 6 ] || { echo "states are missing:"; ls "$1"; exit 1; }
+    for file in "$1"/*; do
+        cmp "$file" "$2/${file##*/}" || { echo "states of $1 and $2 differ"; exit 1; }
+    done
+}
+"$tool" solve bundle three.yaml --threads 2 -o threads --vtk threads-vtk 2>log || { cat log; exit 1; }
 grep -q '"threads": 2' threads/dataset.json || { echo "the dataset does not name its threads"; exit 1; }
 
 # Killed as soon as there is a checkpoint and a row, again and again until it is through.
@@ -49,7 +55,7 @@ done
 grep -q 'goes on at' log || { echo "it did not go on:"; cat log; exit 1; }
 [ ! -e state ] || { echo "the checkpoint was left behind"; exit 1; }
 same threads killed
-[ "$(ls vtk/*.vtu | wc -l)" -eq 6 ] || { echo "states are missing:"; ls vtk; exit 1; }
+same_states vtk threads-vtk
 
 # Another run's checkpoint is refused, and left alone.
 printf 'wirebench checkpoint 1\nanother\n0\n0\nend\n' >state
@@ -85,6 +91,7 @@ refused "or --force" "$tool" "$@" -o threads --vtk states
 refused "cannot\|can be written" "$tool" solve bundle three.yaml -o other --checkpoint nowhere/state
 "$tool" "$@" -o other --vtk states 2>log || { cat log; exit 1; }
 same threads other
+same_states states threads-vtk
 [ ! -e state ] || { echo "the checkpoint was left behind"; exit 1; }
 
 # A result that cannot be written leaves the checkpoint.
@@ -96,10 +103,25 @@ rmdir whole && touch whole
 [ -f state ] || { echo "the checkpoint went with its result"; exit 1; }
 
 command -v mpirun >/dev/null || { echo "no mpirun: ranks were left out"; exit 0; }
-if ! "$here/../ranks.sh" 2 "$tool" solve bundle three.yaml -o ranks >log 2>&1; then
+if ! "$here/../ranks.sh" 2 "$tool" solve bundle three.yaml -o ranks --vtk ranks-vtk \
+    >log 2>&1; then
     grep -q 'built without MPI' log || { cat log; exit 1; }
     echo "built without MPI: ranks were left out"
     exit 0
 fi
 grep -q '"ranks": 2' ranks/dataset.json || { echo "the dataset does not name its ranks"; exit 1; }
 same threads ranks
+same_states ranks-vtk threads-vtk
+
+# Ranks that are stopped go on, too.
+"$here/../ranks.sh" 2 "$tool" solve bundle three.yaml -o resumed --checkpoint state \
+    --checkpoint-minutes 0.001 >log 2>&1 &
+process=$!
+until [ -f state ] || ! kill -0 $process 2>/dev/null; do sleep 0.05; done
+[ -f state ] || { echo "no checkpoint of ranks:"; cat log; exit 1; }
+kill -TERM $process
+wait $process && { echo "ranks were not stopped"; exit 1; }
+"$here/../ranks.sh" 2 "$tool" solve bundle three.yaml -o resumed --checkpoint state >log 2>&1 ||
+    { cat log; exit 1; }
+grep -q 'goes on at' log || { echo "ranks did not go on:"; cat log; exit 1; }
+same threads resumed

@@ -92,8 +92,41 @@ static void json_has_the_curve_and_what_it_took(void **unused)
                           stiffness * number(point, "deflection_mm") * 1e-3, 0.05);
     const struct wb_json *largest = wb_json_get(root, "largest");
     assert_true(number(largest, "imbalance_over_external") < 0.01);
-    assert_true(number(wb_json_get(root, "energy"), "external_J") > 0.0);
+    assert_true(number(largest, "kinetic_over_internal") > 0.0);
+    assert_true(number(largest, "kinetic_over_internal") < 0.5);
+    assert_true(number(largest, "artificial_over_internal") < 0.05);
+    const struct wb_json *energy = wb_json_get(root, "energy");
+    static const char *const parts[] = {"kinetic_J",  "stored_J",   "plastic_J",   "contact_J",
+                                        "cohesive_J", "friction_J", "artificial_J"};
+    double sum = 0.0;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        sum += number(energy, parts[i]);
+    assert_true(number(energy, "stored_J") > 0.9 * sum);
+    assert_close_relative(sum, number(energy, "external_J"), 0.01);
+    assert_true(number(root, "wall_s") > 0.0 && number(root, "cpu_s") > 0.0);
+    assert_close_relative(
+        number(root, "ns_per_element_step"),
+        1e9 * number(root, "cpu_s") / (60.0 * number(root, "steps_of_all_attempts")), 0.01);
     wb_json_destroy(root);
+}
+
+/* On a terminal, that of script(1). */
+static void a_line_tells_how_far_it_is(void **unused)
+{
+    (void)unused;
+    char command[1024];
+    snprintf(
+        command, sizeof command,
+        "cd %s && script -qec '%s solve bundle one.yaml --duration-s 4 -o line' out </dev/null "
+        ">/dev/null",
+        folder, getenv("WIREBENCH_BINARY"));
+    assert_int_equal(system(command), 0);
+    read_all("out", out, sizeof out);
+    static const char *const parts[] = {" of 6 rows, ", " s left, ",     "T 4 s, step ",    " mm",
+                                        ", kinetic ",   ", artificial ", ", coming to rest"};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        if (!strstr(out, parts[i]))
+            fail_msg("no '%s' in %s", parts[i], out);
 }
 
 static void datasets_are_those_of_the_homogenised_beam(void **unused)
@@ -277,6 +310,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(json_has_the_curve_and_what_it_took),
+        cmocka_unit_test(a_line_tells_how_far_it_is),
         cmocka_unit_test(datasets_are_those_of_the_homogenised_beam),
         cmocka_unit_test(datasets_have_the_bent_surface),
         cmocka_unit_test(vtk_files_are_written_for_every_row_or_some),

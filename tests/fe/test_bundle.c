@@ -48,7 +48,7 @@ static void under_its_weight_it_hangs_as_a_propped_beam(void **unused)
 
     read_model(ONE RUN("deflection_mm: 40") "loads: {weight: true}\n");
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    assert_int_equal(wb_bundle_settle(bundle), WB_OK);
+    assert_int_equal(wb_bundle_settle(bundle, NULL), WB_OK);
     for (int i = 0; i < 19; i++)
         s[i] = L * (i + 1) / 20;
     wb_bundle_shape(bundle, 19, s, shape);
@@ -116,6 +116,89 @@ static void a_stopped_run_keeps_its_rows(void **unused)
     assert_true(history.rows[4].force > history.rows[3].force);
 }
 
+struct rest {
+    int looks;
+    long long steps;
+};
+
+static bool stop_at_rest(void *context, const struct wb_bundle_progress *progress)
+{
+    struct rest *rest = context;
+    assert_true(progress->rests && progress->done == 0.0);
+    assert_true(rest->looks == 0 || progress->steps > rest->steps);
+    rest->steps = progress->steps;
+    return ++rest->looks < 3;
+}
+
+static void a_run_can_be_stopped_while_its_weight_comes_on(void **unused)
+{
+    (void)unused;
+    struct rest rest = {0};
+    const struct wb_bundle_observer observer = {.progress = stop_at_rest, .context = &rest};
+    read_model(ONE RUN("deflection_mm: 10, rows: 10") "loads: {weight: true}\n");
+    run_model(&observer);
+    assert_true(history.stopped && history.converged);
+    assert_int_equal(rest.looks, 3);
+    assert_int_equal(history.n_rows, 0);
+}
+
+static void a_strand_that_is_too_short_is_told(void **unused)
+{
+    (void)unused;
+    read_model(ONE "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 60, rows: 4, "
+                   "duration_s: 0.3}\nloads: {weight: false, strand_mm: 10}\n");
+    wb_log_set_sink(discard_message, NULL);
+    run_model(NULL);
+    wb_log_set_sink(NULL, NULL);
+    assert_false(history.converged);
+    assert_non_null(strstr(history.problem, "the strand of 10 mm"));
+}
+
+/* As a wire that is shorter by what the epoxy holds. */
+static void a_potted_wire_is_a_shorter_one(void **unused)
+{
+    (void)unused;
+    double force[2][5], clamp[2];
+    for (int i = 0; i < 2; i++) {
+        const int held = 3;
+        read_model(ONE RUN("deflection_mm: 20, rows: 4, duration_s: 1") "loads: {weight: false}\n");
+        const double element = model.length / 15.0;
+        for (int m = 0; m < model.n_meshes && i == 0; m++)
+            model.mesh[m].elements_along -= held;
+        model.length -= i == 0 ? held * element : 0.0;
+        model.potted_length = i == 0 ? 0.0 : held * element;
+        run_model(NULL);
+        assert_int_equal(history.n_rows, 5);
+        for (int row = 0; row < 5; row++)
+            force[i][row] = history.rows[row].force;
+        clamp[i] = history.rows[4].tip[0] - (i == 0 ? 0.0 : held * element);
+    }
+    for (int row = 1; row < 5; row++)
+        assert_close_relative(force[1][row], force[0][row], 1e-4);
+    assert_close(clamp[1], clamp[0], 1e-7);
+}
+
+/* Positions are double anyway; forces in float move the curve by their round-off. */
+static void in_double_the_curve_is_the_same(void **unused)
+{
+    (void)unused;
+    double force[2][5];
+    for (int i = 0; i < 2; i++) {
+        read_model(SEVEN
+                   "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 20, rows: 4, "
+                   "duration_s: 0.2, precision: single}\nloads: {weight: false}\n");
+        assert_false(model.run.double_precision);
+        model.run.double_precision = i == 1;
+        run_model(NULL);
+        assert_true(history.converged);
+        for (int row = 0; row < 5; row++)
+            force[i][row] = history.rows[row].force;
+    }
+    for (int row = 1; row < 5; row++)
+        assert_close_relative(force[1][row], force[0][row], 1e-3);
+    assert_true(force[1][4] != force[0][4]);
+}
+
 static void what_cannot_be_computed_is_refused(void **unused)
 {
     (void)unused;
@@ -141,6 +224,10 @@ int main(void)
         cmocka_unit_test(under_its_weight_it_hangs_as_a_propped_beam),
         cmocka_unit_test(momentum_comes_from_outside_alone),
         cmocka_unit_test_teardown(a_stopped_run_keeps_its_rows, release),
+        cmocka_unit_test_teardown(a_run_can_be_stopped_while_its_weight_comes_on, release),
+        cmocka_unit_test_teardown(a_strand_that_is_too_short_is_told, release),
+        cmocka_unit_test_teardown(a_potted_wire_is_a_shorter_one, release),
+        cmocka_unit_test_teardown(in_double_the_curve_is_the_same, release),
         cmocka_unit_test_teardown(what_cannot_be_computed_is_refused, release),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

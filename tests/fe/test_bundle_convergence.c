@@ -92,8 +92,9 @@ static void a_yielding_wire_converges_with_the_section(void **unused)
             print_message(" %+.2f", 100.0 * (force[i] / exact[i] - 1.0));
         print_message(" %% at 10 to 50 mm\n");
     }
-    print_message("largest from 20 mm on: %.2f, %.2f, %.2f %%\n", 100.0 * error[0],
-                  100.0 * error[1], 100.0 * error[2]);
+    print_message("largest from 20 mm on: %.2f, %.2f, %.2f %%; orders %.2f, %.2f\n",
+                  100.0 * error[0], 100.0 * error[1], 100.0 * error[2], log2(error[0] / error[1]),
+                  log2(error[1] / error[2]));
     assert_true(error[0] < 0.035 && error[1] < 0.5 * error[0]);
     assert_true(error[2] < 0.005);
     wb_cantilever_destroy(cantilever);

@@ -104,6 +104,7 @@ static const char full[] = "name: mine\n"
                            "  mass_scaling: 4\n"
                            "  selective_mass_scaling: 100\n"
                            "  kinetic_energy_limit: 0.02\n"
+                           "  precision: double\n"
                            "loads: {strand_mm: 760, weight: true}\n"
                            "published: {outer_diameter_mm: 4.6, density_g_cm3: 3.43, beam: "
                            "bundle-7}\n";
@@ -178,6 +179,7 @@ static void meshes_run_and_loads_are_read(void **state)
     assert_string_equal(run->mesh, "fine");
     assert_close(run->deflection, 0.04, 1e-15);
     assert_true(run->rows == 20 && run->cycles == 3);
+    assert_true(run->double_precision);
     assert_close(run->duration, 2.0, 0.0);
     assert_close(run->mass_scaling, 4.0, 0.0);
     assert_close(run->selective, 100.0, 0.0);
@@ -628,8 +630,9 @@ static void wrong_runs_are_refused(void **state)
            ":31: selective_mass_scaling: ");
     refuse(full, "kinetic_energy_limit: 0.02", "kinetic_energy_limit: 2",
            ":32: kinetic_energy_limit: ");
-    refuse(full, ", weight: true", "", ":33: weight: this key is missing");
-    refuse(full, "beam: bundle-7", "beam: nothing", ":34: beam: ");
+    refuse(full, "precision: double", "precision: half", ":33: precision: ");
+    refuse(full, ", weight: true", "", ":34: weight: this key is missing");
+    refuse(full, "beam: bundle-7", "beam: nothing", ":35: beam: ");
     refuse(full, "length_mm: 114", "length_mm: 114 mm", ":13: length_mm: ");
     refuse(full, "length_source: printed", "length_source: guessed", ":14: length_source: ");
 }
