@@ -2,9 +2,9 @@
  * spans a gap and comes to lie on a wire, and after its bond broke (fe/swept_cohesion.h).
  *
  * A node of the ring touches the nearest wire, a circle of its contact radius round the centre of
- * its surface nodes. Pressure is K_nn times the depth, half the tape's thickness and the radius less
- * the distance from that centre, and the derivative of its energy: it acts along the radius, and
- * wherever the tape slides, what it does is what is stored. The place y that the node faces,
+ * its surface nodes. Pressure is K_nn times the depth, half the tape's thickness and the radius
+ * less the distance from that centre, and the derivative of its energy: it acts along the radius,
+ * and wherever the tape slides, what it does is what is stored. The place y that the node faces,
  * between two surface nodes and between stations, and its distance from the tape's middle surface
  * there, o, are found when it comes near, and anew whenever it has slid by a fiftieth of the radius
  * (looked at every so many steps). The centre is seen from these two nodes until then. Friction

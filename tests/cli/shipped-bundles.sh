@@ -18,4 +18,15 @@ make_it_again "$campaign"
 expect_figures 30
 forbid "$folder|$root/"
 
+# What a user calibrates is what the report has of the first bundle.
+"$wirebench" calibrate "$root/simulations/7-type3" --yield-point 0.04 --step-mm 0.5 \
+    -o "$folder/beam.yaml" >/dev/null 2>&1 || fail 'calibrate'
+for key in youngs_modulus_MPa yield_stress_MPa strength_coefficient_MPa hardening_exponent; do
+    own=$(sed -n "s/^$key: //p" "$folder/beam.yaml")
+    reported=$(awk -v key="\"$key\":" '/"fitted": {/ { f = 1 } f && $1 == key { print $2 + 0; exit }' \
+        OFMT=%.12g "$folder/a/report.json")
+    awk -v a="$own" -v b="$reported" 'BEGIN { exit !(a > 0 && a / b - 1 < 1e-9 && b / a - 1 < 1e-9) }' ||
+        fail "calibrate finds $key $own, the report $reported"
+done
+
 finish 'report of the shipped bundles'
