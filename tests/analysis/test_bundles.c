@@ -172,7 +172,7 @@ static void the_shipped_campaign_can_be_read(void **state)
     assert_int_equal(wb_bundles_read(&campaign, path), WB_OK);
     assert_string_equal(campaign.name, "fixtures/campaigns/bundles.yaml");
     /* Then those with the tape on a circle. */
-    assert_int_equal(campaign.n_bundles, 9);
+    assert_int_equal(campaign.n_bundles, 10);
     for (int i = 0; i < campaign.n_bundles; i++) {
         const struct wb_bundles_bundle *const bundle = &campaign.bundles[i];
         const struct wb_bundle_model *const model = campaign.runs[bundle->dynamic].model;
