@@ -370,9 +370,9 @@ static bool find_place(const struct wb_swept_tape_contact *c, const double *posi
     for (int i = 0; i < 3; i++)
         radial[i] = x[i] - centre[i];
     (void)take_out(radial, axis);
-    near->outwards = dot(d, radial) < 0.0 ? -1.0 : 1.0;
+    const double outwards = dot(d, radial) < 0.0 ? -1.0 : 1.0;
     for (int i = 0; i < 3; i++)
-        direction[i] = near->outwards * d[i];
+        direction[i] = outwards * d[i];
     const double length = take_out(direction, axis);
     if (!(length > 0.1 && find_place_round(c, position, x, direction, axis, j, near, place)) &&
         !find_place_round(c, position, x, radial, axis, j, near, place))
@@ -382,7 +382,7 @@ static bool find_place(const struct wb_swept_tape_contact *c, const double *posi
         aside[i] = x[i] - place[i];
         direction[i] = d[i] / size;
     }
-    near->offset = (dot(aside, direction) - near->outwards * near->gap) / size;
+    near->offset = (dot(aside, direction) - outwards * near->gap) / size;
     (void)take_out(aside, direction);
     find_centre_beside(c, position, j, centre, axis, near);
     return true;

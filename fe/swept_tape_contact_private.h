@@ -15,7 +15,7 @@ struct wb_swept_tape_contact_surface {
 /* Where a node is near a wire. */
 struct wb_swept_tape_contact_near_place {
     int wire, partner[2], station;
-    double gap, round, along, offset, outwards;
+    double gap, round, along, offset;
     double aside, inwards; /* the centre, seen from between the partners */
 };
 
