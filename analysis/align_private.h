@@ -24,7 +24,7 @@
 #include "daq/rig.h"
 #include "daq/sample.h"
 #include "daq/specimen.h"
-#include "fe/wire.h"
+#include "fe/model/wire.h"
 
 struct wb_align_reading {
     int64_t t_ns; /* arrival */

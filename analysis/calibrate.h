@@ -18,7 +18,7 @@
 #include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "base/status.h"
-#include "fe/material.h"
+#include "fe/material/material.h"
 
 /* Range of elastic zone and yield point: beyond it the closed forms do not hold by far. */
 #define WB_CALIBRATE_LEAST_ZONE 1e-3

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "base/units.h"
-#include "fe/cantilever.h"
-#include "fe/section.h"
+#include "fe/rod/section.h"
+#include "fe/trial/cantilever.h"
 
 #define WB_LOG_DOMAIN "computed"
 

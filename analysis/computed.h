@@ -14,7 +14,7 @@
 
 #include "analysis/dataset.h"
 #include "base/status.h"
-#include "fe/material.h"
+#include "fe/material/material.h"
 
 struct wb_computed; /* opaque */
 

@@ -8,10 +8,10 @@
 
 #include "analysis/dataset.h"
 #include "base/status.h"
-#include "fe/history.h"
-#include "fe/wire3d.h"
-#include "fe/wire_model.h"
-#include "fe/wire_run.h"
+#include "fe/model/wire_model.h"
+#include "fe/trial/history.h"
+#include "fe/trial/wire3d.h"
+#include "fe/trial/wire_run.h"
 
 /* How the simulation was made, for dataset.json. */
 struct wb_simulated_origin {

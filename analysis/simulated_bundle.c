@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "fe/team.h"
+#include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "dataset"
 

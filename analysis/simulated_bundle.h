@@ -1,4 +1,4 @@
-/* A computed bundle (fe/bundle_run.h) as a dataset, and its energies beside it.
+/* A computed bundle (fe/bundle/bundle_run.h) as a dataset, and its energies beside it.
  *
  * energies.csv in the dataset's folder has one row for each of force_deflection.csv:
  *
@@ -13,9 +13,9 @@
 
 #include "analysis/dataset.h"
 #include "base/status.h"
-#include "fe/bundle_model.h"
-#include "fe/bundle_override.h"
-#include "fe/bundle_run.h"
+#include "fe/bundle/bundle_run.h"
+#include "fe/model/bundle_model.h"
+#include "fe/model/bundle_override.h"
 
 struct wb_simulated_bundle {
     const struct wb_bundle_model *model; /* as it was run: with what was overridden */

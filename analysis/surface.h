@@ -14,7 +14,7 @@
 #include <stdbool.h>
 
 #include "base/status.h"
-#include "fe/bundle_fields.h"
+#include "fe/output/bundle_fields.h"
 
 enum {
     WB_SURFACE_ALONG = 41,        /* stations and nodes at most that wb_surface_take() keeps */

@@ -7,10 +7,10 @@
 
 #include "analysis/fields.h"
 #include "base/status.h"
-#include "fe/solid_mesh.h"
-#include "fe/wire1d.h"
-#include "fe/wire3d.h"
-#include "fe/wire_model.h"
+#include "fe/model/wire_model.h"
+#include "fe/solid/solid_mesh.h"
+#include "fe/trial/wire1d.h"
+#include "fe/trial/wire3d.h"
 
 /* Appends the fields of a 3D wire's present state. The axial stress is that along the deformed
  * axis at the same place of the straight wire. */

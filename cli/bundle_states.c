@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fe/team.h"
+#include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "solve"
 

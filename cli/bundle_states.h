@@ -9,9 +9,9 @@
 #include "analysis/surface.h"
 #include "base/status.h"
 #include "cli/solve.h"
-#include "fe/bundle_fields.h"
-#include "fe/bundle_run.h"
-#include "fe/bundle_vtk.h"
+#include "fe/bundle/bundle_run.h"
+#include "fe/output/bundle_fields.h"
+#include "fe/output/bundle_vtk.h"
 
 struct wb_bundle_states {
     bool wants_surface, wants_vtk; /* set by the caller */

@@ -7,7 +7,7 @@
 #include "analysis/report/figures_bundle.h"
 #include "base/units.h"
 #include "cli/info.h"
-#include "fe/bundle_model.h"
+#include "fe/model/bundle_model.h"
 
 #define WB_LOG_DOMAIN "info"
 

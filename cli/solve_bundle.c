@@ -13,8 +13,8 @@
 #include "base/units.h"
 #include "cli/bundle_states.h"
 #include "cli/solve.h"
-#include "fe/bundle_run.h"
-#include "fe/team.h"
+#include "fe/bundle/bundle_run.h"
+#include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "solve"
 

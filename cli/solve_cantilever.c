@@ -8,7 +8,7 @@
 #include "base/progress.h"
 #include "base/units.h"
 #include "cli/solve.h"
-#include "fe/wire.h"
+#include "fe/model/wire.h"
 
 #define WB_LOG_DOMAIN "solve"
 

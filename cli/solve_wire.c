@@ -13,9 +13,9 @@
 #include "base/progress.h"
 #include "base/units.h"
 #include "cli/solve.h"
-#include "fe/vtk.h"
-#include "fe/wire1d.h"
-#include "fe/wire3d.h"
+#include "fe/output/vtk.h"
+#include "fe/trial/wire1d.h"
+#include "fe/trial/wire3d.h"
 
 #define WB_LOG_DOMAIN "solve"
 

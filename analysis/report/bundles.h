@@ -56,7 +56,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
-#include "fe/bundle_model.h"
+#include "fe/model/bundle_model.h"
 
 enum {
     WB_BUNDLES_RUNS = 64,

@@ -6,7 +6,7 @@
 #include "analysis/report/bundles.h"
 #include "base/config.h"
 #include "base/units.h"
-#include "fe/bundle_override.h"
+#include "fe/model/bundle_override.h"
 
 #define WB_LOG_DOMAIN "campaign"
 

@@ -30,7 +30,7 @@ struct wb_bundles_energy {
 /* What a dataset says of its computation; NaN where it does not. */
 struct wb_bundles_numbers {
     double elements, shells, steps, time_step, duration, cpu_s, wall_s, ns; /* s, ns */
-    double kinetic, artificial, imbalance, strain; /* largest ratios, see fe/bundle_run.h */
+    double kinetic, artificial, imbalance, strain; /* largest ratios, see fe/bundle/bundle_run.h */
     double penetration;                            /* m */
 };
 

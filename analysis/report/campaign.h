@@ -49,7 +49,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
-#include "fe/wire.h"
+#include "fe/model/wire.h"
 
 /* One recording that the campaign wants. */
 struct wb_campaign_test {

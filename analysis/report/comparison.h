@@ -42,8 +42,8 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
-#include "fe/wire.h"
-#include "fe/wire_model.h"
+#include "fe/model/wire.h"
+#include "fe/model/wire_model.h"
 
 #define WB_COMPARISON_RESIDUALS 4
 

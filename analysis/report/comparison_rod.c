@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "fe/cantilever.h"
-#include "fe/section.h"
+#include "fe/rod/section.h"
+#include "fe/trial/cantilever.h"
 
 #define WB_LOG_DOMAIN "report"
 

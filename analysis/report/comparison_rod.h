@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "base/status.h"
-#include "fe/material.h"
+#include "fe/material/material.h"
 
 enum {
     WB_COMPARISON_POINTS = 101, /* along the wire */

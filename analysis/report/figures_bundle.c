@@ -7,7 +7,7 @@
 
 #include "analysis/report/report_pdf.h"
 #include "base/units.h"
-#include "fe/swept_section.h"
+#include "fe/swept/swept_section.h"
 
 #define WB_LOG_DOMAIN "report"
 

@@ -7,7 +7,7 @@
 
 #include "analysis/plot/figure.h"
 #include "base/status.h"
-#include "fe/bundle_model.h"
+#include "fe/model/bundle_model.h"
 
 enum {
     WB_FIGURES_BUNDLE_MOST = 3 /* beside each other */

@@ -10,8 +10,8 @@
 
 #include "analysis/fields.h"
 #include "analysis/simulated.h"
-#include "fe/cantilever.h"
-#include "fe/section.h"
+#include "fe/rod/section.h"
+#include "fe/trial/cantilever.h"
 
 enum {
     BENT_SHAPE = 41,  /* positions of a shape */

@@ -7,7 +7,7 @@
 
 #include "analysis/dataset.h"
 #include "base/units.h"
-#include "fe/history.h"
+#include "fe/trial/history.h"
 
 static const struct wb_material follower_core = {
     WB_HARDENING_ISOTROPIC_POWER, 68.2e9, 0.34, 182e6, 292e6, 0.31};

@@ -12,8 +12,8 @@
 #include "analysis/simulated_bundle.h"
 #include "analysis/surface.h"
 #include "base/units.h"
-#include "fe/cantilever.h"
-#include "fe/section.h"
+#include "fe/rod/section.h"
+#include "fe/trial/cantilever.h"
 
 enum {
     MADE_UP_SHAPE = 26

@@ -1,9 +1,9 @@
-/* The static bundle (fe/bundle_static.h) against shipped curves of the explicit one: both with
- * constant friction of 0.4, a vertical force and no weight, as the static model knows them. */
+/* The static bundle (tests/twin/bundle_static.h) against shipped curves of the explicit one: both
+ * with constant friction of 0.4, a vertical force and no weight, as the static model knows them. */
 #include "analysis/dataset.h"
 #include "base/file.h"
-#include "fe/bundle_static.h"
 #include "tests/check.h"
+#include "tests/twin/bundle_static.h"
 
 /* Every tenth row and the second: the largest difference, over the static force. */
 static double compare(const char *bundle_name, const char *dataset_name, double from)

@@ -1,8 +1,8 @@
 #include "tests/analysis/beam_data.h"
 
 #include "analysis/errors.h"
-#include "fe/cantilever.h"
-#include "fe/section.h"
+#include "fe/rod/section.h"
+#include "fe/trial/cantilever.h"
 
 static const double mm = WB_MM;
 

@@ -9,10 +9,10 @@
 #include "base/units.h"
 #include "daq/rig.h"
 #include "daq/specimen.h"
-#include "fe/bundle_model.h"
-#include "fe/material_file.h"
-#include "fe/wire.h"
-#include "fe/wire_model.h"
+#include "fe/material/material_file.h"
+#include "fe/model/bundle_model.h"
+#include "fe/model/wire.h"
+#include "fe/model/wire_model.h"
 
 /* Calls `look` with every shipped file that matches; there must be at least `least`. */
 static void each_file(const char *pattern, size_t least, void (*look)(const char *path))

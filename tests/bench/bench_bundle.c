@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "fe/bundle_run.h"
+#include "fe/bundle/bundle_run.h"
 
 enum {
     STEPS = 4000,

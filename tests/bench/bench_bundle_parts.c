@@ -12,9 +12,9 @@
 #include <time.h>
 
 #include "base/file.h"
-#include "fe/bundle_parts.h"
-#include "fe/bundle_private.h"
-#include "fe/team.h"
+#include "fe/bundle/bundle_parts.h"
+#include "fe/bundle/bundle_private.h"
+#include "fe/team/team.h"
 
 enum {
     BLOCKS = 10,

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "fe/history.h"
+#include "fe/trial/history.h"
 
 enum {
     STEPS = 53,

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "tests/fe/hex20_cases.h"
-#include "tests/fe/hex20_twin.h"
+#include "tests/fe/solid/hex20_cases.h"
+#include "tests/fe/solid/hex20_twin.h"
 
 enum {
     ELEMENTS = 64,

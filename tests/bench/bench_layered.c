@@ -10,8 +10,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "fe/layered.h"
-#include "fe/solid_mesh.h"
+#include "fe/linear/layered.h"
+#include "fe/solid/solid_mesh.h"
 
 enum {
     UNKNOWNS = 60, /* of an element */

@@ -8,8 +8,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "fe/swept_step.h"
-#include "tests/fe/swept_hex_twin.h"
+#include "fe/swept/swept_step.h"
+#include "tests/fe/swept/swept_hex_twin.h"
 
 enum {
     WIRES = 7,

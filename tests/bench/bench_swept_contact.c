@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "fe/packing.h"
-#include "fe/swept_contact.h"
+#include "fe/model/packing.h"
+#include "fe/swept/swept_contact.h"
 
 enum {
     MOST_WIRES = 32,

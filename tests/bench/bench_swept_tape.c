@@ -7,10 +7,10 @@
 #include <string.h>
 #include <time.h>
 
-#include "fe/swept_cohesion.h"
-#include "fe/swept_step.h"
-#include "fe/swept_tape.h"
-#include "fe/swept_tape_contact.h"
+#include "fe/swept/swept_cohesion.h"
+#include "fe/swept/swept_step.h"
+#include "fe/swept/swept_tape.h"
+#include "fe/swept/swept_tape_contact.h"
 
 enum {
     NODES = 32,

@@ -13,8 +13,8 @@
 
 #include "base/file.h"
 #include "base/units.h"
-#include "fe/solid.h"
-#include "fe/wire3d.h"
+#include "fe/solid/solid.h"
+#include "fe/trial/wire3d.h"
 
 /* CPU seconds of CalculiX 2.20 on one 2.6 GHz Zen 4 core, 720 C3D20R. */
 static const double stored_ccx = 249.0;

@@ -6,7 +6,7 @@
 #include "base/units.h"
 #include "daq/rig.h"
 #include "daq/specimen.h"
-#include "fe/wire.h"
+#include "fe/model/wire.h"
 #include "fixtures/virtual/composite.h"
 #include "fixtures/virtual/truth.h"
 #include "tests/check.h"

@@ -1,6 +1,6 @@
 #include "fixtures/virtual/live_wire.h"
 
-#include "fe/cantilever.h"
+#include "fe/trial/cantilever.h"
 #include "tests/virtual/setup.h"
 
 static struct wb_live_wire *make(const struct setup *setup,

@@ -12,7 +12,7 @@
 
 #include "base/file.h"
 #include "base/units.h"
-#include "fe/cantilever.h"
+#include "fe/trial/cantilever.h"
 #include "fixtures/virtual/composite.h"
 
 #define WB_LOG_DOMAIN "tune"

@@ -1,0 +1,664 @@
+#include "fe/bundle/bundle_run_private.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/units.h"
+#include "fe/team/team.h"
+
+#define WB_LOG_DOMAIN "bundle"
+
+enum {
+    MOST_SHAPE = 1000,
+    MOST_BLOCK = 50,       /* steps between two samples of the force */
+    SAMPLES_OF_A_ROW = 40, /* at least, where its steps allow it */
+    LOOKS_OF_A_ROW = 4,    /* at all energies */
+    REST_SAMPLES = 40      /* of the force at zero */
+};
+
+static const double usual_from = 2.0 * WB_MM; /* where ratios begin to count */
+static const double pilot_share = 1.5;        /* of that, where a duration is judged */
+static const double margin = 1.06;            /* on a duration that follows from a ratio */
+static const double late_margin = 1.1;        /* on one that follows from a later ratio */
+static const double too_slow = 0.75;          /* a needed duration over the present one */
+static const double usual_interval = 600.0;   /* s between checkpoints */
+static const double slack_gap = 1e-3;         /* over the deflection: the strand is slack, surely */
+static const double lost_balance = 0.05;      /* imbalance over work: the run is no solution */
+
+/* --- memory --- */
+
+int wb_bundle_run_planned_rows(const struct wb_bundle_model *model)
+{
+    return 1 + model->run.rows * (model->run.cycles == 0 ? 1 : 2 * model->run.cycles);
+}
+
+enum wb_status wb_bundle_run_init(struct wb_bundle_history *history,
+                                  const struct wb_bundle_model *model, int n_shape)
+{
+    *history = (struct wb_bundle_history){0};
+    if (n_shape < 0 || n_shape == 1 || n_shape > MOST_SHAPE)
+        return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
+                       n_shape, MOST_SHAPE);
+
+    const size_t rows = (size_t)wb_bundle_run_planned_rows(model), n = (size_t)n_shape;
+    history->rows = calloc(rows, sizeof *history->rows);
+    if (n_shape > 0) {
+        history->shape_s = calloc(n, sizeof *history->shape_s);
+        history->shape = calloc(rows * n, sizeof *history->shape);
+    }
+    if (!history->rows || (n_shape > 0 && (!history->shape_s || !history->shape))) {
+        wb_bundle_run_release(history);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
+    }
+    history->capacity = (int)rows;
+    history->n_shape = n_shape;
+    for (int i = 0; i < n_shape; i++)
+        history->shape_s[i] = model->length * i / (n_shape - 1);
+    return WB_OK;
+}
+
+void wb_bundle_run_release(struct wb_bundle_history *history)
+{
+    if (!history)
+        return;
+    free(history->rows);
+    free(history->shape_s);
+    free(history->shape);
+    *history = (struct wb_bundle_history){0};
+}
+
+/* --- one attempt --- */
+
+enum verdict {
+    GO_ON,
+    DONE,     /* or stopped, or lost: nothing more is to be done */
+    ANEW,     /* with another duration */
+    NO_MEMORY /* or another error that is not the run's */
+};
+
+static int branches_of(const struct wb_bundle_model *model)
+{
+    return model->run.cycles == 0 ? 1 : 2 * model->run.cycles;
+}
+
+/* A run that is lost keeps the reason that was given. */
+static void keep_reason(void *context, enum wb_log_level level, const char *domain,
+                        const char *message)
+{
+    struct wb_bundle_run_now *r = context;
+    (void)level, (void)domain;
+    snprintf(r->history->problem, sizeof r->history->problem, "%s", message);
+}
+
+static enum verdict lose(struct wb_bundle_run_now *r)
+{
+    if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE)
+        return NO_MEMORY;
+    r->status = WB_OK;
+    r->history->converged = false;
+    return DONE;
+}
+
+/* Whether the caller wants to go on. */
+static bool is_wanted(const struct wb_bundle_run_now *r, bool rests)
+{
+    const struct wb_bundle_history *h = r->history;
+    const struct wb_bundle_observer *observer = r->options.observer;
+    const double whole = h->duration * branches_of(r->model);
+    const struct wb_bundle_progress progress = {
+        .attempt = h->attempts,
+        .steps = r->state.steps,
+        .done = h->n_rows == 0 ? 0.0 : fmin(1.0, (r->state.time - r->begin) / whole),
+        .rests = rests,
+        .deflection = r->state.deflection,
+        .kinetic = r->kinetic,
+        .artificial = r->artificial,
+    };
+
+    return !observer || !observer->progress || observer->progress(observer->context, &progress);
+}
+
+/* While it comes to rest there are no checkpoints: with rows behind it, it stops at the next place
+ * where there are. Rank 0 decides. */
+static bool rest_is_wanted(void *context)
+{
+    struct wb_bundle_run_now *r = context;
+
+    wb_bundle_get_state(r->bundle, &r->state);
+    bool wanted = is_wanted(r, true) || r->history->n_rows > 0;
+    wb_team_share(&wanted, sizeof wanted, 0);
+    r->history->stopped = !wanted;
+    return wanted;
+}
+
+enum motion {
+    STEPS,
+    SETTLING,
+    LETTING_GO
+};
+
+static enum verdict move(struct wb_bundle_run_now *r, enum motion motion, int n)
+{
+    const struct wb_bundle_watch watch = {rest_is_wanted, r};
+
+    r->history->problem[0] = '\0';
+    wb_log_set_tap(keep_reason, r);
+    const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
+    switch (motion) {
+    case STEPS:
+        r->status = wb_bundle_advance(r->bundle, n);
+        break;
+    case SETTLING:
+        r->status = wb_bundle_settle(r->bundle, &watch);
+        break;
+    case LETTING_GO:
+        r->status = wb_bundle_let_go(r->bundle, &watch);
+        break;
+    }
+    wb_log_set_gravest(before);
+    wb_log_set_tap(NULL, NULL);
+    if (r->status != WB_OK)
+        return lose(r);
+    wb_bundle_get_state(r->bundle, &r->state);
+    return r->history->stopped ? DONE : GO_ON;
+}
+
+static enum verdict advance(struct wb_bundle_run_now *r, int n)
+{
+    return move(r, STEPS, n);
+}
+
+/* --- energies --- */
+
+static double over(double part, double whole)
+{
+    return whole > 0.0 ? part / whole : (double)INFINITY;
+}
+
+static void count_limits(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_extremes *largest = &r->history->largest;
+    struct wb_bundle_limits limits;
+
+    wb_bundle_get_limits(r->bundle, &limits);
+    largest->strain = fmax(largest->strain, limits.largest_strain);
+    largest->penetration = fmax(largest->penetration, limits.deepest);
+    largest->beyond = largest->beyond || limits.beyond > 0;
+}
+
+/* What a ratio says of the duration while the first loading goes on. */
+static enum verdict judge(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_history *h = r->history;
+    const double limit = r->model->run.kinetic_limit;
+    const double needed = h->duration * sqrt(h->largest.kinetic / limit);
+    const bool last = h->attempts == WB_BUNDLE_RUN_ATTEMPTS;
+
+    if (!h->chosen || (!r->judged && r->state.target < pilot_share * r->from))
+        return GO_ON;
+    h->exceeded = h->largest.kinetic > limit;
+    if (h->exceeded && !last) {
+        r->next = needed * (r->judged ? late_margin : margin);
+        return ANEW;
+    }
+    if (!r->judged && h->attempts == 1 && needed * margin < too_slow * h->duration) {
+        r->next = needed * margin;
+        return ANEW;
+    }
+    r->judged = true;
+    return GO_ON;
+}
+
+static enum verdict look(struct wb_bundle_run_now *r, struct wb_bundle_energies *e)
+{
+    struct wb_bundle_extremes *largest = &r->history->largest;
+
+    wb_bundle_get_energies(r->bundle, e);
+    const double internal = wb_bundle_internal(e);
+    r->kinetic = over(e->kinetic, internal);
+    r->artificial = over(e->artificial, internal);
+    r->most_external = fmax(r->most_external, fabs(e->external));
+    count_limits(r);
+    r->counting = r->counting || r->state.target >= r->from;
+    const double imbalance = over(fabs(wb_bundle_imbalance(e)), r->most_external);
+    if (!r->counting)
+        return GO_ON;
+
+    largest->kinetic = fmax(largest->kinetic, r->kinetic);
+    largest->artificial = fmax(largest->artificial, r->artificial);
+    largest->imbalance = fmax(largest->imbalance, imbalance);
+    if (!(imbalance <= lost_balance)) {
+        snprintf(r->history->problem, sizeof r->history->problem,
+                 "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
+                 "are missing or too much",
+                 r->state.deflection / WB_MM, r->state.steps, imbalance);
+        r->status = WB_ERR_DATA;
+        return lose(r);
+    }
+    return r->branch == 0 ? judge(r) : GO_ON;
+}
+
+/* --- rows --- */
+
+static void add_to_line(struct wb_bundle_run_line *line, double x, double y)
+{
+    line->n += 1.0;
+    line->x += x;
+    line->y += y;
+    line->xx += x * x;
+    line->xy += x * y;
+    line->yy += y * y;
+}
+
+/* Its value at x; at one place only, or with too few points, the mean. */
+static double value_at(const struct wb_bundle_run_line *line, double x, double *deviation)
+{
+    const double mean = line->y / line->n, at = line->x / line->n;
+    const double spread = line->xx / line->n - at * at;
+    const double together = line->xy / line->n - at * mean;
+    const bool has_slope = line->n > 2.0 && spread > 1e-9 * line->xx / line->n;
+    const double slope = has_slope ? together / spread : 0.0;
+
+    *deviation = sqrt(fmax(0.0, line->yy / line->n - mean * mean - slope * together));
+    return mean + slope * (x - at);
+}
+
+static enum wb_history_phase phase_of(const struct wb_bundle_run_now *r)
+{
+    return r->branch % 2 == 0 ? WB_HISTORY_LOAD : WB_HISTORY_UNLOAD;
+}
+
+static void take_place(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_row *row = &r->row;
+    const double length = r->model->length, last = 0.01 * length;
+    const double s[2] = {length - last, length};
+    double ends[2][3];
+
+    wb_bundle_shape(r->bundle, 2, s, ends);
+    *row = (struct wb_bundle_row){
+        .time = r->state.time - r->begin,
+        .cycle = 1 + r->branch / 2,
+        .phase = r->state.slack ? WB_HISTORY_SLACK : phase_of(r),
+        .deflection = r->state.deflection,
+        .tip = {ends[1][0], ends[1][1], ends[1][2]},
+        .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
+    };
+    if (r->history->n_shape > 0)
+        wb_bundle_shape(r->bundle, r->history->n_shape, r->history->shape_s,
+                        r->history->shape +
+                            (size_t)r->history->n_rows * (size_t)r->history->n_shape);
+    r->samples_before = r->vertical.n + r->slack_samples > 0.0;
+}
+
+static void sample(struct wb_bundle_run_now *r)
+{
+    if (r->state.slack) {
+        r->slack_samples++;
+        return;
+    }
+    add_to_line(&r->vertical, r->state.target, r->state.vertical);
+    add_to_line(&r->tension, r->state.target, r->state.tension);
+}
+
+static void begin_line(struct wb_bundle_run_now *r)
+{
+    r->vertical = r->tension = (struct wb_bundle_run_line){0};
+    r->slack_samples = 0;
+}
+
+static void finish_row(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_row *row = &r->row;
+    double ignored;
+
+    /* A strand that swings about zero is slack for a step and taut for the next. Where the tip
+     * hangs there are no samples: it was slack there, whatever comes after. */
+    if (!r->hangs && r->samples_before)
+        row->phase = r->slack_samples > r->vertical.n ? WB_HISTORY_SLACK : phase_of(r);
+    if (r->vertical.n == 0.0)
+        sample(r);
+    if (r->vertical.n == 0.0)
+        row->phase = WB_HISTORY_SLACK;
+    /* Where the strand is taut the target is the deflection. */
+    if (row->phase != WB_HISTORY_SLACK) {
+        row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
+        row->tension = value_at(&r->tension, row->deflection, &ignored);
+    }
+    if (h->n_rows == 0)
+        h->zero_force = row->vertical_force;
+    row->force = row->vertical_force - h->zero_force;
+    h->rows[h->n_rows++] = *row;
+    begin_line(r);
+}
+
+/* Rank 0 decides: clocks and signals differ. */
+static enum verdict report(struct wb_bundle_run_now *r)
+{
+    const char *file = r->options.checkpoint;
+    const bool wanted = is_wanted(r, false);
+    bool choice[2] = {wanted, file && (!wanted || wb_bundle_run_clock().wall - r->saved.wall >=
+                                                      r->options.checkpoint_interval)};
+
+    wb_team_share(choice, sizeof choice, 0);
+    const bool saved = choice[1] && wb_bundle_run_save(r) == WB_OK;
+    if (choice[1] && !saved)
+        wb_warn("%s: this checkpoint is not written", file);
+    if (choice[0])
+        return GO_ON;
+    r->history->stopped = true;
+    r->history->kept = saved;
+    return DONE;
+}
+
+/* --- ways --- */
+
+/* Time over duration at which a fifth-order smooth step has made the share of its way. */
+static double time_of(double share)
+{
+    double low = 0.0, high = 1.0;
+
+    for (int i = 0; i < 60; i++) {
+        const double t = 0.5 * (low + high);
+        if (t * t * t * (10.0 + t * (6.0 * t - 15.0)) < share)
+            low = t;
+        else
+            high = t;
+    }
+    return 0.5 * (low + high);
+}
+
+static bool unloads(const struct wb_bundle_run_now *r)
+{
+    return r->branch % 2 == 1;
+}
+
+/* The target at a place of the way, m: 0 is its begin, the rows are at 1, 2, ... */
+static double target_of(const struct wb_bundle_run_now *r, double place)
+{
+    const double share = place / r->model->run.rows;
+    return r->model->run.deflection * (unloads(r) ? 1.0 - share : share);
+}
+
+/* On its way back a strand is slack when the tip stays behind the target; a single force below
+ * zero is an oscillation. */
+static bool went_slack(const struct wb_bundle_run_now *r)
+{
+    return unloads(r) && r->model->loads.strand_length > 0.0 && !r->hangs &&
+           r->state.deflection - r->state.target > slack_gap * r->model->run.deflection;
+}
+
+/* Goes on to a place of the way, sampling; energies are looked at four times a row. Here, between
+ * two blocks of steps, checkpoints are made, and here a run goes on from one. Where the strand goes
+ * slack the tip comes to rest, and nothing moves any more on this way. */
+static enum verdict go_to(struct wb_bundle_run_now *r, double place, bool look_there)
+{
+    const double dt = r->history->time_step;
+    const double share =
+        fmin(1.0, fmax(0.0, (target_of(r, place) - r->way[0]) / (r->way[1] - r->way[0])));
+    const double end = r->way_time + r->history->duration * time_of(share);
+    struct wb_bundle_energies energies;
+
+    if (r->left < 0)
+        r->left = r->hangs ? 0 : llround((end - r->state.time) / dt);
+    while (r->left > 0) {
+        const int n = (int)(r->left < r->block ? r->left : r->block);
+        enum verdict verdict = advance(r, n);
+        if (verdict != GO_ON)
+            return verdict;
+        sample(r);
+        r->left -= n;
+        if (went_slack(r)) {
+            verdict = move(r, LETTING_GO, 0);
+            if (verdict != GO_ON)
+                return verdict;
+            r->hangs = true;
+            r->left = 0;
+        }
+        verdict = report(r);
+        if (verdict != GO_ON)
+            return verdict;
+    }
+    r->left = -1;
+    return look_there ? look(r, &energies) : GO_ON;
+}
+
+static enum verdict show_place(struct wb_bundle_run_now *r)
+{
+    const struct wb_bundle_observer *observer = r->options.observer;
+
+    if (!observer || !observer->place)
+        return GO_ON;
+    wb_bundle_gather(r->bundle);
+    r->status = wb_team_agree(observer->place(observer->context, r->history, &r->row, r->bundle));
+    return r->status == WB_OK ? GO_ON : NO_MEMORY;
+}
+
+/* From half a step before a row's place to half a step after it. */
+static enum verdict pass_row(struct wb_bundle_run_now *r)
+{
+    enum verdict verdict = GO_ON;
+
+    for (; r->looks <= LOOKS_OF_A_ROW && verdict == GO_ON; r->looks++) {
+        const double at = r->place - 0.5 + (double)r->looks / LOOKS_OF_A_ROW;
+        const bool there = 2 * r->looks == LOOKS_OF_A_ROW;
+        if (at > r->model->run.rows)
+            break;
+        verdict = go_to(r, at, !there);
+        if (verdict == GO_ON && there) {
+            take_place(r);
+            verdict = look(r, &r->row.energies);
+            if (verdict == GO_ON)
+                verdict = show_place(r);
+        }
+    }
+    if (verdict == GO_ON)
+        finish_row(r);
+    return verdict;
+}
+
+static void begin_way(struct wb_bundle_run_now *r)
+{
+    const double duration = r->history->duration;
+    const double steps =
+        duration / (1.875 * r->model->run.rows * r->history->time_step * SAMPLES_OF_A_ROW);
+
+    r->block = (int)fmin(fmax(steps, 1.0), MOST_BLOCK);
+    r->way_time = r->state.time;
+    r->way[0] = r->hangs ? r->state.target : target_of(r, 0.0);
+    r->way[1] = target_of(r, r->model->run.rows);
+    wb_bundle_lead(r->bundle, r->way[1], duration);
+    r->hangs = false;
+    r->under_way = true;
+    r->place = 0;
+    r->left = -1;
+}
+
+static enum verdict make_way(struct wb_bundle_run_now *r)
+{
+    const int rows = r->model->run.rows;
+    enum verdict verdict = GO_ON;
+
+    if (!r->under_way)
+        begin_way(r);
+    if (r->place == 0) {
+        verdict = go_to(r, 0.5, false);
+        if (verdict != GO_ON)
+            return verdict;
+        /* What is nearer to where the last way ended belongs to its last row, not to the first. */
+        begin_line(r);
+        r->place = r->looks = 1;
+    }
+    while (r->place <= rows && verdict == GO_ON) {
+        verdict = pass_row(r);
+        if (verdict == GO_ON) {
+            r->place++;
+            r->looks = 1;
+        }
+    }
+    if (verdict == GO_ON)
+        r->under_way = false;
+    return verdict;
+}
+
+/* Row 0: at rest, with the weight on. The strand is taut: it carries part of it. */
+static enum verdict rest(struct wb_bundle_run_now *r)
+{
+    enum verdict verdict = move(r, SETTLING, 0);
+
+    if (verdict != GO_ON)
+        return verdict;
+    r->begin = r->state.time;
+    take_place(r);
+    verdict = show_place(r);
+    if (verdict != GO_ON)
+        return verdict;
+    for (int i = 0; i < REST_SAMPLES && r->model->loads.weight; i++) {
+        verdict = advance(r, MOST_BLOCK);
+        if (verdict != GO_ON)
+            return verdict;
+        sample(r);
+    }
+    if (!r->model->loads.weight) /* nothing has moved, nothing acts */
+        sample(r);
+    wb_bundle_get_energies(r->bundle, &r->row.energies);
+    finish_row(r);
+    r->begin = r->state.time;
+    return GO_ON;
+}
+
+static void begin_attempt(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_history *h = r->history;
+
+    h->n_rows = 0;
+    h->exceeded = false;
+    h->largest = (struct wb_bundle_extremes){0};
+    h->attempts++;
+    r->counting = r->judged = r->under_way = r->hangs = false;
+    r->kinetic = r->artificial = (double)NAN;
+    r->most_external = 0.0;
+    begin_line(r);
+    r->branch = 0;
+}
+
+static enum verdict attempt(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_history *h = r->history;
+    struct wb_checkpoint checkpoint = {.bytes = NULL};
+    enum verdict verdict = GO_ON;
+
+    r->status = wb_bundle_run_find(r, &checkpoint);
+    const bool resumes = r->status == WB_OK && checkpoint.restores;
+    if (r->status == WB_OK && !resumes)
+        begin_attempt(r);
+    else if (resumes)
+        wb_bundle_run_carry(r, &checkpoint);
+    const struct wb_bundle_settings settings = {
+        .mesh = r->options.mesh, .duration = h->duration, .threads = r->options.threads};
+    if (r->status == WB_OK)
+        r->status = wb_bundle_create(&r->bundle, r->model, &settings);
+    if (r->status == WB_OK && resumes)
+        r->status = wb_bundle_run_resume(r, &checkpoint);
+    wb_checkpoint_release(&checkpoint);
+    if (r->status != WB_OK) {
+        wb_bundle_destroy(r->bundle);
+        r->bundle = NULL;
+        return NO_MEMORY;
+    }
+    h->time_step = wb_bundle_time_step(r->bundle);
+    h->hexahedra = wb_bundle_hexahedra(r->bundle);
+    h->shells = wb_bundle_shells(r->bundle);
+    h->parts = wb_bundle_parts(r->bundle);
+
+    if (!resumes)
+        verdict = rest(r);
+    while (r->branch < branches_of(r->model) && verdict == GO_ON) {
+        verdict = make_way(r);
+        r->branch += verdict == GO_ON;
+    }
+    wb_bundle_get_state(r->bundle, &r->state);
+    h->steps = r->state.steps;
+    h->all_steps += h->steps;
+    h->exceeded = h->largest.kinetic > r->model->run.kinetic_limit;
+    wb_bundle_destroy(r->bundle);
+    r->bundle = NULL;
+    return verdict;
+}
+
+/* --- the duration --- */
+
+/* A guess, s: the ratio where it begins to count, of a tip that follows the smooth step while the
+ * beam keeps its static shape. Its rigidity is between sliding and bonded wires. Half the time that
+ * would do: what is too short is soon found. */
+static double guess_duration(const struct wb_bundle_model *model, double from)
+{
+    const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(model);
+    const double ei = sqrt(rigidity.sliding[0] * rigidity.bonded[0]), length = model->length;
+    const double mass = (wb_bundle_model_wire_mass(model) + wb_bundle_model_tape_mass(model)) *
+                        model->run.mass_scaling;
+    const double t = time_of(from / model->run.deflection);
+    /* m/s for a duration of 1 s */
+    const double speed = 30.0 * model->run.deflection * t * t * (1.0 - t) * (1.0 - t);
+    const double ratio =
+        33.0 / 140.0 * mass * pow(length, 4.0) * speed * speed / (3.0 * ei * from * from);
+    return 0.5 * sqrt(ratio / model->run.kinetic_limit);
+}
+
+static void begin_history(struct wb_bundle_run_now *r)
+{
+    struct wb_bundle_history *h = r->history;
+
+    h->chosen = r->model->run.duration == 0.0;
+    h->duration = h->chosen ? guess_duration(r->model, r->from) : r->model->run.duration;
+    h->converged = true;
+    h->stopped = h->kept = h->resumed = false;
+    h->problem[0] = '\0';
+    h->attempts = 0;
+    h->all_steps = 0;
+}
+
+enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
+                                  const struct wb_bundle_model *model,
+                                  const struct wb_bundle_run_options *options)
+{
+    struct wb_bundle_run_now r = {
+        .history = history,
+        .model = model,
+        .begun = wb_bundle_run_clock(),
+        .saved = wb_bundle_run_clock(),
+        .may_resume = true,
+        .from = fmin(usual_from, 0.5 * model->run.deflection),
+        .left = -1,
+    };
+    enum verdict verdict;
+
+    if (options)
+        r.options = *options;
+    if (r.options.checkpoint_interval == 0.0)
+        r.options.checkpoint_interval = usual_interval;
+    if (history->capacity < wb_bundle_run_planned_rows(model))
+        return wb_fail(WB_ERR_ARGUMENT, "a history of %d rows for a test of %d", history->capacity,
+                       wb_bundle_run_planned_rows(model));
+    if (r.options.checkpoint)
+        WB_TRY(wb_team_agree(wb_hash_file("/proc/self/exe", r.program)));
+    begin_history(&r);
+    do {
+        verdict = attempt(&r);
+        if (verdict == ANEW)
+            history->duration = r.next;
+    } while (verdict == ANEW);
+    wb_bundle_run_take_time(&r);
+    return r.status;
+}
+
+enum wb_status wb_bundle_run(struct wb_bundle_history *history, const struct wb_bundle_model *model,
+                             const char *mesh, const struct wb_bundle_observer *observer)
+{
+    const struct wb_bundle_run_options options = {.mesh = mesh, .observer = observer};
+    return wb_bundle_run_with(history, model, &options);
+}

@@ -1,0 +1,43 @@
+/* Block tridiagonal systems of 6 x 6 blocks, not symmetric, eliminated from the first block towards
+ * the last: what fe/linear/banded.h is for the planar beam, for the rod in space.
+ */
+#ifndef WB_FE_LINEAR_ROD_CHAIN_H
+#define WB_FE_LINEAR_ROD_CHAIN_H
+
+enum {
+    WB_ROD_CHAIN_BLOCK = 6,
+    WB_ROD_CHAIN_ENTRIES = 36
+};
+
+/* Blocks are row-major. */
+struct wb_rod_chain {
+    int n; /* blocks */
+    double (
+        *diagonal)[WB_ROD_CHAIN_ENTRIES];  /* (n); destroyed, the last becomes the condensed one */
+    double (*upper)[WB_ROD_CHAIN_ENTRIES]; /* (n - 1) block (i, i + 1); becomes S_i^-1 U_i */
+    double (*lower)[WB_ROD_CHAIN_ENTRIES]; /* (n - 1) block (i + 1, i) */
+    double (*right)[WB_ROD_CHAIN_BLOCK];   /* (n); becomes S_i^-1 g_i, the last the condensed one */
+    int negative; /* eigenvalues below zero of what was eliminated, if symmetric; the last block is
+                     left out */
+};
+
+/* Eliminates blocks 0 .. n - 2. A singular block gives non-finite numbers. */
+void wb_rod_chain_condense(struct wb_rod_chain *chain);
+
+/* With the solution of the last block in right[n - 1], replaces `right` by the whole solution. */
+void wb_rod_chain_expand(struct wb_rod_chain *chain);
+
+/* Solves A X = B for a 6 x 6 matrix by elimination with scaled partial pivoting. Rows hold A, then
+ * `columns` columns of B, which become X; A is destroyed. Non-finite when singular. */
+enum {
+    WB_ROD_CHAIN_WIDTH = 20 /* doubles of a row; most columns: 14 */
+};
+void wb_rod_chain_solve(double rows[WB_ROD_CHAIN_BLOCK][WB_ROD_CHAIN_WIDTH], int columns);
+
+/* c += sign a b for 6 x 6 blocks and for a block and a vector. */
+void wb_rod_chain_multiply(double *restrict c, double sign, const double *restrict a,
+                           const double *restrict b);
+void wb_rod_chain_apply(double *restrict c, double sign, const double *restrict a,
+                        const double *restrict b);
+
+#endif

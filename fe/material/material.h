@@ -1,0 +1,43 @@
+/* Uniaxial elastoplastic material laws, and the wire's homogenised properties.
+ *
+ * The paper's law (eqs. 1-6, corrected: eq. 6 is Ludwik's form, plastic strain only):
+ *     |sigma| = sigma_Y + K ep^n   while yielding, with J2 flow and isotropic hardening.
+ * Linear kinematic hardening (Prager) with modulus K is there for wires richer than that model.
+ */
+#ifndef WB_FE_MATERIAL_MATERIAL_H
+#define WB_FE_MATERIAL_MATERIAL_H
+
+enum wb_hardening {
+    WB_HARDENING_NONE_ELASTIC,    /* linear elastic, never yields */
+    WB_HARDENING_ISOTROPIC_POWER, /* sigma_Y + K ep^n; K = 0 is perfectly plastic */
+    WB_HARDENING_KINEMATIC_LINEAR /* back stress moves by K d(ep); n is not used */
+};
+
+struct wb_material {
+    enum wb_hardening hardening;
+    double youngs_modulus;       /* E, Pa, > 0 */
+    double poissons_ratio;       /* 1; used for the shear stiffness only */
+    double yield_stress;         /* sigma_Y, Pa, > 0 unless elastic */
+    double strength_coefficient; /* K, Pa, >= 0 */
+    double hardening_exponent;   /* n, > 0, at most 2 */
+};
+
+/* History of one material point. All zero is the virgin state. */
+struct wb_material_state {
+    double plastic_strain;             /* signed */
+    double accumulated_plastic_strain; /* ep, never decreases */
+    double back_stress;                /* Pa */
+};
+
+/* Stress and consistent tangent of one point at a total strain, from the history `before`;
+ * `after` receives the history if the step is accepted (it may alias `before`). Exact return
+ * mapping to round-off; backward Euler. Pure. */
+void wb_material_stress(const struct wb_material *material, double strain,
+                        const struct wb_material_state *before, struct wb_material_state *after,
+                        double *stress, double *tangent);
+
+/* The largest von Mises stress (Pa) at an accumulated plastic strain: sigma_Y + K p^n. Infinite
+ * where that is no bound: elastic, and kinematic hardening, whose surface moves. */
+double wb_material_flow_stress(const struct wb_material *material, double plastic_strain);
+
+#endif

@@ -1,0 +1,52 @@
+/* The tape round a bundle: how its windings lie on the outline.
+ *
+ * A sleeve is a closed tube of some layers. A helix is one tape of a width w, wound with an advance
+ * p along the bundle for each turn round the outline's length C. Rolled out it is a strip at the
+ * angle tan a = p / C to the circumference that covers c = w / cos a along the bundle. Each winding
+ * covers the part 1 - p / c of the one before; half-lapped that is a half, and there are c / p = 2
+ * layers everywhere.
+ */
+#ifndef WB_FE_MODEL_TAPING_H
+#define WB_FE_MODEL_TAPING_H
+
+#include "base/status.h"
+
+enum wb_taping_kind {
+    WB_TAPING_SLEEVE,
+    WB_TAPING_HELIX
+};
+
+struct wb_taping_helix {
+    double width; /* w, m */
+    double lap;   /* part of a winding that the next one covers, 0 to 0.95 */
+    int hand;     /* 1: as a right-handed screw, -1: left-handed */
+};
+
+struct wb_taping {
+    enum wb_taping_kind kind;
+    double layer_thickness;         /* m */
+    double circumference;           /* C, m: of the outline at the middle of the tape */
+    double layers;                  /* a whole number for a sleeve, the mean for a helix */
+    struct wb_taping_helix helix;   /* of a helix, as what follows */
+    double advance, angle, covered; /* p, m; a, rad; c, m */
+};
+
+/* A closed tube of whole layers. */
+WB_MUST_CHECK enum wb_status wb_taping_sleeve(struct wb_taping *taping, double circumference,
+                                              double layer_thickness, int layers);
+
+/* Refused where a tape so wide cannot be wound round a bundle so thin. */
+WB_MUST_CHECK enum wb_status wb_taping_wind(struct wb_taping *taping, double circumference,
+                                            double layer_thickness,
+                                            const struct wb_taping_helix *helix);
+
+/* The number of layers at x along the bundle and s along the outline (m, any). The middle of one
+ * winding is at x = 0, s = 0; the windings go on beyond the ends of the bundle. A winding's edge
+ * belongs to it where it begins and not where it ends. */
+int wb_taping_layers(const struct wb_taping *taping, double x, double s);
+
+/* Thickness of all layers on average, m; area of tape, all layers, for a length of bundle, m2/m. */
+double wb_taping_thickness(const struct wb_taping *taping);
+double wb_taping_area(const struct wb_taping *taping);
+
+#endif

@@ -1,0 +1,46 @@
+/* A wire: the product, as its YAML file in fixtures/wires (or any path) describes it.
+ *
+ *     name: type1
+ *     conductor_diameter_mm: 0.70
+ *     outer_diameter_mm: 1.10
+ *     density_g_cm3: 4.06
+ *     properties:                 # optional; homogenised, over the outer diameter
+ *       source: Table 3 of the paper
+ *       youngs_modulus_MPa: 5021
+ *       poissons_ratio: 0.39
+ *       yield_stress_MPa: 3.90
+ *       strength_coefficient_MPa: 3222
+ *       hardening_exponent: 0.99
+ */
+#ifndef WB_FE_MODEL_WIRE_H
+#define WB_FE_MODEL_WIRE_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "fe/material/material.h"
+
+struct wb_wire {
+    char name[64];
+    double conductor_diameter;   /* m */
+    double outer_diameter;       /* m */
+    double density;              /* kg/m3, homogenised over the outer diameter */
+    bool has_properties;         /* the file gave `properties` */
+    char source[160];            /* where the properties come from */
+    struct wb_material material; /* WB_HARDENING_ISOTROPIC_POWER when has_properties */
+};
+
+/* Reads a wire file. Errors name file, line and key. */
+WB_MUST_CHECK enum wb_status wb_wire_read(const char *path, struct wb_wire *wire);
+
+/* Parses a wire from YAML text (a recording's `meta`); `origin` stands for the file in errors. */
+WB_MUST_CHECK enum wb_status wb_wire_parse(const char *text, const char *origin,
+                                           struct wb_wire *wire);
+
+/* Second moment of area of the full circle, pi d^4 / 64, m4. */
+double wb_wire_second_moment(const struct wb_wire *wire);
+
+/* Mass per length, rho pi d^2 / 4, kg/m. */
+double wb_wire_mass_per_length(const struct wb_wire *wire);
+
+#endif

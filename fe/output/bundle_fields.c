@@ -1,0 +1,299 @@
+#include "fe/output/bundle_fields.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/bundle/bundle_private.h"
+#include "fe/swept/swept_hex_stress.h"
+#include "fe/swept/swept_tape_private.h"
+#include "fe/swept/swept_tape_stress.h"
+
+#define WB_LOG_DOMAIN "bundle"
+
+enum {
+    TENSOR = 6
+};
+
+/* What is summed up at a point. */
+struct sum {
+    double stress[TENSOR], plastic;
+    int n;
+};
+
+/* --- the mesh --- */
+
+static const struct wb_swept_section *section_of(const struct wb_bundle *bundle, int wire)
+{
+    return &bundle->type[bundle->model->type_of[wire]].section;
+}
+
+static int tape_quads(const struct wb_bundle *bundle)
+{
+    return bundle->has_tape
+               ? wb_swept_tape_elements(bundle->tape) * (bundle->ring.layout.n_stations - 1)
+               : 0;
+}
+
+static void count(struct wb_bundle_fields *f, const struct wb_bundle *bundle)
+{
+    f->n_bodies = bundle->n_wires + (bundle->has_tape ? 1 : 0);
+    for (int w = 0; w < bundle->n_wires; w++) {
+        const struct wb_swept_layout *layout = &bundle->wire[w].layout;
+        f->n_points += layout->n_nodes * layout->n_stations;
+        f->n_hexahedra += section_of(bundle, w)->n_quads * (layout->n_stations - 1);
+    }
+    if (bundle->has_tape)
+        f->n_points += bundle->ring.layout.n_nodes * bundle->ring.layout.n_stations;
+    f->n_quads = tape_quads(bundle);
+}
+
+static enum wb_status allocate(struct wb_bundle_fields *f)
+{
+    const size_t points = (size_t)f->n_points;
+    const size_t cells = (size_t)f->n_hexahedra + (size_t)f->n_quads;
+
+    f->bodies = calloc((size_t)f->n_bodies, sizeof *f->bodies);
+    f->reference = calloc(points, sizeof *f->reference);
+    f->position = calloc(points, sizeof *f->position);
+    f->von_mises = calloc(points, sizeof *f->von_mises);
+    f->plastic = calloc(points, sizeof *f->plastic);
+    f->hexahedron = calloc((size_t)f->n_hexahedra, sizeof *f->hexahedron);
+    f->quad = calloc((size_t)f->n_quads + 1, sizeof *f->quad);
+    f->body = calloc(cells, sizeof *f->body);
+    if (f->bodies && f->reference && f->position && f->von_mises && f->plastic && f->hexahedron &&
+        f->quad && f->body)
+        return WB_OK;
+    return wb_fail(WB_ERR_MEMORY, "no memory for the fields of %d points", f->n_points);
+}
+
+static enum wb_status set_outline(struct wb_bundle_fields_body *body,
+                                  const struct wb_swept_section *section)
+{
+    body->n_outline = section->n_outline;
+    body->outline = calloc((size_t)section->n_outline + 1, sizeof *body->outline);
+    if (!body->outline)
+        return wb_fail(WB_ERR_MEMORY, "no memory for an outline");
+    for (int i = 0; i < section->n_outline; i++)
+        body->outline[i] = section->outline[i];
+    return WB_OK;
+}
+
+/* Positions of a field at the body's points. */
+static void read_points(const struct wb_bundle_fields_body *body, int stride, const double *field,
+                        double (*points)[3])
+{
+    for (int k = 0; k < body->n_nodes; k++)
+        for (int i = 0; i < 3; i++) {
+            const double *row = field + (ptrdiff_t)(3 * k + i) * stride;
+            for (int j = 0; j < body->n_stations; j++)
+                points[body->first + j * body->n_nodes + k][i] = row[j];
+        }
+}
+
+/* A wire: its straight place, and its hexahedra from `cell` on; returns the next. */
+static int mesh_wire(struct wb_bundle_fields *f, const struct wb_bundle *bundle, int w, int cell)
+{
+    const struct wb_swept_section *section = section_of(bundle, w);
+    const struct wb_packing_circle *circle = &bundle->model->packing.wire[w];
+    const struct wb_bundle_fields_body *body = &f->bodies[w];
+    const int n = body->n_nodes;
+
+    for (int j = 0; j < body->n_stations; j++)
+        for (int k = 0; k < n; k++) {
+            double *at = f->reference[body->first + j * n + k];
+            at[0] = j * bundle->spacing;
+            at[1] = circle->y + section->node[k][0];
+            at[2] = circle->z + section->node[k][1];
+        }
+    for (int j = 0; j < body->n_stations - 1; j++)
+        for (int e = 0; e < section->n_quads; e++, cell++) {
+            for (int a = 0; a < 8; a++)
+                f->hexahedron[cell][a] = body->first + (j + a / 4) * n + section->quad[e][a % 4];
+            f->body[cell] = w;
+        }
+    return cell;
+}
+
+static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle)
+{
+    const int tape = bundle->n_wires;
+    const struct wb_bundle_fields_body *body = &f->bodies[tape];
+    const int n = body->n_nodes, around = wb_swept_tape_elements(bundle->tape);
+    int cell = 0;
+
+    read_points(body, bundle->ring.layout.stride, bundle->tape->position, f->reference);
+    for (int j = 0; j < body->n_stations - 1; j++)
+        for (int k = 0; k < around; k++, cell++) {
+            const int here = body->first + j * n, next = (k + 1) % n;
+            const int quad[4] = {here + k, here + n + k, here + n + next, here + next};
+            memcpy(f->quad[cell], quad, sizeof quad);
+            f->body[f->n_hexahedra + cell] = tape;
+        }
+}
+
+static enum wb_status make_mesh(struct wb_bundle_fields *f, const struct wb_bundle *bundle)
+{
+    int first = 0, cell = 0;
+
+    for (int b = 0; b < f->n_bodies; b++) {
+        const bool is_tape = b == bundle->n_wires;
+        const struct wb_swept_layout *layout =
+            is_tape ? &bundle->ring.layout : &bundle->wire[b].layout;
+        f->bodies[b] = (struct wb_bundle_fields_body){
+            .is_tape = is_tape,
+            .closed = !is_tape || wb_swept_tape_elements(bundle->tape) == layout->n_nodes,
+            .n_nodes = layout->n_nodes,
+            .n_stations = layout->n_stations,
+            .first = first,
+        };
+        first += layout->n_nodes * layout->n_stations;
+        if (is_tape) {
+            mesh_tape(f, bundle);
+            continue;
+        }
+        WB_TRY(set_outline(&f->bodies[b], section_of(bundle, b)));
+        cell = mesh_wire(f, bundle, b, cell);
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_bundle_fields_init(struct wb_bundle_fields *fields,
+                                     const struct wb_bundle *bundle)
+{
+    *fields = (struct wb_bundle_fields){0};
+    count(fields, bundle);
+    enum wb_status status = allocate(fields);
+    if (status == WB_OK)
+        status = make_mesh(fields, bundle);
+    if (status == WB_OK)
+        status = wb_bundle_fields_take(fields, bundle);
+    if (status != WB_OK)
+        wb_bundle_fields_release(fields);
+    return status;
+}
+
+void wb_bundle_fields_release(struct wb_bundle_fields *fields)
+{
+    if (!fields)
+        return;
+    for (int b = 0; fields->bodies && b < fields->n_bodies; b++)
+        free(fields->bodies[b].outline);
+    free(fields->bodies);
+    free(fields->reference);
+    free(fields->position);
+    free(fields->von_mises);
+    free(fields->plastic);
+    free(fields->hexahedron);
+    free(fields->quad);
+    free(fields->body);
+    *fields = (struct wb_bundle_fields){0};
+}
+
+/* --- the state --- */
+
+/* What a plastic strain's hardening lets a stress reach. */
+static double flow_stress(const struct wb_material *m, double plastic)
+{
+    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
+        return (double)INFINITY;
+    return m->yield_stress + m->strength_coefficient * pow(plastic, m->hardening_exponent);
+}
+
+static void sum_up_wire(const struct wb_bundle *bundle, int w, struct sum *sums)
+{
+    const struct wb_swept_hex *hex = bundle->type[bundle->model->type_of[w]].hex;
+    const struct wb_swept_section *section = section_of(bundle, w);
+    const struct wb_bundle_body *body = &bundle->wire[w];
+    const int n = body->layout.n_nodes;
+
+    for (int j = 0; j < body->layout.n_stations - 1; j++) {
+        for (int e = 0; e < section->n_quads; e++) {
+            struct wb_swept_hex_stress points[4], corners[4];
+            wb_swept_hex_stress_find(hex, bundle->history[w], body->position, e, j, points);
+            wb_swept_hex_stress_at_corners(hex, points, corners);
+            for (int a = 0; a < 8; a++) {
+                struct sum *sum = &sums[(j + a / 4) * n + section->quad[e][a % 4]];
+                for (int i = 0; i < TENSOR; i++)
+                    sum->stress[i] += corners[a % 4].stress[i];
+                sum->plastic += corners[a % 4].plastic;
+                sum->n++;
+            }
+        }
+    }
+}
+
+static void take_wire(struct wb_bundle_fields *f, const struct wb_bundle *bundle, int w,
+                      struct sum *sums)
+{
+    const struct wb_bundle_fields_body *body = &f->bodies[w];
+    const struct wb_material *law = &bundle->model->type[bundle->model->type_of[w]].material;
+    const int n = body->n_nodes * body->n_stations;
+
+    read_points(body, bundle->wire[w].layout.stride, bundle->wire[w].position, f->position);
+    memset(sums, 0, (size_t)n * sizeof *sums);
+    sum_up_wire(bundle, w, sums);
+    for (int i = 0; i < n; i++) {
+        double mean[TENSOR];
+        for (int k = 0; k < TENSOR; k++)
+            mean[k] = sums[i].stress[k] / sums[i].n;
+        const double plastic = fmax(0.0, sums[i].plastic / sums[i].n);
+        const double stress = wb_swept_hex_stress_von_mises(mean);
+        const double most = flow_stress(law, plastic);
+        f->plastic[body->first + i] = plastic;
+        f->von_mises[body->first + i] = stress > most ? most : stress;
+    }
+}
+
+static void take_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle, struct sum *sums)
+{
+    const struct wb_bundle_fields_body *body = &f->bodies[bundle->n_wires];
+    const double *position = bundle->ring.position, *director = bundle->directors.position;
+    const int n = body->n_nodes, around = wb_swept_tape_elements(bundle->tape);
+
+    read_points(body, bundle->ring.layout.stride, position, f->position);
+    memset(sums, 0, (size_t)(n * body->n_stations) * sizeof *sums);
+    for (int j = 0; j < body->n_stations - 1; j++)
+        for (int k = 0; k < around; k++) {
+            struct wb_swept_tape_stress out[WB_SWEPT_TAPE_STRESS_MOST];
+            double stress = 0.0, plastic = 0.0;
+            wb_swept_tape_stress_find(bundle->tape, bundle->tape_history, position, director, k, j,
+                                      out);
+            for (int q = 0; q < wb_swept_tape_stress_points(bundle->tape); q++) {
+                stress = fmax(stress, wb_swept_tape_stress_von_mises(out[q].stress));
+                plastic = fmax(plastic, out[q].plastic);
+            }
+            for (int a = 0; a < 4; a++) {
+                struct sum *sum = &sums[(j + a / 2) * n + (k + a % 2) % n];
+                sum->stress[0] += stress;
+                sum->plastic += plastic;
+                sum->n++;
+            }
+        }
+    for (int i = 0; i < n * body->n_stations; i++) {
+        f->von_mises[body->first + i] = sums[i].stress[0] / sums[i].n;
+        f->plastic[body->first + i] = sums[i].plastic / sums[i].n;
+    }
+}
+
+enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
+                                     const struct wb_bundle *bundle)
+{
+    int most = 0;
+
+    wb_bundle_gather(bundle);
+    for (int b = 0; b < fields->n_bodies; b++) {
+        const int n = fields->bodies[b].n_nodes * fields->bodies[b].n_stations;
+        most = n > most ? n : most;
+    }
+    struct sum *sums = malloc((size_t)most * sizeof *sums);
+    if (!sums)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the stresses at %d points", most);
+    for (int w = 0; w < bundle->n_wires; w++)
+        take_wire(fields, bundle, w, sums);
+    if (bundle->has_tape)
+        take_tape(fields, bundle, sums);
+    free(sums);
+    return WB_OK;
+}

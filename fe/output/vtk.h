@@ -1,0 +1,26 @@
+/* Stress fields of a solid as files of VTK, which ParaView opens.
+ *
+ * A .vtu file is one state: an UnstructuredGrid of quadratic hexahedra (type 25) at their reference
+ * positions in mm. Of points: displacement_mm, stress_MPa (Cauchy, global frame: xx, yy, zz, xy,
+ * yz, xz), von_mises_MPa, plastic_strain (equivalent); of cells: part. Each part has points of its
+ * own at an interface, where stresses jump. A .pvd file is the series of states in time. Equal
+ * states give equal files, byte for byte.
+ */
+#ifndef WB_FE_OUTPUT_VTK_H
+#define WB_FE_OUTPUT_VTK_H
+
+#include "base/status.h"
+#include "fe/output/vtk_file.h"
+#include "fe/solid/solid_mesh.h"
+#include "fe/trial/wire3d.h"
+
+/* Writes one state. WB_ERR_DATA when a value is not finite. */
+WB_MUST_CHECK enum wb_status wb_vtk_write(const char *path, const struct wb_solid_mesh *mesh,
+                                          const struct wb_wire3d_fields *fields);
+
+/* Writes the next state of a series, and the series up to it. */
+WB_MUST_CHECK enum wb_status wb_vtk_add(struct wb_vtk_file_series *series, double time,
+                                        const struct wb_solid_mesh *mesh,
+                                        const struct wb_wire3d_fields *fields);
+
+#endif

@@ -1,0 +1,558 @@
+#include "fe/rod/beam.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/linear/banded.h"
+#include "fe/rod/fibres.h"
+
+#define WB_LOG_DOMAIN "beam"
+
+enum {
+    MOST_ELEMENTS = 100000,
+    POINTS = WB_BEAM_ELEMENT_POINTS
+};
+
+/* How an element's middle node follows its ends: d2 = -w - W1 d1 - W3 d3. */
+struct middle {
+    double w[3], W1[9], W3[9];
+};
+
+/* Strains of a Gauss point. They are unknowns of their own, beside the positions that follow from
+ * them: taken from differences of positions, they would carry round-off of epsilon L over an
+ * element's length, and the axial stiffness would turn that into forces. */
+struct strain {
+    double eps, gamma;
+};
+
+struct wb_beam {
+    int n_elements, n_nodes;
+    double length, element_length;
+    struct wb_beam_element_shape shape;
+    struct wb_fibres *fibres;
+    size_t history_size; /* of all Gauss points */
+    double load_x, load_y;
+
+    /* Positions, (n_nodes) each; `earlier` is committed before `committed`. */
+    struct wb_beam_node *reference, *trial, *committed, *earlier, *saved, *saved_earlier;
+    /* Strains that belong to them, (n_elements x POINTS) each. */
+    struct strain *trial_strain, *committed_strain, *earlier_strain, *saved_strain,
+        *saved_earlier_strain;
+    double *history, *trial_history, *saved_history;
+
+    struct wb_beam_point *points; /* (n_elements x POINTS) */
+    double (*residual)[3];        /* (n_nodes) */
+    struct middle *middles;       /* (n_elements) */
+    struct wb_banded banded;      /* end nodes of the elements without the clamp */
+};
+
+/* Integrates the natural curvature from the clamp into rotations and positions of the nodes, with
+ * Simpson's rule on several intervals between neighbouring nodes. */
+static void lay_out(struct wb_beam *beam, const struct wb_beam_model *model)
+{
+    enum {
+        INTERVALS = 8
+    };
+    const double step = beam->element_length / (2 * INTERVALS);
+    struct wb_beam_node at = {0.0, 0.0, 0.0};
+
+    beam->reference[0] = at;
+    for (int i = 1; i < beam->n_nodes; i++) {
+        if (!model->natural_curvature) {
+            beam->reference[i] = (struct wb_beam_node){0.5 * beam->element_length * i, 0.0, 0.0};
+            continue;
+        }
+        for (int j = 0; j < INTERVALS; j++) {
+            const double s = 0.5 * beam->element_length * (i - 1) + j * step;
+            const double k0 = model->natural_curvature(model->curvature_context, s);
+            const double k1 = model->natural_curvature(model->curvature_context, s + 0.5 * step);
+            const double k2 = model->natural_curvature(model->curvature_context, s + step);
+            /* The rotation at half the step from the parabola through the three curvatures. */
+            const double t1 = at.t + step * (5.0 * k0 + 8.0 * k1 - k2) / 24.0;
+            const double t2 = at.t + step * (k0 + 4.0 * k1 + k2) / 6.0;
+            at.x += step * (cos(at.t) + 4.0 * cos(t1) + cos(t2)) / 6.0;
+            at.y += step * (sin(at.t) + 4.0 * sin(t1) + sin(t2)) / 6.0;
+            at.t = t2;
+        }
+        beam->reference[i] = at;
+    }
+}
+
+/* The reference's own strains are subtracted as the elements see them, so that it is free of stress
+ * to the last bit. */
+static void measure_reference(struct wb_beam *beam)
+{
+    for (int e = 0; e < beam->n_elements; e++) {
+        for (int g = 0; g < POINTS; g++) {
+            struct wb_beam_point *p = &beam->points[e * POINTS + g];
+            wb_beam_element_kinematics(&beam->shape, g, beam->reference + 2 * e, p);
+            p->reference_a = p->a;
+            p->reference_b = p->b;
+            p->reference_k = p->k;
+            p->G = wb_fibres_shear_stiffness(beam->fibres);
+        }
+    }
+}
+
+static enum wb_status check_model(const struct wb_beam_model *model)
+{
+    if (!(isfinite(model->length) && model->length > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "length %g m: expected a number above 0", model->length);
+    if (model->n_elements < 1 || model->n_elements > MOST_ELEMENTS)
+        return wb_fail(WB_ERR_ARGUMENT, "%d elements: expected 1 to %d", model->n_elements,
+                       MOST_ELEMENTS);
+    if (!(model->section->shear_stiffness > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "shear stiffness %g N: expected a number above 0",
+                       model->section->shear_stiffness);
+    if (!(isfinite(model->load_x) && isfinite(model->load_y)))
+        return wb_fail(WB_ERR_ARGUMENT, "load (%g, %g) N/m is not finite", model->load_x,
+                       model->load_y);
+    return WB_OK;
+}
+
+static bool take_memory(struct wb_beam *beam)
+{
+    const size_t nodes = (size_t)beam->n_nodes, elements = (size_t)beam->n_elements;
+
+    beam->reference = calloc(nodes, sizeof *beam->reference);
+    beam->trial = calloc(nodes, sizeof *beam->trial);
+    beam->committed = calloc(nodes, sizeof *beam->committed);
+    beam->earlier = calloc(nodes, sizeof *beam->earlier);
+    beam->saved = calloc(nodes, sizeof *beam->saved);
+    beam->saved_earlier = calloc(nodes, sizeof *beam->saved_earlier);
+    beam->trial_strain = calloc(elements * POINTS, sizeof *beam->trial_strain);
+    beam->committed_strain = calloc(elements * POINTS, sizeof *beam->committed_strain);
+    beam->earlier_strain = calloc(elements * POINTS, sizeof *beam->earlier_strain);
+    beam->saved_strain = calloc(elements * POINTS, sizeof *beam->saved_strain);
+    beam->saved_earlier_strain = calloc(elements * POINTS, sizeof *beam->saved_earlier_strain);
+    beam->history = calloc(beam->history_size, sizeof *beam->history);
+    beam->trial_history = calloc(beam->history_size, sizeof *beam->trial_history);
+    beam->saved_history = calloc(beam->history_size, sizeof *beam->saved_history);
+    beam->points = calloc(elements * POINTS, sizeof *beam->points);
+    beam->residual = calloc(nodes, sizeof *beam->residual);
+    beam->middles = calloc(elements, sizeof *beam->middles);
+    beam->banded.n = beam->n_elements;
+    beam->banded.diagonal = calloc(elements, sizeof *beam->banded.diagonal);
+    beam->banded.upper = calloc(elements, sizeof *beam->banded.upper);
+    beam->banded.right = calloc(elements, sizeof *beam->banded.right);
+    return beam->reference && beam->trial && beam->committed && beam->earlier && beam->saved &&
+           beam->saved_earlier && beam->trial_strain && beam->committed_strain &&
+           beam->earlier_strain && beam->saved_strain && beam->saved_earlier_strain &&
+           beam->history && beam->trial_history && beam->saved_history && beam->points &&
+           beam->residual && beam->middles && beam->banded.diagonal && beam->banded.upper &&
+           beam->banded.right;
+}
+
+enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *model)
+{
+    *out = NULL;
+    WB_TRY(check_model(model));
+
+    struct wb_beam *beam = calloc(1, sizeof *beam);
+    if (!beam)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a beam");
+
+    const enum wb_status status = wb_fibres_create(&beam->fibres, model->section);
+    if (status != WB_OK) {
+        wb_beam_destroy(beam);
+        return status;
+    }
+    if (model->reference_kernel)
+        wb_fibres_set_kernel(beam->fibres, WB_FIBRES_REFERENCE);
+
+    beam->n_elements = model->n_elements;
+    beam->n_nodes = 2 * model->n_elements + 1;
+    beam->length = model->length;
+    beam->element_length = model->length / model->n_elements;
+    beam->load_x = model->load_x;
+    beam->load_y = model->load_y;
+    beam->history_size = wb_fibres_history_size(beam->fibres) * (size_t)(beam->n_elements * POINTS);
+    if (!take_memory(beam)) {
+        wb_beam_destroy(beam);
+        return wb_fail(WB_ERR_MEMORY, "no memory for a beam of %d elements", model->n_elements);
+    }
+
+    wb_beam_element_shape_init(&beam->shape, beam->element_length);
+    lay_out(beam, model);
+    measure_reference(beam);
+    if (!isfinite(beam->reference[beam->n_nodes - 1].x)) {
+        wb_beam_destroy(beam);
+        return wb_fail(WB_ERR_ARGUMENT, "the natural curvature is not finite everywhere");
+    }
+    wb_beam_reset(beam);
+    *out = beam;
+    return WB_OK;
+}
+
+void wb_beam_destroy(struct wb_beam *beam)
+{
+    if (!beam)
+        return;
+    wb_fibres_destroy(beam->fibres);
+    free(beam->reference);
+    free(beam->trial);
+    free(beam->committed);
+    free(beam->earlier);
+    free(beam->saved);
+    free(beam->saved_earlier);
+    free(beam->trial_strain);
+    free(beam->committed_strain);
+    free(beam->earlier_strain);
+    free(beam->saved_strain);
+    free(beam->saved_earlier_strain);
+    free(beam->history);
+    free(beam->trial_history);
+    free(beam->saved_history);
+    free(beam->points);
+    free(beam->residual);
+    free(beam->middles);
+    free(beam->banded.diagonal);
+    free(beam->banded.upper);
+    free(beam->banded.right);
+    free(beam);
+}
+
+static void copy_nodes(const struct wb_beam *beam, struct wb_beam_node *to,
+                       const struct wb_beam_node *from)
+{
+    memcpy(to, from, (size_t)beam->n_nodes * sizeof *to);
+}
+
+static void copy_strains(const struct wb_beam *beam, struct strain *to, const struct strain *from)
+{
+    memcpy(to, from, (size_t)(beam->n_elements * POINTS) * sizeof *to);
+}
+
+void wb_beam_reset(struct wb_beam *beam)
+{
+    const size_t points = (size_t)(beam->n_elements * POINTS);
+    memset(beam->trial_strain, 0, points * sizeof *beam->trial_strain);
+    memset(beam->committed_strain, 0, points * sizeof *beam->committed_strain);
+    memset(beam->earlier_strain, 0, points * sizeof *beam->earlier_strain);
+    copy_nodes(beam, beam->trial, beam->reference);
+    copy_nodes(beam, beam->committed, beam->reference);
+    copy_nodes(beam, beam->earlier, beam->reference);
+    memset(beam->history, 0, beam->history_size * sizeof *beam->history);
+}
+
+void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *materials)
+{
+    wb_fibres_set_materials(beam->fibres, materials);
+    for (int g = 0; g < beam->n_elements * POINTS; g++)
+        beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
+}
+
+static void subtract_load(struct wb_beam *beam, double factor)
+{
+    /* Consistent with quadratic shape functions: 1/6, 4/6, 1/6 of an element's load. */
+    const double share = factor * beam->element_length / 6.0;
+    const double x = share * beam->load_x, y = share * beam->load_y;
+    if (x == 0.0 && y == 0.0)
+        return;
+
+    for (int e = 0; e < beam->n_elements; e++) {
+        static const double parts[WB_BEAM_ELEMENT_NODES] = {1.0, 4.0, 1.0};
+        for (int i = 0; i < WB_BEAM_ELEMENT_NODES; i++) {
+            beam->residual[2 * e + i][0] -= parts[i] * x;
+            beam->residual[2 * e + i][1] -= parts[i] * y;
+        }
+    }
+}
+
+/* fmax() would drop a NaN; this one keeps it. */
+static double larger(double a, double b)
+{
+    return b > a || b != b ? b : a;
+}
+
+static double size_of(const double *force, double lever)
+{
+    return larger(larger(fabs(force[0]), fabs(force[1])), fabs(force[2]) * lever);
+}
+
+void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_balance *balance)
+{
+    const double lever = 1.0 / beam->length;
+    const size_t row = wb_fibres_history_size(beam->fibres);
+    double largest = 0.0;
+
+    memset(beam->residual, 0, (size_t)beam->n_nodes * sizeof *beam->residual);
+    for (int e = 0; e < beam->n_elements; e++) {
+        double f[3 * WB_BEAM_ELEMENT_NODES] = {0};
+        for (int g = 0; g < POINTS; g++) {
+            const int at = e * POINTS + g;
+            struct wb_beam_point *p = &beam->points[at];
+            struct wb_fibres_response r;
+
+            wb_beam_element_rotation(&beam->shape, g, beam->trial + 2 * e, p);
+            p->a = p->reference_a + beam->trial_strain[at].eps;
+            p->b = p->reference_b + beam->trial_strain[at].gamma;
+            wb_fibres_respond(beam->fibres, beam->trial_strain[at].eps, p->k - p->reference_k,
+                              beam->history + (size_t)at * row,
+                              beam->trial_history + (size_t)at * row, &r);
+            p->N = r.N;
+            p->M = r.M;
+            p->Q = p->G * beam->trial_strain[at].gamma;
+            p->D11 = r.D11;
+            p->D12 = r.D12;
+            p->D22 = r.D22;
+            wb_beam_element_add_forces(&beam->shape, g, p, f);
+        }
+        for (int i = 0; i < WB_BEAM_ELEMENT_NODES; i++) {
+            largest = larger(largest, size_of(f + 3 * i, lever));
+            for (int k = 0; k < 3; k++)
+                beam->residual[2 * e + i][k] += f[3 * i + k];
+        }
+    }
+    subtract_load(beam, load_factor);
+
+    balance->largest_force = largest;
+    balance->largest_residual = 0.0;
+    for (int i = 1; i < beam->n_nodes - 1; i++)
+        balance->largest_residual =
+            larger(balance->largest_residual, size_of(beam->residual[i], lever));
+    memcpy(balance->tip, beam->residual[beam->n_nodes - 1], sizeof balance->tip);
+}
+
+/* C += sign * A^T B for 3 x 3 blocks. */
+static inline void add_transposed_product(double *restrict C, double sign, const double *A,
+                                          const double *B)
+{
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++)
+            C[3 * r + c] += sign * (A[r] * B[c] + A[3 + r] * B[3 + c] + A[6 + r] * B[6 + c]);
+    }
+}
+
+static inline void add_transposed_vector(double *restrict v, const double *A, const double *b)
+{
+    for (int r = 0; r < 3; r++)
+        v[r] += A[r] * b[0] + A[3 + r] * b[1] + A[6 + r] * b[2];
+}
+
+/* Eliminates an element's middle node and adds the rest to the chain of end nodes. */
+static void condense_element(struct wb_beam *beam, int e)
+{
+    struct wb_beam_element_stiffness K;
+    struct middle *m = &beam->middles[e];
+    double inverse[9], K21[9];
+
+    wb_beam_element_stiffness(&beam->shape, &beam->points[e * POINTS], &K);
+    wb_banded_invert(K.K22, inverse);
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++)
+            K21[3 * r + c] = K.K12[3 * c + r];
+    }
+    /* The inverse is symmetric, so its transposed products are its products. */
+    *m = (struct middle){0};
+    add_transposed_product(m->W1, 1.0, inverse, K21);
+    add_transposed_product(m->W3, 1.0, inverse, K.K23);
+    add_transposed_vector(m->w, inverse, beam->residual[2 * e + 1]);
+
+    if (e > 0) {
+        add_transposed_product(K.K11, -1.0, K21, m->W1);
+        add_transposed_product(K.K13, -1.0, K21, m->W3);
+        double *diagonal = beam->banded.diagonal[e - 1];
+        double *upper = beam->banded.upper[e - 1];
+        for (int k = 0; k < 9; k++) {
+            diagonal[k] += K.K11[k];
+            upper[k] = K.K13[k];
+        }
+        add_transposed_vector(beam->banded.right[e - 1], K21, m->w);
+    }
+    add_transposed_product(K.K33, -1.0, K.K23, m->W3);
+    memcpy(beam->banded.diagonal[e], K.K33, sizeof K.K33);
+    for (int k = 0; k < 3; k++)
+        beam->banded.right[e][k] = -beam->residual[2 * e + 2][k];
+    add_transposed_vector(beam->banded.right[e], K.K23, m->w);
+}
+
+void wb_beam_condense(struct wb_beam *beam, double *stiffness, double *right)
+{
+    for (int e = 0; e < beam->n_elements; e++)
+        condense_element(beam, e);
+    wb_banded_condense(&beam->banded);
+    memcpy(stiffness, beam->banded.diagonal[beam->n_elements - 1], 9 * sizeof *stiffness);
+    memcpy(right, beam->banded.right[beam->n_elements - 1], 3 * sizeof *right);
+}
+
+static inline void add_product(double *restrict v, double sign, const double *A, const double *b)
+{
+    for (int r = 0; r < 3; r++)
+        v[r] += sign * (A[3 * r] * b[0] + A[3 * r + 1] * b[1] + A[3 * r + 2] * b[2]);
+}
+
+/* Positions of an element's middle and last node from its first node, its rotations and its
+ * strains: (x', y') = R(t) (a, b), and x' is linear within the element. */
+static void place_nodes(struct wb_beam *beam, int e)
+{
+    const double h = beam->element_length;
+    struct wb_beam_node *node = beam->trial + 2 * e;
+    double x_[POINTS], y_[POINTS];
+
+    for (int g = 0; g < POINTS; g++) {
+        const double *N = beam->shape.N[g];
+        const double t = N[0] * node[0].t + N[1] * node[1].t + N[2] * node[2].t;
+        const double c = cos(t), s = sin(t);
+        const double a =
+            beam->points[e * POINTS + g].reference_a + beam->trial_strain[e * POINTS + g].eps;
+        const double b =
+            beam->points[e * POINTS + g].reference_b + beam->trial_strain[e * POINTS + g].gamma;
+        x_[g] = a * c - b * s;
+        y_[g] = a * s + b * c;
+    }
+    const double mean_x = 0.5 * (x_[0] + x_[1]), mean_y = 0.5 * (y_[0] + y_[1]);
+    const double slope_x = 0.5 * sqrt(3.0) * (x_[1] - x_[0]);
+    const double slope_y = 0.5 * sqrt(3.0) * (y_[1] - y_[0]);
+    node[1].x = node[0].x + 0.5 * h * (mean_x - 0.5 * slope_x);
+    node[1].y = node[0].y + 0.5 * h * (mean_y - 0.5 * slope_y);
+    node[2].x = node[0].x + h * mean_x;
+    node[2].y = node[0].y + h * mean_y;
+}
+
+/* An increment is applied to rotations and strains, not to positions, which then follow from them.
+ * Adding it to positions would stretch a turning element by half the square of its turn, far beyond
+ * yield, and the next tangent would be that of a wire torn in tension. */
+double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rotation)
+{
+    static const double clamp[3] = {0.0, 0.0, 0.0};
+    double(*d)[3] = beam->banded.right;
+
+    memcpy(d[beam->n_elements - 1], tip, 3 * sizeof *tip);
+    wb_banded_expand(&beam->banded);
+
+    double turn = 0.0;
+    for (int e = 0; e < beam->n_elements; e++)
+        turn = larger(turn, fabs(d[e][2]));
+    const double scale = turn > most_rotation ? most_rotation / turn : 1.0;
+
+    for (int e = 0; e < beam->n_elements; e++) {
+        const struct middle *m = &beam->middles[e];
+        const double *first = e > 0 ? d[e - 1] : clamp;
+        const double *last = d[e];
+        double middle[3] = {-m->w[0], -m->w[1], -m->w[2]};
+        add_product(middle, -1.0, m->W1, first);
+        add_product(middle, -1.0, m->W3, last);
+
+        for (int g = 0; g < POINTS; g++) {
+            const struct wb_beam_point *p = &beam->points[e * POINTS + g];
+            struct strain *strain = &beam->trial_strain[e * POINTS + g];
+            const double *N = beam->shape.N[g], *dN = beam->shape.dN[g];
+            const double x_ = dN[0] * (first[0] - middle[0]) + dN[2] * (last[0] - middle[0]);
+            const double y_ = dN[0] * (first[1] - middle[1]) + dN[2] * (last[1] - middle[1]);
+            const double t = N[0] * first[2] + N[1] * middle[2] + N[2] * last[2];
+            strain->eps += scale * (p->cosine * x_ + p->sine * y_ + p->b * t);
+            strain->gamma += scale * (p->cosine * y_ - p->sine * x_ - p->a * t);
+        }
+        struct wb_beam_node *node = beam->trial + 2 * e;
+        node[1].t += scale * middle[2];
+        node[2].t += scale * last[2];
+        place_nodes(beam, e);
+    }
+    return scale;
+}
+
+void wb_beam_revert(struct wb_beam *beam)
+{
+    copy_nodes(beam, beam->trial, beam->committed);
+    copy_strains(beam, beam->trial_strain, beam->committed_strain);
+}
+
+void wb_beam_extrapolate(struct wb_beam *beam, double ratio)
+{
+    for (int i = 0; i < beam->n_elements * POINTS; i++) {
+        const struct strain now = beam->committed_strain[i], was = beam->earlier_strain[i];
+        beam->trial_strain[i].eps = now.eps + ratio * (now.eps - was.eps);
+        beam->trial_strain[i].gamma = now.gamma + ratio * (now.gamma - was.gamma);
+    }
+    for (int i = 1; i < beam->n_nodes; i++) {
+        const double now = beam->committed[i].t, was = beam->earlier[i].t;
+        beam->trial[i].t = now + ratio * (now - was);
+    }
+    for (int e = 0; e < beam->n_elements; e++)
+        place_nodes(beam, e);
+}
+
+void wb_beam_commit(struct wb_beam *beam)
+{
+    struct wb_beam_node *oldest = beam->earlier;
+    struct strain *oldest_strain = beam->earlier_strain;
+    double *old = beam->history;
+
+    beam->earlier = beam->committed;
+    beam->committed = oldest;
+    copy_nodes(beam, beam->committed, beam->trial);
+    beam->earlier_strain = beam->committed_strain;
+    beam->committed_strain = oldest_strain;
+    copy_strains(beam, beam->committed_strain, beam->trial_strain);
+    beam->history = beam->trial_history;
+    beam->trial_history = old;
+}
+
+void wb_beam_save(struct wb_beam *beam)
+{
+    copy_nodes(beam, beam->saved, beam->committed);
+    copy_nodes(beam, beam->saved_earlier, beam->earlier);
+    copy_strains(beam, beam->saved_strain, beam->committed_strain);
+    copy_strains(beam, beam->saved_earlier_strain, beam->earlier_strain);
+    memcpy(beam->saved_history, beam->history, beam->history_size * sizeof *beam->history);
+}
+
+void wb_beam_restore(struct wb_beam *beam)
+{
+    copy_nodes(beam, beam->committed, beam->saved);
+    copy_nodes(beam, beam->earlier, beam->saved_earlier);
+    copy_strains(beam, beam->committed_strain, beam->saved_strain);
+    copy_strains(beam, beam->earlier_strain, beam->saved_earlier_strain);
+    memcpy(beam->history, beam->saved_history, beam->history_size * sizeof *beam->history);
+    wb_beam_revert(beam);
+}
+
+const struct wb_beam_node *wb_beam_tip(const struct wb_beam *beam)
+{
+    return &beam->trial[beam->n_nodes - 1];
+}
+
+const struct wb_beam_node *wb_beam_reference_tip(const struct wb_beam *beam)
+{
+    return &beam->reference[beam->n_nodes - 1];
+}
+
+double wb_beam_root_moment(const struct wb_beam *beam)
+{
+    return -beam->residual[0][2];
+}
+
+double wb_beam_noise(const struct wb_beam *beam)
+{
+    /* Strains are about 1e-3 and rounded to epsilon of that; some dozen such errors add up. */
+    const double stiffness =
+        fmax(wb_fibres_axial_stiffness(beam->fibres), wb_fibres_shear_stiffness(beam->fibres));
+    return 3e-2 * DBL_EPSILON * stiffness;
+}
+
+double wb_beam_scale_force(const struct wb_beam *beam)
+{
+    return wb_fibres_bending_stiffness(beam->fibres) / (beam->length * beam->length);
+}
+
+const struct wb_beam_point *wb_beam_point(const struct wb_beam *beam, int g)
+{
+    return &beam->points[g];
+}
+
+struct wb_beam_node wb_beam_position(const struct wb_beam *beam, double s)
+{
+    const double within = fmin(fmax(s, 0.0), beam->length) / beam->element_length;
+    const int e = (int)fmin(floor(within), beam->n_elements - 1);
+    const double z = 2.0 * (within - e) - 1.0;
+    const double N[3] = {0.5 * z * (z - 1.0), 1.0 - z * z, 0.5 * z * (z + 1.0)};
+    const struct wb_beam_node *node = beam->committed + 2 * e;
+    return (struct wb_beam_node){
+        N[0] * node[0].x + N[1] * node[1].x + N[2] * node[2].x,
+        N[0] * node[0].y + N[1] * node[1].y + N[2] * node[2].y,
+        N[0] * node[0].t + N[1] * node[1].t + N[2] * node[2].t,
+    };
+}

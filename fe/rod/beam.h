@@ -1,0 +1,92 @@
+/* A beam clamped at its first end: mesh, displacements, plastic history, and the assembly of
+ * fe/rod/beam_element.h's elements, seen from its free end.
+ *
+ * The state has a trial and a committed part. A Newton iteration is evaluate, condense, and, with
+ * the tip's increment found by the caller, advance. Converged, the trial is committed; else it is
+ * reverted. Nothing is allocated after creation.
+ */
+#ifndef WB_FE_ROD_BEAM_H
+#define WB_FE_ROD_BEAM_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "fe/material/material.h"
+#include "fe/rod/beam_element.h"
+#include "fe/rod/section.h"
+
+struct wb_beam_model {
+    const struct wb_section *section; /* borrowed during creation only */
+    double length;                    /* m */
+    int n_elements;                   /* at least 1 */
+    double (*natural_curvature)(void *context, double arc_length); /* 1/m; NULL: straight */
+    void *curvature_context;
+    double load_x, load_y; /* dead load per reference length, N/m */
+    bool reference_kernel; /* slow exact fibres, see fe/rod/fibres.h */
+};
+
+/* What an evaluation found. Moments count as forces over the beam's length. */
+struct wb_beam_balance {
+    double largest_force;    /* largest internal force of any element at any node, N */
+    double largest_residual; /* largest unbalanced force, clamp and tip left out, N */
+    double tip[3];           /* internal less distributed forces at the tip: x, y (N), t (N m) */
+};
+
+struct wb_beam; /* opaque */
+
+/* Takes all memory and stands at the reference, virgin. WB_ERR_ARGUMENT for a model that makes no
+ * beam. */
+WB_MUST_CHECK enum wb_status wb_beam_create(struct wb_beam **out,
+                                            const struct wb_beam_model *model);
+void wb_beam_destroy(struct wb_beam *beam);
+
+/* Back to the reference configuration, virgin. */
+void wb_beam_reset(struct wb_beam *beam);
+
+/* Exchanges the section's materials, as many as the section has. */
+void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *materials);
+
+/* Resultants and unbalanced forces of the trial state under `load_factor` times the distributed
+ * load. */
+void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_balance *balance);
+
+/* Tangent stiffness of the trial state last evaluated, condensed to the tip: at the tip,
+ * stiffness (3 x 3, row-major) times increment = right (3) less what the caller's loads add. */
+void wb_beam_condense(struct wb_beam *beam, double *stiffness, double *right);
+
+/* Moves the trial state by the increment that belongs to `tip` (3). Where a node would turn by more
+ * than `most_rotation` (rad), all of the increment is scaled down; returns the scale. */
+double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rotation);
+
+/* Trial = committed, or the line through the last two committed states at `ratio` times their
+ * distance beyond the last. */
+void wb_beam_revert(struct wb_beam *beam);
+void wb_beam_extrapolate(struct wb_beam *beam, double ratio);
+
+/* Committed = trial, which must have been evaluated since it last moved. */
+void wb_beam_commit(struct wb_beam *beam);
+
+/* Copies the committed state into the second slot and back. */
+void wb_beam_save(struct wb_beam *beam);
+void wb_beam_restore(struct wb_beam *beam);
+
+/* Trial and reference position of the tip. */
+const struct wb_beam_node *wb_beam_tip(const struct wb_beam *beam);
+const struct wb_beam_node *wb_beam_reference_tip(const struct wb_beam *beam);
+
+/* Moment that the clamp exerts, N m, of the state last evaluated; positive bends upwards. */
+double wb_beam_root_moment(const struct wb_beam *beam);
+
+/* Force below which residuals are round-off, N. */
+double wb_beam_noise(const struct wb_beam *beam);
+
+/* Bending stiffness of the virgin section over the square of the length: a force to scale by, N. */
+double wb_beam_scale_force(const struct wb_beam *beam);
+
+/* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, of the state last evaluated. */
+const struct wb_beam_point *wb_beam_point(const struct wb_beam *beam, int g);
+
+/* Committed position at reference arc length s (clamped to 0..L). */
+struct wb_beam_node wb_beam_position(const struct wb_beam *beam, double s);
+
+#endif

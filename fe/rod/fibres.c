@@ -1,0 +1,493 @@
+#include "fe/rod/fibres.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/material/hardening.h"
+
+#define WB_LOG_DOMAIN "fibres"
+
+/* Vectors wider than the target's are passed between inlined functions only. */
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+enum {
+    LANES = 4,        /* fibres of a material are padded to a multiple of this */
+    HISTORY_HEAD = 8, /* the first double says whether the point ever yielded; rest is padding */
+    HISTORY_ROWS = 3  /* plastic strain, accumulated plastic strain, yield or back stress */
+};
+
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#define HAVE_X86_VARIANTS
+#endif
+
+/* See fe/material/material.c. */
+static const double on_surface = 1e-12;
+
+/* Fibres of one material, contiguous and padded with fibres without area. */
+struct batch {
+    int material;
+    int begin, end; /* padded indices */
+};
+
+struct wb_fibres {
+    int n;           /* padded number of fibres */
+    int n_materials; /* of the section, as batches */
+    struct batch *batches;
+    double *y, *area; /* (n) */
+    struct wb_material *materials;
+    struct wb_hardening_table *tables; /* (n_materials) */
+    double *virgin;                    /* history rows of a virgin point */
+    double outermost;                  /* largest |y|, m */
+    double yield_strain;               /* no fibre yields below this strain, 1 */
+    double EA, ES, EI;                 /* elastic N = EA eps + ES kappa, M = ES eps + EI kappa */
+    double shear_ratio;                /* the section's shear stiffness over the fibres' sum */
+    double shear_stiffness;
+    void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *rows,
+                    double *rows_after, struct wb_fibres_response *response);
+};
+
+static int padded(int n)
+{
+    return (n + LANES - 1) / LANES * LANES;
+}
+
+static void sort_fibres(struct wb_fibres *f, const struct wb_section *section)
+{
+    int next = 0;
+    for (int m = 0; m < section->n_materials; m++) {
+        f->batches[m].material = m;
+        f->batches[m].begin = next;
+        for (int i = 0; i < section->n_fibres; i++) {
+            if (section->fibres[i].material != m)
+                continue;
+            f->y[next] = section->fibres[i].y;
+            f->area[next] = section->fibres[i].area;
+            f->outermost = fmax(f->outermost, fabs(f->y[next]));
+            next++;
+        }
+        next = padded(next);
+        f->batches[m].end = next;
+    }
+}
+
+static double shear_sum(const struct wb_fibres *f)
+{
+    double sum = 0.0;
+    for (int b = 0; b < f->n_materials; b++) {
+        for (int i = f->batches[b].begin; i < f->batches[b].end; i++)
+            sum += f->area[i] * wb_section_shear_modulus(&f->materials[b]);
+    }
+    return sum;
+}
+
+void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *materials)
+{
+    memcpy(f->materials, materials, (size_t)f->n_materials * sizeof *materials);
+    f->yield_strain = (double)INFINITY;
+    f->EA = f->ES = f->EI = 0.0;
+    for (int b = 0; b < f->n_materials; b++) {
+        const struct wb_material *m = &f->materials[b];
+        for (int i = f->batches[b].begin; i < f->batches[b].end; i++) {
+            const double EA = m->youngs_modulus * f->area[i];
+            f->EA += EA;
+            f->ES -= EA * f->y[i];
+            f->EI += EA * f->y[i] * f->y[i];
+            f->virgin[2 * f->n + i] =
+                m->hardening == WB_HARDENING_ISOTROPIC_POWER ? m->yield_stress : 0.0;
+        }
+        if (m->hardening != WB_HARDENING_NONE_ELASTIC)
+            f->yield_strain = fmin(f->yield_strain, m->yield_stress / m->youngs_modulus);
+        if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
+            wb_hardening_tabulate(&f->tables[b], m);
+    }
+    f->shear_stiffness = f->shear_ratio * shear_sum(f);
+}
+
+enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section *section)
+{
+    *out = NULL;
+    if (section->n_fibres < 1 || section->n_materials < 1)
+        return wb_fail(WB_ERR_ARGUMENT, "a section without fibres cannot carry anything");
+
+    struct wb_fibres *f = calloc(1, sizeof *f);
+    if (!f)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
+
+    int n = 0;
+    for (int m = 0; m < section->n_materials; m++) {
+        for (int i = 0; i < section->n_fibres; i++)
+            n += section->fibres[i].material == m;
+        n = padded(n);
+    }
+    const size_t count = (size_t)n, materials = (size_t)section->n_materials;
+    f->n = n;
+    f->n_materials = section->n_materials;
+    f->y = calloc(count, sizeof *f->y);
+    f->area = calloc(count, sizeof *f->area);
+    f->virgin = calloc(HISTORY_ROWS * count, sizeof *f->virgin);
+    f->batches = calloc(materials, sizeof *f->batches);
+    f->materials = calloc(materials, sizeof *f->materials);
+    f->tables = calloc(materials, sizeof *f->tables);
+    if (!f->y || !f->area || !f->virgin || !f->batches || !f->materials || !f->tables) {
+        wb_fibres_destroy(f);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
+    }
+
+    sort_fibres(f, section);
+    wb_fibres_set_kernel(f, WB_FIBRES_FASTEST);
+    f->shear_ratio = 1.0;
+    wb_fibres_set_materials(f, section->materials);
+    f->shear_ratio = section->shear_stiffness / f->shear_stiffness;
+    f->shear_stiffness = section->shear_stiffness;
+    *out = f;
+    return WB_OK;
+}
+
+void wb_fibres_destroy(struct wb_fibres *f)
+{
+    if (!f)
+        return;
+    free(f->y);
+    free(f->area);
+    free(f->virgin);
+    free(f->batches);
+    free(f->materials);
+    free(f->tables);
+    free(f);
+}
+
+size_t wb_fibres_history_size(const struct wb_fibres *fibres)
+{
+    return HISTORY_HEAD + HISTORY_ROWS * (size_t)fibres->n;
+}
+
+double wb_fibres_axial_stiffness(const struct wb_fibres *fibres)
+{
+    return fibres->EA;
+}
+
+double wb_fibres_bending_stiffness(const struct wb_fibres *fibres)
+{
+    return fibres->EI;
+}
+
+double wb_fibres_shear_stiffness(const struct wb_fibres *fibres)
+{
+    return fibres->shear_stiffness;
+}
+
+/* Four fibres at a time, as vectors of the compiler: it makes of them what the target has, without
+ * a vector unit too. Comparisons give masks, all bits of a lane set or none. */
+typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
+typedef long long masks
+    __attribute__((vector_size(LANES * sizeof(long long)), aligned(8), may_alias));
+
+static const long long sign_bit = (long long)0x8000000000000000ULL;
+
+static ALWAYS_INLINE lanes load(const double *p)
+{
+    return *(const lanes *)p;
+}
+
+static ALWAYS_INLINE void store(double *p, lanes v)
+{
+    *(lanes *)p = v;
+}
+
+static ALWAYS_INLINE lanes select_lanes(masks mask, lanes yes, lanes no)
+{
+    return (lanes)((mask & (masks)yes) | (~mask & (masks)no));
+}
+
+static ALWAYS_INLINE lanes absolute(lanes v)
+{
+    return (lanes)((masks)v & ~sign_bit);
+}
+
+static ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
+{
+    return (lanes)(((masks)size & ~sign_bit) | ((masks)sign & sign_bit));
+}
+
+static ALWAYS_INLINE bool any(masks mask)
+{
+    long long all = 0;
+    for (int i = 0; i < LANES; i++)
+        all |= mask[i];
+    return all != 0;
+}
+
+/* Where the history of four fibres is read and written. */
+struct rows {
+    const double *plastic, *accumulated, *third;
+    double *plastic_after, *accumulated_after, *third_after;
+};
+
+struct answer {
+    lanes stress, tangent;
+};
+
+static ALWAYS_INLINE struct answer respond_elastically(const struct wb_material *m, lanes strain)
+{
+    const struct answer answer = {m->youngs_modulus * strain, m->youngs_modulus + 0.0 * strain};
+    return answer;
+}
+
+/* r(c) lane by lane: a table row is one cache line, and gathering rows is dearer than their
+ * polynomials. */
+static ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
+                                         const struct wb_hardening_table *table, masks yields,
+                                         lanes c)
+{
+    const lanes scaled = c * (1.0 / m->yield_stress);
+    lanes r;
+    for (int i = 0; i < LANES; i++)
+        r[i] = wb_hardening_lookup(table, scaled[i]);
+    for (int i = 0; i < LANES; i++) {
+        if (yields[i] && !wb_hardening_covers(scaled[i]))
+            r[i] = wb_hardening_ratio(m, c[i]);
+    }
+    return r;
+}
+
+/* sigma = sigma_Y + (1 - r) c with r(c) from the table; see fe/material/hardening.h. The third row
+ * is the yield stress reached so far. */
+static ALWAYS_INLINE struct answer respond_isotropically(const struct wb_material *m,
+                                                         const struct wb_hardening_table *table,
+                                                         lanes strain, const struct rows *h)
+{
+    const double E = m->youngs_modulus;
+    const double sigma_Y = m->yield_stress;
+    const lanes plastic = load(h->plastic);
+    const lanes p0 = load(h->accumulated);
+    const lanes yield = load(h->third);
+    const lanes trial = E * (strain - plastic);
+    const lanes size = absolute(trial);
+    const masks yields = size - yield > on_surface * yield;
+    struct answer answer = respond_elastically(m, strain);
+
+    answer.stress = trial;
+    if (!any(yields)) {
+        store(h->plastic_after, plastic);
+        store(h->accumulated_after, p0);
+        store(h->third_after, yield);
+        return answer;
+    }
+
+    const lanes c = size - sigma_Y + E * p0;
+    const lanes r = plastic_ratio(m, table, yields, c);
+    const lanes p = r * c * (1.0 / E);
+    const lanes power_part = m->hardening_exponent * (1.0 - r);
+    const lanes reached = sigma_Y + (1.0 - r) * c;
+
+    answer.stress = select_lanes(yields, with_sign(reached, trial), trial);
+    answer.tangent = select_lanes(yields, E * power_part / (r + power_part), answer.tangent);
+    store(h->plastic_after, select_lanes(yields, plastic + with_sign(p - p0, trial), plastic));
+    store(h->accumulated_after, select_lanes(yields, p, p0));
+    store(h->third_after, select_lanes(yields, reached, yield));
+    return answer;
+}
+
+/* The third row is the back stress. */
+static ALWAYS_INLINE struct answer respond_kinematically(const struct wb_material *m, lanes strain,
+                                                         const struct rows *h)
+{
+    const double E = m->youngs_modulus;
+    const double H = m->strength_coefficient;
+    const lanes plastic = load(h->plastic);
+    const lanes back = load(h->third);
+    const lanes trial = E * (strain - plastic);
+    const lanes distance = trial - back;
+    const lanes over = absolute(distance) - m->yield_stress;
+    const masks yields = over > on_surface * m->yield_stress;
+    const lanes none = 0.0 * strain;
+    const lanes size = select_lanes(yields, over * (1.0 / (E + H)), none);
+    const lanes increment = with_sign(size, distance);
+    const struct answer answer = {
+        trial - E * increment,
+        select_lanes(yields, none + E * H / (E + H), none + E),
+    };
+
+    store(h->plastic_after, plastic + increment);
+    store(h->accumulated_after, load(h->accumulated) + size);
+    store(h->third_after, back + H * increment);
+    return answer;
+}
+
+/* The slow twin: the material law of fe/material/material.c, fibre by fibre. */
+static ALWAYS_INLINE struct answer respond_slow_twin(const struct wb_material *m, lanes strain,
+                                                     const struct rows *h)
+{
+    const bool isotropic = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
+    const bool kinematic = m->hardening == WB_HARDENING_KINEMATIC_LINEAR;
+    struct answer answer;
+
+    for (int i = 0; i < LANES; i++) {
+        const struct wb_material_state before = {
+            .plastic_strain = h->plastic[i],
+            .accumulated_plastic_strain = h->accumulated[i],
+            .back_stress = kinematic ? h->third[i] : 0.0,
+        };
+        struct wb_material_state after;
+        double stress, tangent;
+        wb_material_stress(m, strain[i], &before, &after, &stress, &tangent);
+        answer.stress[i] = stress;
+        answer.tangent[i] = tangent;
+        h->plastic_after[i] = after.plastic_strain;
+        h->accumulated_after[i] = after.accumulated_plastic_strain;
+        h->third_after[i] = after.back_stress;
+        if (isotropic) {
+            const bool moved = after.accumulated_plastic_strain > before.accumulated_plastic_strain;
+            h->third_after[i] = moved ? fabs(stress) : h->third[i];
+        }
+    }
+    return answer;
+}
+
+static ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int material, bool slow,
+                                              lanes strain, const struct rows *h)
+{
+    const struct wb_material *m = &f->materials[material];
+
+    if (slow)
+        return respond_slow_twin(m, strain, h);
+    if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
+        return respond_isotropically(m, &f->tables[material], strain, h);
+    if (m->hardening == WB_HARDENING_KINEMATIC_LINEAR)
+        return respond_kinematically(m, strain, h);
+    return respond_elastically(m, strain);
+}
+
+/* Adds the lanes in a fixed order. */
+static ALWAYS_INLINE double add_lanes(lanes v)
+{
+    return (v[0] + v[2]) + (v[1] + v[3]);
+}
+
+/* Axial strain and curvature of the section. */
+struct strains {
+    double eps, kappa;
+};
+
+static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, struct strains strains,
+                                       const double *rows, double *rows_after,
+                                       struct wb_fibres_response *response)
+{
+    const double eps = strains.eps, kappa = strains.kappa;
+    lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
+
+    for (int b = 0; b < f->n_materials; b++) {
+        for (int i = f->batches[b].begin; i < f->batches[b].end; i += LANES) {
+            const struct rows h = {
+                .plastic = rows + i,
+                .accumulated = rows + f->n + i,
+                .third = rows + 2 * f->n + i,
+                .plastic_after = rows_after + i,
+                .accumulated_after = rows_after + f->n + i,
+                .third_after = rows_after + 2 * f->n + i,
+            };
+            const lanes y = load(f->y + i), area = load(f->area + i);
+            const struct answer answer =
+                respond_of(f, f->batches[b].material, slow, eps - y * kappa, &h);
+            const lanes force = answer.stress * area;
+            const lanes stiffness = answer.tangent * area;
+            N += force;
+            M -= force * y;
+            D11 += stiffness;
+            D12 -= stiffness * y;
+            D22 += stiffness * y * y;
+        }
+    }
+    response->N = add_lanes(N);
+    response->M = add_lanes(M);
+    response->D11 = add_lanes(D11);
+    response->D12 = add_lanes(D12);
+    response->D22 = add_lanes(D22);
+}
+
+/* The same function, compiled for what the processor has. No variant contracts a * b + c, so all
+ * give the same bits. */
+static void respond_slowly(const struct wb_fibres *f, double eps, double kappa, const double *rows,
+                           double *rows_after, struct wb_fibres_response *response)
+{
+    respond_rows(f, true, (struct strains){eps, kappa}, rows, rows_after, response);
+}
+
+static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
+                             const double *rows, double *rows_after,
+                             struct wb_fibres_response *response)
+{
+    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+}
+
+#ifdef HAVE_X86_VARIANTS
+__attribute__((target("avx2"))) static void respond_avx2(const struct wb_fibres *f, double eps,
+                                                         double kappa, const double *rows,
+                                                         double *rows_after,
+                                                         struct wb_fibres_response *response)
+{
+    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+}
+
+__attribute__((target("avx2,avx512f,avx512dq,avx512vl"))) static void
+respond_avx512(const struct wb_fibres *f, double eps, double kappa, const double *rows,
+               double *rows_after, struct wb_fibres_response *response)
+{
+    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+}
+#endif
+
+void wb_fibres_set_kernel(struct wb_fibres *fibres, enum wb_fibres_kernel kernel)
+{
+    fibres->respond = kernel == WB_FIBRES_REFERENCE ? respond_slowly : respond_portably;
+#ifdef HAVE_X86_VARIANTS
+    if (kernel != WB_FIBRES_FASTEST)
+        return;
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+        fibres->respond = respond_avx512;
+    else if (__builtin_cpu_supports("avx2"))
+        fibres->respond = respond_avx2;
+#endif
+}
+
+static void respond_virgin(const struct wb_fibres *f, double eps, double kappa,
+                           struct wb_fibres_response *response)
+{
+    response->N = f->EA * eps + f->ES * kappa;
+    response->M = f->ES * eps + f->EI * kappa;
+    response->D11 = f->EA;
+    response->D12 = f->ES;
+    response->D22 = f->EI;
+}
+
+void wb_fibres_respond(const struct wb_fibres *f, double eps, double kappa,
+                       const double *restrict before, double *restrict after,
+                       struct wb_fibres_response *restrict response)
+{
+    const bool yielded = before[0] != 0.0;
+
+    if (!yielded && fabs(eps) + f->outermost * fabs(kappa) <= f->yield_strain) {
+        after[0] = 0.0;
+        respond_virgin(f, eps, kappa, response);
+        return;
+    }
+    after[0] = 1.0;
+    f->respond(f, eps, kappa, yielded ? before + HISTORY_HEAD : f->virgin, after + HISTORY_HEAD,
+               response);
+}
+
+double wb_fibres_largest_plastic_strain(const struct wb_fibres *f, const double *history)
+{
+    double largest = 0.0;
+    if (history[0] == 0.0)
+        return largest;
+    for (int i = 0; i < f->n; i++) {
+        if (f->area[i] > 0.0)
+            largest = fmax(largest, history[HISTORY_HEAD + f->n + i]);
+    }
+    return largest;
+}

@@ -1,0 +1,60 @@
+/* A section made ready for stepping: fibres sorted by material, inverse power laws tabulated, and
+ * the plastic history of one section point as a plain row of doubles.
+ *
+ * The fast kernel takes p(c) from the table of fe/material/hardening.h and skips sections that
+ * never yielded; the slow one calls wb_material_stress() for every fibre. They agree to about 1e-11
+ * of the yield stress (tests/fe/rod/test_fibres.c). The fast kernel's arithmetic is in a fixed
+ * order, so that its results are the same bits with every vector width.
+ */
+#ifndef WB_FE_ROD_FIBRES_H
+#define WB_FE_ROD_FIBRES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "fe/rod/section.h"
+
+/* Stress resultants and tangent of a section: N = sum s A, M = -sum s A y. */
+struct wb_fibres_response {
+    double N, M;          /* N, N m */
+    double D11, D12, D22; /* dN/d(eps), dN/d(kappa) = dM/d(eps), dM/d(kappa) */
+};
+
+struct wb_fibres; /* opaque */
+
+/* Sorts the section's fibres by material and tabulates its laws; the section is not kept. */
+WB_MUST_CHECK enum wb_status wb_fibres_create(struct wb_fibres **out,
+                                              const struct wb_section *section);
+void wb_fibres_destroy(struct wb_fibres *fibres);
+
+/* Exchanges the materials (as many as the section has) and tabulates anew. */
+void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material *materials);
+
+enum wb_fibres_kernel {
+    WB_FIBRES_FASTEST,  /* with the vector instructions that the processor has; the default */
+    WB_FIBRES_PORTABLE, /* the same source without them: the same bits */
+    WB_FIBRES_REFERENCE /* the slow twin */
+};
+
+/* Chooses a kernel (for tests and benchmarks). A history of one serves the others. */
+void wb_fibres_set_kernel(struct wb_fibres *fibres, enum wb_fibres_kernel kernel);
+
+/* Doubles in the history of one section point. All zero is the virgin state. */
+size_t wb_fibres_history_size(const struct wb_fibres *fibres);
+
+/* Elastic stiffnesses about the axis: axial EA, bending EI, shear (scaled with the materials). */
+double wb_fibres_axial_stiffness(const struct wb_fibres *fibres);
+double wb_fibres_bending_stiffness(const struct wb_fibres *fibres);
+double wb_fibres_shear_stiffness(const struct wb_fibres *fibres);
+
+/* Response to axial strain and curvature, from the history `before`; `after` (not the same memory)
+ * receives the history if the step is accepted. Pure. */
+void wb_fibres_respond(const struct wb_fibres *fibres, double eps, double kappa,
+                       const double *restrict before, double *restrict after,
+                       struct wb_fibres_response *restrict response);
+
+/* The largest accumulated plastic strain of a point's fibres, 0 when it never yielded. */
+double wb_fibres_largest_plastic_strain(const struct wb_fibres *fibres, const double *history);
+
+#endif

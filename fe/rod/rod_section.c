@@ -1,0 +1,529 @@
+#include "fe/rod/rod_section.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/rod/rod_fibre.h"
+#include "fe/rod/section.h"
+
+#define WB_LOG_DOMAIN "rod section"
+
+enum {
+    DEFAULT_RINGS = 8,
+    DEFAULT_AROUND = 24,
+    MOST_PARTS = 16,
+    MOST_RINGS = 64,
+    MOST_AROUND = 256,
+    HISTORY_HEAD = MOST_PARTS, /* a double for each part: whether it ever yielded at this point */
+    HISTORY_ROWS = 4,          /* plastic, plastic_shear, accumulated, yield of a part's fibres */
+    LANES = 4,                 /* fibres of a ring are a multiple of this */
+    N_STRAINS = WB_ROD_SECTION_STRAINS
+};
+
+/* Elastic stiffnesses, N, N m2. */
+struct stiffness {
+    double EA, EI, GJ;
+};
+
+struct wb_rod_section {
+    int n_parts, n;                    /* parts, fibres; those of a part are contiguous */
+    int n_rings, n_around;             /* in each part, in each ring */
+    struct wb_rod_fibre_law *laws;     /* (n_parts) */
+    struct wb_hardening_table *tables; /* (n_parts) */
+    struct stiffness *stiffness;       /* (n_parts) */
+    double *y, *z, *area;              /* (n) */
+    double *radius;                    /* (n_parts n_rings) of the rings */
+    double *edge;                      /* (n_parts (n_rings + 1)) radii between the rings' cells */
+    struct stiffness total;
+    double shear_stiffness;
+};
+
+/* Gauss-Legendre points and weights of [0, 1], by Newton's method on the Legendre polynomials. */
+static void gauss_rule(int n, double *point, double *weight)
+{
+    for (int i = 0; i < n; i++) {
+        double x = cos(M_PI * (n - i - 0.25) / (n + 0.5)), slope = 1.0;
+        for (int iteration = 0; iteration < 20; iteration++) {
+            double p = 1.0, before = 0.0;
+            for (int k = 1; k <= n; k++) {
+                const double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
+                before = p;
+                p = next;
+            }
+            slope = n * (x * p - before) / (x * x - 1.0);
+            const double step = p / slope;
+            x -= step;
+            if (fabs(step) < 1e-15)
+                break;
+        }
+        point[i] = 0.5 * (1.0 + x);
+        weight[i] = 1.0 / ((1.0 - x * x) * slope * slope);
+    }
+}
+
+/* Direction of fibre i of a ring that is turned by half a space or not, mirrored from the first
+ * octant so that the ring is symmetric to the last bit. */
+static void direction(int i, int n_around, bool turned, double *c, double *s)
+{
+    const int halves = 2 * n_around; /* in half spaces */
+    const int at = (2 * i + (turned ? 1 : 0)) % halves;
+    const int quarter = halves / 4;
+    const int quadrant = at / quarter, within = at % quarter;
+    const bool beyond = 2 * within > quarter;
+    const double angle = 2.0 * M_PI * (beyond ? quarter - within : within) / halves;
+    const double a = beyond ? sin(angle) : cos(angle), b = beyond ? cos(angle) : sin(angle);
+
+    *c = quadrant == 0 ? a : quadrant == 1 ? -b : quadrant == 2 ? -a : b;
+    *s = quadrant == 0 ? b : quadrant == 1 ? a : quadrant == 2 ? -b : -a;
+}
+
+static void fill_part(struct wb_rod_section *section, int part, double Ri, double Ro)
+{
+    double point[MOST_RINGS], weight[MOST_RINGS];
+    const int n_rings = section->n_rings, n_around = section->n_around;
+    const double squares = Ro * Ro - Ri * Ri;
+    double *radius = section->radius + part * n_rings;
+    double *edge = section->edge + part * (n_rings + 1);
+    double covered = 0.0;
+
+    gauss_rule(n_rings, point, weight);
+    edge[0] = Ri;
+    for (int ring = 0; ring < n_rings; ring++) {
+        covered += weight[ring];
+        edge[ring + 1] = ring + 1 == n_rings ? Ro : sqrt(Ri * Ri + covered * squares);
+        radius[ring] = sqrt(Ri * Ri + point[ring] * squares);
+        for (int i = 0; i < n_around; i++) {
+            const int at = (part * n_rings + ring) * n_around + i;
+            double c, s;
+            direction(i, n_around, ring % 2 == 1, &c, &s);
+            section->y[at] = radius[ring] * c;
+            section->z[at] = radius[ring] * s;
+            section->area[at] = M_PI * squares * weight[ring] / n_around;
+        }
+    }
+}
+
+static void add_stiffness(struct wb_rod_section *section, int part)
+{
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const double E = law->material.youngs_modulus, G = law->shear_modulus;
+    const int n_rings = section->n_rings, n_around = section->n_around;
+    struct stiffness *own = &section->stiffness[part];
+    double area = 0.0, second_moment = 0.0;
+
+    for (int ring = part * n_rings; ring < (part + 1) * n_rings; ring++) {
+        const double r = section->radius[ring], cells = n_around * section->area[ring * n_around];
+        area += cells;
+        second_moment += 0.5 * cells * r * r;
+    }
+    *own = (struct stiffness){E * area, E * second_moment, 2.0 * G * second_moment};
+    section->total.EA += own->EA;
+    section->total.EI += own->EI;
+    section->total.GJ += own->GJ;
+    section->shear_stiffness += wb_section_shear_modulus(&law->material) * area;
+    if (law->material.hardening == WB_HARDENING_ISOTROPIC_POWER)
+        wb_hardening_tabulate(&section->tables[part], &law->material);
+}
+
+static enum wb_status check_parts(int n_parts, const struct wb_rod_section_part *parts,
+                                  const struct wb_rod_section_layout *layout)
+{
+    if (n_parts < 1 || n_parts > MOST_PARTS)
+        return wb_fail(WB_ERR_ARGUMENT, "%d parts of a section: expected 1 to %d", n_parts,
+                       MOST_PARTS);
+    if (layout->n_rings < 1 || layout->n_rings > MOST_RINGS)
+        return wb_fail(WB_ERR_ARGUMENT, "%d rings of fibres: expected 1 to %d", layout->n_rings,
+                       MOST_RINGS);
+    if (layout->n_around < 4 || layout->n_around > MOST_AROUND || layout->n_around % 4 != 0)
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "%d fibres in a ring: expected a multiple of 4 from 4 to %d",
+                       layout->n_around, MOST_AROUND);
+    for (int i = 0; i < n_parts; i++) {
+        const struct wb_rod_section_part *p = &parts[i];
+        if (!(isfinite(p->outer_diameter) && p->inner_diameter >= 0.0 &&
+              p->outer_diameter > p->inner_diameter))
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "part from %g to %g m: expected 0 <= inner < outer diameter",
+                           p->inner_diameter, p->outer_diameter);
+        WB_TRY(wb_section_check_material(&p->material));
+    }
+    return WB_OK;
+}
+
+static bool take_memory(struct wb_rod_section *s)
+{
+    const size_t parts = (size_t)s->n_parts, n = (size_t)s->n, rings = (size_t)s->n_rings;
+
+    s->laws = calloc(parts, sizeof *s->laws);
+    s->tables = calloc(parts, sizeof *s->tables);
+    s->stiffness = calloc(parts, sizeof *s->stiffness);
+    s->y = calloc(n, sizeof *s->y);
+    s->z = calloc(n, sizeof *s->z);
+    s->area = calloc(n, sizeof *s->area);
+    s->radius = calloc(parts * rings, sizeof *s->radius);
+    s->edge = calloc(parts * (rings + 1), sizeof *s->edge);
+    return s->laws && s->tables && s->stiffness && s->y && s->z && s->area && s->radius && s->edge;
+}
+
+enum wb_status wb_rod_section_create(struct wb_rod_section **out, int n_parts,
+                                     const struct wb_rod_section_part *parts,
+                                     const struct wb_rod_section_layout *layout)
+{
+    *out = NULL;
+    struct wb_rod_section_layout complete = {0, 0};
+    if (layout)
+        complete = *layout;
+    if (complete.n_rings == 0)
+        complete.n_rings = DEFAULT_RINGS;
+    if (complete.n_around == 0)
+        complete.n_around = DEFAULT_AROUND;
+    WB_TRY(check_parts(n_parts, parts, &complete));
+
+    struct wb_rod_section *s = calloc(1, sizeof *s);
+    if (!s)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
+    s->n_parts = n_parts;
+    s->n_rings = complete.n_rings;
+    s->n_around = complete.n_around;
+    s->n = n_parts * s->n_rings * s->n_around;
+    if (!take_memory(s)) {
+        const int n = s->n;
+        wb_rod_section_destroy(s);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
+    }
+    for (int i = 0; i < n_parts; i++) {
+        wb_rod_fibre_law_init(&s->laws[i], &parts[i].material, &s->tables[i]);
+        fill_part(s, i, 0.5 * parts[i].inner_diameter, 0.5 * parts[i].outer_diameter);
+        add_stiffness(s, i);
+    }
+    *out = s;
+    return WB_OK;
+}
+
+void wb_rod_section_destroy(struct wb_rod_section *section)
+{
+    if (!section)
+        return;
+    free(section->laws);
+    free(section->tables);
+    free(section->stiffness);
+    free(section->y);
+    free(section->z);
+    free(section->area);
+    free(section->radius);
+    free(section->edge);
+    free(section);
+}
+
+void wb_rod_section_set_slow(struct wb_rod_section *section, bool slow)
+{
+    for (int i = 0; i < section->n_parts; i++)
+        section->laws[i].table = slow ? NULL : &section->tables[i];
+}
+
+int wb_rod_section_fibres(const struct wb_rod_section *section)
+{
+    return section->n;
+}
+
+void wb_rod_section_fibre(const struct wb_rod_section *section, int i,
+                          struct wb_rod_section_fibre *fibre)
+{
+    const int ring = i / section->n_around, part = ring / section->n_rings;
+    const int in_part = ring % section->n_rings;
+    const double space = 2.0 * M_PI / section->n_around;
+    const double middle = space * (i % section->n_around + (in_part % 2 == 1 ? 0.5 : 0.0));
+    const double *edge = section->edge + part * (section->n_rings + 1) + in_part;
+
+    *fibre = (struct wb_rod_section_fibre){
+        .y = section->y[i],
+        .z = section->z[i],
+        .inner_radius = edge[0],
+        .outer_radius = edge[1],
+        .begin_angle = middle - 0.5 * space,
+        .end_angle = middle + 0.5 * space,
+        .area = section->area[i],
+        .part = part,
+    };
+}
+
+size_t wb_rod_section_history_size(const struct wb_rod_section *section)
+{
+    return HISTORY_HEAD + HISTORY_ROWS * (size_t)section->n;
+}
+
+double wb_rod_section_axial_stiffness(const struct wb_rod_section *section)
+{
+    return section->total.EA;
+}
+
+double wb_rod_section_bending_stiffness(const struct wb_rod_section *section)
+{
+    return section->total.EI;
+}
+
+double wb_rod_section_torsion_stiffness(const struct wb_rod_section *section)
+{
+    return section->total.GJ;
+}
+
+double wb_rod_section_shear_stiffness(const struct wb_rod_section *section)
+{
+    return section->shear_stiffness;
+}
+
+static void add_elastic(const struct stiffness *own, const double *strain,
+                        struct wb_rod_section_response *response)
+{
+    const double stiffness[N_STRAINS] = {own->EA, own->GJ, own->EI, own->EI};
+    for (int i = 0; i < N_STRAINS; i++) {
+        response->force[i] += stiffness[i] * strain[i];
+        response->tangent[i][i] += stiffness[i];
+    }
+}
+
+/* Rows of a part's histories, for as many fibres as a part has. */
+struct rows {
+    double *plastic, *plastic_shear, *accumulated, *yield;
+};
+
+static int fibres_of_part(const struct wb_rod_section *section)
+{
+    return section->n_rings * section->n_around;
+}
+
+static struct rows rows_of(const struct wb_rod_section *section, int part, double *history)
+{
+    const size_t n = (size_t)fibres_of_part(section);
+    double *first = history + HISTORY_HEAD + (size_t)part * HISTORY_ROWS * n;
+    return (struct rows){first, first + n, first + 2 * n, first + 3 * n};
+}
+
+/* The history of fibre i, which is that of a virgin one in a part that never yielded. */
+static struct wb_rod_fibre_state state_of(const struct wb_rod_section *section, int i,
+                                          const double *history)
+{
+    const int n = fibres_of_part(section), part = i / n;
+    const double *at = history + HISTORY_HEAD + part * HISTORY_ROWS * n + i % n;
+    if (history[part] == 0.0)
+        return (struct wb_rod_fibre_state){.yield = section->laws[part].material.yield_stress};
+    return (struct wb_rod_fibre_state){at[0], at[n], at[2 * n], at[3 * n]};
+}
+
+/* Histories of a part at the end of a step in which no fibre yields. */
+static void carry_over(const struct wb_rod_section *section, int part, const double *before,
+                       double *after)
+{
+    const size_t n = (size_t)fibres_of_part(section);
+    const size_t first = HISTORY_HEAD + (size_t)part * HISTORY_ROWS * n;
+
+    after[part] = 1.0;
+    if (before[part] != 0.0) {
+        memcpy(after + first, before + first, HISTORY_ROWS * n * sizeof *after);
+        return;
+    }
+    memset(after + first, 0, (HISTORY_ROWS - 1) * n * sizeof *after);
+    for (size_t i = 0; i < n; i++)
+        after[first + (HISTORY_ROWS - 1) * n + i] = section->laws[part].material.yield_stress;
+}
+
+static double axial_strain(const struct wb_rod_section *section, int i, const double *strain)
+{
+    return strain[0] + section->z[i] * strain[2] - section->y[i] * strain[3];
+}
+
+/* Whether no fibre of a virgin part yields: sqrt(s^2 + 3 t^2) is at most |s| + sqrt(3) |t|. */
+static bool stays_elastic(const struct wb_rod_section *section, int part, const double *strain)
+{
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const double outermost = section->radius[(part + 1) * section->n_rings - 1];
+    const double axial = fabs(strain[0]) + outermost * hypot(strain[2], strain[3]);
+    const double shear = outermost * fabs(strain[1]);
+    return law->material.youngs_modulus * axial + sqrt(3.0) * law->shear_modulus * shear <=
+           law->material.yield_stress;
+}
+
+/* A ring under way: its stresses, and by how much each fibre is beyond its yield surface. */
+struct ring {
+    int first; /* fibre, of all */
+    double radius, area;
+    double axial[MOST_AROUND], shear[MOST_AROUND], beyond[MOST_AROUND];
+};
+
+/* Trial stresses; `rows` begin at the ring. This is where the time goes for fibres that do not
+ * yield, so it has no branches. */
+static void try_ring(const struct wb_rod_section *section, const struct wb_rod_fibre_law *law,
+                     const double *strain, const struct rows *rows, struct ring *ring)
+{
+    const double E = law->material.youngs_modulus, G = law->shear_modulus, K = law->back;
+    const double *restrict y = section->y + ring->first, *restrict z = section->z + ring->first;
+    const double *restrict plastic = rows->plastic, *restrict yield = rows->yield;
+    const double *restrict plastic_shear = rows->plastic_shear;
+    const double angle = ring->radius * strain[1];
+
+    for (int i = 0; i < section->n_around; i++) {
+        const double s = E * (strain[0] + z[i] * strain[2] - y[i] * strain[3] - plastic[i]);
+        const double t = G * (angle - plastic_shear[i]);
+        const double x = s - K * plastic[i], w = t - K / 3.0 * plastic_shear[i];
+        ring->axial[i] = s;
+        ring->shear[i] = t;
+        ring->beyond[i] = x * x + 3.0 * w * w - yield[i] * yield[i];
+    }
+}
+
+/* Subtracts from the tangent (lower triangle) what a yielding fibre has less than an elastic one.
+ */
+static void soften(const struct wb_rod_fibre_response *f, const double moduli[2],
+                   const double place[3], double area, struct wb_rod_section_response *response)
+{
+    const double y = place[0], z = place[1], r = place[2];
+    const double D = area * (moduli[0] - f->D11), C = -area * r * f->D12;
+    double(*K)[N_STRAINS] = response->tangent;
+
+    K[0][0] -= D;
+    K[1][0] -= C;
+    K[1][1] -= area * r * r * (moduli[1] - f->D22);
+    K[2][0] -= z * D;
+    K[2][1] -= z * C;
+    K[2][2] -= z * z * D;
+    K[3][0] += y * D;
+    K[3][1] += y * C;
+    K[3][2] += y * z * D;
+    K[3][3] -= y * y * D;
+    response->yielding += f->yields;
+}
+
+/* The fibres that are beyond their surface, or not finite. `rows` are those at the end of the step,
+ * so far as they were at its beginning. */
+static void return_ring(const struct wb_rod_section *section, int part, const double *strain,
+                        const struct rows *rows, struct ring *ring,
+                        struct wb_rod_section_response *response)
+{
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const double moduli[2] = {law->material.youngs_modulus, law->shear_modulus};
+
+    for (int i = 0; i < section->n_around; i++) {
+        if (ring->beyond[i] <= 0.0)
+            continue;
+        const int fibre = ring->first + i;
+        const double place[3] = {section->y[fibre], section->z[fibre], ring->radius};
+        const double at[2] = {axial_strain(section, fibre, strain), ring->radius * strain[1]};
+        struct wb_rod_fibre_state state = {rows->plastic[i], rows->plastic_shear[i],
+                                           rows->accumulated[i], rows->yield[i]};
+        struct wb_rod_fibre_response f;
+        wb_rod_fibre_respond(law, at, &state, &state, &f);
+        rows->plastic[i] = state.plastic;
+        rows->plastic_shear[i] = state.plastic_shear;
+        rows->accumulated[i] = state.accumulated;
+        rows->yield[i] = state.yield;
+        ring->axial[i] = f.axial;
+        ring->shear[i] = f.shear;
+        soften(&f, moduli, place, ring->area, response);
+    }
+}
+
+static void add_forces(const struct wb_rod_section *section, const struct ring *ring,
+                       struct wb_rod_section_response *response)
+{
+    const double *y = section->y + ring->first, *z = section->z + ring->first;
+    double sum[N_STRAINS][LANES] = {{0}};
+
+    for (int i = 0; i < section->n_around; i += LANES) {
+        for (int k = 0; k < LANES; k++) {
+            const double s = ring->axial[i + k];
+            sum[0][k] += s;
+            sum[1][k] += ring->shear[i + k];
+            sum[2][k] += z[i + k] * s;
+            sum[3][k] -= y[i + k] * s;
+        }
+    }
+    for (int j = 0; j < N_STRAINS; j++) {
+        const double weight = ring->area * (j == 1 ? ring->radius : 1.0);
+        response->force[j] += weight * (sum[j][0] + sum[j][2] + (sum[j][1] + sum[j][3]));
+    }
+}
+
+static void respond_part(const struct wb_rod_section *section, int part, const double *strain,
+                         const double *before, double *after,
+                         struct wb_rod_section_response *response)
+{
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const struct stiffness *own = &section->stiffness[part];
+
+    if (law->material.hardening == WB_HARDENING_NONE_ELASTIC ||
+        (before[part] == 0.0 && stays_elastic(section, part, strain))) {
+        after[part] = 0.0;
+        add_elastic(own, strain, response);
+        return;
+    }
+    carry_over(section, part, before, after);
+    const double elastic[N_STRAINS] = {own->EA, own->GJ, own->EI, own->EI};
+    for (int i = 0; i < N_STRAINS; i++)
+        response->tangent[i][i] += elastic[i];
+
+    struct rows rows = rows_of(section, part, after);
+    for (int r = part * section->n_rings; r < (part + 1) * section->n_rings; r++) {
+        const int n = section->n_around;
+        struct ring ring;
+        ring.first = r * n;
+        ring.radius = section->radius[r];
+        ring.area = section->area[ring.first];
+        try_ring(section, law, strain, &rows, &ring);
+        return_ring(section, part, strain, &rows, &ring, response);
+        add_forces(section, &ring, response);
+        rows = (struct rows){rows.plastic + n, rows.plastic_shear + n, rows.accumulated + n,
+                             rows.yield + n};
+    }
+}
+
+void wb_rod_section_respond(const struct wb_rod_section *section, const double *strain,
+                            const double *restrict before, double *restrict after,
+                            struct wb_rod_section_response *restrict response)
+{
+    *response = (struct wb_rod_section_response){0};
+    for (int part = 0; part < section->n_parts; part++)
+        respond_part(section, part, strain, before, after, response);
+    for (int i = 0; i < N_STRAINS; i++) {
+        for (int j = i + 1; j < N_STRAINS; j++)
+            response->tangent[i][j] = response->tangent[j][i];
+    }
+}
+
+void wb_rod_section_energy(const struct wb_rod_section *section, const double *strain,
+                           const double *before, const double *after, double *stored,
+                           double *dissipated)
+{
+    double energy = 0.0, loss = 0.0;
+    for (int i = 0; i < section->n; i++) {
+        const int ring = i / section->n_around, part = ring / section->n_rings;
+        const double at[2] = {axial_strain(section, i, strain), section->radius[ring] * strain[1]};
+        const struct wb_rod_fibre_state was = state_of(section, i, before);
+        const struct wb_rod_fibre_state is = state_of(section, i, after);
+        energy += section->area[i] * wb_rod_fibre_energy(&section->laws[part], at, &is);
+        loss += section->area[i] * is.yield * (is.accumulated - was.accumulated);
+    }
+    *stored = energy;
+    *dissipated = loss;
+}
+
+void wb_rod_section_stress(const struct wb_rod_section *section, int i, const double *strain,
+                           const double *history, double *axial, double *shear, double *plastic)
+{
+    const int ring = i / section->n_around, part = ring / section->n_rings;
+    const struct wb_rod_fibre_law *law = &section->laws[part];
+    const struct wb_rod_fibre_state state = state_of(section, i, history);
+
+    *axial = law->material.youngs_modulus * (axial_strain(section, i, strain) - state.plastic);
+    *shear = law->shear_modulus * (section->radius[ring] * strain[1] - state.plastic_shear);
+    *plastic = state.accumulated;
+}
+
+double wb_rod_section_largest_plastic_strain(const struct wb_rod_section *section,
+                                             const double *history)
+{
+    double largest = 0.0;
+    for (int i = 0; i < section->n; i++)
+        largest = fmax(largest, state_of(section, i, history).accumulated);
+    return largest;
+}

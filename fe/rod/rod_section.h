@@ -1,0 +1,100 @@
+/* The round section of a rod in space, made of fibres in concentric rings that carry axial stress
+ * and the shear stress of torsion (fe/rod/rod_fibre.h); transverse shear is elastic.
+ *
+ * Axes: x along the rod, y and z in the section. With axial strain e, twist kx and curvatures ky,
+ * kz (material components: rates of turning about x, y, z) a fibre at (y, z), r = |(y, z)|, has
+ *
+ *     strain e + z ky - y kz,  shear angle r kx along the ring;
+ *     N = sum s A,  Mx = sum t r A,  My = sum s z A,  Mz = -sum s y A.
+ *
+ * The rings sit at Gauss-Legendre points of r^2 over each part, so that area, second moments and
+ * torsion constant are exact, and have equally spaced fibres, every other ring turned by half a
+ * space.
+ */
+#ifndef WB_FE_ROD_ROD_SECTION_H
+#define WB_FE_ROD_ROD_SECTION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "fe/material/material.h"
+
+enum {
+    WB_ROD_SECTION_STRAINS = 4 /* e, kx, ky, kz, and their forces N, Mx, My, Mz */
+};
+
+/* A solid circle (inner_diameter = 0) or ring. */
+struct wb_rod_section_part {
+    double inner_diameter, outer_diameter; /* m */
+    struct wb_material material;
+};
+
+struct wb_rod_section_layout {
+    int n_rings;  /* in each part; 0: 8 */
+    int n_around; /* fibres of a ring, a multiple of 4; 0: 24 */
+};
+
+/* A fibre and its cell, the part of a ring that it stands for. */
+struct wb_rod_section_fibre {
+    double y, z;                       /* m */
+    double inner_radius, outer_radius; /* m */
+    double begin_angle, end_angle;     /* rad, from y towards z */
+    double area;                       /* m2 */
+    int part;
+};
+
+struct wb_rod_section_response {
+    double force[WB_ROD_SECTION_STRAINS];
+    double tangent[WB_ROD_SECTION_STRAINS][WB_ROD_SECTION_STRAINS]; /* symmetric */
+    int yielding;                                                   /* fibres, in this step */
+};
+
+struct wb_rod_section; /* opaque */
+
+/* `layout` may be NULL. On failure *out is NULL. */
+WB_MUST_CHECK enum wb_status wb_rod_section_create(struct wb_rod_section **out, int n_parts,
+                                                   const struct wb_rod_section_part *parts,
+                                                   const struct wb_rod_section_layout *layout);
+void wb_rod_section_destroy(struct wb_rod_section *section); /* accepts NULL */
+
+/* Solves the power law in every fibre instead of taking it from its table (for tests). */
+void wb_rod_section_set_slow(struct wb_rod_section *section, bool slow);
+
+int wb_rod_section_fibres(const struct wb_rod_section *section);
+void wb_rod_section_fibre(const struct wb_rod_section *section, int i,
+                          struct wb_rod_section_fibre *fibre);
+
+/* Doubles in the history of one section point. All zero is the virgin state. */
+size_t wb_rod_section_history_size(const struct wb_rod_section *section);
+
+/* Elastic stiffnesses about the axis, N, N m2: axial EA, bending EI, torsion GJ, and transverse
+ * shear with Cowper's factor. */
+double wb_rod_section_axial_stiffness(const struct wb_rod_section *section);
+double wb_rod_section_bending_stiffness(const struct wb_rod_section *section);
+double wb_rod_section_torsion_stiffness(const struct wb_rod_section *section);
+double wb_rod_section_shear_stiffness(const struct wb_rod_section *section);
+
+/* Response to the strains from the history `before`; `after` (not the same memory) receives the
+ * history if the step is accepted. Pure. */
+void wb_rod_section_respond(const struct wb_rod_section *section, const double *strain,
+                            const double *restrict before, double *restrict after,
+                            struct wb_rod_section_response *restrict response);
+
+/* Of a step from `before` to `after`, per length of rod, J/m: elastic energy stored at its end
+ * (also in back stresses) and plastic work dissipated in it, q times the increment of equivalent
+ * plastic strain. */
+void wb_rod_section_energy(const struct wb_rod_section *section, const double *strain,
+                           const double *before, const double *after, double *stored,
+                           double *dissipated);
+
+/* Stresses of fibre i and its equivalent plastic strain, at the strains that belong to `history`.
+ */
+void wb_rod_section_stress(const struct wb_rod_section *section, int i, const double *strain,
+                           const double *history, double *axial, double *shear, double *plastic);
+
+/* The largest equivalent plastic strain of a point's fibres. */
+double wb_rod_section_largest_plastic_strain(const struct wb_rod_section *section,
+                                             const double *history);
+
+#endif

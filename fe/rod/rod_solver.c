@@ -1,0 +1,595 @@
+#include "fe/rod/rod_solver.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/linear/banded.h"
+#include "fe/linear/inertia.h"
+
+#define WB_LOG_DOMAIN "rod solver"
+
+enum {
+    TIP = 6,
+    MOST_UNKNOWNS = 7, /* the tip's and the tension */
+    N_CONTROLS = 12
+};
+
+/* A Newton iteration turns no node by more than this, rad. */
+static const double most_iteration_turn = 0.5;
+
+/* Iterations of an increment that may be held back by it. */
+static const int most_held_back = 3;
+
+/* Why an increment failed. */
+enum failure {
+    NONE,
+    ITERATIONS,
+    NOT_FINITE,
+    TURNED,  /* farther than an increment may */
+    CRITICAL /* to what cannot stand */
+};
+
+/* The last evaluation whose numbers were finite. */
+struct found {
+    double residual; /* relative */
+    double place;    /* m: arc length where it is largest */
+    int yielding;    /* fibres */
+};
+
+/* One equilibrium to be found. */
+struct step {
+    enum wb_rod_control control;
+    struct wb_rod_loads loads; /* but for the tension with WB_ROD_DEFLECTION */
+    double deflection;
+    bool slack;
+};
+
+struct wb_rod_solver {
+    struct wb_rod_solver_model model;
+    struct wb_rod_solver_settings settings;
+    double scale_force;
+
+    /* The last equilibrium. */
+    struct wb_rod_loads loads;
+    double deflection; /* the control's value, also where the strand is slack */
+    bool slack;
+    double way[N_CONTROLS]; /* of the last increment; see way_of() */
+    double turn;            /* by which it turned a section, rad */
+    double fraction;        /* of its move that the last increment was */
+
+    /* The trial state. */
+    struct wb_rod_loads trial;
+    struct wb_rod_balance balance;
+    double trial_turn; /* by which it turns a section, rad */
+    double residual;   /* relative, last */
+    double tolerance;  /* absolute, of the last check, N */
+    int iterations;
+    enum failure failure;
+    struct found found;
+};
+
+static struct wb_rod_solver_settings complete_settings(const struct wb_rod_solver_settings *given)
+{
+    struct wb_rod_solver_settings s = {0};
+    if (given)
+        s = *given;
+    if (s.force_tolerance == 0.0)
+        s.force_tolerance = 1e-9;
+    if (s.smallest_increment == 0.0)
+        s.smallest_increment = 1e-5;
+    if (s.largest_increment == 0.0)
+        s.largest_increment = 1.0;
+    if (s.most_rotation == 0.0)
+        s.most_rotation = 0.25;
+    if (s.max_iterations == 0)
+        s.max_iterations = 25;
+    return s;
+}
+
+enum wb_status wb_rod_solver_create(struct wb_rod_solver **out,
+                                    const struct wb_rod_solver_model *model,
+                                    const struct wb_rod_solver_settings *settings)
+{
+    *out = NULL;
+    const struct wb_rod_solver_settings s = complete_settings(settings);
+    if (!(isfinite(model->length) && model->length > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "length %g m: expected a number above 0", model->length);
+    if (!(isfinite(model->strand_length) && model->strand_length >= 0.0 &&
+          isfinite(model->strand_x)))
+        return wb_fail(WB_ERR_ARGUMENT, "strand of %g m at %g m: expected 0 or more",
+                       model->strand_length, model->strand_x);
+    if (!(s.force_tolerance > 0.0 && s.smallest_increment > 0.0 && s.largest_increment > 0.0 &&
+          s.most_rotation > 0.0 && s.max_iterations > 0))
+        return wb_fail(WB_ERR_ARGUMENT, "solver settings must be above 0");
+
+    struct wb_rod_solver *solver = calloc(1, sizeof *solver);
+    if (!solver)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a rod's solver");
+    solver->model = *model;
+    solver->settings = s;
+    solver->scale_force = wb_rod_scale_force(model->rod);
+    solver->fraction = 1.0;
+    *out = solver;
+    return WB_OK;
+}
+
+void wb_rod_solver_destroy(struct wb_rod_solver *solver)
+{
+    free(solver);
+}
+
+void wb_rod_solver_reset(struct wb_rod_solver *solver)
+{
+    wb_rod_reset(solver->model.rod);
+    solver->loads = solver->trial = (struct wb_rod_loads){0};
+    memset(solver->way, 0, sizeof solver->way);
+    solver->turn = 0.0;
+    solver->deflection = 0.0;
+    solver->slack = false;
+    solver->fraction = 1.0;
+}
+
+/* Direction of the tension and its derivatives by the tip's x and z. */
+struct strand {
+    double direction[3], by_x[3], by_z[3];
+};
+
+/* Not finite where the tip is farther aside than the strand is long. */
+static struct strand strand_at(const struct wb_rod_solver *s)
+{
+    const double S = s->model.strand_length;
+    if (S == 0.0)
+        return (struct strand){.direction = {0.0, 1.0, 0.0}};
+    const double *tip = wb_rod_tip(s->model.rod)->position;
+    const double p = (s->model.strand_x - tip[0]) / S, q = -tip[2] / S;
+    const double up = sqrt(1.0 - p * p - q * q);
+    return (struct strand){
+        .direction = {p, up, q},
+        .by_x = {-1.0 / S, p / (S * up), 0.0},
+        .by_z = {0.0, q / (S * up), -1.0 / S},
+    };
+}
+
+/* The follower force in space. */
+static void follower(const struct wb_rod_solver *s, double force[3])
+{
+    const double *f = s->trial.tip.follower;
+    double R[9];
+    wb_rod_element_matrix(wb_rod_tip(s->model.rod)->rotation, R);
+    for (int i = 0; i < 3; i++)
+        force[i] = R[3 * i] * f[0] + R[3 * i + 1] * f[1] + R[3 * i + 2] * f[2];
+}
+
+/* Unbalanced forces of the tip: internal less applied. */
+static void tip_balance(const struct wb_rod_solver *s, const struct strand *strand, double r[TIP])
+{
+    double turned[3];
+    follower(s, turned);
+    for (int i = 0; i < 3; i++) {
+        r[i] = s->balance.tip[i] - s->trial.tip.force[i] - turned[i] -
+               s->trial.tension * strand->direction[i];
+        r[3 + i] = s->balance.tip[3 + i] - s->trial.tip.moment[i];
+    }
+}
+
+static bool is_held(const struct step *step)
+{
+    return step->control == WB_ROD_DEFLECTION && !step->slack;
+}
+
+/* Distance by which a held tip misses its deflection. */
+static double miss(const struct wb_rod_solver *s, const struct step *step)
+{
+    return is_held(step) ? step->deflection - wb_rod_tip(s->model.rod)->position[1] : 0.0;
+}
+
+/* Evaluates the trial state; true when it is an equilibrium. `r` is the tip's imbalance. */
+static bool check_balance(struct wb_rod_solver *s, const struct step *step, struct strand *strand,
+                          double r[TIP])
+{
+    const double lever = 1.0 / s->model.length;
+    wb_rod_evaluate(s->model.rod, s->trial.weight, &s->balance);
+    *strand = strand_at(s);
+    tip_balance(s, strand, r);
+
+    double at_tip = 0.0;
+    for (int i = 0; i < 3; i++)
+        at_tip += fabs(r[i]) + lever * fabs(r[3 + i]);
+    const double unbalanced = s->balance.largest_residual + at_tip;
+    const double scale = s->balance.largest_force + 1e-6 * s->scale_force;
+    if (at_tip > s->balance.largest_residual)
+        s->balance.worst_place = s->model.length;
+
+    s->residual = unbalanced / scale;
+    if (isfinite(s->residual))
+        s->found = (struct found){s->residual, s->balance.worst_place, s->balance.yielding};
+    s->tolerance = s->settings.force_tolerance * scale + wb_rod_noise(s->model.rod);
+    return unbalanced <= s->tolerance && fabs(miss(s, step)) <= 1e-11 * s->model.length;
+}
+
+/* The tip's system: condensed rod, stiffness of the loads, and row and column of an unknown
+ * tension. Returns the number of unknowns. */
+static int tip_system(struct wb_rod_solver *s, const struct step *step, const struct strand *strand,
+                      double A[MOST_UNKNOWNS * MOST_UNKNOWNS], double b[MOST_UNKNOWNS])
+{
+    enum {
+        W = MOST_UNKNOWNS
+    };
+    const double T = s->trial.tension;
+    double K[TIP * TIP], right[TIP], r[TIP], f[3];
+
+    wb_rod_condense(s->model.rod, K, right);
+    /* `right` holds the rod's own share; the tip's applied loads come on top. */
+    tip_balance(s, strand, r);
+    follower(s, f);
+    for (int i = 0; i < TIP; i++) {
+        for (int j = 0; j < TIP; j++)
+            A[i * W + j] = K[TIP * i + j];
+        b[i] = right[i] - (r[i] - s->balance.tip[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        A[i * W] -= T * strand->by_x[i];
+        A[i * W + 2] -= T * strand->by_z[i];
+    }
+    A[4] -= f[2];
+    A[5] += f[1];
+    A[W + 3] += f[2];
+    A[W + 5] -= f[0];
+    A[2 * W + 3] -= f[1];
+    A[2 * W + 4] += f[0];
+    if (!is_held(step))
+        return TIP;
+
+    for (int j = 0; j < W; j++)
+        A[TIP * W + j] = A[j * W + TIP] = 0.0;
+    for (int i = 0; i < 3; i++)
+        A[i * W + TIP] = -strand->direction[i];
+    A[TIP * W + 1] = 1.0;
+    b[TIP] = miss(s, step);
+    return TIP + 1;
+}
+
+/* Newton's method from the trial state; true when it converged. An iteration that had to be held
+ * back is a sign of an increment too long: after a few it gives up, because a shorter one is
+ * cheaper. */
+static bool iterate(struct wb_rod_solver *s, const struct step *step)
+{
+    struct strand strand;
+    double r[TIP];
+    int held_back = 0;
+
+    for (int iteration = 0;; iteration++) {
+        if (check_balance(s, step, &strand, r))
+            return true;
+        s->failure = isfinite(s->residual) ? ITERATIONS : NOT_FINITE;
+        if (iteration == s->settings.max_iterations || held_back == most_held_back ||
+            s->failure == NOT_FINITE)
+            return false;
+
+        double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+        const int n = tip_system(s, step, &strand, A, b);
+        wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
+        const double scale = wb_rod_advance(s->model.rod, b, most_iteration_turn);
+        held_back += scale < 1.0;
+        if (is_held(step))
+            s->trial.tension += scale * b[TIP];
+        s->iterations++;
+    }
+}
+
+/* What a step changes of loads and deflection, in comparable units. */
+static void way_of(const struct wb_rod_solver *s, const struct step *step, double way[N_CONTROLS])
+{
+    const struct wb_rod_loads *to = &step->loads, *from = &s->loads;
+    const double scale = 1.0 / s->scale_force, lever = 1.0 / s->model.length;
+
+    for (int i = 0; i < 3; i++) {
+        way[i] = scale * (to->tip.force[i] - from->tip.force[i]);
+        way[3 + i] = scale * lever * (to->tip.moment[i] - from->tip.moment[i]);
+        way[6 + i] = scale * (to->tip.follower[i] - from->tip.follower[i]);
+    }
+    const bool driven = step->control == WB_ROD_DEFLECTION;
+    way[9] = to->weight - from->weight;
+    way[10] = driven ? 0.0 : scale * (to->tension - from->tension);
+    way[11] = driven ? lever * (step->deflection - s->deflection) : 0.0;
+}
+
+/* How far beyond the last two states the step lies, in their distance; 0 when nothing is to be
+ * extrapolated: it goes elsewhere, back, or much farther. */
+static double extrapolation(const struct wb_rod_solver *s, const struct step *step)
+{
+    double way[N_CONTROLS], along = 0.0, square = 0.0, aside = 0.0;
+
+    way_of(s, step, way);
+    for (int i = 0; i < N_CONTROLS; i++) {
+        along += way[i] * s->way[i];
+        square += s->way[i] * s->way[i];
+    }
+    if (square == 0.0 || step->slack != s->slack)
+        return 0.0;
+    const double ratio = along / square;
+    for (int i = 0; i < N_CONTROLS; i++)
+        aside += pow(way[i] - ratio * s->way[i], 2.0);
+    return ratio > 0.0 && ratio <= 4.0 && aside <= 1e-12 * ratio * ratio * square ? ratio : 0.0;
+}
+
+static void start_loads(struct wb_rod_solver *s, const struct step *step)
+{
+    s->trial = step->loads;
+    if (step->control == WB_ROD_DEFLECTION)
+        s->trial.tension = step->slack ? 0.0 : s->loads.tension;
+}
+
+/* Whether the converged step turned no section farther than it may. */
+static bool is_near(struct wb_rod_solver *s)
+{
+    s->trial_turn = wb_rod_turn(s->model.rod);
+    if (s->trial_turn <= s->settings.most_rotation)
+        return true;
+    s->failure = TURNED;
+    return false;
+}
+
+/* Finds the equilibrium of the step: first from the extrapolated state, then from the last one. */
+static bool solve_mode(struct wb_rod_solver *s, const struct step *step)
+{
+    const double ratio = extrapolation(s, step);
+
+    if (ratio > 0.0) {
+        start_loads(s, step);
+        wb_rod_extrapolate(s->model.rod, ratio);
+        if (iterate(s, step))
+            return is_near(s);
+    }
+    start_loads(s, step);
+    wb_rod_revert(s->model.rod);
+    return iterate(s, step) && is_near(s);
+}
+
+/* Finds the equilibrium of the step with the strand as it must be: a taut one does not push, a
+ * slack one does not reach down to where the tip would be held. */
+static bool settle(struct wb_rod_solver *s, struct step *step)
+{
+    const bool unilateral = s->model.strand_length > 0.0 && step->control == WB_ROD_DEFLECTION;
+    step->slack = s->slack && (unilateral || step->loads.tension == 0.0);
+    for (int attempt = 0; attempt < 2; attempt++) {
+        if (!solve_mode(s, step)) {
+            if (!unilateral || s->failure == TURNED)
+                return false;
+        } else if (!unilateral) {
+            return true;
+        } else if (step->slack) {
+            const double y = wb_rod_tip(s->model.rod)->position[1];
+            if (!(y < step->deflection - 1e-7 * s->model.length))
+                return true;
+        } else if (!(s->trial.tension < -10.0 * s->tolerance)) {
+            return true;
+        }
+        step->slack = !step->slack;
+    }
+    return false;
+}
+
+/* Ways that are left to the tip: all six, or the five across a tension that holds it. Columns are
+ * ways. */
+static int free_ways(const struct step *step, const struct strand *strand, double way[TIP][TIP])
+{
+    const double *d = strand->direction;
+    int n = 0;
+
+    memset(way, 0, TIP * sizeof way[0]);
+    if (is_held(step)) {
+        /* Two vectors across d; its second component is the largest but in absurd states. */
+        const double length = hypot(d[0], d[1]);
+        const double first[3] = {d[1] / length, -d[0] / length, 0.0};
+        for (int i = 0; i < 3; i++)
+            way[i][0] = first[i];
+        way[0][1] = d[1] * first[2] - d[2] * first[1];
+        way[1][1] = d[2] * first[0] - d[0] * first[2];
+        way[2][1] = d[0] * first[1] - d[1] * first[0];
+        n = 2;
+    } else {
+        for (; n < 3; n++)
+            way[n][n] = 1.0;
+    }
+    for (int i = 3; i < TIP; i++)
+        way[i][n++] = 1.0;
+    return n;
+}
+
+/* Whether the loads have a potential. Those that turn with the tip, a moment, and a tension of
+ * given size along a strand that leans have none. */
+static bool is_conservative(const struct wb_rod_solver *s, const struct step *step)
+{
+    double others = 0.0;
+    for (int i = 0; i < 3; i++)
+        others += fabs(s->trial.tip.follower[i]) + fabs(s->trial.tip.moment[i]);
+    if (s->model.strand_length > 0.0 && !is_held(step))
+        others += fabs(s->trial.tension);
+    return others == 0.0;
+}
+
+/* Whether the equilibrium just found can stand under its control. The tangent is that of the state
+ * itself: a straight strut's equilibria need no iteration that would have seen it. */
+static bool can_stand(struct wb_rod_solver *s, const struct step *step)
+{
+    const struct strand strand = strand_at(s);
+    double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS], way[TIP][TIP], own[TIP][TIP] = {{0}};
+
+    tip_system(s, step, &strand, A, b);
+    const int n = free_ways(step, &strand, way), inner = wb_rod_negative(s->model.rod);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            for (int k = 0; k < TIP * TIP; k++)
+                own[i][j] +=
+                    way[k / TIP][i] * A[k / TIP * MOST_UNKNOWNS + k % TIP] * way[k % TIP][j];
+        }
+    }
+    const bool stands = is_conservative(s, step)
+                            ? inner + wb_inertia_negative(n, TIP, own[0]) == 0
+                            : (inner % 2 != 0) == wb_inertia_is_odd(n, TIP, own[0]);
+    if (!stands)
+        s->failure = CRITICAL;
+    return stands;
+}
+
+static void accept(struct wb_rod_solver *s, const struct step *step)
+{
+    way_of(s, step, s->way);
+    if (step->slack != s->slack)
+        memset(s->way, 0, sizeof s->way);
+    s->turn = s->trial_turn;
+    s->loads = s->trial;
+    s->slack = step->slack;
+    s->deflection = step->control == WB_ROD_DEFLECTION ? step->deflection
+                                                       : wb_rod_tip(s->model.rod)->position[1];
+    wb_rod_commit(s->model.rod);
+}
+
+/* The increment of a move from `done` that would turn sections by most of what they may, were they
+ * to turn as in the last increment, and equally long ones after it. */
+static double near_increment(const struct wb_rod_solver *s, const struct wb_rod_move *move,
+                             double done)
+{
+    const struct step rest = {
+        .control = move->control, .loads = move->target, .deflection = move->deflection};
+    double way[N_CONTROLS], square = 0.0, last = 0.0;
+    way_of(s, &rest, way);
+    for (int i = 0; i < N_CONTROLS; i++) {
+        square += way[i] * way[i];
+        last += s->way[i] * s->way[i];
+    }
+    if (last == 0.0 || square == 0.0)
+        return 1.0;
+    const double turn = s->turn * sqrt(square / last);
+    return (1.0 - done) / fmax(1.0, ceil(turn / (0.8 * s->settings.most_rotation)));
+}
+
+static double between(double from, double to, double fraction)
+{
+    return fraction == 1.0 ? to : from + fraction * (to - from);
+}
+
+static void loads_between(const struct wb_rod_loads *from, const struct wb_rod_loads *to,
+                          double fraction, struct wb_rod_loads *loads)
+{
+    loads->weight = between(from->weight, to->weight, fraction);
+    loads->tension = between(from->tension, to->tension, fraction);
+    for (int i = 0; i < 3; i++) {
+        loads->tip.force[i] = between(from->tip.force[i], to->tip.force[i], fraction);
+        loads->tip.moment[i] = between(from->tip.moment[i], to->tip.moment[i], fraction);
+        loads->tip.follower[i] = between(from->tip.follower[i], to->tip.follower[i], fraction);
+    }
+}
+
+static bool are_finite(const struct wb_rod_move *move)
+{
+    const struct wb_rod_loads *t = &move->target;
+    double sum = t->weight + (move->control == WB_ROD_DEFLECTION ? move->deflection : t->tension);
+    for (int i = 0; i < 3; i++)
+        sum += t->tip.force[i] + t->tip.moment[i] + t->tip.follower[i];
+    return isfinite(sum);
+}
+
+static void describe_problem(const struct wb_rod_solver *s, double fraction,
+                             struct wb_rod_result *result)
+{
+    if (s->failure == TURNED) {
+        snprintf(result->problem, sizeof result->problem,
+                 "a section turns by more than %.2g rad in an increment of %.1g of the way: no "
+                 "equilibrium is near",
+                 s->settings.most_rotation, fraction);
+        return;
+    }
+    if (s->failure == CRITICAL) {
+        snprintf(result->problem, sizeof result->problem,
+                 "a critical point lies within %.1g of the way: a limit load or a buckling load, "
+                 "beyond which no equilibrium can stand",
+                 fraction);
+        return;
+    }
+    snprintf(result->problem, sizeof result->problem,
+             "with increments of %.1g of the way the iteration %s; forces are out of balance by "
+             "%.1g of the largest, most at s = %.1f mm, and %d fibres yield",
+             fraction, s->failure == NOT_FINITE ? "diverges" : "does not converge",
+             s->found.residual, s->found.place * 1e3, s->found.yielding);
+}
+
+/* Back to the last equilibrium, evaluated. */
+static void return_to_last(struct wb_rod_solver *s)
+{
+    wb_rod_revert(s->model.rod);
+    s->trial = s->loads;
+    wb_rod_evaluate(s->model.rod, s->loads.weight, &s->balance);
+}
+
+enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_move *move,
+                                  struct wb_rod_result *result)
+{
+    *result = (struct wb_rod_result){.end = WB_ROD_CONVERGED};
+    if (!are_finite(move))
+        return wb_fail(WB_ERR_ARGUMENT, "a load or deflection is not a finite number");
+
+    const struct wb_rod_loads from = s->loads;
+    const double start = s->deflection;
+    double fraction = fmin(s->settings.largest_increment, 4.0 * s->fraction);
+    bool failed = false;
+
+    while (result->fraction < 1.0) {
+        fraction = fmin(fraction, near_increment(s, move, result->fraction));
+        const double next =
+            result->fraction + fraction > 1.0 - 1e-9 ? 1.0 : result->fraction + fraction;
+        struct step step = {.control = move->control,
+                            .deflection = between(start, move->deflection, next)};
+        loads_between(&from, &move->target, next, &step.loads);
+        s->iterations = 0;
+        const bool settled = settle(s, &step) && can_stand(s, &step);
+        result->iterations += s->iterations;
+        result->residual = s->residual;
+        if (settled) {
+            accept(s, &step);
+            s->fraction = fraction;
+            result->fraction = next;
+            result->increments++;
+            fraction = fmin(s->settings.largest_increment, failed ? fraction : 2.0 * fraction);
+            failed = false;
+            if (move->observer && !move->observer(move->context, next, s->iterations)) {
+                result->end = WB_ROD_STOPPED;
+                return WB_OK;
+            }
+            continue;
+        }
+        failed = true;
+        result->cutbacks++;
+        fraction *= 0.5;
+        if (fraction < s->settings.smallest_increment) {
+            result->end = WB_ROD_NOT_CONVERGED;
+            describe_problem(s, 2.0 * fraction, result);
+            return_to_last(s);
+            break;
+        }
+    }
+    return WB_OK;
+}
+
+const struct wb_rod_loads *wb_rod_solver_loads(const struct wb_rod_solver *solver)
+{
+    return &solver->loads;
+}
+
+bool wb_rod_solver_is_slack(const struct wb_rod_solver *solver)
+{
+    return solver->slack;
+}
+
+double wb_rod_solver_deflection(const struct wb_rod_solver *solver)
+{
+    return solver->deflection;
+}
+
+double wb_rod_solver_vertical_force(const struct wb_rod_solver *solver)
+{
+    return solver->loads.tension * strand_at(solver).direction[1];
+}

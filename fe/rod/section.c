@@ -1,0 +1,177 @@
+#include "fe/rod/section.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#define WB_LOG_DOMAIN "section"
+
+enum {
+    DEFAULT_FIBRES = 20,
+    MOST_FIBRES = 4096
+};
+
+enum wb_status wb_section_check_material(const struct wb_material *m)
+{
+    if (!(isfinite(m->youngs_modulus) && m->youngs_modulus > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "youngs_modulus %g Pa: expected a number above 0",
+                       m->youngs_modulus);
+    if (!(m->poissons_ratio > -1.0 && m->poissons_ratio <= 0.5))
+        return wb_fail(WB_ERR_ARGUMENT, "poissons_ratio %g: expected -1 to 0.5", m->poissons_ratio);
+    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
+        return WB_OK;
+    if (!(isfinite(m->yield_stress) && m->yield_stress > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "yield_stress %g Pa: expected a number above 0",
+                       m->yield_stress);
+    if (!(isfinite(m->strength_coefficient) && m->strength_coefficient >= 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "strength_coefficient %g Pa: expected 0 or more",
+                       m->strength_coefficient);
+    if (m->hardening == WB_HARDENING_ISOTROPIC_POWER &&
+        !(m->hardening_exponent > 0.0 && m->hardening_exponent <= 2.0))
+        return wb_fail(WB_ERR_ARGUMENT, "hardening_exponent %g: expected above 0, at most 2",
+                       m->hardening_exponent);
+    return WB_OK;
+}
+
+double wb_section_shear_modulus(const struct wb_material *material)
+{
+    /* Cowper's factor of the solid circle, 6 (1 + nu) / (7 + 6 nu), times G = E / 2 (1 + nu). */
+    const double nu = material->poissons_ratio;
+    return 3.0 * material->youngs_modulus / (7.0 + 6.0 * nu);
+}
+
+/* Grows the section by n fibres and one material; the fibres are for the caller to fill. */
+static enum wb_status grow(struct wb_section *section, const struct wb_material *material, int n,
+                           struct wb_fibre **fibres)
+{
+    struct wb_fibre *more_fibres =
+        realloc(section->fibres, (size_t)(section->n_fibres + n) * sizeof *more_fibres);
+    if (!more_fibres)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", section->n_fibres + n);
+    section->fibres = more_fibres;
+
+    struct wb_material *more_materials =
+        realloc(section->materials, (size_t)(section->n_materials + 1) * sizeof *more_materials);
+    if (!more_materials)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d materials", section->n_materials + 1);
+    section->materials = more_materials;
+
+    *fibres = section->fibres + section->n_fibres;
+    section->materials[section->n_materials] = *material;
+    section->n_fibres += n;
+    section->n_materials++;
+    return WB_OK;
+}
+
+/* Gauss-Chebyshev strips of the solid circle of radius R. */
+static void fill_circle(struct wb_fibre *fibres, int n, double R)
+{
+    for (int i = 0; i < n; i++) {
+        const double t = M_PI * (i + 1) / (n + 1);
+        fibres[i].y = R * cos(t);
+        fibres[i].area = 2.0 * R * R * sin(t) * sin(t) * M_PI / (n + 1);
+    }
+    /* The rule is symmetric; make its numbers so too, or a straight wire bends by round-off. */
+    for (int i = 0; i < n / 2; i++) {
+        fibres[n - 1 - i].y = -fibres[i].y;
+        fibres[n - 1 - i].area = fibres[i].area;
+    }
+    if (n % 2 == 1)
+        fibres[n / 2].y = 0.0;
+}
+
+/* Area and second moment of the part of a disc of radius R between y = 0 and y = h. */
+static void disc_part(double R, double h, double *area, double *second_moment)
+{
+    if (R <= 0.0) {
+        *area = 0.0;
+        *second_moment = 0.0;
+        return;
+    }
+    const double a = asin(fmin(h / R, 1.0));
+    *area = R * R * (a + 0.5 * sin(2.0 * a));
+    *second_moment = R * R * R * R * (0.25 * a - sin(4.0 * a) / 16.0);
+}
+
+/* Strips of a ring between angles of equal size over the outer diameter, n even. Each has its
+ * exact area and sits at its radius of gyration, so the ring's area and second moment are exact. */
+static void fill_ring(struct wb_fibre *fibres, int n, double Ri, double Ro)
+{
+    const int half = n / 2;
+    double area = 0.0, second_moment = 0.0;
+
+    for (int i = 0; i < half; i++) {
+        const double top = i + 1 == half ? Ro : Ro * sin(0.5 * M_PI * (i + 1) / half);
+        double outer_area, outer_moment, inner_area, inner_moment;
+        disc_part(Ro, top, &outer_area, &outer_moment);
+        disc_part(Ri, fmin(top, Ri), &inner_area, &inner_moment);
+
+        const double strip = outer_area - inner_area - area;
+        const double strip_moment = outer_moment - inner_moment - second_moment;
+        area += strip;
+        second_moment += strip_moment;
+        fibres[half - 1 - i].y = sqrt(strip_moment / strip);
+        fibres[half - 1 - i].area = strip;
+        fibres[half + i].y = -fibres[half - 1 - i].y;
+        fibres[half + i].area = strip;
+    }
+}
+
+void wb_section_init_empty(struct wb_section *section)
+{
+    *section = (struct wb_section){0};
+}
+
+enum wb_status wb_section_add_ring(struct wb_section *section, double inner_diameter,
+                                   double outer_diameter, const struct wb_material *material,
+                                   double area_fraction, int n)
+{
+    if (!(isfinite(outer_diameter) && inner_diameter >= 0.0 && outer_diameter > inner_diameter))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "ring from %g to %g m: expected 0 <= inner < outer diameter", inner_diameter,
+                       outer_diameter);
+    if (!(area_fraction > 0.0 && area_fraction <= 1.0))
+        return wb_fail(WB_ERR_ARGUMENT, "area fraction %g: expected above 0, at most 1",
+                       area_fraction);
+    if (n < 0 || n > MOST_FIBRES)
+        return wb_fail(WB_ERR_ARGUMENT, "%d fibres: expected 0 to %d", n, MOST_FIBRES);
+    WB_TRY(wb_section_check_material(material));
+
+    int count = n == 0 ? DEFAULT_FIBRES : n;
+    const bool ring = inner_diameter > 0.0;
+    if (ring && count % 2 == 1)
+        count++;
+
+    struct wb_fibre *fibres = NULL;
+    const int index = section->n_materials;
+    WB_TRY(grow(section, material, count, &fibres));
+    if (ring)
+        fill_ring(fibres, count, 0.5 * inner_diameter, 0.5 * outer_diameter);
+    else
+        fill_circle(fibres, count, 0.5 * outer_diameter);
+
+    double area = 0.0;
+    for (int i = 0; i < count; i++) {
+        fibres[i].material = index;
+        fibres[i].area *= area_fraction;
+        area += fibres[i].area;
+    }
+    section->shear_stiffness += wb_section_shear_modulus(material) * area;
+    return WB_OK;
+}
+
+enum wb_status wb_section_init_circle(struct wb_section *section, double diameter,
+                                      const struct wb_material *material, int n)
+{
+    wb_section_init_empty(section);
+    return wb_section_add_ring(section, 0.0, diameter, material, 1.0, n);
+}
+
+void wb_section_release(struct wb_section *section)
+{
+    if (!section)
+        return;
+    free(section->fibres);
+    free(section->materials);
+    *section = (struct wb_section){0};
+}

@@ -1,0 +1,25 @@
+/* The sums over nodes at the points of an element, for what vectors the processor has. Nothing is
+ * contracted: all processors give the same bits. */
+#ifndef WB_FE_SOLID_HEX20_POINTS_H
+#define WB_FE_SOLID_HEX20_POINTS_H
+
+#include "fe/solid/hex20.h"
+
+/* What a point does to the forces. */
+struct wb_hex20_points_load {
+    double inverse[3][3]; /* dX_J / dx_i at [J][i] */
+    double stress[6];     /* Kirchhoff, times the point's weight, N m */
+};
+
+/* Displacement gradients du_i/dX_J at n points, 9 numbers each (row by row), of displacements u
+ * (three rows of 20: along x, y and z); `gradient` as in struct wb_hex20_geometry. */
+void wb_hex20_points_gradients(int n, const double *restrict gradient, const double *restrict u,
+                               double *restrict h);
+
+/* Spatial gradients of the shape functions at n points (three rows of 20 each), and the forces they
+ * make (three rows of 20), which are added to `force`. */
+void wb_hex20_points_forces(int n, const double *restrict gradient,
+                            const struct wb_hex20_points_load *restrict load,
+                            double *restrict spatial, double *restrict force);
+
+#endif

@@ -1,0 +1,60 @@
+/* The discrete body behind fe/solid/solid.h: elements with their histories, equations, assembly.
+ *
+ * Displacements are full vectors (3 n_nodes); held components keep what they are given. Free ones
+ * have equation numbers in the order of the nodes, so that the layers of the mesh are the blocks of
+ * the stiffness.
+ */
+#ifndef WB_FE_SOLID_SOLID_BODY_H
+#define WB_FE_SOLID_SOLID_BODY_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "fe/linear/layered.h"
+#include "fe/solid/solid.h"
+
+struct wb_solid_body {
+    const struct wb_solid_mesh *mesh; /* borrowed */
+    enum wb_hex20_integration integration;
+    int n_points; /* of an element */
+    struct wb_solid_part *parts;
+    struct wb_hex20_geometry *geometry; /* (n_elements) */
+    int *equation;                      /* (3 n_nodes); -1: held */
+    int n_equations;
+    struct wb_hex20_state *committed, *trial; /* (n_elements x n_points) */
+    bool has_contact;                         /* its tangent is unsymmetric */
+    struct wb_interface_law interface;
+    struct wb_interface_state *committed_pairs, *trial_pairs; /* (n_pairs x 9) */
+    double *weight;                                           /* (3 n_nodes) N: forces of gravity */
+    struct wb_layered *tangent; /* of the last evaluation with stiffness */
+    double *force;              /* (3 n_nodes) N: internal, of the last evaluation */
+    double *element_stiffness;  /* workspace */
+};
+
+/* What an evaluation found. */
+struct wb_solid_body_result {
+    bool possible;     /* false: an element is inverted or a number is not finite */
+    int worst_element; /* where it is impossible */
+    double elastic, dissipated, friction; /* J; the latter two of the step */
+    struct wb_interface_result interface;
+};
+
+WB_MUST_CHECK enum wb_status wb_solid_body_init(struct wb_solid_body *body,
+                                                const struct wb_solid_model *model);
+void wb_solid_body_release(struct wb_solid_body *body); /* accepts a zeroed one */
+
+/* Internal forces for displacements u, from the committed histories to the trial ones; with
+ * `stiffness` also the tangent, and where `held_change` is not NULL, tangent times that change of
+ * displacements (held components only) is added to `held_force` (3 n_nodes). */
+void wb_solid_body_evaluate(struct wb_solid_body *body, const double *u, bool stiffness,
+                            struct wb_solid_body_result *result);
+void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
+                                 const double *held_change, double *held_force,
+                                 struct wb_solid_body_result *result);
+
+/* Committed histories = trial ones. */
+void wb_solid_body_commit(struct wb_solid_body *body);
+
+size_t wb_solid_body_memory(const struct wb_solid_body *body); /* bytes */
+
+#endif

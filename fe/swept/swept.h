@@ -1,0 +1,51 @@
+/* Node fields of swept bodies: a plane section of nodes, repeated at stations along an axis.
+ *
+ * Every wire of a bundle and its tape are such bodies, all with the same stations. A field holds
+ * component c of section node k at station j at
+ *
+ *     field[(3 k + c) stride + j],      c = 0, 1, 2 for x (along the axis), y, z,
+ *
+ * so that neighbours along the axis are neighbours in memory: kernels work on several consecutive
+ * elements of one place in the section at a time, without gathering. The stride is a multiple of
+ * WB_SWEPT_LANES and larger than the number of stations; fields are aligned to WB_SWEPT_ALIGNMENT
+ * bytes. Entries from the last station to the stride are padding: finite, read but of no effect.
+ *
+ * Positions and velocities are double; differences of positions are formed in double, then kernels
+ * may go on in float (a displacement of 50 mm in float has no digit left for a strain of 1e-6).
+ * Forces are float: a sum of few terms, made anew in every step.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_H
+#define WB_FE_SWEPT_SWEPT_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+enum {
+    WB_SWEPT_LANES = 16,
+    WB_SWEPT_ALIGNMENT = 64
+};
+
+struct wb_swept_layout {
+    int n_nodes;    /* of the section */
+    int n_stations; /* one more than elements along */
+    int stride;     /* of stations */
+};
+
+/* The stations, and the elements that begin there, that sums are over: a body that is an axial part
+ * of another counts what is its own, not what it shares with its neighbours. `end` 0: all. */
+struct wb_swept_range {
+    int first, end;
+};
+
+/* The layout, and the number of entries of a field. */
+struct wb_swept_layout wb_swept_layout(int n_nodes, int n_stations);
+size_t wb_swept_size(const struct wb_swept_layout *layout);
+
+/* The part of a range that lies in 0 to n - 1. */
+struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n);
+
+/* Zeroed, aligned memory for `count` values of `size` bytes; free() it. */
+WB_MUST_CHECK enum wb_status wb_swept_allocate(void **out, size_t count, size_t size);
+
+#endif

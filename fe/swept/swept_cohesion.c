@@ -1,0 +1,453 @@
+#include "fe/swept/swept_cohesion.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/swept/swept_cohesion_kernel.h"
+#include "fe/swept/swept_tape_private.h"
+
+#define WB_LOG_DOMAIN "swept"
+
+enum {
+    LANES = WB_SWEPT_LANES,
+    ROWS = WB_SWEPT_COHESION_ROWS
+};
+
+struct wb_swept_cohesion {
+    const struct wb_swept_tape *tape; /* borrowed */
+    struct wb_swept_cohesion_settings settings;
+    const struct wb_swept_cohesion_kernel *kernel;
+    struct wb_swept_cohesion_kernel_model model;
+    int n_wires;
+    int n_strips, room;
+    struct wb_swept_cohesion_strip *strip;
+    double *numbers; /* of each strip (ROWS x LANES) */
+    int *first;      /* (n_blocks + 1) */
+    int *strip_of;   /* (n_nodes x n_stations); -1: not bonded */
+    void *rows, *damage;
+};
+
+/* Where a node of the ring is bonded in the reference state. */
+struct facing {
+    int to, partner[2];
+    double weight, offset, area, outwards;
+};
+
+void wb_swept_cohesion_default_settings(struct wb_swept_cohesion_settings *settings)
+{
+    *settings =
+        (struct wb_swept_cohesion_settings){.normal_stiffness = 30e9, .shear_stiffness = 10e9};
+}
+
+static const struct wb_swept_layout *layout_of(const struct wb_swept_cohesion *c)
+{
+    return &c->tape->model.layout;
+}
+
+static size_t real_size(const struct wb_swept_cohesion *c)
+{
+    return c->tape->model.double_precision ? sizeof(double) : sizeof(float);
+}
+
+/* --- places --- */
+
+/* A node's position and director at a station, in the plane of the section. */
+struct ray {
+    double y, z, to_y, to_z;
+};
+
+static struct ray ray_of(const struct wb_swept_cohesion *c, int k, int j)
+{
+    const size_t stride = (size_t)layout_of(c)->stride, at = 3 * (size_t)k * stride + (size_t)j;
+    const double *x = c->tape->position + at, *d = c->tape->director + at;
+    return (struct ray){x[stride], x[2 * stride], d[stride], d[2 * stride]};
+}
+
+/* Takes the segment from a to b when the ray meets it nearer than what it met before, at x - o d.
+ */
+static void try_segment(const struct ray *ray, const double a[2], const double b[2],
+                        const int nodes[2], double least, struct facing *best)
+{
+    const double slack = 1e-9, along_y = b[0] - a[0], along_z = b[1] - a[1];
+    const double det = along_y * ray->to_z - along_z * ray->to_y;
+    const double from_y = ray->y - a[0], from_z = ray->z - a[1];
+    const double w = (from_y * ray->to_z - from_z * ray->to_y) / det;
+    const double o = (along_y * from_z - along_z * from_y) / det;
+
+    if (!(w >= -slack && w <= 1.0 + slack && o > least && fabs(o) < fabs(best->offset)))
+        return;
+    best->offset = o;
+    best->weight = w;
+    best->partner[0] = nodes[0];
+    best->partner[1] = nodes[1];
+}
+
+static void face_wire(const struct ray *ray, const struct wb_swept_cohesion_wire *wire,
+                      struct facing *best)
+{
+    for (int i = 0; i < wire->n_surface; i++) {
+        const int nodes[2] = {wire->surface[i], wire->surface[(i + 1) % wire->n_surface]};
+        const double *own = wire->node[nodes[0]], *next = wire->node[nodes[1]];
+        const double a[2] = {wire->y + own[0], wire->z + own[1]};
+        const double b[2] = {wire->y + next[0], wire->z + next[1]};
+        try_segment(ray, a, b, nodes, -(double)INFINITY, best);
+    }
+}
+
+/* The next winding inside: directors point outwards. */
+static void face_tape(const struct wb_swept_cohesion *c, int k, int j, const struct ray *ray,
+                      struct facing *best)
+{
+    const int n = layout_of(c)->n_nodes, last = c->tape->model.closed ? n : n - 1;
+
+    for (int i = 0; i < last; i++) {
+        const int nodes[2] = {i, (i + 1) % n};
+        const struct ray a = ray_of(c, nodes[0], j), b = ray_of(c, nodes[1], j);
+        const double from[2] = {a.y, a.z}, to[2] = {b.y, b.z};
+        if (nodes[0] != k && nodes[1] != k)
+            try_segment(ray, from, to, nodes, 0.0, best);
+    }
+}
+
+static enum wb_status find_facing(const struct wb_swept_cohesion *c,
+                                  const struct wb_swept_cohesion_wire *wires,
+                                  const struct wb_swept_cohesion_bond *bond, int k, int j,
+                                  struct facing *out)
+{
+    const struct ray ray = ray_of(c, k, j);
+
+    *out = (struct facing){.to = bond->to, .offset = (double)INFINITY};
+    if (bond->to == WB_SWEPT_COHESION_TAPE)
+        face_tape(c, k, j, &ray, out);
+    else
+        face_wire(&ray, &wires[bond->to], out);
+    if (!isfinite(out->offset))
+        return wb_fail(WB_ERR_ARGUMENT, "the tape's node %d faces nothing at station %d", k, j);
+    out->area = bond->share * wb_swept_tape_area(c->tape, k, j);
+    out->outwards = out->offset < 0.0 ? -1.0 : 1.0;
+    return WB_OK;
+}
+
+/* --- strips --- */
+
+/* The strip of the block of station j that goes where `f` does: one there is, or a new one. */
+static enum wb_status find_strip(struct wb_swept_cohesion *c, int k, const struct facing *f,
+                                 int from, int *out)
+{
+    for (int s = c->n_strips - 1; s >= from; s--) {
+        const struct wb_swept_cohesion_strip *strip = &c->strip[s];
+        if (strip->node == k && strip->to == f->to && strip->partner[0] == f->partner[0] &&
+            strip->partner[1] == f->partner[1] && strip->outwards == f->outwards) {
+            *out = s;
+            return WB_OK;
+        }
+    }
+    if (c->n_strips == c->room) {
+        const int room = 2 * c->room + 64;
+        struct wb_swept_cohesion_strip *strip = realloc(c->strip, (size_t)room * sizeof *strip);
+        if (strip)
+            c->strip = strip;
+        double *numbers = realloc(c->numbers, (size_t)room * ROWS * LANES * sizeof *numbers);
+        if (numbers)
+            c->numbers = numbers;
+        if (!strip || !numbers)
+            return wb_fail(WB_ERR_MEMORY, "no memory for %d strips of a bond", room);
+        c->room = room;
+    }
+    *out = c->n_strips++;
+    memset(c->numbers + (size_t)*out * ROWS * LANES, 0, ROWS * LANES * sizeof *c->numbers);
+    c->strip[*out] =
+        (struct wb_swept_cohesion_strip){k, f->to, {f->partner[0], f->partner[1]}, f->outwards};
+    return WB_OK;
+}
+
+static enum wb_status add_bond(struct wb_swept_cohesion *c,
+                               const struct wb_swept_cohesion_wire *wires,
+                               const struct wb_swept_cohesion_bond *bond, int k, int j, int from)
+{
+    const int n_stations = layout_of(c)->n_stations;
+    struct facing f;
+    int s = 0;
+
+    if (bond->to == WB_SWEPT_COHESION_FREE)
+        return WB_OK;
+    if (bond->to < WB_SWEPT_COHESION_TAPE || bond->to >= c->n_wires ||
+        !(bond->share > 0.0 && bond->share <= 1.0))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the tape's node %d is bonded to wire %d with a share of %g", k, bond->to,
+                       bond->share);
+    WB_TRY(find_facing(c, wires, bond, k, j, &f));
+    WB_TRY(find_strip(c, k, &f, from, &s));
+    double *rows = c->numbers + (size_t)s * ROWS * LANES + j % LANES;
+    rows[WB_SWEPT_COHESION_WEIGHT * LANES] = f.weight;
+    rows[WB_SWEPT_COHESION_OFFSET * LANES] = f.offset;
+    rows[WB_SWEPT_COHESION_BONDED * LANES] = f.area;
+    c->strip_of[k * n_stations + j] = s;
+    return WB_OK;
+}
+
+static enum wb_status make_strips(struct wb_swept_cohesion *c,
+                                  const struct wb_swept_cohesion_wire *wires,
+                                  const struct wb_swept_cohesion_bond *bond)
+{
+    const struct wb_swept_layout *layout = layout_of(c);
+    const int n_blocks = layout->stride / LANES;
+
+    for (int i = 0; i < layout->n_nodes * layout->n_stations; i++)
+        c->strip_of[i] = -1;
+    for (int b = 0; b < n_blocks; b++) {
+        c->first[b] = c->n_strips;
+        for (int k = 0; k < layout->n_nodes; k++) {
+            const int from = c->n_strips;
+            for (int j = b * LANES; j < (b + 1) * LANES && j < layout->n_stations; j++)
+                WB_TRY(add_bond(c, wires, &bond[k * layout->n_stations + j], k, j, from));
+        }
+    }
+    c->first[n_blocks] = c->n_strips;
+    return WB_OK;
+}
+
+static enum wb_status take_over(struct wb_swept_cohesion *c)
+{
+    const size_t count = (size_t)c->n_strips * ROWS * LANES;
+
+    WB_TRY(wb_swept_allocate(&c->rows, count, real_size(c)));
+    for (size_t i = 0; i < count; i++) {
+        if (c->tape->model.double_precision)
+            ((double *)c->rows)[i] = c->numbers[i];
+        else
+            ((float *)c->rows)[i] = (float)c->numbers[i];
+    }
+    return wb_swept_allocate(&c->damage, (size_t)c->n_strips * LANES, real_size(c));
+}
+
+/* --- creation --- */
+
+static enum wb_status check(const struct wb_swept_cohesion_settings *s)
+{
+    const double stored = 0.5 * fmax(s->strength * s->strength / s->normal_stiffness,
+                                     s->shear_strength * s->shear_strength / s->shear_stiffness);
+
+    if (!(s->normal_stiffness > 0.0 && isfinite(s->normal_stiffness)) ||
+        !(s->shear_stiffness > 0.0 && isfinite(s->shear_stiffness)))
+        return wb_fail(WB_ERR_ARGUMENT, "cohesion of K_nn = %g, K_ss = %g Pa/m",
+                       s->normal_stiffness, s->shear_stiffness);
+    if (s->strength == 0.0)
+        return WB_OK;
+    if (!(s->strength > 0.0 && isfinite(s->strength)) ||
+        !(s->shear_strength > 0.0 && isfinite(s->shear_strength)))
+        return wb_fail(WB_ERR_ARGUMENT, "cohesion of strengths %g and %g Pa", s->strength,
+                       s->shear_strength);
+    if (!(s->fracture_energy > 1.001 * stored && isfinite(s->fracture_energy)))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "a fracture energy of %g J/m2 is not above the %g J/m2 stored when damage "
+                       "begins",
+                       s->fracture_energy, stored);
+    return WB_OK;
+}
+
+static const struct wb_swept_cohesion_kernel *find_kernel(const struct wb_swept_tape *tape)
+{
+    static const struct wb_swept_cohesion_kernel *const kernels[] = {
+#ifdef __x86_64__
+        &wb_swept_cohesion_kernel_float_avx512,   &wb_swept_cohesion_kernel_double_avx512,
+        &wb_swept_cohesion_kernel_float_avx2,     &wb_swept_cohesion_kernel_double_avx2,
+#endif
+        &wb_swept_cohesion_kernel_float_baseline, &wb_swept_cohesion_kernel_double_baseline,
+    };
+    const int n = (int)(sizeof kernels / sizeof *kernels);
+
+    for (int i = 0; i < n; i++) {
+        if (kernels[i]->is_double == tape->model.double_precision &&
+            strcmp(kernels[i]->name, tape->kernel->name) == 0)
+            return kernels[i];
+    }
+    return NULL;
+}
+
+static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_cohesion_wire *wires,
+                           const struct wb_swept_cohesion_bond *bond)
+{
+    const struct wb_swept_layout *layout = layout_of(c);
+    const struct wb_swept_cohesion_settings *s = &c->settings;
+    const size_t n_blocks = (size_t)layout->stride / LANES;
+    const bool breaks = s->strength > 0.0;
+
+    WB_TRY(check(s));
+    c->kernel = find_kernel(c->tape);
+    if (!c->kernel)
+        return wb_fail(WB_ERR_UNSUPPORTED, "no cohesion for the instructions of the tape");
+    c->first = calloc(n_blocks + 1, sizeof *c->first);
+    c->strip_of = calloc((size_t)layout->n_nodes * (size_t)layout->n_stations, sizeof *c->strip_of);
+    if (!c->first || !c->strip_of)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
+    WB_TRY(make_strips(c, wires, bond));
+    WB_TRY(take_over(c));
+    c->model = (struct wb_swept_cohesion_kernel_model){
+        .stride = layout->stride,
+        .first = c->first,
+        .strip = c->strip,
+        .rows = c->rows,
+        .normal = s->normal_stiffness,
+        .shear = s->shear_stiffness,
+        .breaks = breaks,
+        .per_strength = breaks ? s->normal_stiffness / s->strength : 0.0,
+        .per_shear_strength = breaks ? s->shear_stiffness / s->shear_strength : 0.0,
+        .fracture_energy = s->fracture_energy,
+        .counted = wb_swept_range_within(c->tape->model.counted, layout->n_stations),
+    };
+    return WB_OK;
+}
+
+enum wb_status wb_swept_cohesion_create(struct wb_swept_cohesion **out,
+                                        const struct wb_swept_tape *tape,
+                                        const struct wb_swept_cohesion_settings *settings,
+                                        int n_wires, const struct wb_swept_cohesion_wire *wires,
+                                        const struct wb_swept_cohesion_bond *bond)
+{
+    *out = NULL;
+    struct wb_swept_cohesion *c = calloc(1, sizeof *c);
+    if (!c)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
+    c->tape = tape;
+    c->settings = *settings;
+    c->n_wires = n_wires;
+    const enum wb_status status = fill(c, wires, bond);
+    if (status != WB_OK) {
+        wb_swept_cohesion_destroy(c);
+        return status;
+    }
+    *out = c;
+    return WB_OK;
+}
+
+void wb_swept_cohesion_destroy(struct wb_swept_cohesion *cohesion)
+{
+    if (!cohesion)
+        return;
+    free(cohesion->strip);
+    free(cohesion->numbers);
+    free(cohesion->first);
+    free(cohesion->strip_of);
+    free(cohesion->rows);
+    free(cohesion->damage);
+    free(cohesion);
+}
+
+void *wb_swept_cohesion_data(struct wb_swept_cohesion *cohesion, size_t *bytes)
+{
+    *bytes = (size_t)cohesion->n_strips * LANES * real_size(cohesion);
+    return cohesion->damage;
+}
+
+void wb_swept_cohesion_reset(struct wb_swept_cohesion *cohesion)
+{
+    memset(cohesion->damage, 0, (size_t)cohesion->n_strips * LANES * real_size(cohesion));
+}
+
+void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
+                                  const struct wb_swept_cohesion_fields *fields, int first, int end,
+                                  struct wb_swept_cohesion_sums *sums)
+{
+    const struct wb_swept_cohesion_kernel_call call = {
+        &cohesion->model, fields, cohesion->damage, first, end, sums};
+
+    cohesion->kernel->add_forces(&call);
+}
+
+/* --- what it is like --- */
+
+static double number(const struct wb_swept_cohesion *c, int strip, int row, int lane)
+{
+    return c->numbers[((size_t)strip * ROWS + (size_t)row) * LANES + (size_t)lane];
+}
+
+double wb_swept_cohesion_area(const struct wb_swept_cohesion *cohesion)
+{
+    double area = 0.0;
+
+    for (int s = 0; s < cohesion->n_strips; s++) {
+        for (int lane = 0; lane < LANES; lane++)
+            area += number(cohesion, s, WB_SWEPT_COHESION_BONDED, lane);
+    }
+    return area;
+}
+
+int wb_swept_cohesion_partner(const struct wb_swept_cohesion *cohesion, int node, int station)
+{
+    const int s = cohesion->strip_of[node * layout_of(cohesion)->n_stations + station];
+    return s < 0 ? WB_SWEPT_COHESION_FREE : cohesion->strip[s].to;
+}
+
+double wb_swept_cohesion_damage(const struct wb_swept_cohesion *cohesion, int node, int station)
+{
+    const int s = cohesion->strip_of[node * layout_of(cohesion)->n_stations + station];
+    const size_t at = (size_t)s * LANES + (size_t)(station % LANES);
+
+    if (s < 0)
+        return 1.0;
+    return cohesion->tape->model.double_precision ? ((const double *)cohesion->damage)[at]
+                                                  : (double)((const float *)cohesion->damage)[at];
+}
+
+static double largest_stiffness(const struct wb_swept_cohesion *c)
+{
+    return fmax(c->settings.normal_stiffness, c->settings.shear_stiffness);
+}
+
+/* A bond's energy is at most what either of its sides, moved alone, makes of it, twice: hence the
+ * factor. End stations have half the area and half the mass. */
+static const double both_sides = 2.0;
+
+double wb_swept_cohesion_wire_stiffness_per_mass(const struct wb_swept_cohesion *cohesion, int wire,
+                                                 const double *mass)
+{
+    const struct wb_swept_layout *layout = layout_of(cohesion);
+    double most = 0.0;
+
+    for (int j = 0; j < layout->n_stations; j++) {
+        const bool is_end = j == 0 || j == layout->n_stations - 1;
+        for (int s = cohesion->first[j / LANES]; s < cohesion->first[j / LANES + 1]; s++) {
+            for (int side = 0; side < 2 && cohesion->strip[s].to == wire; side++) {
+                /* Row sum of the node at this side of the strip, over all strips. */
+                const int node = cohesion->strip[s].partner[side];
+                double sum = 0.0;
+                for (int t = cohesion->first[j / LANES]; t < cohesion->first[j / LANES + 1]; t++) {
+                    const struct wb_swept_cohesion_strip *other = &cohesion->strip[t];
+                    const double w = number(cohesion, t, WB_SWEPT_COHESION_WEIGHT, j % LANES);
+                    const double area = number(cohesion, t, WB_SWEPT_COHESION_BONDED, j % LANES);
+                    if (other->to == wire && other->partner[0] == node)
+                        sum += area * fabs(1.0 - w);
+                    if (other->to == wire && other->partner[1] == node)
+                        sum += area * fabs(w);
+                }
+                most = fmax(most, sum / (mass[node] * (is_end ? 0.5 : 1.0)));
+            }
+        }
+    }
+    return both_sides * largest_stiffness(cohesion) * most;
+}
+
+double wb_swept_cohesion_tape_stiffness_per_mass(const struct wb_swept_cohesion *cohesion,
+                                                 const double *mass, const double *inertia)
+{
+    const struct wb_swept_layout *layout = layout_of(cohesion);
+    const double *x = mass;
+    double most = 0.0;
+
+    for (int j = 0; j < layout->n_stations; j++) {
+        const double length = j == 0 || j == layout->n_stations - 1 ? 0.5 : 1.0;
+        for (int s = cohesion->first[j / LANES]; s < cohesion->first[j / LANES + 1]; s++) {
+            const struct wb_swept_cohesion_strip *strip = &cohesion->strip[s];
+            const double o = number(cohesion, s, WB_SWEPT_COHESION_OFFSET, j % LANES);
+            const double area = number(cohesion, s, WB_SWEPT_COHESION_BONDED, j % LANES);
+            double flexibility = 1.0 / x[strip->node] + o * o / inertia[strip->node];
+            /* Windings bonded to each other: as lower ones, too. */
+            if (strip->to == WB_SWEPT_COHESION_TAPE)
+                flexibility += 2.0 / fmin(x[strip->partner[0]], x[strip->partner[1]]);
+            most = fmax(most, area * flexibility / length);
+        }
+    }
+    return both_sides * largest_stiffness(cohesion) * most;
+}

@@ -1,0 +1,66 @@
+/* The kernels behind fe/swept/swept_cohesion.h: one source, swept_cohesion_kernel.inc, compiled for
+ * float and double and for each instruction set. Lanes are stations.
+ *
+ * A strip is the part of a ring node's bonds in one block of stations that goes to one pair of a
+ * surface's nodes; where stations of the block do otherwise, its area is zero.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_COHESION_KERNEL_H
+#define WB_FE_SWEPT_SWEPT_COHESION_KERNEL_H
+
+#include <stdbool.h>
+
+#include "fe/swept/swept.h"
+#include "fe/swept/swept_cohesion.h"
+
+/* Rows of a strip, WB_SWEPT_LANES each. */
+enum {
+    WB_SWEPT_COHESION_WEIGHT = 0, /* w */
+    WB_SWEPT_COHESION_OFFSET,     /* o, m */
+    WB_SWEPT_COHESION_BONDED,     /* area, m2 */
+    WB_SWEPT_COHESION_ROWS
+};
+
+struct wb_swept_cohesion_strip {
+    int node;        /* of the ring */
+    int to;          /* a wire or WB_SWEPT_COHESION_TAPE */
+    int partner[2];  /* nodes a and b there */
+    double outwards; /* 1 or -1: how directors point */
+};
+
+struct wb_swept_cohesion_kernel_model {
+    int stride;
+    const int *first; /* (n_blocks + 1): strips of a block */
+    const struct wb_swept_cohesion_strip *strip;
+    const void *rows; /* of each strip (ROWS x LANES) */
+    double normal, shear;
+    bool breaks;
+    double per_strength, per_shear_strength; /* K_nn / strength, K_ss / shear_strength, 1/m */
+    double fracture_energy;
+    struct wb_swept_range counted; /* stations, in sums */
+};
+
+struct wb_swept_cohesion_kernel_call {
+    const struct wb_swept_cohesion_kernel_model *model;
+    const struct wb_swept_cohesion_fields *fields;
+    void *damage; /* of each strip (LANES) */
+    int first_block, end_block;
+    struct wb_swept_cohesion_sums *sums; /* added to; NULL: none wanted */
+};
+
+struct wb_swept_cohesion_kernel {
+    const char *name;
+    bool is_double;
+    bool (*runs_here)(void);
+    void (*add_forces)(const struct wb_swept_cohesion_kernel_call *call);
+};
+
+extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_baseline;
+extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_double_baseline;
+#ifdef __x86_64__
+extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_avx2;
+extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_double_avx2;
+extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_avx512;
+extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_double_avx512;
+#endif
+
+#endif

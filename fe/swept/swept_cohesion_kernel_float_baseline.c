@@ -1,0 +1,4 @@
+#include "fe/swept/swept_cohesion_kernel.inc"
+
+const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_baseline = {
+    "baseline", false, runs_here, add_forces};

@@ -1,0 +1,527 @@
+#include "fe/swept/swept_hex.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/material/hardening.h"
+#include "fe/swept/swept_hex_kernel.h"
+
+#define WB_LOG_DOMAIN "swept"
+
+enum {
+    CONSTANTS = WB_SWEPT_HEX_KERNEL_CONSTANTS,
+    TERMS = WB_SWEPT_HEX_KERNEL_TERMS,
+    OCTAVES = WB_SWEPT_HEX_KERNEL_OCTAVES,
+    LOWEST_OCTAVE = -31,
+    MOST_ELEMENTS = 1 << 20
+};
+
+static const double default_hourglass = 0.05;
+static const double table_tolerance = 1e-5;
+
+struct wb_swept_hex {
+    struct wb_swept_hex_model model;
+    const struct wb_swept_hex_kernel *kernel;
+    struct wb_swept_hex_kernel_model numbers;
+    double *rows;    /* constants (n_quads x CONSTANTS) */
+    void *constants; /* the same in the kernel's type */
+    void *table;
+    int n_points;
+    int first_added; /* node */
+};
+
+struct wb_swept_hex_state {
+    const struct wb_swept_hex *hex;
+    void *history, *workspace;
+    size_t history_size; /* numbers */
+};
+
+static double shear_modulus(const struct wb_material *m)
+{
+    return m->youngs_modulus / (2.0 * (1.0 + m->poissons_ratio));
+}
+
+static size_t real_size(const struct wb_swept_hex *hex)
+{
+    return hex->model.double_precision ? sizeof(double) : sizeof(float);
+}
+
+/* What lies in `from` into aligned memory of the kernel's type. */
+static enum wb_status take_over(void **out, const struct wb_swept_hex *hex, const double *from,
+                                size_t count)
+{
+    WB_TRY(wb_swept_allocate(out, count, real_size(hex)));
+    for (size_t i = 0; i < count; i++) {
+        if (hex->model.double_precision)
+            ((double *)*out)[i] = from[i];
+        else
+            ((float *)*out)[i] = (float)from[i];
+    }
+    return WB_OK;
+}
+
+/* Powers of t = m - 3/2 (m the mantissa, 1 to 2) of p / x in an octave, by Newton's divided
+ * differences at the nodes of Chebyshev. */
+static void tabulate_octave(const struct wb_material *radial, double begin, double *coefficient)
+{
+    double t[TERMS], d[TERMS];
+
+    for (int i = 0; i < TERMS; i++) {
+        t[i] = 0.5 * cos(M_PI * (i + 0.5) / TERMS);
+        d[i] = wb_hardening_ratio(radial, begin * (t[i] + 1.5) * radial->youngs_modulus);
+        coefficient[i] = 0.0;
+    }
+    for (int j = 1; j < TERMS; j++) {
+        for (int i = TERMS - 1; i >= j; i--)
+            d[i] = (d[i] - d[i - 1]) / (t[i] - t[i - j]);
+    }
+    for (int i = TERMS - 1; i >= 0; i--) {
+        for (int j = TERMS - 1; j >= 1; j--)
+            coefficient[j] = coefficient[j - 1] - t[i] * coefficient[j];
+        coefficient[0] = d[i] - t[i] * coefficient[0];
+    }
+}
+
+/* Largest error of the stress in an octave, as a part of the stress. */
+static double octave_error(const struct wb_material *radial, double begin,
+                           const double *coefficient)
+{
+    double worst = 0.0;
+
+    for (int i = 0; i <= 16; i++) {
+        const double t = (i - 8) / 16.0, c = begin * (t + 1.5) * radial->youngs_modulus;
+        const double exact = wb_hardening_ratio(radial, c);
+        double r = 0.0;
+        for (int k = TERMS - 1; k >= 0; k--)
+            r = r * t + coefficient[k];
+        const double error = fabs(r - exact) * c / (radial->yield_stress + (1.0 - exact) * c);
+        worst = error <= worst ? worst : error;
+    }
+    return worst;
+}
+
+static enum wb_status make_table(struct wb_swept_hex *hex)
+{
+    double table[TERMS][OCTAVES] = {{0.0}}, worst = 0.0;
+    struct wb_material radial = hex->model.material;
+
+    radial.youngs_modulus = 3.0 * shear_modulus(&radial);
+    for (int i = 0; radial.hardening == WB_HARDENING_ISOTROPIC_POWER && i < OCTAVES; i++) {
+        const double begin = ldexp(1.0, LOWEST_OCTAVE + i);
+        double coefficient[TERMS];
+        tabulate_octave(&radial, begin, coefficient);
+        const double error = octave_error(&radial, begin, coefficient);
+        worst = error <= worst ? worst : error;
+        for (int k = 0; k < TERMS; k++)
+            table[k][i] = coefficient[k];
+    }
+    if (!(worst <= table_tolerance))
+        return wb_fail(WB_ERR_UNSUPPORTED,
+                       "the hardening law (K = %g Pa, n = %g) cannot be tabulated: error %.1e",
+                       radial.strength_coefficient, radial.hardening_exponent, worst);
+    return take_over(&hex->table, hex, &table[0][0], TERMS * OCTAVES);
+}
+
+static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
+                     const double (*at)[2], double *row)
+{
+    const double mu = shear_modulus(&m->material), h = m->element_length, volume = quad->area * h;
+    const double kappa =
+        m->material.youngs_modulus / (3.0 * (1.0 - 2.0 * m->material.poissons_ratio));
+    const double along = m->hourglass * m->material.youngs_modulus * quad->area / h;
+
+    for (int i = 0; i < 2; i++) {
+        row[WB_SWEPT_HEX_B + 2 * i] = 0.5 * quad->gradient[i][2];
+        row[WB_SWEPT_HEX_B + 2 * i + 1] = 0.5 * quad->gradient[i][3];
+        row[WB_SWEPT_HEX_GAMMA + i] = 2.0 * (at[0][i] - at[1][i] + at[2][i] - at[3][i]);
+    }
+    row[WB_SWEPT_HEX_K_PLANE] = m->hourglass * mu * quad->hourglass_slope * h / 64.0;
+    row[WB_SWEPT_HEX_K_VOLUME] = kappa * volume;
+    for (int a = 0; a < 4; a++)
+        row[WB_SWEPT_HEX_MEAN + a] = quad->mean[a] / h;
+    if (m->formulation == WB_SWEPT_HEX_ONE_POINT) {
+        row[WB_SWEPT_HEX_K_ALONG] = row[WB_SWEPT_HEX_K_ALONG + 1] = along / 3.0;
+        row[WB_SWEPT_HEX_K_ALONG + 2] = along / 9.0;
+        row[WB_SWEPT_HEX_STIFFNESS] = 2.0 * mu * volume;
+        return;
+    }
+    for (int q = 0; q < 4; q++) {
+        double *point = row + WB_SWEPT_HEX_POINT + q * WB_SWEPT_HEX_POINT_STRIDE;
+        for (int a = 0; a < 4; a++)
+            point[a] = quad->value[q][a] / h;
+        point[4] = 2.0 * mu * volume * quad->weight[q];
+    }
+}
+
+static enum wb_status make_constants(struct wb_swept_hex *hex)
+{
+    const struct wb_swept_section *section = hex->model.section;
+    const size_t count = (size_t)section->n_quads * CONSTANTS;
+
+    hex->rows = calloc(count, sizeof *hex->rows);
+    if (!hex->rows)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d elements of a section", section->n_quads);
+    for (int e = 0; e < section->n_quads; e++) {
+        struct wb_swept_quad quad;
+        double at[4][2];
+        wb_swept_section_quad(section, e, &quad);
+        for (int a = 0; a < 4; a++)
+            memcpy(at[a], section->node[section->quad[e][a]], sizeof at[a]);
+        fill_row(&hex->model, &quad, (const double(*)[2])at, hex->rows + e * CONSTANTS);
+    }
+    return take_over(&hex->constants, hex, hex->rows, count);
+}
+
+static const struct wb_swept_hex_kernel *find_kernel(const struct wb_swept_hex_model *model)
+{
+    static const struct wb_swept_hex_kernel *const kernels[][2] = {
+#ifdef __x86_64__
+        [WB_SWEPT_HEX_AVX512] = {&wb_swept_hex_kernel_float_avx512,
+                                 &wb_swept_hex_kernel_double_avx512},
+        [WB_SWEPT_HEX_AVX2] = {&wb_swept_hex_kernel_float_avx2, &wb_swept_hex_kernel_double_avx2},
+#endif
+        [WB_SWEPT_HEX_BASELINE] = {&wb_swept_hex_kernel_float_baseline,
+                                   &wb_swept_hex_kernel_double_baseline},
+    };
+    const int n = (int)(sizeof kernels / sizeof *kernels);
+
+    for (int i = n - 1; i >= WB_SWEPT_HEX_BASELINE; i--) {
+        const struct wb_swept_hex_kernel *kernel = kernels[i][model->double_precision];
+        const bool wanted =
+            model->instructions == WB_SWEPT_HEX_BEST || (int)model->instructions == i;
+        if (wanted && kernel->runs_here())
+            return kernel;
+    }
+    return NULL;
+}
+
+static enum wb_status check(const struct wb_swept_hex_model *m)
+{
+    const struct wb_material *material = &m->material;
+    const bool power = material->hardening == WB_HARDENING_ISOTROPIC_POWER;
+
+    if (m->n_elements < 1 || m->n_elements > MOST_ELEMENTS)
+        return wb_fail(WB_ERR_ARGUMENT, "%d elements along a wire", m->n_elements);
+    if (!(m->element_length > 0.0 && isfinite(m->element_length)))
+        return wb_fail(WB_ERR_ARGUMENT, "elements of a length of %g m", m->element_length);
+    if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
+        return wb_fail(WB_ERR_ARGUMENT, "hourglass coefficient %g, not in (0, 1]", m->hourglass);
+    if (!power && material->hardening != WB_HARDENING_NONE_ELASTIC)
+        return wb_fail(WB_ERR_UNSUPPORTED, "hexahedra do not harden kinematically");
+    if (!(material->youngs_modulus > 0.0 && isfinite(material->youngs_modulus)) ||
+        !(material->poissons_ratio > -1.0 && material->poissons_ratio < 0.5))
+        return wb_fail(WB_ERR_ARGUMENT, "E = %g Pa, nu = %g", material->youngs_modulus,
+                       material->poissons_ratio);
+    if (power &&
+        !(material->yield_stress > 0.0 && isfinite(material->yield_stress) &&
+          material->strength_coefficient >= 0.0 && isfinite(material->strength_coefficient) &&
+          material->hardening_exponent > 0.0 && material->hardening_exponent <= 2.0))
+        return wb_fail(WB_ERR_ARGUMENT, "sigma_Y = %g Pa, K = %g Pa, n = %g",
+                       material->yield_stress, material->strength_coefficient,
+                       material->hardening_exponent);
+    return WB_OK;
+}
+
+/* From the central node. */
+static int farthest_node(const struct wb_swept_section *section)
+{
+    const double *centre = section->node[section->centre];
+    int farthest = section->centre;
+    double distance = 0.0;
+
+    for (int k = 0; k < section->n_nodes; k++) {
+        const double off = hypot(section->node[k][0] - centre[0], section->node[k][1] - centre[1]);
+        if (off > distance) {
+            distance = off;
+            farthest = k;
+        }
+    }
+    return farthest;
+}
+
+static enum wb_status fill(struct wb_swept_hex *hex)
+{
+    const struct wb_swept_hex_model *m = &hex->model;
+    const bool elastic = m->material.hardening == WB_HARDENING_NONE_ELASTIC;
+
+    WB_TRY(check(m));
+    hex->kernel = find_kernel(m);
+    if (!hex->kernel)
+        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    hex->n_points = m->formulation == WB_SWEPT_HEX_ONE_POINT ? 1 : 4;
+    WB_TRY(make_constants(hex));
+    WB_TRY(make_table(hex));
+    hex->numbers = (struct wb_swept_hex_kernel_model){
+        .layout = wb_swept_layout(m->section->n_nodes, m->n_elements + 1),
+        .n_quads = m->section->n_quads,
+        .n_elements = m->n_elements,
+        .counted = wb_swept_range_within(m->counted, m->n_elements),
+        .centre = m->section->centre,
+        .beside = farthest_node(m->section),
+        .quad = (const int(*)[4])m->section->quad,
+        .node = (const double(*)[2])m->section->node,
+        .length = m->element_length,
+        .yield_strain = elastic ? (double)INFINITY
+                                : m->material.yield_stress / (3.0 * shear_modulus(&m->material)),
+        .strain_limit = WB_SWEPT_HEX_STRAIN_LIMIT,
+        .constants = hex->constants,
+        .table = hex->table};
+    return WB_OK;
+}
+
+static int find_first_added(const struct wb_swept_section *section)
+{
+    int first = section->n_outline > 0 ? section->n_nodes : 0;
+    for (int i = 0; i < section->n_outline; i++)
+        first = section->outline[i] < first ? section->outline[i] : first;
+    return first;
+}
+
+int wb_swept_hex_first_added(const struct wb_swept_hex *hex)
+{
+    return hex->first_added;
+}
+
+enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
+                                   const struct wb_swept_hex_model *model)
+{
+    *out = NULL;
+    struct wb_swept_hex *hex = calloc(1, sizeof *hex);
+    if (!hex)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
+    hex->model = *model;
+    if (hex->model.hourglass == 0.0)
+        hex->model.hourglass = default_hourglass;
+    hex->first_added = find_first_added(model->section);
+    const enum wb_status status = fill(hex);
+    if (status != WB_OK) {
+        wb_swept_hex_destroy(hex);
+        return status;
+    }
+    *out = hex;
+    return WB_OK;
+}
+
+void wb_swept_hex_destroy(struct wb_swept_hex *hex)
+{
+    if (!hex)
+        return;
+    free(hex->rows);
+    free(hex->constants);
+    free(hex->table);
+    free(hex);
+}
+
+const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex)
+{
+    return &hex->model;
+}
+
+struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex)
+{
+    return hex->numbers.layout;
+}
+
+int wb_swept_hex_blocks(const struct wb_swept_hex *hex)
+{
+    return hex->numbers.layout.stride / WB_SWEPT_LANES;
+}
+
+const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex)
+{
+    return hex->kernel->name;
+}
+
+const char *wb_swept_hex_best_instructions(void)
+{
+    const struct wb_swept_hex_model model = {.instructions = WB_SWEPT_HEX_BEST};
+    return find_kernel(&model)->name;
+}
+
+void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4])
+{
+    const double *row = hex->rows + quad * CONSTANTS;
+
+    stiffness[0] = 64.0 * row[WB_SWEPT_HEX_K_PLANE];
+    for (int i = 0; i < 3; i++)
+        stiffness[1 + i] = row[WB_SWEPT_HEX_K_ALONG + i];
+}
+
+enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
+                                         const struct wb_swept_hex *hex)
+{
+    const struct wb_swept_layout *layout = &hex->numbers.layout;
+    const size_t points = (size_t)layout->stride * (size_t)hex->numbers.n_quads * //
+                          (size_t)hex->n_points;
+    const size_t vectors =
+        (size_t)(WB_SWEPT_HEX_KERNEL_NODE + WB_SWEPT_HEX_KERNEL_CARRY) * (size_t)layout->n_nodes;
+
+    *out = NULL;
+    struct wb_swept_hex_state *state = calloc(1, sizeof *state);
+    if (!state)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
+    state->hex = hex;
+    state->history_size = points * WB_SWEPT_HEX_KERNEL_HISTORY;
+    enum wb_status status = wb_swept_allocate(&state->history, state->history_size, real_size(hex));
+    if (status == WB_OK)
+        status = wb_swept_allocate(&state->workspace, vectors * WB_SWEPT_LANES, real_size(hex));
+    if (status != WB_OK) {
+        wb_swept_hex_state_destroy(state);
+        return status;
+    }
+    *out = state;
+    return WB_OK;
+}
+
+void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state)
+{
+    if (!state)
+        return;
+    free(state->history);
+    free(state->workspace);
+    free(state);
+}
+
+void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes)
+{
+    *bytes = state->history_size * real_size(state->hex);
+    return state->history;
+}
+
+void wb_swept_hex_state_reset(struct wb_swept_hex_state *state)
+{
+    memset(state->history, 0, state->history_size * real_size(state->hex));
+}
+
+static void find_forces(struct wb_swept_hex_state *state, const struct wb_swept_hex_fields *fields,
+                        int first_added, const struct wb_swept_range *blocks,
+                        struct wb_swept_hex_sums *sums)
+{
+    const struct wb_swept_hex *hex = state->hex;
+    const struct wb_swept_hex_kernel_call call = {
+        .model = &hex->numbers,
+        .fields = *fields,
+        .first_added = first_added,
+        .history = state->history,
+        .workspace = state->workspace,
+        .first_block = blocks->first,
+        .end_block = blocks->end,
+        .sums = sums,
+    };
+
+    if (hex->model.formulation == WB_SWEPT_HEX_ONE_POINT)
+        hex->kernel->one_point(&call);
+    else
+        hex->kernel->four_points(&call);
+}
+
+void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+                         int first, int end, struct wb_swept_hex_sums *sums)
+{
+    const struct wb_swept_hex_fields fields = {.position = position, .force = force};
+
+    find_forces(state, &fields, state->hex->numbers.layout.n_nodes,
+                &(struct wb_swept_range){first, end}, sums);
+}
+
+void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
+                             const struct wb_swept_hex_fields *fields, int first, int end,
+                             struct wb_swept_hex_sums *sums)
+{
+    find_forces(state, fields, state->hex->first_added, &(struct wb_swept_range){first, end}, sums);
+}
+
+double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
+                                   int point)
+{
+    const struct wb_swept_hex *hex = state->hex;
+    const size_t block = (size_t)(element / WB_SWEPT_LANES);
+    const size_t place =
+        (block * (size_t)hex->numbers.n_quads + (size_t)quad) * (size_t)hex->n_points +
+        (size_t)point;
+    const size_t at = (place * WB_SWEPT_HEX_KERNEL_HISTORY + 5) * WB_SWEPT_LANES +
+                      (size_t)(element % WB_SWEPT_LANES);
+
+    return hex->model.double_precision ? ((const double *)state->history)[at]
+                                       : (double)((const float *)state->history)[at];
+}
+
+double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
+{
+    const struct wb_swept_hex *hex = state->hex;
+    const struct wb_material *m = &hex->model.material;
+    const double two_mu = 2.0 * shear_modulus(m);
+    double work = 0.0;
+
+    for (int e = 0; e < hex->numbers.n_quads; e++) {
+        const double *row = hex->rows + e * CONSTANTS;
+        for (int q = 0; q < hex->n_points; q++) {
+            const double volume =
+                (hex->n_points == 1 ? row[WB_SWEPT_HEX_STIFFNESS]
+                                    : row[WB_SWEPT_HEX_POINT + q * WB_SWEPT_HEX_POINT_STRIDE + 4]) /
+                two_mu;
+            double density = 0.0;
+            for (int j = hex->numbers.counted.first; j < hex->numbers.counted.end; j++) {
+                const double p = wb_swept_hex_plastic_strain(state, e, j, q);
+                if (p > 0.0)
+                    density += p * (m->yield_stress + m->strength_coefficient *
+                                                          pow(p, m->hardening_exponent) /
+                                                          (m->hardening_exponent + 1.0));
+            }
+            work += density * volume;
+        }
+    }
+    return work;
+}
+
+/* Sum of weight (y - mean)^2 over the points, and its like for the three hourglass fields of one
+ * point: xi^2 and eta^2 are 1/3 in the mean, (xi eta)^2 is 1/9. */
+static double varying_moment(const struct wb_swept_section *section, int e,
+                             const struct wb_swept_quad *quad, double mean,
+                             enum wb_swept_hex_formulation formulation)
+{
+    double points = 0.0, y[4];
+
+    for (int a = 0; a < 4; a++) {
+        points += quad->weight[a] * (quad->at[a][0] - mean) * (quad->at[a][0] - mean);
+        y[a] = 0.25 * section->node[section->quad[e][a]][0];
+    }
+    if (formulation == WB_SWEPT_HEX_FOUR_POINTS)
+        return points;
+    const double xi = y[1] + y[2] - y[0] - y[3], eta = y[2] + y[3] - y[0] - y[1];
+    const double both = y[0] + y[2] - y[1] - y[3];
+    return (xi * xi + eta * eta) / 3.0 + both * both / 9.0;
+}
+
+double wb_swept_hex_second_moment(const struct wb_swept_section *section,
+                                  enum wb_swept_hex_formulation formulation,
+                                  const struct wb_material *material)
+{
+    const double factor = formulation == WB_SWEPT_HEX_FOUR_POINTS
+                              ? 3.0 * shear_modulus(material) / material->youngs_modulus
+                              : default_hourglass;
+    double moment = 0.0;
+
+    for (int e = 0; e < section->n_quads; e++) {
+        struct wb_swept_quad quad;
+        double mean = 0.0;
+        wb_swept_section_quad(section, e, &quad);
+        for (int q = 0; q < 4; q++)
+            mean += quad.weight[q] * quad.at[q][0];
+        moment += quad.area *
+                  (mean * mean + factor * varying_moment(section, e, &quad, mean, formulation));
+    }
+    return moment;
+}
+
+void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
+                             enum wb_swept_hex_formulation formulation,
+                             const struct wb_material *material)
+{
+    const double wanted = M_PI * pow(diameter, 4) / 64.0;
+
+    wb_swept_section_scale(
+        section, pow(wanted / wb_swept_hex_second_moment(section, formulation, material), 0.25));
+}

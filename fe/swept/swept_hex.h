@@ -1,0 +1,138 @@
+/* Internal forces of a wire of 8-node hexahedra swept along its axis, for explicit dynamics.
+ *
+ * Total Lagrangian, logarithmic strain, J2 plasticity with the power law: nothing is integrated in
+ * time but the plastic strain, so rigid motions make no stress, in any number of steps. Two
+ * formulations:
+ *
+ * - four points (2x2x1, the default): what the axial vectors of the section's four corners say,
+ *   axial strain and the two shears with the axis, at 2 x 2 points with plastic histories of their
+ *   own; the section's own strains at the centre. One hourglass vector is left, the section's.
+ * - one point: mean gradients (Flanagan and Belytschko 1981), four hourglass vectors.
+ *
+ * Hourglass stiffness is elastic. Four points yield in bending with few elements, one point needs
+ * about 60 a section for it. Details are in swept_hex_kernel.inc.
+ *
+ * The logarithm is a polynomial: at a strain of 5 % along the axes forces are 0.2 % off, with a
+ * shear strain of 5 % 1.3 %, and with strains of 3 % 0.04 and 0.5 %. Elements with a component of
+ * Green's strain beyond WB_SWEPT_HEX_STRAIN_LIMIT are counted; whoever runs the model must say so.
+ *
+ * Node fields are those of fe/swept/swept.h, stations `element_length` apart in the reference
+ * state, forces float or, of a model of double precision, double. Fields must come from
+ * wb_swept_allocate(): what lies behind the last number is read.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_HEX_H
+#define WB_FE_SWEPT_SWEPT_HEX_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "fe/material/material.h"
+#include "fe/swept/swept.h"
+#include "fe/swept/swept_section.h"
+
+#define WB_SWEPT_HEX_STRAIN_LIMIT 0.05
+
+enum wb_swept_hex_formulation {
+    WB_SWEPT_HEX_FOUR_POINTS,
+    WB_SWEPT_HEX_ONE_POINT
+};
+
+enum wb_swept_hex_instructions {
+    WB_SWEPT_HEX_BEST, /* of what this processor has */
+    WB_SWEPT_HEX_BASELINE,
+    WB_SWEPT_HEX_AVX2,
+    WB_SWEPT_HEX_AVX512
+};
+
+struct wb_swept_hex_model {
+    const struct wb_swept_section *section; /* borrowed; must outlive the hex */
+    struct wb_material material;            /* elastic or power law */
+    int n_elements;                         /* along the axis */
+    double element_length;                  /* m */
+    enum wb_swept_hex_formulation formulation;
+    struct wb_swept_range counted; /* in sums and the plastic work; all is computed */
+    double hourglass; /* coefficient, 1; 0: 0.05. Of one point, 1 gives the fields that bend an
+                         element their elastic stiffness */
+    bool double_precision;
+    enum wb_swept_hex_instructions instructions;
+};
+
+struct wb_swept_hex_fields {
+    const double *position;
+    void *force;        /* float, or double of double precision */
+    const double *soon; /* NULL, or what the caller goes through next, block by block, such as
+                           velocities: it is fetched into the processor's cache meanwhile */
+};
+
+struct wb_swept_hex_sums {
+    double stored, artificial; /* J: elastic and of the hourglass stiffness */
+    double largest_strain;     /* largest component of Green's strain in size */
+    long long beyond_limit;    /* elements with one beyond the limit, or not finite */
+};
+
+struct wb_swept_hex;       /* opaque: model, constants; not changed after creation */
+struct wb_swept_hex_state; /* opaque: plastic histories of one wire, workspace */
+
+/* WB_ERR_UNSUPPORTED when the processor does not have the instructions, or the table of the
+ * hardening law is not as good as 1e-5 of the stress (exponents below about 0.15). */
+WB_MUST_CHECK enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
+                                                 const struct wb_swept_hex_model *model);
+void wb_swept_hex_destroy(struct wb_swept_hex *hex);
+
+const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex);
+struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
+int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
+const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex);
+/* Of those that this processor has the best. */
+const char *wb_swept_hex_best_instructions(void);
+
+/* Stiffness of the section's hourglass vector, N/m, and of the three along, xi, eta, xi eta, which
+ * are 0 of four points. */
+void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4]);
+
+/* One wire's histories, virgin. The hex must outlive it. */
+WB_MUST_CHECK enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
+                                                       const struct wb_swept_hex *hex);
+void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
+void wb_swept_hex_state_reset(struct wb_swept_hex_state *state);
+
+/* What a checkpoint keeps of a state: `bytes` at the address returned. */
+void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
+
+/* Writes the forces on the nodes (less the energy's derivatives) at the stations of blocks `first`
+ * to `end` - 1 and takes the histories there to the present positions. The blocks of a step go in
+ * order, each once, in one call or several: forces of a block are complete when it is done, and its
+ * positions are not read again. `sums`, when not NULL, are added to. `force` is float, or double of
+ * double precision. Threads may work on different states. */
+void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+                         int first, int end, struct wb_swept_hex_sums *sums);
+/* The same, but on nodes from wb_swept_hex_first_added() on, the section's outline among them,
+ * forces are added to what is there. */
+int wb_swept_hex_first_added(const struct wb_swept_hex *hex);
+void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
+                             const struct wb_swept_hex_fields *fields, int first, int end,
+                             struct wb_swept_hex_sums *sums);
+
+/* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
+double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);
+
+/* Accumulated plastic strain at a point (0 to 3, or 0) of a section's element. */
+double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
+                                   int point);
+
+/* The second moment of area, m4, with which elements of this section bend elastically about the z
+ * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
+ * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
+double wb_swept_hex_second_moment(const struct wb_swept_section *section,
+                                  enum wb_swept_hex_formulation formulation,
+                                  const struct wb_material *material);
+
+/* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not
+ * pi d^2 / 4: of four points 1.2 % less with 4 elements, 0.5 % less with 12, 0.1 % less with 84; of
+ * one point 17, 4.8 and 0.6 % more. Masses are whoever makes them to correct. */
+void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
+                             enum wb_swept_hex_formulation formulation,
+                             const struct wb_material *material);
+
+#endif

@@ -1,0 +1,86 @@
+/* The force kernels behind fe/swept/swept_hex.h: one source, swept_hex_kernel.inc, compiled for
+ * float and double and for each instruction set.
+ *
+ * Everything that a kernel multiplies with is prepared in its own type: constants of the section's
+ * elements in rows of WB_SWEPT_HEX_KERNEL_CONSTANTS, and the table of the hardening law. Histories
+ * are in blocks of WB_SWEPT_LANES elements along the wire:
+ *
+ *     history[(((block n_quads + quad) n_points + point) 6 + component) WB_SWEPT_LANES + lane],
+ *
+ * components: plastic strain 11, 22, 12, 13, 23 (a deviator) and accumulated plastic strain.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_HEX_KERNEL_H
+#define WB_FE_SWEPT_SWEPT_HEX_KERNEL_H
+
+#include <stdbool.h>
+
+#include "fe/swept/swept.h"
+#include "fe/swept/swept_hex.h"
+
+enum {
+    WB_SWEPT_HEX_KERNEL_CONSTANTS = 48, /* a row */
+    WB_SWEPT_HEX_KERNEL_HISTORY = 6,    /* numbers of a point */
+    WB_SWEPT_HEX_KERNEL_NODE = 12,      /* vectors of a node in the workspace, */
+    WB_SWEPT_HEX_KERNEL_CARRY = 3,      /* and those from block to block */
+    /* The hardening law's table: polynomials of 7 terms in octaves of x from 2^-31 to 2. */
+    WB_SWEPT_HEX_KERNEL_TERMS = 7,
+    WB_SWEPT_HEX_KERNEL_OCTAVES = 32
+};
+
+/* Places in a row of constants. h is the element's length, V its volume, mu the shear modulus,
+ * kappa the bulk modulus. */
+enum {
+    WB_SWEPT_HEX_B = 0,          /* half the mean dN/dy at corners 2 and 3, then of dN/dz; 1/m */
+    WB_SWEPT_HEX_GAMMA = 4,      /* 2 g.y and 2 g.z with g = (1, -1, 1, -1), m */
+    WB_SWEPT_HEX_K_PLANE = 6,    /* stiffness of the section's hourglass field / 64, N/m */
+    WB_SWEPT_HEX_K_VOLUME = 7,   /* kappa V, N m */
+    WB_SWEPT_HEX_MEAN = 8,       /* mean N_a / h (4), 1/m */
+    WB_SWEPT_HEX_K_ALONG = 12,   /* one point: stiffness of the fields xi, eta, xi eta of d, N/m */
+    WB_SWEPT_HEX_STIFFNESS = 15, /* one point: 2 mu V, N m */
+    WB_SWEPT_HEX_POINT = 16,     /* four points: N_a / h (4), 2 mu V weight; 3 of padding */
+    WB_SWEPT_HEX_POINT_STRIDE = 8
+};
+
+struct wb_swept_hex_kernel_model {
+    struct wb_swept_layout layout;
+    int n_quads;
+    int n_elements;                /* along */
+    int centre, beside;            /* two nodes whose line turns with the section */
+    const int (*quad)[4];          /* (n_quads) */
+    const double (*node)[2];       /* (layout.n_nodes) */
+    double length;                 /* h, m */
+    double yield_strain;           /* sigma_Y / (3 mu); infinite when elastic */
+    struct wb_swept_range counted; /* elements, in sums */
+    double strain_limit;           /* beyond it elements are counted */
+    const void *constants;         /* (n_quads x WB_SWEPT_HEX_KERNEL_CONSTANTS) */
+    const void *table;             /* (WB_SWEPT_HEX_KERNEL_TERMS x WB_SWEPT_HEX_KERNEL_OCTAVES) */
+};
+
+struct wb_swept_hex_kernel_call {
+    const struct wb_swept_hex_kernel_model *model;
+    struct wb_swept_hex_fields fields;
+    int first_added; /* node: from here on forces are added to what is there */
+    void *history;
+    void *workspace; /* ((NODE + CARRY) x n_nodes x WB_SWEPT_LANES), kept between calls */
+    int first_block, end_block;
+    struct wb_swept_hex_sums *sums; /* added to; NULL: none wanted */
+};
+
+struct wb_swept_hex_kernel {
+    const char *name;
+    bool is_double;
+    bool (*runs_here)(void); /* whether this processor has the instructions */
+    void (*four_points)(const struct wb_swept_hex_kernel_call *call);
+    void (*one_point)(const struct wb_swept_hex_kernel_call *call);
+};
+
+extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_baseline;
+extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_baseline;
+#ifdef __x86_64__
+extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_avx2;
+extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_avx2;
+extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_avx512;
+extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_avx512;
+#endif
+
+#endif

@@ -1,0 +1,68 @@
+/* Central differences for a swept body: accelerations, velocities, positions (eqs. 23 to 25 of the
+ * paper, with u(t + dt) = u(t) + dt v(t + dt / 2)).
+ *
+ * Masses are lumped: a node's mass per length times its station's length, half at the ends, times
+ * f_m (eq. 29). The weight is not scaled: gravity accelerates by g / f_m. Selective mass scaling by
+ * beta leaves the mean acceleration of a station alone and divides what nodes do beside it,
+ *
+ *     a = mean + (a - mean) / beta,  mean = sum f / sum m,
+ *
+ * which is a mass matrix M' = beta M - (beta - 1) M 1 1^T M / (1^T M 1): the section deforms and
+ * turns more slowly, the wire's axis moves as before.
+ *
+ * A held component of a station keeps its velocity, whatever the force: what is prescribed is
+ * written into the velocity field. It has no part in the sums.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_STEP_H
+#define WB_FE_SWEPT_SWEPT_STEP_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+#include "fe/swept/swept.h"
+
+struct wb_swept_step_model {
+    struct wb_swept_layout layout;
+    const double *node_mass; /* (n_nodes), kg/m; copied */
+    double spacing;          /* of the stations, m */
+    double mass_scaling;     /* f_m, 1; 0: 1 */
+    double selective;        /* beta, 1 or more; 0: 1 */
+    double gravity[3];       /* m/s2 */
+    bool double_precision;   /* forces are double */
+};
+
+struct wb_swept_step_fields {
+    double *position, *velocity;
+    const void *force;
+};
+
+/* At the time of the forces, all of them sums over the body. */
+struct wb_swept_step_sums {
+    double kinetic;      /* J, 1/2 v-.M v+ of the velocities half a step before and after: with an
+                            elastic energy its sum is constant to round-off */
+    double kinetic_half; /* J, 1/2 v+.M v+ */
+    double momentum[3];  /* kg m/s, of v+ */
+    double gravity_work; /* J, done from here to the end of the step */
+};
+
+struct wb_swept_step; /* opaque */
+
+WB_MUST_CHECK enum wb_status wb_swept_step_create(struct wb_swept_step **out,
+                                                  const struct wb_swept_step_model *model);
+void wb_swept_step_destroy(struct wb_swept_step *step);
+
+/* Spreads a mass (kg, not scaled by f_m) over the nodes of a station. */
+void wb_swept_step_add_mass(struct wb_swept_step *step, int station, double mass);
+
+/* Holds, or lets go, one component of a station. */
+void wb_swept_step_hold(struct wb_swept_step *step, int station, int component, bool held);
+
+double wb_swept_step_station_mass(const struct wb_swept_step *step, int station); /* kg, scaled */
+
+/* Velocities by `times[0]` (mean of the steps before and after; half a step at first), positions by
+ * `times[1]`, s, at the stations of blocks `first` to `end` - 1. `sums` are added to, or NULL. */
+void wb_swept_step_update(const struct wb_swept_step *step,
+                          const struct wb_swept_step_fields *fields, const double times[2],
+                          int first, int end, struct wb_swept_step_sums *sums);
+
+#endif

@@ -1,0 +1,132 @@
+/* Internal forces of a tape round a bundle: 4-node shells between a ring of nodes and the stations,
+ * for explicit dynamics.
+ *
+ * The ring lies on the tape's middle surface and is repeated at all stations, straight (a sleeve)
+ * or winding (a helix); it is closed, or open with two free edges. Besides its position a node has
+ * a director, a vector of three components across the tape, of length 1 but for a stiff spring: two
+ * node fields that are integrated alike, directors with the inertia of wb_swept_tape_masses().
+ *
+ * One point in the plane for membrane and bending, with several points of plane stress through the
+ * thickness (J2 with the power law, logarithmic strains); transverse shear from the edges, elastic.
+ * Hourglass stiffness is elastic, of what bends an element in its plane and of its directors. Total
+ * Lagrangian: nothing is integrated in time but the plastic strain. Stresses are per reference area
+ * (of Kirchhoff): as plastic flow keeps the volume, that a stretched tape gets thinner is in them.
+ * Details are in swept_tape_kernel.inc.
+ *
+ * The logarithm is a polynomial: at a strain of 10 % it is 0.03 % off, forces 0.2 %. Elements with
+ * a larger strain are counted; whoever runs the model must say so.
+ *
+ * Node fields are those of fe/swept/swept.h, forces float or, of a model of double precision,
+ * double. Fields must come from wb_swept_allocate(): what lies behind the last number is read.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_TAPE_H
+#define WB_FE_SWEPT_SWEPT_TAPE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "fe/material/material.h"
+#include "fe/swept/swept.h"
+
+#define WB_SWEPT_TAPE_STRAIN_LIMIT 0.1
+
+enum wb_swept_tape_instructions {
+    WB_SWEPT_TAPE_BEST, /* of what this processor has */
+    WB_SWEPT_TAPE_BASELINE,
+    WB_SWEPT_TAPE_AVX2,
+    WB_SWEPT_TAPE_AVX512
+};
+
+struct wb_swept_tape_model {
+    struct wb_material material; /* elastic or power law */
+    double density;              /* kg/m3 */
+    double thickness;            /* m, of all layers */
+    int sheets; /* into which it is split in bending, that slide on each other freely; 0: 1, layers
+                   that stick together. The membrane does not know of it */
+    int points; /* through the thickness, of Gauss, 2 to 5; 0: 3 */
+    double hourglass; /* coefficient, 1; 0: 0.1. 1 gives an element that is bent in its plane its
+                         elastic stiffness */
+    struct wb_swept_layout layout;
+    const double *position; /* of the reference state; read at creation only. From node to node of
+                               the ring so that axis x ring points outwards */
+    double spacing;         /* of the stations along the axis, m: what masses per length refer to */
+    struct wb_swept_range counted; /* in sums and the plastic work, also of what is made for this
+                                      tape (cohesion, contact); all is computed */
+    bool closed;                   /* the last node of the ring is joined to the first */
+    bool double_precision;
+    enum wb_swept_tape_instructions instructions;
+};
+
+struct wb_swept_tape_sums {
+    double stored, artificial; /* J: elastic and of the hourglass stiffness */
+    double largest_strain;     /* at least the largest principal strain (Green's) in size */
+    long long beyond_limit;    /* elements with one beyond the limit, or not finite */
+};
+
+struct wb_swept_tape;       /* opaque: constants; not changed after creation */
+struct wb_swept_tape_state; /* opaque: plastic histories, workspace */
+
+/* WB_ERR_UNSUPPORTED when the processor does not have the instructions, or for laws that
+ * fe/swept/swept_hardening.h refuses; WB_ERR_ARGUMENT also for elements that are not convex. */
+WB_MUST_CHECK enum wb_status wb_swept_tape_create(struct wb_swept_tape **out,
+                                                  const struct wb_swept_tape_model *model);
+void wb_swept_tape_destroy(struct wb_swept_tape *tape);
+
+struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape);
+int wb_swept_tape_blocks(const struct wb_swept_tape *tape);   /* of WB_SWEPT_LANES stations */
+int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* round the ring */
+const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
+
+/* Directors of the reference state (a field): the mean of the adjoining elements' normals, in the
+ * plane of the section. */
+const double *wb_swept_tape_directors(const struct wb_swept_tape *tape);
+
+/* Area of the middle surface that goes with a node, m2. */
+double wb_swept_tape_area(const struct wb_swept_tape *tape, int node, int station);
+
+/* Masses and rotary inertias of directors per length, one of each a node of the ring (n_nodes),
+ * kg/m and kg m: means over the stations. The rotary inertia is the tape's own and an eighth of an
+ * element's area times its mass, so that directors do not govern the step (T. Belytschko, J. I.
+ * Lin, C.-S. Tsay, CMAME 42 (1984) 225). */
+void wb_swept_tape_masses(const struct wb_swept_tape *tape, double *mass, double *inertia);
+
+/* An upper bound of the squared frequencies with these masses and without selective mass scaling,
+ * 1/s2, in the reference state: that of the fastest element alone. Cohesion and contact add to it
+ * (fe/swept/swept_cohesion.h). Mass scaling divides it by f_m. */
+WB_MUST_CHECK enum wb_status wb_swept_tape_stiffness_per_mass(const struct wb_swept_tape *tape,
+                                                              double *largest);
+
+/* Histories of one tape, virgin. The tape must outlive it. */
+WB_MUST_CHECK enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
+                                                        const struct wb_swept_tape *tape);
+void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state);
+void wb_swept_tape_state_reset(struct wb_swept_tape_state *state);
+
+/* What a checkpoint keeps of a state: `bytes` at the address returned. */
+void *wb_swept_tape_state_data(struct wb_swept_tape_state *state, size_t *bytes);
+
+struct wb_swept_tape_fields {
+    const double *position, *director;
+    void *force;  /* N, written: float, or double of double precision */
+    void *moment; /* on the directors, N m, the same */
+};
+
+/* Writes forces and moments (less the energy's derivatives) at the stations of blocks `first` to
+ * `end` - 1 and takes the histories there to the present state. The blocks of a step go in order,
+ * each once, in one call or several: forces of a block are complete when it is done, and its
+ * positions are not read again. `sums`, when not NULL, are added to. Threads may work on different
+ * states. */
+void wb_swept_tape_forces(struct wb_swept_tape_state *state,
+                          const struct wb_swept_tape_fields *fields, int first, int end,
+                          struct wb_swept_tape_sums *sums);
+
+/* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
+double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state);
+
+/* Accumulated plastic strain of an element (between nodes `element` and the next, stations `along`
+ * and the next) at a point through the thickness, from the inside. */
+double wb_swept_tape_plastic_strain(const struct wb_swept_tape_state *state, int element, int along,
+                                    int point);
+
+#endif

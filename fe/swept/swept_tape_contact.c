@@ -1,0 +1,635 @@
+#include "fe/swept/swept_tape_contact.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fe/swept/swept_tape_contact_private.h"
+
+#define WB_LOG_DOMAIN "swept"
+
+enum {
+    LANES = WB_SWEPT_LANES,
+    ROWS = WB_SWEPT_TAPE_CONTACT_ROWS,
+    HISTORY = WB_SWEPT_TAPE_CONTACT_HISTORY
+};
+
+static const double default_margin = 0.05; /* of the smallest radius */
+static const int default_interval = 100;
+/* A wire that is farther from a node than this times what would be near is far off beyond doubt,
+ * even when it bends as sharply as to so many of its radii. */
+static const double far_off = 1.25;
+static const double sharpest_bend = 10.0;
+/* Radii that a node may slide before its place is found anew. Each time the gap along the director
+ * becomes that to the circle again, which is no work of the forces: a tape that vibrates on its
+ * contact would draw energy from that. */
+static const double kept_slip = 0.02;
+
+void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings)
+{
+    *settings = (struct wb_swept_tape_contact_settings){.normal_stiffness = 30e9,
+                                                        .shear_stiffness = 10e9,
+                                                        .friction_static = 0.4,
+                                                        .friction_kinetic = 0.4};
+}
+
+static const struct wb_swept_layout *layout_of(const struct wb_swept_tape_contact *c)
+{
+    return &c->tape->model.layout;
+}
+
+static size_t real_size(const struct wb_swept_tape_contact *c)
+{
+    return c->tape->model.double_precision ? sizeof(double) : sizeof(float);
+}
+
+static void put(const struct wb_swept_tape_contact *c, void *numbers, size_t at, double value)
+{
+    if (c->tape->model.double_precision)
+        ((double *)numbers)[at] = value;
+    else
+        ((float *)numbers)[at] = (float)value;
+}
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double *a, const double *b, double *out)
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* --- what is near --- */
+
+static void read_node(const struct wb_swept_tape_contact *c, const double *field, int k, int j,
+                      double out[3])
+{
+    const size_t stride = (size_t)layout_of(c)->stride;
+    for (int i = 0; i < 3; i++)
+        out[i] = field[(size_t)(3 * k + i) * stride + (size_t)j];
+}
+
+static double *centre_row(const struct wb_swept_tape_contact *c, int wire, int i)
+{
+    return c->centre + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
+}
+
+static double *axis_row(const struct wb_swept_tape_contact *c, int wire, int i)
+{
+    return c->axis + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
+}
+
+/* Tangents to the centre lines, m a station. */
+static void find_axes(struct wb_swept_tape_contact *c)
+{
+    const int last = layout_of(c)->n_stations - 1;
+
+    for (int row = 0; row < 3 * c->n_wires; row++) {
+        const double *centre = centre_row(c, row / 3, row % 3);
+        double *axis = axis_row(c, row / 3, row % 3);
+        for (int j = 0; j <= last; j++) {
+            const int before = j > 0 ? j - 1 : 0, after = j < last ? j + 1 : last;
+            axis[j] = (centre[after] - centre[before]) / (after - before);
+        }
+    }
+}
+
+static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double *const *position)
+{
+    const struct wb_swept_layout *layout = layout_of(c);
+    double check = 0.0;
+
+    for (int w = 0; w < c->n_wires; w++) {
+        const struct wb_swept_tape_contact_surface *surface = &c->surface[w];
+        for (int i = 0; i < 3; i++) {
+            double *row = centre_row(c, w, i);
+            for (int j = 0; j < layout->n_stations; j++)
+                row[j] = 0.0;
+            for (int s = 0; s < surface->n; s++) {
+                const double *x =
+                    position[w] + (size_t)(3 * surface->node[s] + i) * (size_t)layout->stride;
+                for (int j = 0; j < layout->n_stations; j++)
+                    row[j] += x[j] / surface->n;
+            }
+            for (int j = 0; j < layout->n_stations; j++)
+                check += row[j];
+        }
+    }
+    if (!isfinite(check))
+        return wb_fail(WB_ERR_DATA, "positions of a wire under the tape are not finite");
+    find_axes(c);
+    return WB_OK;
+}
+
+/* The place along a wire opposite x at station j: whole stations into near->station and the rest
+ * into near->along; the centre there and the axis, a unit vector. False beyond the ends. */
+static bool find_place_along(const struct wb_swept_tape_contact *c, const double x[3], int j,
+                             struct wb_swept_tape_contact_near_place *near, double centre[3],
+                             double axis[3])
+{
+    const int last = layout_of(c)->n_stations - 1;
+    double from[3];
+
+    for (int i = 0; i < 3; i++) {
+        axis[i] = axis_row(c, near->wire, i)[j];
+        from[i] = x[i] - centre_row(c, near->wire, i)[j];
+    }
+    const double length = dot(axis, axis), shift = dot(from, axis) / length;
+    const double slack = 0.01; /* beyond the ends, in stations */
+    double at = j + shift;
+    if (!(at >= -slack && at <= last + slack))
+        return false;
+    at = fmin(fmax(at, 0.0), last);
+    const int whole = (int)at < last ? (int)at : last - 1;
+    near->station = whole - j;
+    near->along = at - whole;
+    for (int i = 0; i < 3; i++) {
+        const double *row = centre_row(c, near->wire, i);
+        centre[i] = (1.0 - near->along) * row[whole] + near->along * row[whole + 1];
+        axis[i] /= sqrt(length);
+    }
+    return true;
+}
+
+/* A surface node of a wire there. */
+static void read_surface(const struct wb_swept_tape_contact *c, const double *position, int node,
+                         int j, const struct wb_swept_tape_contact_near_place *near, double out[3])
+{
+    double here[3], there[3];
+
+    read_node(c, position, node, j + near->station, here);
+    read_node(c, position, node, j + near->station + 1, there);
+    for (int i = 0; i < 3; i++)
+        out[i] = (1.0 - near->along) * here[i] + near->along * there[i];
+}
+
+/* The two surface nodes between which the line through x in a direction (across the axis) passes,
+ * and where: the farther in that direction of two places. */
+static bool find_place_round(const struct wb_swept_tape_contact *c, const double *position,
+                             const double x[3], const double direction[3], const double axis[3],
+                             int j, struct wb_swept_tape_contact_near_place *near, double place[3])
+{
+    const struct wb_swept_tape_contact_surface *surface = &c->surface[near->wire];
+    double across[3], before[3] = {0.0}, u_before = 0.0, v_before = 0.0,
+                      farthest = -(double)INFINITY;
+
+    cross(axis, direction, across);
+    for (int s = 0; s <= surface->n; s++) {
+        double at[3], from[3];
+        const int node = surface->node[s % surface->n];
+        read_surface(c, position, node, j, near, at);
+        for (int i = 0; i < 3; i++)
+            from[i] = at[i] - x[i];
+        const double u = dot(from, direction), v = dot(from, across);
+        if (s > 0 && (v >= 0.0) != (v_before >= 0.0)) {
+            const double w = v_before / (v_before - v);
+            const double there = (1.0 - w) * u_before + w * u;
+            if (there > farthest) {
+                farthest = there;
+                near->round = w;
+                near->partner[0] = surface->node[s - 1];
+                near->partner[1] = node;
+                for (int i = 0; i < 3; i++)
+                    place[i] = (1.0 - w) * before[i] + w * at[i];
+            }
+        }
+        memcpy(before, at, sizeof before);
+        u_before = u;
+        v_before = v;
+    }
+    return isfinite(farthest);
+}
+
+static bool is_bonded(const struct wb_swept_tape_contact *c, int k, int j, int wire)
+{
+    return c->cohesion && wb_swept_cohesion_partner(c->cohesion, k, j) == wire &&
+           wb_swept_cohesion_damage(c->cohesion, k, j) < 1.0;
+}
+
+/* Whether a wire's centre line may come as near to x as `reach`: seen from its station j, from
+ * where it runs on along its axis and bends away by no more than it can. */
+static bool may_be_near(const struct wb_swept_tape_contact *c, const double x[3], int w, int j,
+                        double reach)
+{
+    double from[3], axis[3];
+
+    for (int i = 0; i < 3; i++) {
+        from[i] = x[i] - centre_row(c, w, i)[j];
+        axis[i] = axis_row(c, w, i)[j];
+    }
+    const double along = dot(from, axis), shift_square = along * along / dot(axis, axis);
+    const double sag = shift_square / (2.0 * sharpest_bend * c->surface[w].radius);
+    const double beside = far_off * reach + sag;
+    return dot(from, from) - shift_square <= beside * beside;
+}
+
+/* The wire nearest to a node, within the margin. */
+static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], int k, int j,
+                      struct wb_swept_tape_contact_near_place *best, double centre[3],
+                      double axis[3])
+{
+    const double half = 0.5 * c->tape->model.thickness;
+
+    best->wire = -1;
+    best->gap = c->settings.margin;
+    for (int w = 0; w < c->n_wires; w++) {
+        struct wb_swept_tape_contact_near_place near = {.wire = w};
+        double at[3], along[3], from[3];
+        if (!may_be_near(c, x, w, j, c->surface[w].radius + half + best->gap) ||
+            is_bonded(c, k, j, w) || !find_place_along(c, x, j, &near, at, along))
+            continue;
+        for (int i = 0; i < 3; i++)
+            from[i] = x[i] - at[i];
+        const double beside = dot(from, along);
+        near.gap = sqrt(fmax(dot(from, from) - beside * beside, 0.0)) - c->surface[w].radius - half;
+        if (near.gap >= best->gap)
+            continue;
+        *best = near;
+        memcpy(centre, at, sizeof at);
+        memcpy(axis, along, sizeof along);
+    }
+    return best->wire >= 0;
+}
+
+/* --- strips --- */
+
+static int find_strip(struct wb_swept_tape_contact *c, int k,
+                      const struct wb_swept_tape_contact_near_place *near, int from)
+{
+    for (int s = from; s < c->n_strips; s++) {
+        const struct wb_swept_tape_contact_strip *strip = &c->strip[s];
+        if (strip->wire == near->wire && strip->partner[0] == near->partner[0] &&
+            strip->partner[1] == near->partner[1] && strip->station == near->station)
+            return s;
+    }
+    const size_t size = ROWS * LANES * real_size(c);
+    memset((unsigned char *)c->rows + (size_t)c->n_strips * size, 0, size);
+    c->strip[c->n_strips] = (struct wb_swept_tape_contact_strip){
+        k,
+        near->wire,
+        {near->partner[0], near->partner[1]},
+        near->station,
+        c->surface[near->wire].radius + 0.5 * c->tape->model.thickness};
+    return c->n_strips++;
+}
+
+static void clear_friction(struct wb_swept_tape_contact *c, int k, int j)
+{
+    const size_t stride = (size_t)layout_of(c)->stride;
+
+    for (int i = 0; i < WB_SWEPT_TAPE_CONTACT_BEFORE; i++)
+        put(c, c->history, (size_t)(k * HISTORY + i) * stride + (size_t)j, 0.0);
+}
+
+/* Numbers of a node that is near, into its strip. */
+static void look_after(struct wb_swept_tape_contact *c, int k, int j,
+                       const struct wb_swept_tape_contact_near_place *near, int s)
+{
+    const size_t at = (size_t)s * ROWS * LANES + (size_t)(j % LANES);
+
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ROUND * LANES, near->round);
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ALONG * LANES, near->along);
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_OFFSET * LANES, near->offset);
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_ASIDE * LANES, near->aside);
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_INWARDS * LANES, near->inwards);
+    put(c, c->rows, at + WB_SWEPT_TAPE_CONTACT_AREA * LANES, wb_swept_tape_area(c->tape, k, j));
+    c->n_near++;
+}
+
+static void begin_slip(struct wb_swept_tape_contact *c, int k, int j, const double aside[3])
+{
+    const size_t stride = (size_t)layout_of(c)->stride;
+
+    for (int i = 0; i < 3; i++)
+        put(c, c->history,
+            (size_t)(k * HISTORY + WB_SWEPT_TAPE_CONTACT_BEFORE + i) * stride + (size_t)j,
+            aside[i]);
+}
+
+/* A vector without its part along a unit vector, and its length. */
+static double take_out(double v[3], const double unit[3])
+{
+    const double along = dot(v, unit);
+
+    for (int i = 0; i < 3; i++)
+        v[i] -= along * unit[i];
+    return sqrt(dot(v, v));
+}
+
+/* Whether a node is still near the place found before. */
+static bool is_still_there(const struct wb_swept_tape_contact *c, const double *position,
+                           const struct wb_swept_tape_contact_near_place *near, int j,
+                           const double x[3], const double d[3])
+{
+    const double size = sqrt(dot(d, d));
+    double a[3], b[3], g[3], unit[3];
+
+    read_surface(c, position, near->partner[0], j, near, a);
+    read_surface(c, position, near->partner[1], j, near, b);
+    for (int i = 0; i < 3; i++) {
+        unit[i] = d[i] / size;
+        g[i] = x[i] - near->offset * d[i] - (1.0 - near->round) * a[i] - near->round * b[i];
+    }
+    return take_out(g, unit) < kept_slip * c->surface[near->wire].radius;
+}
+
+/* The centre seen from the middle between the two surface nodes, in the frame that turns with them
+ * (as the kernel's find_depth() has it). */
+static void find_centre_beside(const struct wb_swept_tape_contact *c, const double *position, int j,
+                               const double centre[3], const double axis[3],
+                               struct wb_swept_tape_contact_near_place *near)
+{
+    double a[3], b[3], chord[3], across[3], from[3];
+
+    read_surface(c, position, near->partner[0], j, near, a);
+    read_surface(c, position, near->partner[1], j, near, b);
+    for (int i = 0; i < 3; i++) {
+        chord[i] = b[i] - a[i];
+        from[i] = centre[i] - 0.5 * (a[i] + b[i]);
+    }
+    const double length = take_out(chord, axis);
+    cross(axis, chord, across);
+    near->aside = dot(from, chord) / length;
+    near->inwards = dot(from, across) / length;
+}
+
+/* The place on the wire that a node faces. It is sought against the director, so that g has no part
+ * across it at first, or failing that towards the centre. False where there is none. */
+static bool find_place(const struct wb_swept_tape_contact *c, const double *position, int j,
+                       const double x[3], const double d[3], const double centre[3],
+                       const double axis[3], struct wb_swept_tape_contact_near_place *near,
+                       double aside[3])
+{
+    const double size = sqrt(dot(d, d));
+    double radial[3], direction[3], place[3] = {0.0};
+
+    for (int i = 0; i < 3; i++)
+        radial[i] = x[i] - centre[i];
+    (void)take_out(radial, axis);
+    const double outwards = dot(d, radial) < 0.0 ? -1.0 : 1.0;
+    for (int i = 0; i < 3; i++)
+        direction[i] = outwards * d[i];
+    const double length = take_out(direction, axis);
+    if (!(length > 0.1 && find_place_round(c, position, x, direction, axis, j, near, place)) &&
+        !find_place_round(c, position, x, radial, axis, j, near, place))
+        return false;
+
+    for (int i = 0; i < 3; i++) {
+        aside[i] = x[i] - place[i];
+        direction[i] = d[i] / size;
+    }
+    near->offset = (dot(aside, direction) - outwards * near->gap) / size;
+    (void)take_out(aside, direction);
+    find_centre_beside(c, position, j, centre, axis, near);
+    return true;
+}
+
+/* Looks at a node at a station, and after it if it is near a wire. Strips of the node in this block
+ * begin at `from`. */
+static enum wb_status look_at(struct wb_swept_tape_contact *c,
+                              const struct wb_swept_cohesion_fields *fields, int k, int j, int from)
+{
+    struct wb_swept_tape_contact_near_place *now = &c->near[k * layout_of(c)->n_stations + j];
+    const struct wb_swept_tape_contact_near_place before = *now;
+    double x[3], d[3], centre[3] = {0.0}, axis[3] = {0.0}, aside[3];
+    struct wb_swept_tape_contact_near_place near = {.wire = -1};
+
+    read_node(c, fields->tape.position, k, j, x);
+    read_node(c, fields->tape.director, k, j, d);
+    if (!isfinite(dot(x, x) + dot(d, d)))
+        return wb_fail(WB_ERR_DATA, "positions of the tape are not finite");
+    now->wire = -1;
+    if (!find_wire(c, x, k, j, &near, centre, axis))
+        return WB_OK;
+    if (near.gap < -0.5 * c->surface[near.wire].radius)
+        return wb_fail(WB_ERR_DATA, "the tape is %.3g mm deep in wire %d", -1e3 * near.gap,
+                       near.wire + 1);
+    const double *position = fields->position[near.wire];
+    if (before.wire == near.wire && is_still_there(c, position, &before, j, x, d)) {
+        near = before;
+    } else if (find_place(c, position, j, x, d, centre, axis, &near, aside)) {
+        if (before.wire != near.wire)
+            clear_friction(c, k, j);
+        begin_slip(c, k, j, aside);
+    } else {
+        return WB_OK;
+    }
+    look_after(c, k, j, &near, find_strip(c, k, &near, from));
+    *now = near;
+    return WB_OK;
+}
+
+static enum wb_status refresh(struct wb_swept_tape_contact *c,
+                              const struct wb_swept_cohesion_fields *fields)
+{
+    const struct wb_swept_layout *layout = layout_of(c);
+    const int n_blocks = layout->stride / LANES;
+
+    c->n_strips = c->n_near = 0;
+    WB_TRY(find_centres(c, fields->position));
+    for (int b = 0; b < n_blocks; b++) {
+        c->first[b] = c->n_strips;
+        for (int k = 0; k < layout->n_nodes; k++) {
+            const int from = c->n_strips;
+            for (int j = b * LANES; j < (b + 1) * LANES && j < layout->n_stations; j++)
+                WB_TRY(look_at(c, fields, k, j, from));
+        }
+    }
+    c->first[n_blocks] = c->n_strips;
+    return WB_OK;
+}
+
+/* --- creation --- */
+
+static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int n_wires,
+                            const struct wb_swept_cohesion_wire *wires)
+{
+    if (!(s->normal_stiffness > 0.0 && isfinite(s->normal_stiffness)) ||
+        !(s->shear_stiffness > 0.0 && isfinite(s->shear_stiffness)))
+        return wb_fail(WB_ERR_ARGUMENT, "contact of the tape with stiffnesses %g and %g Pa/m",
+                       s->normal_stiffness, s->shear_stiffness);
+    if (!(s->friction_kinetic >= 0.0 && s->friction_static >= s->friction_kinetic &&
+          isfinite(s->friction_static)) ||
+        !(s->friction_decay >= 0.0 && isfinite(s->friction_decay)))
+        return wb_fail(WB_ERR_ARGUMENT, "friction of the tape: mu from %g to %g, decay %g s/m",
+                       s->friction_static, s->friction_kinetic, s->friction_decay);
+    if (!(s->margin >= 0.0 && isfinite(s->margin)) || s->refresh_interval < 0)
+        return wb_fail(WB_ERR_ARGUMENT, "contact of the tape: margin %g m, every %d steps",
+                       s->margin, s->refresh_interval);
+    for (int w = 0; w < n_wires; w++) {
+        if (!(wires[w].radius > 0.0 && isfinite(wires[w].radius)) || wires[w].n_surface < 3)
+            return wb_fail(WB_ERR_ARGUMENT, "wire %d with a radius of %g m and %d surface nodes",
+                           w + 1, wires[w].radius, wires[w].n_surface);
+    }
+    return WB_OK;
+}
+
+static const struct wb_swept_tape_contact_kernel *find_kernel(const struct wb_swept_tape *tape)
+{
+    static const struct wb_swept_tape_contact_kernel *const kernels[] = {
+#ifdef __x86_64__
+        &wb_swept_tape_contact_kernel_float_avx512,   &wb_swept_tape_contact_kernel_double_avx512,
+        &wb_swept_tape_contact_kernel_float_avx2,     &wb_swept_tape_contact_kernel_double_avx2,
+#endif
+        &wb_swept_tape_contact_kernel_float_baseline, &wb_swept_tape_contact_kernel_double_baseline,
+    };
+    const int n = (int)(sizeof kernels / sizeof *kernels);
+
+    for (int i = 0; i < n; i++) {
+        if (kernels[i]->is_double == tape->model.double_precision &&
+            strcmp(kernels[i]->name, tape->kernel->name) == 0)
+            return kernels[i];
+    }
+    return NULL;
+}
+
+static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
+                                 const struct wb_swept_cohesion_wire *wires)
+{
+    double smallest = (double)INFINITY;
+    size_t nodes = 0;
+
+    for (int w = 0; w < c->n_wires; w++)
+        nodes += (size_t)wires[w].n_surface;
+    c->surface = calloc((size_t)c->n_wires + 1, sizeof *c->surface);
+    c->surface_nodes = calloc(nodes + 1, sizeof *c->surface_nodes);
+    if (!c->surface || !c->surface_nodes)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
+    nodes = 0;
+    for (int w = 0; w < c->n_wires; w++) {
+        c->surface[w] = (struct wb_swept_tape_contact_surface){
+            wires[w].n_surface, c->surface_nodes + nodes, wires[w].radius};
+        memcpy(c->surface[w].node, wires[w].surface,
+               (size_t)wires[w].n_surface * sizeof *c->surface[w].node);
+        nodes += (size_t)wires[w].n_surface;
+        smallest = fmin(smallest, wires[w].radius);
+    }
+    if (c->settings.margin == 0.0)
+        c->settings.margin = default_margin * smallest;
+    return WB_OK;
+}
+
+static enum wb_status allocate(struct wb_swept_tape_contact *c)
+{
+    const struct wb_swept_layout *layout = layout_of(c);
+    const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
+    const size_t n_blocks = (size_t)layout->stride / LANES;
+
+    c->first = calloc(n_blocks + 1, sizeof *c->first);
+    c->strip = calloc(places, sizeof *c->strip);
+    c->near = calloc(places, sizeof *c->near);
+    c->centre = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->centre);
+    c->axis = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->axis);
+    if (!c->first || !c->strip || !c->near || !c->centre || !c->axis)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
+    WB_TRY(wb_swept_allocate(&c->rows, places * ROWS * LANES, real_size(c)));
+    return wb_swept_allocate(
+        &c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride, real_size(c));
+}
+
+static enum wb_status fill(struct wb_swept_tape_contact *c,
+                           const struct wb_swept_cohesion_wire *wires)
+{
+    const struct wb_swept_layout *layout = layout_of(c);
+    const struct wb_swept_tape_contact_settings *s = &c->settings;
+
+    WB_TRY(check(s, c->n_wires, wires));
+    c->kernel = find_kernel(c->tape);
+    if (!c->kernel)
+        return wb_fail(WB_ERR_UNSUPPORTED, "no contact for the instructions of the tape");
+    if (c->settings.refresh_interval == 0)
+        c->settings.refresh_interval = default_interval;
+    WB_TRY(copy_wires(c, wires));
+    WB_TRY(allocate(c));
+    c->model = (struct wb_swept_tape_contact_kernel_model){
+        .n_stations = layout->n_stations,
+        .stride = layout->stride,
+        .n_blocks = layout->stride / LANES,
+        .first = c->first,
+        .strip = c->strip,
+        .rows = c->rows,
+        .normal = s->normal_stiffness,
+        .shear = s->shear_stiffness,
+        .friction_static = s->friction_static,
+        .friction_kinetic = s->friction_kinetic,
+        .friction_decay = s->friction_decay,
+        .counted = wb_swept_range_within(c->tape->model.counted, layout->n_stations),
+    };
+    wb_swept_tape_contact_reset(c);
+    return WB_OK;
+}
+
+enum wb_status wb_swept_tape_contact_create(struct wb_swept_tape_contact **out,
+                                            const struct wb_swept_tape *tape,
+                                            const struct wb_swept_cohesion *cohesion,
+                                            const struct wb_swept_tape_contact_settings *settings,
+                                            int n_wires, const struct wb_swept_cohesion_wire *wires)
+{
+    *out = NULL;
+    struct wb_swept_tape_contact *c = calloc(1, sizeof *c);
+    if (!c)
+        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
+    c->tape = tape;
+    c->cohesion = cohesion;
+    c->settings = *settings;
+    c->n_wires = n_wires;
+    const enum wb_status status = fill(c, wires);
+    if (status != WB_OK) {
+        wb_swept_tape_contact_destroy(c);
+        return status;
+    }
+    *out = c;
+    return WB_OK;
+}
+
+void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact)
+{
+    if (!contact)
+        return;
+    free(contact->surface);
+    free(contact->surface_nodes);
+    free(contact->centre);
+    free(contact->axis);
+    free(contact->first);
+    free(contact->strip);
+    free(contact->near);
+    free(contact->rows);
+    free(contact->history);
+    free(contact);
+}
+
+void wb_swept_tape_contact_reset(struct wb_swept_tape_contact *contact)
+{
+    const struct wb_swept_layout *layout = layout_of(contact);
+
+    contact->steps = 0;
+    contact->n_strips = contact->n_near = 0;
+    for (int i = 0; i < layout->n_nodes * layout->n_stations; i++)
+        contact->near[i].wire = -1;
+}
+
+enum wb_status wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *contact,
+                                                const struct wb_swept_cohesion_fields *fields,
+                                                double time_step,
+                                                struct wb_swept_tape_contact_sums *sums)
+{
+    const struct wb_swept_tape_contact_kernel_call call = {&contact->model, fields,
+                                                           contact->history, time_step, sums};
+
+    if (contact->steps == 0)
+        WB_TRY(refresh(contact, fields));
+    contact->kernel->add_forces(&call);
+    /* After the forces: so the slip of every step is seen with one place from begin to end. */
+    if (++contact->steps % contact->settings.refresh_interval == 0)
+        WB_TRY(refresh(contact, fields));
+    return WB_OK;
+}
+
+int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact)
+{
+    return contact->n_near;
+}

@@ -1,0 +1,84 @@
+/* Contact with friction between a tape and the wires it is not bonded to, or no longer: where it
+ * spans a gap and comes to lie on a wire, and after its bond broke (fe/swept/swept_cohesion.h).
+ *
+ * A node of the ring touches the nearest wire, a circle of its contact radius round the centre of
+ * its surface nodes. Pressure is K_nn times the depth, half the tape's thickness and the radius
+ * less the distance from that centre, and the derivative of its energy: it acts along the radius,
+ * and wherever the tape slides, what it does is what is stored. The place y that the node faces,
+ * between two surface nodes and between stations, and its distance from the tape's middle surface
+ * there, o, are found when it comes near, and anew whenever it has slid by a fiftieth of the radius
+ * (looked at every so many steps). The centre is seen from these two nodes until then. Friction
+ * acts against what g = x - o d - y slides across d, an elastic spring returned to
+ *
+ *     mu = mu_k + (mu_s - mu_k) exp(-decay slip rate)                               (eq. 20).
+ *
+ * Forces on both sides balance exactly, moments of pressure to round-off of places that are found
+ * anew, of friction to g beside o. A node
+ * may slip by four stations along a wire; then it loses it.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_TAPE_CONTACT_H
+#define WB_FE_SWEPT_SWEPT_TAPE_CONTACT_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+#include "fe/swept/swept_cohesion.h"
+
+struct wb_swept_tape_contact_settings {
+    double normal_stiffness; /* Pa/m; 30 N/mm3 */
+    double shear_stiffness;  /* of sticking, Pa/m; a third of it */
+    double friction_static;  /* mu_s; 0.4 */
+    double friction_kinetic; /* mu_k; 0.4 */
+    double friction_decay;   /* s/m; 0: mu_s at any rate */
+    double margin;           /* m: gap within which a node is looked after; 0: a twentieth of the
+                                smallest radius. Nodes must not come nearer by more between
+                                refreshes */
+    int refresh_interval;    /* steps; 0: 100 */
+};
+
+void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings);
+
+struct wb_swept_tape_contact; /* opaque */
+
+/* Of wires with a radius of contact. `cohesion` says what is bonded, NULL: nothing; it and the
+ * tape, whose precision and instructions are used, must outlive the contact. */
+WB_MUST_CHECK enum wb_status
+wb_swept_tape_contact_create(struct wb_swept_tape_contact **out, const struct wb_swept_tape *tape,
+                             const struct wb_swept_cohesion *cohesion,
+                             const struct wb_swept_tape_contact_settings *settings, int n_wires,
+                             const struct wb_swept_cohesion_wire *wires);
+void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact);
+
+/* No friction, as after creation. */
+void wb_swept_tape_contact_reset(struct wb_swept_tape_contact *contact);
+
+struct wb_swept_tape_contact_sums {
+    double normal, tangential; /* J, stored in the springs */
+    double friction;           /* J, dissipated in this step */
+    double deepest;            /* m, penetration */
+};
+
+/* One step: adds forces. `time_step` (s) is the time since the positions of the step before.
+ * WB_ERR_DATA when positions are not finite or a node is deeper in a wire than half its radius: the
+ * run is lost. */
+WB_MUST_CHECK enum wb_status
+wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *contact,
+                                 const struct wb_swept_cohesion_fields *fields, double time_step,
+                                 struct wb_swept_tape_contact_sums *sums);
+
+/* Nodes that are looked after now: within the margin of a wire, and not bonded to it. */
+int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact);
+
+/* A checkpoint: what a contact of the same tape, wires and settings needs to go on, bit for bit. */
+size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact);
+void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state);
+void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state);
+
+/* Bounds of what contact adds to the largest eigenvalue of M^-1 K, as of cohesion, if all nodes of
+ * the ring touched. */
+double wb_swept_tape_contact_stiffness_per_mass(const struct wb_swept_tape_contact *contact,
+                                                const double *mass, const double *inertia);
+double wb_swept_tape_contact_wire_stiffness_per_mass(const struct wb_swept_tape_contact *contact,
+                                                     int wire, const double *mass);
+
+#endif

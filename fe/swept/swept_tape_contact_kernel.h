@@ -1,0 +1,74 @@
+/* The kernels behind fe/swept/swept_tape_contact.h: one source, swept_tape_contact_kernel.inc,
+ * compiled for float and double and for each instruction set. Lanes are stations.
+ *
+ * A strip is the part of a ring node's stations in one block that face the same pair of a wire's
+ * surface nodes at stations as far along; elsewhere in the block its area is zero.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_TAPE_CONTACT_KERNEL_H
+#define WB_FE_SWEPT_SWEPT_TAPE_CONTACT_KERNEL_H
+
+#include <stdbool.h>
+
+#include "fe/swept/swept.h"
+#include "fe/swept/swept_tape_contact.h"
+
+/* Rows of a strip, WB_SWEPT_LANES each. */
+enum {
+    WB_SWEPT_TAPE_CONTACT_ROUND = 0, /* weight of the second node */
+    WB_SWEPT_TAPE_CONTACT_ALONG,     /* weight of the second station */
+    WB_SWEPT_TAPE_CONTACT_OFFSET,    /* o, m */
+    WB_SWEPT_TAPE_CONTACT_AREA,      /* m2 */
+    WB_SWEPT_TAPE_CONTACT_ASIDE, /* the centre from between the two nodes, m: towards the second, */
+    WB_SWEPT_TAPE_CONTACT_INWARDS, /* and across, by the axis times that direction */
+    WB_SWEPT_TAPE_CONTACT_ROWS
+};
+
+/* Rows of a ring node, a stride each. */
+enum {
+    WB_SWEPT_TAPE_CONTACT_DRAG = 0, /* friction, Pa, and what its sums have lost by rounding */
+    WB_SWEPT_TAPE_CONTACT_LOST = 3,
+    WB_SWEPT_TAPE_CONTACT_BEFORE = 6, /* g across the director in the step before, m */
+    WB_SWEPT_TAPE_CONTACT_HISTORY = 9
+};
+
+struct wb_swept_tape_contact_strip {
+    int node, wire, partner[2];
+    int station;   /* of the first, beside the node's own */
+    double radius; /* m: distance from the wire's centre to the tape's middle surface in touch */
+};
+
+struct wb_swept_tape_contact_kernel_model {
+    int n_stations, stride;
+    int n_blocks;
+    const int *first; /* (n_blocks + 1): strips of a block */
+    const struct wb_swept_tape_contact_strip *strip;
+    const void *rows; /* of each strip (ROWS x LANES) */
+    double normal, shear;
+    double friction_static, friction_kinetic, friction_decay;
+    struct wb_swept_range counted; /* stations, in sums */
+};
+
+struct wb_swept_tape_contact_kernel_call {
+    const struct wb_swept_tape_contact_kernel_model *model;
+    const struct wb_swept_cohesion_fields *fields;
+    void *history; /* (n_nodes x HISTORY x stride) */
+    double time_step;
+    struct wb_swept_tape_contact_sums *sums; /* added to */
+};
+
+struct wb_swept_tape_contact_kernel {
+    const char *name;
+    bool is_double;
+    void (*add_forces)(const struct wb_swept_tape_contact_kernel_call *call);
+};
+
+extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_float_baseline;
+extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_double_baseline;
+#ifdef __x86_64__
+extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_float_avx2;
+extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_double_avx2;
+extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_float_avx512;
+extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_double_avx512;
+#endif
+
+#endif

@@ -1,0 +1,99 @@
+/* The force kernels behind fe/swept/swept_tape.h: one source, swept_tape_kernel.inc, compiled for
+ * float and double and for each instruction set.
+ *
+ * An element lies between the ring's nodes k and k + 1 and the stations j and j + 1; lanes are
+ * stations. Constants of the reference state and histories are in blocks of WB_SWEPT_LANES:
+ *
+ *     reference[((block n_elements + k) WB_SWEPT_TAPE_REFERENCE + component) WB_SWEPT_LANES + lane]
+ *     history[(((block n_elements + k) n_points + point) WB_SWEPT_TAPE_HISTORY + component) ...]
+ *
+ * Components of history: plastic strain (11 + 22) / 2, (11 - 22) / 2, 12, and accumulated plastic
+ * strain. Where no element is, all constants are zero: there are no strains and no forces there.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_TAPE_KERNEL_H
+#define WB_FE_SWEPT_SWEPT_TAPE_KERNEL_H
+
+#include <stdbool.h>
+
+#include "fe/swept/swept.h"
+#include "fe/swept/swept_tape.h"
+
+enum {
+    WB_SWEPT_TAPE_MOST_POINTS = 5,
+    WB_SWEPT_TAPE_HISTORY = 4,
+    WB_SWEPT_TAPE_CARRY = 6 /* vectors of a node from block to block */
+};
+
+/* Constants of an element. B turns derivatives by the parameters to those along its frame. */
+enum {
+    WB_SWEPT_TAPE_B11 = 0,
+    WB_SWEPT_TAPE_B21,
+    WB_SWEPT_TAPE_B22,
+    WB_SWEPT_TAPE_C1, /* components of the hourglass vector of the reference state along the frame
+                       */
+    WB_SWEPT_TAPE_C2,
+    WB_SWEPT_TAPE_VOLUME,   /* m3 */
+    WB_SWEPT_TAPE_MEASURES, /* of the reference state, from here */
+
+    /* Places among the measures. */
+    WB_SWEPT_TAPE_MEMBRANE = 0,   /* (a11 + a22) / 4, (a11 - a22) / 4, a12 / 2 */
+    WB_SWEPT_TAPE_BENDING = 3,    /* the same of (11), (22), 2 (12) of a.d: halves, half */
+    WB_SWEPT_TAPE_SHEAR = 6,      /* mean, along the frame */
+    WB_SWEPT_TAPE_WARP = 8,       /* half differences of shear between opposite edges, m */
+    WB_SWEPT_TAPE_HOURGLASS = 10, /* membrane (2), m, and bending (2), 1 */
+    WB_SWEPT_TAPE_N_MEASURES = 14,
+    WB_SWEPT_TAPE_REFERENCE = WB_SWEPT_TAPE_MEASURES + WB_SWEPT_TAPE_N_MEASURES
+};
+
+struct wb_swept_tape_kernel_model {
+    struct wb_swept_layout layout;
+    int n_elements; /* round the ring */
+    int n_along;
+    bool closed;
+    int n_points;
+    double z[WB_SWEPT_TAPE_MOST_POINTS];      /* m */
+    double weight[WB_SWEPT_TAPE_MOST_POINTS]; /* their sum is 1 */
+    double sum_modulus, difference_modulus;   /* E / (1 - nu), E / (1 + nu), Pa */
+    double shear;                             /* 5/6 mu, Pa */
+    double membrane_hourglass;                /* coefficient times E / 3, Pa */
+    double bending_hourglass;                 /* that times h^2 / 12, N */
+    double yield_strain;                      /* sigma_Y / (3 mu); infinite when elastic */
+    double exponent;                          /* n */
+    double mean_share;                        /* E / (1 - nu) / (3 mu), of a mean strain */
+    double mean_slope;                        /* E / (2 (1 - nu)) / (3 mu) */
+    double strain_limit;
+    struct wb_swept_range counted; /* stations, in sums; of the elements those that begin there */
+    const void *table;             /* of fe/swept/swept_hardening.h */
+    void *reference;               /* written by measure only */
+    const void *length_stiffness;  /* (n_nodes x stride) of directors, N m */
+};
+
+struct wb_swept_tape_kernel_call {
+    const struct wb_swept_tape_kernel_model *model;
+    const double *position, *director;
+    void *force, *moment;
+    void *history;
+    void *carry; /* (n_nodes x CARRY x WB_SWEPT_LANES), kept between calls */
+    int first_block, end_block;
+    struct wb_swept_tape_sums *sums; /* added to; NULL: none wanted */
+};
+
+struct wb_swept_tape_kernel {
+    const char *name;
+    bool is_double;
+    bool (*runs_here)(void);
+    void (*forces)(const struct wb_swept_tape_kernel_call *call);
+    /* Makes the measures of the present state those of reference. */
+    void (*measure)(const struct wb_swept_tape_kernel_call *call);
+};
+
+extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_baseline;
+extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_baseline;
+#ifdef __x86_64__
+extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_avx2;
+extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_avx2;
+extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_avx512;
+extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_avx512;
+#endif
+
+#endif

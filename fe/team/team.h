@@ -1,0 +1,73 @@
+/* Members of one computation who work side by side in a row: each swaps a packet of numbers with
+ * the one before and the one after in every round. Members are threads of this process, and of the
+ * other ranks when the program was started by mpirun (fe/team/team_mpi.c); to members it is the
+ * same.
+ *
+ * In a round a member fills its packets, posts them and awaits those of its neighbours: no more
+ * than that makes them wait, and no one is ever more than a round ahead of its neighbour. Who waits
+ * spins a little, then lets others have the processor: more members than cores are slow, not stuck.
+ *
+ * All members must go through the same rounds, also one that has failed.
+ */
+#ifndef WB_FE_TEAM_TEAM_H
+#define WB_FE_TEAM_TEAM_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+/* --- ranks: this process among those that mpirun started --- */
+
+/* Joins the other ranks; alone, nothing happens. At the beginning of the program, before any other
+ * function here. WB_ERR_UNSUPPORTED when mpirun started several and the program was built without
+ * MPI. */
+WB_MUST_CHECK enum wb_status wb_team_start(void);
+/* Leaves them; waits until all do. */
+void wb_team_end(void);
+/* Ends all ranks at once, with an exit code, where they can no longer agree. */
+void wb_team_abort(int code);
+
+int wb_team_rank(void);        /* from 0 */
+int wb_team_ranks(void);       /* 1 without mpirun */
+const char *wb_team_mpi(void); /* its version; NULL: built without */
+
+/* To be called by all ranks, each by one thread and outside of wb_team_run(). Sums are made in the
+ * order of the ranks and are the same on all. */
+void wb_team_sum(double *values, int n);
+void wb_team_greatest(double *values, int n);
+/* `size` bytes of rank `from` to all. */
+void wb_team_share(void *bytes, size_t size, int from);
+/* The status of the first rank that did not succeed, else WB_OK. */
+WB_MUST_CHECK enum wb_status wb_team_agree(enum wb_status status);
+
+/* --- members --- */
+
+enum wb_team_side {
+    WB_TEAM_BEFORE,
+    WB_TEAM_AFTER
+};
+
+struct wb_team; /* opaque */
+
+/* `n_threads` members in each rank, in the order of ranks, whose packets have `size` numbers. The
+ * threads are made here and sleep between runs. */
+WB_MUST_CHECK enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size);
+void wb_team_destroy(struct wb_team *team); /* accepts NULL */
+
+int wb_team_size(const struct wb_team *team);  /* members of all ranks */
+int wb_team_first(const struct wb_team *team); /* of this rank; then come n_threads - 1 more */
+
+/* Calls work(context, member) for the members of this rank, each in its thread, the first in the
+ * caller's; returns when all are done. */
+void wb_team_run(struct wb_team *team, void (*work)(void *context, int member), void *context);
+
+/* For members, within a run. The packet to a neighbour, to be filled before it is posted; NULL
+ * where there is no neighbour. */
+double *wb_team_packet(struct wb_team *team, int member, enum wb_team_side side);
+/* Sends both. */
+void wb_team_post(struct wb_team *team, int member);
+/* The packet from a neighbour; it may be read until the next is posted. NULL where there is no
+ * neighbour. A round ends when both were awaited. */
+const double *wb_team_await(struct wb_team *team, int member, enum wb_team_side side);
+
+#endif

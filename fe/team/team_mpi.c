@@ -1,0 +1,153 @@
+/* Ranks by MPI. Nothing is asked of it unless mpirun started this process: joining takes a while.
+ */
+#include <mpi.h>
+#include <stdlib.h>
+
+#include "fe/team/team_private.h"
+
+#define WB_LOG_DOMAIN "team"
+
+enum {
+    SLOTS = 2 /* packets under way to a side */
+};
+
+/* MPI's own state is the process's; so is ours of it. */
+static bool joined, threaded;
+static int own_rank, n_ranks = 1;
+static MPI_Request under_way[2][SLOTS];
+
+enum wb_status wb_team_start(void)
+{
+    int provided = MPI_THREAD_SINGLE;
+
+    if (wb_team_started() < 2 || joined)
+        return WB_OK;
+    if (MPI_Init_thread(NULL, NULL, MPI_THREAD_MULTIPLE, &provided) != MPI_SUCCESS)
+        return wb_fail(WB_ERR_IO, "MPI could not be started");
+    MPI_Comm_rank(MPI_COMM_WORLD, &own_rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+    for (int i = 0; i < 2 * SLOTS; i++)
+        under_way[i / SLOTS][i % SLOTS] = MPI_REQUEST_NULL;
+    threaded = provided >= MPI_THREAD_MULTIPLE;
+    joined = true;
+    return WB_OK;
+}
+
+void wb_team_end(void)
+{
+    if (!joined)
+        return;
+    MPI_Finalize();
+    joined = false;
+    own_rank = 0;
+    n_ranks = 1;
+}
+
+void wb_team_abort(int code)
+{
+    if (joined)
+        MPI_Abort(MPI_COMM_WORLD, code);
+    exit(code);
+}
+
+int wb_team_rank(void)
+{
+    return own_rank;
+}
+
+int wb_team_ranks(void)
+{
+    return n_ranks;
+}
+
+const char *wb_team_mpi(void)
+{
+    static char version[MPI_MAX_LIBRARY_VERSION_STRING];
+    int length = 0;
+
+    MPI_Get_library_version(version, &length);
+    for (int i = 0; i < length; i++)
+        if (version[i] == ',')
+            version[i] = '\0';
+    return version;
+}
+
+/* By hand, so that the order of the sum is that of the ranks and does not depend on the library. */
+void wb_team_sum(double *values, int n)
+{
+    if (n_ranks == 1)
+        return;
+    double *all = malloc((size_t)n * (size_t)n_ranks * sizeof *all);
+    if (!all)
+        wb_team_abort(1);
+    MPI_Allgather(values, n, MPI_DOUBLE, all, n, MPI_DOUBLE, MPI_COMM_WORLD);
+    for (int i = 0; i < n; i++) {
+        values[i] = all[i];
+        for (int r = 1; r < n_ranks; r++)
+            values[i] += all[r * n + i];
+    }
+    free(all);
+}
+
+void wb_team_greatest(double *values, int n)
+{
+    if (n_ranks > 1)
+        MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+}
+
+void wb_team_share(void *bytes, size_t size, int from)
+{
+    enum {
+        PIECE = 1 << 30
+    };
+    unsigned char *at = bytes;
+
+    while (n_ranks > 1 && size > 0) {
+        const int piece = size < PIECE ? (int)size : PIECE;
+        MPI_Bcast(at, piece, MPI_BYTE, from, MPI_COMM_WORLD);
+        at += piece;
+        size -= (size_t)piece;
+    }
+}
+
+enum wb_status wb_team_agree(enum wb_status status)
+{
+    enum {
+        FINE = 1 << 30
+    };
+    int first = status == WB_OK ? FINE : own_rank, code = status;
+
+    if (n_ranks == 1)
+        return status;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (first == FINE)
+        return WB_OK;
+    MPI_Bcast(&code, 1, MPI_INT, first, MPI_COMM_WORLD);
+    return (enum wb_status)code;
+}
+
+bool wb_team_can_thread(void)
+{
+    return !joined || threaded;
+}
+
+void wb_team_send(int rank, enum wb_team_side side, unsigned long round, const double *packet,
+                  size_t size)
+{
+    MPI_Request *request = &under_way[side][round % SLOTS];
+
+    /* The one before in this slot; its packet was received before this rank got here. */
+    MPI_Wait(request, MPI_STATUS_IGNORE);
+    MPI_Isend(packet, (int)size, MPI_DOUBLE, rank, (int)side, MPI_COMM_WORLD, request);
+}
+
+void wb_team_receive(int rank, enum wb_team_side side, double *packet, size_t size)
+{
+    MPI_Recv(packet, (int)size, MPI_DOUBLE, rank, (int)side, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+}
+
+void wb_team_flush(void)
+{
+    if (joined)
+        MPI_Waitall(2 * SLOTS, &under_way[0][0], MPI_STATUSES_IGNORE);
+}

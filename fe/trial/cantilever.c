@@ -1,0 +1,623 @@
+#include "fe/trial/cantilever.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/units.h"
+#include "fe/linear/banded.h"
+#include "fe/rod/beam.h"
+
+#define WB_LOG_DOMAIN "cantilever"
+
+/* Which unilateral constraints hold. Without a strand the vertical force counts as always taut. */
+enum {
+    TAUT = 1,
+    RESTING = 2,
+    ALL_MODES = 4
+};
+
+enum {
+    MOST_UNKNOWNS = 5 /* tip x, y, t, tension, reaction of the rest */
+};
+
+/* A Newton iteration turns no node by more than this, rad. */
+static const double most_rotation = 0.5;
+
+/* Iterations of a step that may be held back by it. */
+static const int most_held_back = 3;
+
+/* Everything that acts at the tip besides the clamp's distant hand. */
+struct loads {
+    double tension;  /* strand, or vertical force, N */
+    double reaction; /* of the rest, N */
+    double follower; /* N */
+    double moment;   /* N m */
+    double weight;   /* factor of weight and counterweight, 0 to 1 */
+};
+
+/* What a converged step leaves behind, besides the beam. */
+struct state {
+    struct loads loads, earlier; /* `earlier` one step before */
+    int mode;
+    bool has_control; /* some move was made */
+    enum wb_cantilever_control control;
+    double value;     /* of the control */
+    double last_step; /* its last increment; 0: nothing to extrapolate from */
+    double fraction;  /* of the last move that its last step was */
+};
+
+struct wb_cantilever {
+    struct wb_cantilever_model model; /* without section and curvature, which are borrowed */
+    struct wb_cantilever_settings settings;
+    struct wb_beam *beam;
+    struct state state, saved;
+    int n_materials;
+
+    /* The trial step. */
+    struct loads loads;
+    struct wb_beam_balance balance;
+    double residual;  /* relative, last */
+    double tolerance; /* absolute force tolerance of the last check, N */
+    int iterations;
+};
+
+/* One equilibrium to be found. */
+struct step {
+    enum wb_cantilever_control control;
+    double value;
+    double weight;
+    int mode;
+};
+
+void wb_cantilever_default_model(struct wb_cantilever_model *model)
+{
+    *model = (struct wb_cantilever_model){.gravity_y = -WB_STANDARD_GRAVITY};
+}
+
+static struct wb_cantilever_settings complete_settings(const struct wb_cantilever_settings *given)
+{
+    struct wb_cantilever_settings s = {0};
+    if (given)
+        s = *given;
+    if (s.force_tolerance == 0.0)
+        s.force_tolerance = 1e-9;
+    if (s.max_iterations == 0)
+        s.max_iterations = 25;
+    if (s.smallest_step == 0.0)
+        s.smallest_step = 1e-4;
+    return s;
+}
+
+static enum wb_status check_model(const struct wb_cantilever_model *m,
+                                  const struct wb_cantilever_settings *s)
+{
+    if (!m->section)
+        return wb_fail(WB_ERR_ARGUMENT, "the model has no section");
+    if (!(isfinite(m->strand_length) && m->strand_length >= 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "strand_length %g m: expected 0 or more", m->strand_length);
+    if (!(isfinite(m->counterweight) && m->counterweight >= 0.0 && isfinite(m->mass_per_length) &&
+          m->mass_per_length >= 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "counterweight %g kg, %g kg/m: expected 0 or more",
+                       m->counterweight, m->mass_per_length);
+    if (!(isfinite(m->gravity_x) && isfinite(m->gravity_y)))
+        return wb_fail(WB_ERR_ARGUMENT, "gravity (%g, %g) is not finite", m->gravity_x,
+                       m->gravity_y);
+    if (m->has_rest && !(isfinite(m->rest_level) && m->strand_length > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "a rest needs a strand and a level");
+    if (!(s->force_tolerance > 0.0 && s->max_iterations > 0 && s->smallest_step > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "solver settings must be above 0");
+    return WB_OK;
+}
+
+enum wb_status wb_cantilever_create(struct wb_cantilever **out,
+                                    const struct wb_cantilever_model *model,
+                                    const struct wb_cantilever_settings *settings)
+{
+    *out = NULL;
+    const struct wb_cantilever_settings complete = complete_settings(settings);
+    WB_TRY(check_model(model, &complete));
+
+    struct wb_cantilever *c = calloc(1, sizeof *c);
+    if (!c)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a cantilever");
+    c->model = *model;
+    c->settings = complete;
+
+    const struct wb_beam_model beam = {
+        .section = model->section,
+        .length = model->length,
+        .n_elements = model->n_elements == 0 ? 50 : model->n_elements,
+        .natural_curvature = model->natural_curvature,
+        .curvature_context = model->curvature_context,
+        .load_x = model->mass_per_length * model->gravity_x,
+        .load_y = model->mass_per_length * model->gravity_y,
+        .reference_kernel = complete.reference_kernel,
+    };
+    const enum wb_status status = wb_beam_create(&c->beam, &beam);
+    if (status != WB_OK) {
+        free(c);
+        return status;
+    }
+    c->model.section = NULL;
+    wb_cantilever_reset(c);
+    *out = c;
+    return WB_OK;
+}
+
+void wb_cantilever_destroy(struct wb_cantilever *cantilever)
+{
+    if (!cantilever)
+        return;
+    wb_beam_destroy(cantilever->beam);
+    free(cantilever);
+}
+
+void wb_cantilever_reset(struct wb_cantilever *cantilever)
+{
+    wb_beam_reset(cantilever->beam);
+    cantilever->state = (struct state){.mode = TAUT, .fraction = 1.0};
+    cantilever->loads = cantilever->state.loads;
+}
+
+void wb_cantilever_set_materials(struct wb_cantilever *cantilever,
+                                 const struct wb_material *materials)
+{
+    wb_beam_set_materials(cantilever->beam, materials);
+}
+
+void wb_cantilever_save(struct wb_cantilever *cantilever)
+{
+    wb_beam_save(cantilever->beam);
+    cantilever->saved = cantilever->state;
+}
+
+void wb_cantilever_restore(struct wb_cantilever *cantilever)
+{
+    wb_beam_restore(cantilever->beam);
+    cantilever->state = cantilever->saved;
+    cantilever->loads = cantilever->state.loads;
+}
+
+/* Direction of the strand's pull and its derivative by the tip's x. */
+struct strand {
+    double x, y;   /* sin p, cos p */
+    double dx, dy; /* d/dx */
+};
+
+/* Not finite where the tip is farther aside than the strand is long. */
+static struct strand strand_direction(const struct wb_cantilever *c, double tip_x)
+{
+    const double S = c->model.strand_length;
+    if (S == 0.0)
+        return (struct strand){0.0, 1.0, 0.0, 0.0};
+    const double sine = (c->model.length - tip_x) / S;
+    const double cosine = sqrt(1.0 - sine * sine);
+    return (struct strand){sine, cosine, -1.0 / S, sine / (S * cosine)};
+}
+
+/* The stage's travel at which the strand just reaches the tip. */
+static double stage_travel(const struct wb_cantilever *c, const struct wb_beam_node *tip)
+{
+    const double sine = (c->model.length - tip->x) / c->model.strand_length;
+    /* S (1 - cos p), without cancellation */
+    const double lean = c->model.strand_length * sine * sine / (1.0 + sqrt(1.0 - sine * sine));
+    return tip->y - lean;
+}
+
+static bool is_unilateral(const struct wb_cantilever *c)
+{
+    return c->model.strand_length > 0.0;
+}
+
+/* Controls that prescribe where the tip is and find the force. */
+static bool drives_tip(enum wb_cantilever_control control)
+{
+    return control == WB_CONTROL_DEFLECTION || control == WB_CONTROL_STAGE ||
+           control == WB_CONTROL_FOLLOWER_DEFLECTION;
+}
+
+/* The force that such a control finds. */
+static double *driving_force(struct loads *loads, enum wb_cantilever_control control)
+{
+    return control == WB_CONTROL_FOLLOWER_DEFLECTION ? &loads->follower : &loads->tension;
+}
+
+/* Value of a control in the trial state. */
+static double present_value(const struct wb_cantilever *c, enum wb_cantilever_control control)
+{
+    switch (control) {
+    case WB_CONTROL_DEFLECTION:
+    case WB_CONTROL_FOLLOWER_DEFLECTION:
+        return wb_beam_tip(c->beam)->y;
+    case WB_CONTROL_STAGE:
+        return stage_travel(c, wb_beam_tip(c->beam));
+    case WB_CONTROL_DEAD_FORCE:
+        return c->loads.tension;
+    case WB_CONTROL_FOLLOWER_FORCE:
+        return c->loads.follower;
+    case WB_CONTROL_TIP_MOMENT:
+        return c->loads.moment;
+    }
+    return 0.0;
+}
+
+/* Unbalanced forces of the tip: internal less applied. */
+static void tip_balance(const struct wb_cantilever *c, const struct strand *strand, double *r)
+{
+    const struct loads *l = &c->loads;
+    const double t = wb_beam_tip(c->beam)->t;
+    const double hung = l->weight * c->model.counterweight;
+
+    r[0] = c->balance.tip[0] - l->tension * strand->x - hung * c->model.gravity_x +
+           l->follower * sin(t);
+    r[1] = c->balance.tip[1] - l->tension * strand->y - hung * c->model.gravity_y -
+           l->follower * cos(t) - l->reaction;
+    r[2] = c->balance.tip[2] - l->moment;
+}
+
+/* Distances by which the constraints of the step are missed. */
+struct misses {
+    double control, rest;
+};
+
+static struct misses constraint_misses(const struct wb_cantilever *c, const struct step *step)
+{
+    const struct wb_beam_node *tip = wb_beam_tip(c->beam);
+    struct misses miss = {0.0, 0.0};
+
+    if (drives_tip(step->control) && (step->mode & TAUT))
+        miss.control = step->value - present_value(c, step->control);
+    if (step->mode & RESTING)
+        miss.rest = c->model.rest_level - tip->y;
+    return miss;
+}
+
+/* Evaluates the trial state; true when it is an equilibrium. `r` is the tip's imbalance. */
+static bool check_balance(struct wb_cantilever *c, const struct step *step, struct strand *strand,
+                          double *r)
+{
+    const double lever = 1.0 / c->model.length;
+    wb_beam_evaluate(c->beam, c->loads.weight, &c->balance);
+    *strand = strand_direction(c, wb_beam_tip(c->beam)->x);
+    tip_balance(c, strand, r);
+
+    const double at_tip = fabs(r[0]) + fabs(r[1]) + lever * fabs(r[2]);
+    const double unbalanced = c->balance.largest_residual + at_tip;
+    const double scale = c->balance.largest_force + 1e-6 * wb_beam_scale_force(c->beam);
+    const struct misses miss = constraint_misses(c, step);
+    const double reach = 1e-11 * c->model.length;
+
+    c->residual = unbalanced / scale;
+    c->tolerance = c->settings.force_tolerance * scale + wb_beam_noise(c->beam);
+    return unbalanced <= c->tolerance && fabs(miss.control) <= reach && fabs(miss.rest) <= reach;
+}
+
+/* The tip's system: condensed beam, stiffness of the loads, and rows and columns of the unknown
+ * driving force and reaction. Returns the number of unknowns. */
+static int tip_system(struct wb_cantilever *c, const struct step *step, const struct strand *strand,
+                      double A[MOST_UNKNOWNS * MOST_UNKNOWNS], double b[MOST_UNKNOWNS])
+{
+    enum {
+        W = MOST_UNKNOWNS
+    };
+    const double T = c->loads.tension, F = c->loads.follower;
+    const double t = wb_beam_tip(c->beam)->t;
+    const struct misses miss = constraint_misses(c, step);
+    double K[9], right[3], r[3];
+    int n = 3;
+
+    wb_beam_condense(c->beam, K, right);
+    /* `right` holds the beam's own share; the tip's applied loads come on top. */
+    tip_balance(c, strand, r);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            A[i * W + j] = K[3 * i + j];
+        b[i] = right[i] - (r[i] - c->balance.tip[i]);
+    }
+    A[0] -= T * strand->dx;
+    A[W] -= T * strand->dy;
+    A[2] += F * cos(t);
+    A[W + 2] += F * sin(t);
+
+    if (drives_tip(step->control) && (step->mode & TAUT)) {
+        for (int j = 0; j < W; j++)
+            A[n * W + j] = A[j * W + n] = 0.0;
+        const bool follows = step->control == WB_CONTROL_FOLLOWER_DEFLECTION;
+        A[n] = follows ? sin(t) : -strand->x;
+        A[W + n] = follows ? -cos(t) : -strand->y;
+        A[n * W] = step->control == WB_CONTROL_STAGE ? strand->x / strand->y : 0.0;
+        A[n * W + 1] = 1.0;
+        b[n++] = miss.control;
+    }
+    if (step->mode & RESTING) {
+        for (int j = 0; j < W; j++)
+            A[n * W + j] = A[j * W + n] = 0.0;
+        A[W + n] = -1.0;
+        A[n * W + 1] = 1.0;
+        b[n++] = miss.rest;
+    }
+    return n;
+}
+
+/* Whether follower force and deflection of the converged trial state have grown together, and would
+ * go on to. Past the largest deflection they do not: just below it the same deflection belongs to a
+ * farther curled wire too, and above it to one that springs back, and Newton's method may end in
+ * either. A plastic hinge turns at a constant force, which is taken. */
+static bool follower_rises(struct wb_cantilever *c, const struct step *step,
+                           const struct strand *strand)
+{
+    const double flat = 1e-6 * wb_beam_scale_force(c->beam) / c->model.length;
+    const double raised = wb_beam_tip(c->beam)->y - wb_beam_position(c->beam, c->model.length).y;
+    const double more = c->loads.follower - c->state.loads.follower;
+    double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+
+    /* The weight that comes with the first step moves the tip too. */
+    if (step->weight == c->state.loads.weight && more * raised < -flat * raised * raised)
+        return false;
+    const int n = tip_system(c, step, strand, A, b);
+    for (int i = 0; i < n; i++)
+        b[i] = i == n - 1 ? 1.0 : 0.0;
+    wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
+    return b[n - 1] > -flat;
+}
+
+/* Newton's method from the trial state; true when it converged. An iteration that had to be held
+ * back is a sign of a step too long: after a few it gives up, because a shorter step is cheaper. */
+static bool solve(struct wb_cantilever *c, const struct step *step)
+{
+    struct strand strand;
+    double r[3];
+    int held_back = 0;
+
+    for (int iteration = 0;; iteration++) {
+        if (check_balance(c, step, &strand, r))
+            return step->control != WB_CONTROL_FOLLOWER_DEFLECTION ||
+                   follower_rises(c, step, &strand);
+        if (iteration == c->settings.max_iterations || held_back == most_held_back ||
+            !isfinite(c->residual))
+            return false;
+
+        double A[MOST_UNKNOWNS * MOST_UNKNOWNS], b[MOST_UNKNOWNS];
+        const int n = tip_system(c, step, &strand, A, b);
+        wb_banded_solve_small(n, MOST_UNKNOWNS, A, b);
+        const double scale = wb_beam_advance(c->beam, b, most_rotation);
+        held_back += scale < 1.0;
+
+        int next = 3;
+        if (drives_tip(step->control) && (step->mode & TAUT))
+            *driving_force(&c->loads, step->control) += scale * b[next++];
+        if (step->mode & RESTING)
+            c->loads.reaction += scale * b[next++];
+        c->iterations++;
+    }
+}
+
+/* Loads of the trial state at the step's start. */
+static void start_loads(struct wb_cantilever *c, const struct step *step)
+{
+    c->loads = c->state.loads;
+    c->loads.weight = step->weight;
+    switch (step->control) {
+    case WB_CONTROL_DEAD_FORCE:
+        c->loads.tension = step->value;
+        break;
+    case WB_CONTROL_FOLLOWER_FORCE:
+        c->loads.follower = step->value;
+        break;
+    case WB_CONTROL_TIP_MOMENT:
+        c->loads.moment = step->value;
+        break;
+    case WB_CONTROL_DEFLECTION:
+    case WB_CONTROL_STAGE:
+        if (!(step->mode & TAUT))
+            c->loads.tension = 0.0;
+        break;
+    case WB_CONTROL_FOLLOWER_DEFLECTION:
+        break;
+    }
+    if (!(step->mode & RESTING))
+        c->loads.reaction = 0.0;
+}
+
+/* How far beyond the last two states the step lies, in their distance; 0 when nothing is to be
+ * extrapolated: other constraints, a turn back, a much longer step. */
+static double extrapolation(const struct wb_cantilever *c, const struct step *step)
+{
+    const struct state *s = &c->state;
+    if (!s->has_control || s->control != step->control || s->mode != step->mode ||
+        s->last_step == 0.0 || s->loads.weight != step->weight)
+        return 0.0;
+    const double ratio = (step->value - s->value) / s->last_step;
+    return ratio > 0.0 && ratio <= 2.0 ? ratio : 0.0;
+}
+
+/* Finds the equilibrium of the step in its mode: first from the extrapolated state, then from the
+ * last one. */
+static bool solve_mode(struct wb_cantilever *c, const struct step *step)
+{
+    const double ratio = extrapolation(c, step);
+
+    if (ratio > 0.0) {
+        start_loads(c, step);
+        wb_beam_extrapolate(c->beam, ratio);
+        if (step->mode & TAUT && drives_tip(step->control))
+            *driving_force(&c->loads, step->control) +=
+                ratio * (*driving_force(&c->state.loads, step->control) -
+                         *driving_force(&c->state.earlier, step->control));
+        if (step->mode & RESTING)
+            c->loads.reaction += ratio * (c->state.loads.reaction - c->state.earlier.reaction);
+        if (solve(c, step))
+            return true;
+    }
+    start_loads(c, step);
+    wb_beam_revert(c->beam);
+    return solve(c, step);
+}
+
+/* The mode that the converged trial state asks for: the same when nothing is violated. */
+static int wanted_mode(const struct wb_cantilever *c, const struct step *step)
+{
+    const struct wb_beam_node *tip = wb_beam_tip(c->beam);
+    const double force = 10.0 * c->tolerance;
+    const double distance = 1e-7 * c->model.length;
+    int mode = step->mode;
+
+    if (!drives_tip(step->control) || !is_unilateral(c))
+        return mode;
+    if (mode & TAUT ? c->loads.tension < -force
+                    : present_value(c, step->control) < step->value - distance)
+        mode ^= TAUT;
+    if (!c->model.has_rest)
+        return mode;
+    if (mode & RESTING ? c->loads.reaction < -force : tip->y < c->model.rest_level - distance)
+        mode ^= RESTING;
+    /* Held at a level and lifted to another at once: the rest wins when the tip is to go below
+     * it. */
+    if (step->control == WB_CONTROL_DEFLECTION && mode == (TAUT | RESTING))
+        mode = step->value < c->model.rest_level ? RESTING : TAUT;
+    return mode;
+}
+
+/* One step to the end of its value, in whatever mode satisfies all inequalities. */
+static bool settle(struct wb_cantilever *c, struct step step)
+{
+    const bool one_mode = !drives_tip(step.control) || !is_unilateral(c);
+    bool tried[ALL_MODES] = {false};
+
+    step.mode = c->state.mode;
+    for (;;) {
+        const bool solved = solve_mode(c, &step);
+        if (solved && wanted_mode(c, &step) == step.mode) {
+            c->state.mode = step.mode;
+            return true;
+        }
+        if (one_mode)
+            return false;
+
+        tried[step.mode] = true;
+        if (!c->model.has_rest)
+            tried[RESTING] = tried[TAUT | RESTING] = true;
+        if (step.control == WB_CONTROL_DEFLECTION)
+            tried[TAUT | RESTING] = true;
+        int next = solved ? wanted_mode(c, &step) : 0;
+        for (int i = 0; i < ALL_MODES && tried[next]; i++)
+            next = i;
+        if (tried[next])
+            return false;
+        step.mode = next;
+    }
+}
+
+static void accept(struct wb_cantilever *c, const struct step *step, double from)
+{
+    struct state *s = &c->state;
+    const bool grew = s->loads.weight != c->loads.weight;
+
+    s->earlier = s->loads;
+    s->loads = c->loads;
+    s->last_step = grew ? 0.0 : step->value - from;
+    s->has_control = true;
+    s->control = step->control;
+    s->value = step->value;
+    wb_beam_commit(c->beam);
+}
+
+static enum wb_status check_move(const struct wb_cantilever *c, enum wb_cantilever_control control,
+                                 double target)
+{
+    if (!isfinite(target))
+        return wb_fail(WB_ERR_ARGUMENT, "target %g is not a finite number", target);
+    if (control == WB_CONTROL_STAGE && !is_unilateral(c))
+        return wb_fail(WB_ERR_ARGUMENT, "stage control needs a strand");
+    if ((!drives_tip(control) || control == WB_CONTROL_FOLLOWER_DEFLECTION) && is_unilateral(c))
+        return wb_fail(WB_ERR_ARGUMENT, "force control and a strand exclude each other");
+    return WB_OK;
+}
+
+static void describe(struct wb_cantilever *c, enum wb_cantilever_control control,
+                     struct wb_cantilever_point *point)
+{
+    const struct wb_beam_node *tip = wb_beam_tip(c->beam);
+    const struct strand strand = strand_direction(c, tip->x);
+
+    point->control = c->state.has_control && c->state.control == control
+                         ? c->state.value
+                         : present_value(c, control);
+    point->deflection = tip->y;
+    point->tip_x = tip->x;
+    point->tip_angle = tip->t;
+    point->tension = c->loads.tension;
+    point->vertical_force = c->loads.tension * strand.y;
+    point->follower = c->loads.follower;
+    point->root_moment = wb_beam_root_moment(c->beam);
+    point->slack = is_unilateral(c) && !(c->state.mode & TAUT);
+    point->resting = (c->state.mode & RESTING) != 0;
+    point->iterations = c->iterations;
+    point->residual = c->residual;
+}
+
+enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_control control,
+                                  double target, struct wb_cantilever_point *point)
+{
+    WB_TRY(check_move(c, control, target));
+
+    wb_beam_revert(c->beam);
+    c->loads = c->state.loads;
+    c->iterations = 0;
+
+    const bool continues = c->state.has_control && c->state.control == control;
+    const double start = continues ? c->state.value : present_value(c, control);
+    const double weight = c->state.loads.weight;
+    double done = 0.0, fraction = fmin(1.0, 4.0 * c->state.fraction);
+    bool failed = false;
+
+    point->end = WB_CANTILEVER_CONVERGED;
+    while (done < 1.0) {
+        const double next = fmin(1.0, done + fraction);
+        const double from =
+            c->state.has_control && c->state.control == control ? c->state.value : start;
+        const struct step step = {
+            .control = control,
+            .value = next == 1.0 ? target : start + next * (target - start),
+            .weight = next == 1.0 ? 1.0 : weight + next * (1.0 - weight),
+        };
+        if (settle(c, step)) {
+            accept(c, &step, from);
+            c->state.fraction = fraction;
+            done = next;
+            fraction = failed ? fraction : 2.0 * fraction;
+            failed = false;
+            continue;
+        }
+        failed = true;
+        fraction *= 0.5;
+        if (fraction < c->settings.smallest_step) {
+            point->end = WB_CANTILEVER_NOT_CONVERGED;
+            break;
+        }
+    }
+
+    if (point->end != WB_CANTILEVER_CONVERGED) {
+        /* Back to the last equilibrium, and its resultants for the report. */
+        struct strand strand;
+        double r[3];
+        const struct step last = {.control = control, .mode = c->state.mode};
+        wb_beam_revert(c->beam);
+        c->loads = c->state.loads;
+        check_balance(c, &last, &strand, r);
+    }
+    describe(c, control, point);
+    return WB_OK;
+}
+
+void wb_cantilever_shape(const struct wb_cantilever *cantilever, int n, const double *s, double *x,
+                         double *y, double *angle)
+{
+    for (int i = 0; i < n; i++) {
+        const struct wb_beam_node at = wb_beam_position(cantilever->beam, s[i]);
+        x[i] = at.x;
+        y[i] = at.y;
+        if (angle)
+            angle[i] = at.t;
+    }
+}

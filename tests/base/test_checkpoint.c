@@ -1,0 +1,149 @@
+/* Checkpoints: what was carried comes back, and nothing else is taken for one. */
+#include "tests/check.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/checkpoint.h"
+#include "base/file.h"
+
+static char folder[] = "/tmp/wirebench-checkpoint-XXXXXX";
+static char path[64];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(path, sizeof path, "%s/state", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    (void)unlink(path);
+    return rmdir(folder);
+}
+
+struct numbers {
+    double x[1000];
+    int n;
+    char text[9];
+};
+
+static void carry(struct wb_checkpoint *c, struct numbers *numbers)
+{
+    wb_checkpoint_carry(c, numbers->x, sizeof numbers->x);
+    wb_checkpoint_carry(c, &numbers->n, sizeof numbers->n);
+    wb_checkpoint_carry(c, numbers->text, sizeof numbers->text);
+}
+
+static void write_numbers(struct numbers *numbers)
+{
+    struct wb_checkpoint c;
+    for (int i = 0; i < 1000; i++)
+        numbers->x[i] = 1.0 / (i + 1);
+    numbers->n = -7;
+    memcpy(numbers->text, "\n\0end\n\0", 8);
+    wb_checkpoint_init(&c);
+    carry(&c, numbers);
+    assert_int_equal(wb_checkpoint_finish(&c), WB_OK);
+    assert_int_equal(wb_checkpoint_write(&c, path, "seven wires"), WB_OK);
+    wb_checkpoint_release(&c);
+}
+
+static void what_was_carried_comes_back(void **unused)
+{
+    (void)unused;
+    struct numbers out = {.n = 0}, in = {.n = 0};
+    struct wb_checkpoint c;
+    write_numbers(&out);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
+    carry(&c, &in);
+    assert_int_equal(wb_checkpoint_finish(&c), WB_OK);
+    assert_memory_equal(in.x, out.x, sizeof in.x);
+    assert_int_equal(in.n, -7);
+    assert_memory_equal(in.text, out.text, sizeof in.text);
+    wb_checkpoint_rewind(&c);
+    wb_checkpoint_carry(&c, in.x, 8);
+    wb_checkpoint_release(&c);
+}
+
+static void discard(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)level, (void)domain;
+    snprintf(context, 256, "%s", message);
+}
+
+static void too_little_or_too_much_is_noticed(void **unused)
+{
+    (void)unused;
+    struct numbers out = {.n = 0}, in = {.n = 0};
+    struct wb_checkpoint c;
+    char message[256] = "";
+    wb_log_set_sink(discard, message);
+    write_numbers(&out);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
+    wb_checkpoint_carry(&c, in.x, sizeof in.x);
+    assert_int_equal(wb_checkpoint_finish(&c), WB_ERR_DATA);
+    wb_checkpoint_release(&c);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
+    carry(&c, &in);
+    carry(&c, &in);
+    assert_int_equal(wb_checkpoint_finish(&c), WB_ERR_DATA);
+    wb_checkpoint_release(&c);
+    wb_log_set_sink(NULL, NULL);
+}
+
+/* Changes the byte there, or cuts the file. */
+static void damage(long at, bool cut)
+{
+    char *bytes;
+    size_t size;
+    assert_int_equal(wb_file_read(path, &bytes, &size), WB_OK);
+    if (!cut)
+        bytes[at >= 0 ? at : (long)size + at] ^= 1;
+    assert_int_equal(wb_file_write(path, bytes, cut ? size - 1 : size), WB_OK);
+    free(bytes);
+}
+
+static void other_files_and_damaged_ones_are_refused(void **unused)
+{
+    (void)unused;
+    struct numbers out = {.n = 0};
+    struct wb_checkpoint c;
+    char message[256] = "";
+    wb_log_set_sink(discard, message);
+    write_numbers(&out);
+    assert_int_equal(wb_checkpoint_read(&c, path, "twelve wires"), WB_ERR_DATA);
+    assert_non_null(strstr(message, "another run"));
+    assert_non_null(strstr(message, "seven wires"));
+    damage(-1, false);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_FORMAT);
+    assert_non_null(strstr(message, "damaged"));
+    write_numbers(&out);
+    damage(0, true);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_FORMAT);
+    write_numbers(&out);
+    damage(0, false);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_FORMAT);
+    assert_non_null(strstr(message, "not a checkpoint"));
+    assert_int_equal(wb_file_write(path, "", 0), WB_OK);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_FORMAT);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_NOT_FOUND);
+    wb_log_set_sink(NULL, NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_was_carried_comes_back),
+        cmocka_unit_test(too_little_or_too_much_is_noticed),
+        cmocka_unit_test(other_files_and_damaged_ones_are_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,41 @@
+/* A bundle whose energies and momentum are watched in every step. */
+#ifndef WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
+#define WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
+
+#include "tests/fe/bundle/bundles.h"
+
+/* Leads the tip to a deflection. Energies are kept to the part given of the largest work, momentum
+ * to what single precision leaves. */
+static inline void lead_and_check(struct wb_bundle *bundle, double deflection, double duration,
+                                  double tolerance)
+{
+    const int steps = (int)(duration / wb_bundle_time_step(bundle));
+    struct wb_bundle_outside outside;
+    struct wb_bundle_energies e;
+    double impulse[3] = {0.0}, size = 0.0, most = 0.0, worst = 0.0;
+
+    wb_bundle_lead(bundle, deflection, duration);
+    for (int i = 0; i < steps; i++) {
+        const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
+        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        wb_bundle_get_outside(bundle, &outside);
+        for (int c = 0; c < 3; c++) {
+            const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];
+            impulse[c] += force * dt;
+            size += fabs(force * dt);
+        }
+        if (i % 50 != 0)
+            continue;
+        wb_bundle_get_energies(bundle, &e);
+        most = fmax(most, fabs(e.external));
+        if (i < steps / 10)
+            continue;
+        worst = fmax(worst, fabs(wb_bundle_imbalance(&e)) / most);
+        for (int c = 0; c < 3; c++)
+            assert_close(outside.momentum[c], impulse[c], 1e-5 * size);
+    }
+    print_message("energies are kept to %.3g %% in %d steps\n", 100.0 * worst, steps);
+    assert_true(worst < tolerance);
+}
+
+#endif

@@ -1,0 +1,198 @@
+/* Bundles in explicit dynamics, where it takes minutes. */
+#include "tests/fe/bundle/bundles.h"
+
+/* Runs the model and, with the 1D beam, the same history: each row's force is within `limit` of
+ * the largest. Returns the slack rows. */
+static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles, double limit)
+{
+    enum {
+        STEPS = 5
+    };
+    struct wb_cantilever *cantilever = test_cantilever(beam);
+    const struct wb_history_plan plan = {.maximum = 50e-3, .steps = STEPS, .cycles = cycles};
+    struct wb_history expected;
+    double worst = 0.0;
+    int slack = 0;
+
+    assert_int_equal(wb_history_init(&expected, &plan), WB_OK);
+    assert_int_equal(wb_history_run(&expected, &plan, cantilever), WB_OK);
+    run_model(NULL);
+    assert_true(history.converged);
+    assert_int_equal(history.n_rows, 1 + 2 * cycles * STEPS);
+    assert_int_equal(history.n_rows, expected.n_rows);
+    const double largest = expected.rows[STEPS].force;
+    for (int i = 0; i < history.n_rows; i++) {
+        const struct wb_bundle_row *row = &history.rows[i];
+        const double error = (row->force - expected.rows[i].force) / largest;
+        assert_int_equal(row->phase, expected.rows[i].phase);
+        assert_int_equal(row->cycle, expected.rows[i].cycle);
+        assert_close(error, 0.0, limit);
+        worst = fmax(worst, fabs(error));
+        slack += row->phase == WB_HISTORY_SLACK;
+        if (row->phase == WB_HISTORY_SLACK) {
+            assert_true(row->tension == 0.0);
+            assert_close_relative(row->deflection, expected.rows[i].point.deflection, 0.02);
+        }
+    }
+    print_message("largest error of %d rows, %d of them slack: %.2f %% of the largest force\n",
+                  history.n_rows, slack, 100.0 * worst);
+    assert_true(history.largest.imbalance < 0.01);
+    wb_history_release(&expected);
+    wb_cantilever_destroy(cantilever);
+    return slack;
+}
+
+/* Up, down past the point where the strand goes slack, and again from where it is taut. */
+static void cycles_with_a_strand_follow_the_beam(void **unused)
+{
+    (void)unused;
+    const struct test_wire wire = test_wire_type(3);
+    struct wb_section section = test_section(&wire);
+    struct wb_cantilever_model beam = bundle_beam(&wire, &section);
+    beam.strand_length = 0.76;
+    beam.gravity_y = -WB_STANDARD_GRAVITY;
+
+    read_model(
+        ONE RUN("deflection_mm: 50, rows: 5, cycles: 2, duration_s: 2.5") "loads: {strand_mm: 760, "
+                                                                          "weight: true}\n");
+    assert_true(compare_with_beam(&beam, 2, 0.015) >= 3);
+    wb_section_release(&section);
+}
+
+/* A vertical force pulls down as well, back to zero: the wire yields both ways. */
+static void cycles_follow_the_beam(void **unused)
+{
+    (void)unused;
+    const struct test_wire wire = test_wire_type(3);
+    struct wb_section section = test_section(&wire);
+    const struct wb_cantilever_model beam = bundle_beam(&wire, &section);
+
+    read_model(ONE RUN("deflection_mm: 50, rows: 5, cycles: 2, duration_s: 2.5") "loads: {weight: "
+                                                                                 "false}\n");
+    assert_int_equal(compare_with_beam(&beam, 2, 0.015), 0);
+    assert_true(history.rows[10].force < -0.5 * history.rows[5].force);
+    wb_section_release(&section);
+}
+
+/* The ratio of energies goes as duration^-2. */
+static void energies_are_kept_and_motion_is_slow_enough(void **unused)
+{
+    (void)unused;
+    read_model(SEVEN "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 8, rows: 16}\n"
+                     "loads: {weight: false}\n");
+    run_model(NULL);
+    assert_true(history.converged && history.chosen && !history.exceeded);
+    assert_true(history.attempts <= 3);
+    const double chosen = history.duration, ratio = history.largest.kinetic;
+    assert_true(ratio > 0.02 && ratio <= 0.05);
+    assert_true(history.largest.imbalance < 0.01);
+    assert_true(history.largest.artificial < 0.05);
+    check_work(&history);
+    const struct wb_bundle_energies *e = &history.rows[history.n_rows - 1].energies;
+    assert_true(e->friction > 0.0 && e->plastic > 0.0 && e->cohesive > 0.0 && e->contact > 0.0);
+
+    model.run.duration = 0.5 * chosen;
+    run_model(NULL);
+    assert_true(!history.chosen && history.exceeded);
+    assert_int_equal(history.attempts, 1);
+    assert_close_relative(history.largest.kinetic, 4.0 * ratio, 0.3);
+}
+
+/* Side by side two wires are twice as stiff as one; one above the other they slide on each
+ * other, as nothing presses them together, and are far from plane sections. */
+static void two_wires_are_twice_as_stiff_as_one(void **unused)
+{
+    (void)unused;
+    enum {
+        ROWS_OF_TWO = 15
+    };
+    double force[3];
+    static const char *const places[] = {
+        ONE,
+        "wires: [{wire: type3, count: 2}]\npacking: places\nplaces_mm: [[0, -0.7], [0, 0.7]]\n",
+        "wires: [{wire: type3, count: 2}]\npacking: places\nplaces_mm: [[-0.7, 0], [0.7, 0]]\n",
+    };
+    for (int i = 0; i < 3; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "%s%s", places[i],
+                 RUN("deflection_mm: 15, rows: 15, duration_s: 1") "loads: {weight: false}\n");
+        read_model(text);
+        run_model(NULL);
+        assert_true(history.converged);
+        assert_true(history.largest.imbalance < 0.01);
+        check_work(&history);
+        force[i] = history.rows[ROWS_OF_TWO].force;
+    }
+    const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(&model);
+    assert_close_relative(force[1], 2.0 * force[0], 1e-3);
+    assert_true(force[2] > 1.99 * force[0]);
+    assert_true(force[2] < 2.0 * force[0] * rigidity.bonded[0] / rigidity.sliding[0]);
+}
+
+/* The engineering mesh, alone: within 1.5 % of the beam from 10 to 53 mm. */
+static void one_wire_is_within_the_mesh_error_of_the_beam(void **unused)
+{
+    (void)unused;
+    const struct test_wire wire = test_wire_type(3);
+    struct wb_section section = test_section(&wire);
+    const struct wb_cantilever_model beam = bundle_beam(&wire, &section);
+    struct wb_cantilever *cantilever = test_cantilever(&beam);
+    double worst = 0.0;
+
+    read_model(ONE "run: {deflection_mm: 53, rows: 53, selective_mass_scaling: 100}\n"
+                   "loads: {weight: false}\n");
+    run_model(NULL);
+    assert_true(history.converged && !history.exceeded);
+    assert_int_equal(history.hexahedra, 960);
+    for (int i = 10; i <= 53; i++) {
+        const struct wb_bundle_row *row = &history.rows[i];
+        struct wb_cantilever_point point;
+        assert_int_equal(
+            wb_cantilever_move(cantilever, WB_CONTROL_DEFLECTION, row->deflection, &point), WB_OK);
+        worst = fmax(worst, fabs(row->force / point.tension - 1.0));
+    }
+    print_message("largest error from 10 to 53 mm: %.2f %%, %lld steps\n", 100.0 * worst,
+                  history.steps);
+    assert_true(worst < 0.015);
+    wb_cantilever_destroy(cantilever);
+    wb_section_release(&section);
+}
+
+/* The shipped bundle of seven, while it is elastic: force over deflection between those of wires
+ * and tape that slide freely and of plane sections. */
+static void seven_wires_are_between_sliding_and_bonded(void **unused)
+{
+    (void)unused;
+    char path[WB_PATH];
+    assert_int_equal(wb_file_find_fixture(path, "bundles", "7-type3", NULL), WB_OK);
+    assert_int_equal(wb_bundle_model_read(&model, path), WB_OK);
+    model.loads.weight = false;
+    model.loads.strand_length = 0.0;
+    model.run.selective = 100.0;
+    model.run.deflection = 4e-3;
+    model.run.rows = 8;
+    run_model(NULL);
+    assert_true(history.converged && !history.exceeded);
+    assert_true(history.largest.imbalance < 0.01);
+    const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(&model);
+    for (int i = 5; i <= 8; i++) {
+        const struct wb_bundle_row *row = &history.rows[i];
+        const double EI = row->force * pow(model.length, 3.0) / (3.0 * row->deflection);
+        print_message("%g mm: E I between %g and %g N mm2: %g\n", row->deflection * 1e3,
+                      rigidity.sliding[0] * 1e6, rigidity.bonded[0] * 1e6, EI * 1e6);
+        assert_true(EI > rigidity.sliding[0] && EI < rigidity.bonded[0]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(cycles_with_a_strand_follow_the_beam, release),
+        cmocka_unit_test_teardown(cycles_follow_the_beam, release),
+        cmocka_unit_test_teardown(energies_are_kept_and_motion_is_slow_enough, release),
+        cmocka_unit_test_teardown(one_wire_is_within_the_mesh_error_of_the_beam, release),
+        cmocka_unit_test_teardown(two_wires_are_twice_as_stiff_as_one, release),
+        cmocka_unit_test_teardown(seven_wires_are_between_sliding_and_bonded, release),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

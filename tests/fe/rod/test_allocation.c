@@ -1,0 +1,72 @@
+/* Nothing is allocated while a test is computed. The linker sends the library's allocations here
+ * (--wrap). */
+#include <stdlib.h>
+
+#include "fe/trial/history.h"
+#include "tests/fe/rod/wires.h"
+
+static int allocations;
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t n, size_t size);
+void *__real_realloc(void *memory, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_realloc(void *memory, size_t size);
+
+void *__wrap_malloc(size_t size)
+{
+    allocations++;
+    return __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t n, size_t size)
+{
+    allocations++;
+    return __real_calloc(n, size);
+}
+
+void *__wrap_realloc(void *memory, size_t size)
+{
+    allocations++;
+    return __real_realloc(memory, size);
+}
+
+static void stepping_allocates_nothing(void **unused)
+{
+    (void)unused;
+    const struct test_wire wire = test_wire_type(1);
+    struct wb_section section = test_section(&wire);
+    struct wb_cantilever_model model;
+    wb_cantilever_default_model(&model);
+    model.section = &section;
+    model.length = 0.085;
+    model.strand_length = 0.76;
+    model.mass_per_length = test_wire_mass(&wire);
+    struct wb_cantilever *cantilever = test_cantilever(&model);
+    const struct wb_history_plan plan = {.maximum = 0.053, .steps = 10, .cycles = 2};
+    struct wb_history history;
+    assert_int_equal(wb_history_init(&history, &plan), WB_OK);
+    assert_true(allocations > 10);
+
+    allocations = 0;
+    wb_cantilever_set_materials(cantilever, &wire.material);
+    wb_cantilever_reset(cantilever);
+    assert_int_equal(wb_history_run(&history, &plan, cantilever), WB_OK);
+    wb_cantilever_save(cantilever);
+    wb_cantilever_restore(cantilever);
+    assert_int_equal(allocations, 0);
+    assert_int_equal(history.n_rows, 41);
+
+    wb_history_release(&history);
+    wb_cantilever_destroy(cantilever);
+    wb_section_release(&section);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stepping_allocates_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,301 @@
+#include "fe/rod/fibres.h"
+
+#include <stdlib.h>
+
+#include "tests/fe/rod/wires.h"
+
+/* One section point with its history. */
+struct point {
+    struct wb_fibres *fibres;
+    double *before, *after;
+};
+
+static struct point make_point(const struct wb_section *section)
+{
+    struct point p = {0};
+    assert_int_equal(wb_fibres_create(&p.fibres, section), WB_OK);
+    const size_t size = wb_fibres_history_size(p.fibres);
+    p.before = calloc(size, sizeof *p.before);
+    p.after = calloc(size, sizeof *p.after);
+    assert_true(p.before && p.after);
+    return p;
+}
+
+static void release_point(struct point *p)
+{
+    wb_fibres_destroy(p->fibres);
+    free(p->before);
+    free(p->after);
+}
+
+static struct wb_fibres_response respond(struct point *p, double eps, double kappa)
+{
+    struct wb_fibres_response r;
+    wb_fibres_respond(p->fibres, eps, kappa, p->before, p->after, &r);
+    return r;
+}
+
+static void accept(struct point *p)
+{
+    double *old = p->before;
+    p->before = p->after;
+    p->after = old;
+}
+
+/* A core of copper with Bauschinger effect and isotropic hardening side by side, in a jacket. */
+static struct wb_section composite(void)
+{
+    const struct wb_material kinematic = {
+        WB_HARDENING_KINEMATIC_LINEAR, 12000e6, 0.35, 9e6, 700e6, 0.0};
+    const struct wb_material isotropic = {
+        WB_HARDENING_ISOTROPIC_POWER, 9000e6, 0.35, 5e6, 1500e6, 0.6};
+    const struct wb_material jacket = {WB_HARDENING_NONE_ELASTIC, 30e6, 0.45, 0.0, 0.0, 0.0};
+    struct wb_section s;
+    wb_section_init_empty(&s);
+    assert_int_equal(wb_section_add_ring(&s, 0.0, 0.7e-3, &kinematic, 0.5, 20), WB_OK);
+    assert_int_equal(wb_section_add_ring(&s, 0.0, 0.7e-3, &isotropic, 0.5, 20), WB_OK);
+    assert_int_equal(wb_section_add_ring(&s, 0.7e-3, 1.1e-3, &jacket, 1.0, 12), WB_OK);
+    return s;
+}
+
+static void fast_kernel_agrees_with_its_slow_twin(void **unused)
+{
+    (void)unused;
+    uint64_t random = 42;
+    for (int trial = 0; trial < 40; trial++) {
+        struct test_wire wire = test_wire_type(1 + trial % 3);
+        wire.material.strength_coefficient = 1e6 * pow(10.0, 5.0 * test_random(&random));
+        wire.material.hardening_exponent = 0.05 + 1.45 * test_random(&random);
+        struct wb_section s = trial % 4 == 3 ? composite() : test_section(&wire);
+        struct point fast = make_point(&s), slow = make_point(&s);
+        wb_fibres_set_kernel(slow.fibres, WB_FIBRES_REFERENCE);
+        const double scale = wb_fibres_axial_stiffness(fast.fibres) * 1e-3;
+
+        for (int step = 0; step < 60; step++) {
+            const double eps = 2e-3 * (test_random(&random) - 0.5);
+            const double kappa = 80.0 * (test_random(&random) - 0.5);
+            const struct wb_fibres_response a = respond(&fast, eps, kappa);
+            const struct wb_fibres_response b = respond(&slow, eps, kappa);
+            assert_close(a.N, b.N, 1e-11 * scale);
+            assert_close(a.M, b.M, 1e-11 * scale * 1e-3);
+            assert_close(a.D11, b.D11, 1e-6 * scale);
+            assert_close(a.D12, b.D12, 1e-6 * scale * 1e-3);
+            assert_close(a.D22, b.D22, 1e-6 * scale * 1e-6);
+            if (step % 3 == 0) {
+                accept(&fast);
+                accept(&slow);
+            }
+        }
+        assert_close(wb_fibres_largest_plastic_strain(fast.fibres, fast.before),
+                     wb_fibres_largest_plastic_strain(slow.fibres, slow.before), 1e-12);
+        release_point(&fast);
+        release_point(&slow);
+        wb_section_release(&s);
+    }
+}
+
+static void vector_instructions_do_not_change_a_bit(void **unused)
+{
+    (void)unused;
+    uint64_t random = 43;
+    for (int trial = 0; trial < 12; trial++) {
+        const struct test_wire wire = test_wire_type(1 + trial % 3);
+        struct wb_section s = trial % 4 == 3 ? composite() : test_section(&wire);
+        struct point fastest = make_point(&s), portable = make_point(&s);
+        wb_fibres_set_kernel(portable.fibres, WB_FIBRES_PORTABLE);
+        for (int step = 0; step < 200; step++) {
+            const double eps = 2e-3 * (test_random(&random) - 0.5);
+            /* Also beyond the table, where the law is solved. */
+            const double kappa = (step % 50 == 0 ? 1e5 : 80.0) * (test_random(&random) - 0.5);
+            const struct wb_fibres_response a = respond(&fastest, eps, kappa);
+            const struct wb_fibres_response b = respond(&portable, eps, kappa);
+            assert_memory_equal(&a, &b, sizeof a);
+            if (step % 3 == 0) {
+                accept(&fastest);
+                accept(&portable);
+            }
+        }
+        assert_memory_equal(fastest.before, portable.before,
+                            wb_fibres_history_size(portable.fibres) * sizeof(double));
+        release_point(&fastest);
+        release_point(&portable);
+        wb_section_release(&s);
+    }
+}
+
+static void tangent_is_the_derivative_of_the_resultants(void **unused)
+{
+    (void)unused;
+    struct wb_section s = composite();
+    struct point p = make_point(&s);
+    respond(&p, 1e-3, 25.0);
+    accept(&p);
+    const double states[][2] = {{1.2e-3, 30.0}, {0.8e-3, 10.0}, {-1e-3, -40.0}};
+    const double EA = wb_fibres_axial_stiffness(p.fibres);
+    for (size_t i = 0; i < 3; i++) {
+        const double eps = states[i][0], kappa = states[i][1], d = 1e-8, dk = 1e-4;
+        const struct wb_fibres_response at = respond(&p, eps, kappa);
+        const struct wb_fibres_response e0 = respond(&p, eps - d, kappa);
+        const struct wb_fibres_response e1 = respond(&p, eps + d, kappa);
+        const struct wb_fibres_response k0 = respond(&p, eps, kappa - dk);
+        const struct wb_fibres_response k1 = respond(&p, eps, kappa + dk);
+        assert_close(at.D11, (e1.N - e0.N) / (2.0 * d), 1e-5 * EA);
+        assert_close(at.D12, (e1.M - e0.M) / (2.0 * d), 1e-5 * EA * 1e-3);
+        assert_close(at.D12, (k1.N - k0.N) / (2.0 * dk), 1e-5 * EA * 1e-3);
+        assert_close(at.D22, (k1.M - k0.M) / (2.0 * dk), 1e-5 * EA * 1e-6);
+    }
+    release_point(&p);
+    wb_section_release(&s);
+}
+
+static void fully_plastic_moment_of_the_circle_is_four_thirds(void **unused)
+{
+    (void)unused;
+    struct test_wire wire = test_wire_type(1);
+    wire.material.strength_coefficient = 0.0;
+    struct wb_section s;
+    assert_int_equal(wb_section_init_circle(&s, wire.diameter, &wire.material, 400), WB_OK);
+    struct point p = make_point(&s);
+
+    const double R = 0.5 * wire.diameter, sigma = wire.material.yield_stress;
+    const double plastic = respond(&p, 0.0, 1e4).M;
+    assert_close_relative(plastic, 4.0 / 3.0 * sigma * R * R * R, 1e-4);
+
+    /* The first fibre at y = R yields at M = pi R^3 sigma / 4: the ratio is 16 / (3 pi). */
+    const double first =
+        sigma / (wire.material.youngs_modulus * R) * wb_fibres_bending_stiffness(p.fibres);
+    print_message("plastic over yield moment of the circle: %.5f (exact %.5f)\n", plastic / first,
+                  16.0 / (3.0 * M_PI));
+    assert_close_relative(plastic / first, 16.0 / (3.0 * M_PI), 1e-4);
+    release_point(&p);
+    wb_section_release(&s);
+}
+
+static void rectangle_follows_its_closed_form(void **unused)
+{
+    (void)unused;
+    enum {
+        STRIPS = 2000
+    };
+    const double b = 1e-3, height = 2e-3;
+    struct wb_material m = test_wire_type(1).material;
+    m.strength_coefficient = 0.0;
+    struct wb_fibre *fibres = calloc(STRIPS, sizeof *fibres);
+    assert_non_null(fibres);
+    for (int i = 0; i < STRIPS; i++) {
+        fibres[i].y = height * ((i + 0.5) / STRIPS - 0.5);
+        fibres[i].area = b * height / STRIPS;
+    }
+    const struct wb_section s = {STRIPS, fibres, 1, &m, 1e3};
+    struct point p = make_point(&s);
+    const double yield_kappa = m.yield_stress / (m.youngs_modulus * 0.5 * height);
+    const double Mp = m.yield_stress * b * height * height / 4.0;
+
+    for (double over = 1.1; over < 20.0; over *= 1.5) {
+        const double exact = Mp * (1.0 - 1.0 / (3.0 * over * over));
+        assert_close_relative(respond(&p, 0.0, over * yield_kappa).M, exact, 1e-6);
+    }
+    assert_close_relative(respond(&p, 0.0, yield_kappa).M, Mp / 1.5, 1e-6);
+    release_point(&p);
+    free(fibres);
+}
+
+static void pure_power_law_moment_is_its_integral(void **unused)
+{
+    (void)unused;
+    /* With E -> infinity and sigma_Y -> 0 the law is sigma = K e^n:
+     * M = 2 K kappa^n int y^(n+1) 2 sqrt(R^2 - y^2) dy = 2 K kappa^n R^(n+3) B((n+2)/2, 3/2). */
+    const double R = 0.5e-3, K = 1e9, kappa = 20.0;
+    const double exponents[] = {0.3, 0.6, 0.9};
+    for (size_t i = 0; i < 3; i++) {
+        const double n = exponents[i];
+        const struct wb_material m = {WB_HARDENING_ISOTROPIC_POWER, 1e16, 0.3, 1e-3, K, n};
+        const double beta = tgamma(0.5 * n + 1.0) * tgamma(1.5) / tgamma(0.5 * n + 2.5);
+        const double exact = 2.0 * K * pow(kappa, n) * pow(R, n + 3.0) * beta;
+        const int counts[] = {20, 200};
+        for (size_t k = 0; k < 2; k++) {
+            struct wb_section s;
+            assert_int_equal(wb_section_init_circle(&s, 2.0 * R, &m, counts[k]), WB_OK);
+            struct point p = make_point(&s);
+            const double error = respond(&p, 0.0, kappa).M / exact - 1.0;
+            print_message("power law moment, n = %.1f, %d fibres: %+.2g\n", n, counts[k], error);
+            assert_close(error, 0.0, k == 0 ? 2e-3 : 2e-5);
+            release_point(&p);
+            wb_section_release(&s);
+        }
+    }
+}
+
+static void springback_is_elastic(void **unused)
+{
+    (void)unused;
+    const struct test_wire wire = test_wire_type(3);
+    struct wb_section s = test_section(&wire);
+    struct point p = make_point(&s);
+    const double kappa = 30.0;
+    const double M = respond(&p, 0.0, kappa).M;
+    accept(&p);
+    const double left = kappa - M / wb_fibres_bending_stiffness(p.fibres);
+    const struct wb_fibres_response r = respond(&p, 0.0, left);
+    assert_close(r.M, 0.0, 1e-12 * M);
+    assert_close_relative(r.D22, wb_fibres_bending_stiffness(p.fibres), 1e-13);
+    /* Residual stresses remain: the fibres balance but are not free. */
+    accept(&p);
+    assert_true(wb_fibres_largest_plastic_strain(p.fibres, p.before) > 1e-3);
+    release_point(&p);
+    wb_section_release(&s);
+}
+
+static void virgin_shortcut_is_seamless(void **unused)
+{
+    (void)unused;
+    const struct test_wire wire = test_wire_type(2);
+    struct wb_section s = test_section(&wire);
+    struct point p = make_point(&s), q = make_point(&s);
+    wb_fibres_set_kernel(q.fibres, WB_FIBRES_REFERENCE);
+    const double outermost = s.fibres[0].y;
+    const double limit = wire.material.yield_stress / wire.material.youngs_modulus / outermost;
+    for (int i = -3; i <= 3; i++) {
+        const double kappa = limit * (1.0 + 1e-6 * i);
+        const struct wb_fibres_response a = respond(&p, 0.0, kappa), b = respond(&q, 0.0, kappa);
+        assert_close_relative(a.M, b.M, 1e-13);
+    }
+    release_point(&p);
+    release_point(&q);
+    wb_section_release(&s);
+}
+
+static void exchanged_materials_act_like_new_ones(void **unused)
+{
+    (void)unused;
+    const struct test_wire one = test_wire_type(1), three = test_wire_type(3);
+    struct test_wire mixed = one;
+    mixed.material = three.material;
+    struct wb_section a = test_section(&one), b = test_section(&mixed);
+    struct point p = make_point(&a), q = make_point(&b);
+    wb_fibres_set_materials(p.fibres, &three.material);
+    const struct wb_fibres_response r = respond(&p, 1e-4, 20.0), t = respond(&q, 1e-4, 20.0);
+    assert_true(r.N == t.N && r.M == t.M && r.D22 == t.D22);
+    assert_close_relative(wb_fibres_shear_stiffness(p.fibres), wb_fibres_shear_stiffness(q.fibres),
+                          1e-14);
+    release_point(&p);
+    release_point(&q);
+    wb_section_release(&a);
+    wb_section_release(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fast_kernel_agrees_with_its_slow_twin),
+        cmocka_unit_test(vector_instructions_do_not_change_a_bit),
+        cmocka_unit_test(tangent_is_the_derivative_of_the_resultants),
+        cmocka_unit_test(fully_plastic_moment_of_the_circle_is_four_thirds),
+        cmocka_unit_test(rectangle_follows_its_closed_form),
+        cmocka_unit_test(pure_power_law_moment_is_its_integral),
+        cmocka_unit_test(springback_is_elastic),
+        cmocka_unit_test(virgin_shortcut_is_seamless),
+        cmocka_unit_test(exchanged_materials_act_like_new_ones),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,125 @@
+/* Wires of swept hexahedra for the tests: fields, and what is put into them. */
+#ifndef WB_TESTS_FE_SWEPT_SWEPT_BODIES_H
+#define WB_TESTS_FE_SWEPT_SWEPT_BODIES_H
+
+#include <stdlib.h>
+
+#include "fe/swept/swept_hex.h"
+#include "tests/fe/rod/wires.h"
+
+struct swept_body {
+    struct wb_swept_hex *hex;
+    struct wb_swept_hex_state *state;
+    struct wb_swept_layout layout;
+    double *position;
+    void *force;
+};
+
+static inline double *swept_field(const struct wb_swept_layout *layout)
+{
+    void *field;
+    assert_int_equal(wb_swept_allocate(&field, wb_swept_size(layout), sizeof(double)), WB_OK);
+    return field;
+}
+
+static inline size_t swept_at(const struct wb_swept_layout *layout, int node, int component,
+                              int station)
+{
+    return (size_t)(3 * node + component) * (size_t)layout->stride + (size_t)station;
+}
+
+static inline void swept_reference(struct swept_body *body)
+{
+    const struct wb_swept_hex_model *m = wb_swept_hex_get_model(body->hex);
+    for (int k = 0; k < m->section->n_nodes; k++) {
+        for (int j = 0; j <= m->n_elements; j++) {
+            body->position[swept_at(&body->layout, k, 0, j)] = j * m->element_length;
+            body->position[swept_at(&body->layout, k, 1, j)] = m->section->node[k][0];
+            body->position[swept_at(&body->layout, k, 2, j)] = m->section->node[k][1];
+        }
+    }
+}
+
+static inline struct swept_body swept_body_create(const struct wb_swept_hex_model *model)
+{
+    struct swept_body body = {0};
+    assert_int_equal(wb_swept_hex_create(&body.hex, model), WB_OK);
+    assert_int_equal(wb_swept_hex_state_create(&body.state, body.hex), WB_OK);
+    body.layout = wb_swept_hex_layout(body.hex);
+    body.position = swept_field(&body.layout);
+    body.force = swept_field(&body.layout);
+    swept_reference(&body);
+    return body;
+}
+
+static inline void swept_body_destroy(struct swept_body *body)
+{
+    wb_swept_hex_state_destroy(body->state);
+    wb_swept_hex_destroy(body->hex);
+    free(body->position);
+    free(body->force);
+}
+
+static inline struct wb_swept_hex_sums swept_forces(struct swept_body *body)
+{
+    struct wb_swept_hex_sums sums = {0};
+    wb_swept_hex_forces(body->state, body->position, body->force, 0, wb_swept_hex_blocks(body->hex),
+                        &sums);
+    return sums;
+}
+
+static inline double swept_force(const struct swept_body *body, int node, int component,
+                                 int station)
+{
+    const size_t at = swept_at(&body->layout, node, component, station);
+    return wb_swept_hex_get_model(body->hex)->double_precision ? ((const double *)body->force)[at]
+                                                               : (double)((float *)body->force)[at];
+}
+
+/* x = c + F X */
+static inline void swept_set_linear(struct swept_body *body, double F[3][3], const double c[3])
+{
+    const struct wb_swept_hex_model *m = wb_swept_hex_get_model(body->hex);
+    for (int k = 0; k < m->section->n_nodes; k++) {
+        for (int j = 0; j <= m->n_elements; j++) {
+            const double X[3] = {j * m->element_length, m->section->node[k][0],
+                                 m->section->node[k][1]};
+            for (int i = 0; i < 3; i++)
+                body->position[swept_at(&body->layout, k, i, j)] =
+                    c[i] + F[i][0] * X[0] + F[i][1] * X[1] + F[i][2] * X[2];
+        }
+    }
+}
+
+/* A rotation about (1, 2, 3) by an angle. */
+static inline void swept_rotation(double angle, double R[3][3])
+{
+    const double n[3] = {1 / sqrt(14.0), 2 / sqrt(14.0), 3 / sqrt(14.0)}, c = cos(angle);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            R[i][j] = (i == j ? c : 0.0) + (1 - c) * n[i] * n[j];
+        R[i][(i + 1) % 3] -= sin(angle) * n[(i + 2) % 3];
+        R[i][(i + 2) % 3] += sin(angle) * n[(i + 1) % 3];
+    }
+}
+
+/* A section of four distorted quadrilaterals of about the given size. */
+static inline struct wb_swept_section swept_distorted_section(double size)
+{
+    static const double at[9][2] = {{0.0, 0.05}, {1.1, -0.1}, {2.0, 0.0}, {-0.1, 0.9}, {0.8, 1.2},
+                                    {2.2, 0.8},  {0.1, 2.1},  {1.2, 1.9}, {1.9, 2.0}};
+    static const int quad[4][4] = {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}};
+    struct wb_swept_section section;
+    assert_int_equal(wb_swept_section_init(&section, 9, at, 4, quad), WB_OK);
+    wb_swept_section_scale(&section, size / 2.0);
+    return section;
+}
+
+static inline struct wb_swept_section swept_circle(double diameter, int core, int rings)
+{
+    struct wb_swept_section section;
+    assert_int_equal(wb_swept_section_init_circle(&section, diameter, core, rings), WB_OK);
+    return section;
+}
+
+#endif
