@@ -7,6 +7,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "base/units.h"
+#include "base/vec3.h"
 
 #define WB_LOG_DOMAIN "frame"
 
@@ -18,26 +19,6 @@
  * or, where there are too few frames for a line, when their mean lies so far away, s. */
 #define LARGEST_VARIANCE 0.5
 #define FARTHEST_MEAN 0.01
-
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double normalise(double *a)
-{
-    const double length = sqrt(dot(a, a));
-    for (int k = 0; k < 3 && length > 0.0; k++)
-        a[k] /= length;
-    return length;
-}
-
-static void cross(const double *a, const double *b, double *c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* --- scatter of points --- */
 
@@ -91,8 +72,8 @@ static double range_along(const struct wb_marker_tracks *tracks, const struct wb
         const double *const p = wb_markers_position(tracks, cloud, frame, marker);
         if (!p)
             continue;
-        low = fmin(low, dot(p, direction));
-        high = fmax(high, dot(p, direction));
+        low = fmin(low, wb_vec3_dot(p, direction));
+        high = fmax(high, wb_vec3_dot(p, direction));
     }
     return high >= low ? high - low : 0.0;
 }
@@ -132,11 +113,11 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
     frame->up_uncertainty =
         frame->up_from_motion ? spread[1] / (spread[0] * sqrt((double)scatter.n)) : (double)NAN;
     if (frame->up_from_motion) {
-        const double sign = dot(directions[0], server_up) < 0.0 ? -1.0 : 1.0;
+        const double sign = wb_vec3_dot(directions[0], server_up) < 0.0 ? -1.0 : 1.0;
         for (int k = 0; k < 3; k++)
             frame->up[k] = sign * directions[0][k];
     }
-    frame->tilt = acos(fmin(1.0, fabs(dot(frame->up, server_up))));
+    frame->tilt = acos(fmin(1.0, fabs(wb_vec3_dot(frame->up, server_up))));
     return WB_OK;
 }
 
@@ -221,7 +202,7 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
                 continue;
             relative_to_clamp(frame, i, p, r);
             add_point(&full, r);
-            const double height = dot(r, frame->up);
+            const double height = wb_vec3_dot(r, frame->up);
             for (int k = 0; k < 3; k++)
                 r[k] -= height * frame->up[k];
             add_point(&flat, r);
@@ -235,19 +216,19 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
         principal(&flat, directions, spread);
     else
         memcpy(directions[0], flat.sum, sizeof directions[0]);
-    const double sign = dot(directions[0], flat.sum) < 0.0 ? -1.0 : 1.0;
-    const double vertical = dot(directions[0], frame->up);
+    const double sign = wb_vec3_dot(directions[0], flat.sum) < 0.0 ? -1.0 : 1.0;
+    const double vertical = wb_vec3_dot(directions[0], frame->up);
     for (int k = 0; k < 3; k++)
         frame->along[k] = sign * (directions[0][k] - vertical * frame->up[k]);
-    if (!(normalise(frame->along) > 0.0) ||
-        !(dot(flat.sum, frame->along) / (double)flat.n > LEAST_SPREAD))
+    if (!(wb_vec3_normalise(frame->along) > 0.0) ||
+        !(wb_vec3_dot(flat.sum, frame->along) / (double)flat.n > LEAST_SPREAD))
         return wb_fail(WB_ERR_DATA, "the markers lie one above the other along the clamp's motion: "
                                     "no bending plane (is the rig's mocap.up right?)");
-    cross(frame->along, frame->up, frame->normal);
+    wb_vec3_cross(frame->along, frame->up, frame->normal);
     principal(&full, directions, spread);
     frame->plane_tilt = 0.0;
     if (tracks->n_markers > 2 && spread[1] > LEAST_SPREAD)
-        frame->plane_tilt = asin(fmin(1.0, fabs(dot(directions[2], frame->up))));
+        frame->plane_tilt = asin(fmin(1.0, fabs(wb_vec3_dot(directions[2], frame->up))));
     return WB_OK;
 }
 
@@ -262,7 +243,7 @@ static void measure_planarity(struct wb_bench_frame *frame, const struct wb_mark
             if (!p || !isfinite(frame->clamp[i][0]))
                 continue;
             relative_to_clamp(frame, i, p, r);
-            const double z = dot(r, frame->normal);
+            const double z = wb_vec3_dot(r, frame->normal);
             n += 1.0;
             sum += z;
             squares += z * z;
@@ -303,13 +284,13 @@ void wb_frame_coordinates(const struct wb_bench_frame *frame, size_t index, cons
 {
     double r[3];
     relative_to_clamp(frame, index, point, r);
-    *x = dot(r, frame->along);
-    *y = dot(r, frame->up);
+    *x = wb_vec3_dot(r, frame->along);
+    *y = wb_vec3_dot(r, frame->up);
     if (z)
-        *z = dot(r, frame->normal);
+        *z = wb_vec3_dot(r, frame->normal);
 }
 
 double wb_frame_clamp_height(const struct wb_bench_frame *frame, size_t index)
 {
-    return dot(frame->clamp[index], frame->up);
+    return wb_vec3_dot(frame->clamp[index], frame->up);
 }

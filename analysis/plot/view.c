@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vec3.h"
+
 #define WB_LOG_DOMAIN "figure"
 
 enum {
@@ -50,34 +52,14 @@ struct painter {
 
 /* --- vectors --- */
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = a[j] * b[k] - a[k] * b[j];
-    }
-}
-
-static void normalise(double a[3])
-{
-    const double length = sqrt(dot(a, a));
-    for (int i = 0; i < 3 && length > 0.0; i++)
-        a[i] /= length;
-}
-
 static void find_axes(const struct wb_view_camera *camera, double right[3], double up[3],
                       double toward[3])
 {
     memcpy(toward, camera->toward, 3 * sizeof *toward);
-    normalise(toward);
-    cross(camera->up, toward, right);
-    normalise(right);
-    cross(toward, right, up);
+    wb_vec3_normalise(toward);
+    wb_vec3_cross(camera->up, toward, right);
+    wb_vec3_normalise(right);
+    wb_vec3_cross(toward, right, up);
 }
 
 void wb_view_project(const struct wb_view_camera *camera, const double place[3], double out[3])
@@ -85,9 +67,9 @@ void wb_view_project(const struct wb_view_camera *camera, const double place[3],
     double right[3], up[3], toward[3];
 
     find_axes(camera, right, up, toward);
-    out[0] = dot(place, right);
-    out[1] = dot(place, up);
-    out[2] = dot(place, toward);
+    out[0] = wb_vec3_dot(place, right);
+    out[1] = wb_vec3_dot(place, up);
+    out[2] = wb_vec3_dot(place, toward);
 }
 
 /* --- refining --- */
@@ -151,9 +133,9 @@ static void place_vertex(const struct painter *p, const struct wb_view_sheet *sh
     }
     if (sheet->value) /* splines swing over */
         out->value = fmin(fmax(out->value, least), most);
-    out->at[0] = (dot(at, p->right) - low[0]) * p->scale[0];
-    out->at[1] = (high[1] - dot(at, p->up)) * p->scale[1];
-    out->at[2] = dot(at, p->toward);
+    out->at[0] = (wb_vec3_dot(at, p->right) - low[0]) * p->scale[0];
+    out->at[1] = (high[1] - wb_vec3_dot(at, p->up)) * p->scale[1];
+    out->at[2] = wb_vec3_dot(at, p->toward);
 }
 
 /* Place in the picture's axes, up again up and in units. */
@@ -182,8 +164,8 @@ static void find_normal(struct painter *p, int j, int k, bool closed)
         d[i] -= c[i];
     }
     struct vertex *v = &p->grid[j * n + k];
-    cross(b, d, v->normal);
-    normalise(v->normal);
+    wb_vec3_cross(b, d, v->normal);
+    wb_vec3_normalise(v->normal);
 }
 
 static enum wb_status refine(struct painter *p, const struct wb_view_sheet *sheet)
@@ -222,7 +204,7 @@ static const struct wb_colour *colour_of(const struct painter *p, double value)
 static double shade(const struct wb_colour *colour, const double normal[3], uint8_t out[3])
 {
     const double side = normal[2] < 0.0 ? -1.0 : 1.0, facing = side * normal[2];
-    const double lit = fmax(0.0, side * dot(normal, light));
+    const double lit = fmax(0.0, side * wb_vec3_dot(normal, light));
     const double factor = (ambient + diffuse * lit) * (1.0 - rim + rim * sqrt(facing));
     /* The mirrored light along the view. */
     const double mirrored = 2.0 * lit * facing - light[2];
@@ -293,7 +275,7 @@ static void draw_triangle(struct painter *p, const struct wb_view_sheet *sheet,
                 for (int c = 0; c < 3; c++)
                     here.normal[c] += w[i] * v[i]->normal[c];
             }
-            normalise(here.normal);
+            wb_vec3_normalise(here.normal);
             put(p, sheet, x, y, depth, &here);
         }
     }
@@ -319,8 +301,8 @@ static void draw_cap(struct painter *p, const struct wb_view_sheet *sheet, int s
         a[i] -= c[i];
         b[i] -= c[i];
     }
-    cross(a, b, middle.normal);
-    normalise(middle.normal);
+    wb_vec3_cross(a, b, middle.normal);
+    wb_vec3_normalise(middle.normal);
     for (int k = 0; k < p->n_around; k++) {
         struct vertex first = ring[k], second = ring[(k + 1) % p->n_around];
         memcpy(first.normal, middle.normal, sizeof first.normal);

@@ -7,6 +7,7 @@
 
 #include "analysis/plot/view.h"
 #include "base/units.h"
+#include "base/vec3.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -105,12 +106,6 @@ static void middle_of(const struct wb_view_sheet *sheet, int station, double mid
             middle[c] += sheet->position[station * sheet->n_around + k][c] / sheet->n_around;
 }
 
-static double distance(const double a[3], const double b[3])
-{
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 static double length_of(const struct wb_view_sheet *sheet)
 {
     double length = 0.0, last[3], next[3];
@@ -118,7 +113,7 @@ static double length_of(const struct wb_view_sheet *sheet)
     middle_of(sheet, 0, last);
     for (int j = 1; j < sheet->n_along; j++) {
         middle_of(sheet, j, next);
-        length += distance(last, next);
+        length += wb_vec3_distance(last, next);
         memcpy(last, next, sizeof last);
     }
     return length;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/vec3.h"
 #include "fe/bundle/bundle_private.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -39,22 +40,10 @@ struct wb_bundle_cap {
 
 /* --- small algebra --- */
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void apply(double m[3][3], const double v[3], double out[3])
 {
     for (int i = 0; i < 3; i++)
-        out[i] = dot(m[i], v);
+        out[i] = wb_vec3_dot(m[i], v);
 }
 
 /* x of m x = v, m symmetric and positive. */
@@ -63,8 +52,8 @@ static void solve(double m[3][3], const double v[3], double x[3])
     double c[3][3];
 
     for (int i = 0; i < 3; i++)
-        cross(m[(i + 1) % 3], m[(i + 2) % 3], c[i]);
-    const double determinant = dot(m[0], c[0]);
+        wb_vec3_cross(m[(i + 1) % 3], m[(i + 2) % 3], c[i]);
+    const double determinant = wb_vec3_dot(m[0], c[0]);
     for (int i = 0; i < 3; i++)
         x[i] = (c[0][i] * v[0] + c[1][i] * v[1] + c[2][i] * v[2]) / determinant;
 }
@@ -72,7 +61,7 @@ static void solve(double m[3][3], const double v[3], double x[3])
 /* sin t / t and (1 - cos t) / t^2. */
 static void find_sines(const double turn[3], double *a, double *b)
 {
-    const double square = dot(turn, turn), t = sqrt(square);
+    const double square = wb_vec3_dot(turn, turn), t = sqrt(square);
 
     if (t < 1e-4) {
         *a = 1.0 - square / 6.0;
@@ -98,7 +87,7 @@ static void rotation_of(const double q[4], double out[3][3])
 /* Turns on by a rotation vector. */
 static void turn_on(double q[4], const double turn[3])
 {
-    const double t = sqrt(dot(turn, turn)), c = cos(0.5 * t);
+    const double t = sqrt(wb_vec3_dot(turn, turn)), c = cos(0.5 * t);
     const double s = t > 1e-8 ? sin(0.5 * t) / t : 0.5;
     const double p[4] = {c, s * turn[0], s * turn[1], s * turn[2]};
     const double product[4] = {
@@ -122,7 +111,7 @@ static void turn_moment(double r[3][3], double s[3][3], double out[3][3])
         for (int j = 0; j < 3; j++)
             half[j] = r[i][0] * s[0][j] + r[i][1] * s[1][j] + r[i][2] * s[2][j];
         for (int j = 0; j < 3; j++)
-            out[i][j] = dot(half, r[j]);
+            out[i][j] = wb_vec3_dot(half, r[j]);
     }
 }
 
@@ -136,7 +125,7 @@ static void angular(double S[3][3], const double turn[3], double way, double out
 
     find_sines(turn, &a, &b);
     apply(S, turn, St);
-    cross(St, turn, gyration);
+    wb_vec3_cross(St, turn, gyration);
     for (int i = 0; i < 3; i++)
         out[i] = a * (trace * turn[i] - St[i]) + way * b * gyration[i];
 }
@@ -159,7 +148,7 @@ static void find_turn(double S[3][3], const double momentum[3], double turn[3])
         solve(J, rest, more);
         for (int i = 0; i < 3; i++)
             turn[i] += more[i];
-        if (!(dot(more, more) > 1e-30 * dot(turn, turn)))
+        if (!(wb_vec3_dot(more, more) > 1e-30 * wb_vec3_dot(turn, turn)))
             return;
     }
 }
@@ -171,7 +160,7 @@ static double turning_energy(double S[3][3], const double before[3], const doubl
 
     for (int side = 0; side < 2; side++) {
         const double *t = side ? before : after;
-        const double square = dot(t, t), sign = side ? -1.0 : 1.0;
+        const double square = wb_vec3_dot(t, t), sign = side ? -1.0 : 1.0;
         double spin[3][3] = {{0.0, -t[2], t[1]}, {t[2], 0.0, -t[0]}, {-t[1], t[0], 0.0}};
         double a, b;
         find_sines(t, &a, &b);
@@ -184,7 +173,7 @@ static double turning_energy(double S[3][3], const double before[3], const doubl
     for (int i = 0; i < 3; i++) {
         double SB[3];
         apply(S, B[i], SB);
-        sum += dot(A[i], SB);
+        sum += wb_vec3_dot(A[i], SB);
     }
     return 0.5 * sum;
 }
@@ -202,7 +191,7 @@ static void add_loads(const struct part *part, double R[3][3], double force[3], 
         for (int c = 0; c < 3; c++)
             f[c] = wb_bundle_force_at(part->body, end_of(part, k, c));
         apply(R, part->arm[k], r);
-        cross(r, f, moment);
+        wb_vec3_cross(r, f, moment);
         for (int c = 0; c < 3; c++) {
             force[c] += part->turns_only ? 0.0 : f[c];
             torque[c] += moment[c];

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "base/vec3.h"
 #include "fe/material/material_file.h"
 #include "fe/model/wire_model.h"
 
@@ -231,17 +232,12 @@ struct standing {
     double deflection; /* m, when held */
 };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* +1 where a load grows, -1 where it becomes smaller or is reversed, 0 where it stays. */
 static int growth(const double from[3], const double to[3])
 {
     if (from[0] == to[0] && from[1] == to[1] && from[2] == to[2])
         return 0;
-    return dot(to, to) < dot(from, from) || dot(from, to) < 0.0 ? -1 : 1;
+    return wb_vec3_dot(to, to) < wb_vec3_dot(from, from) || wb_vec3_dot(from, to) < 0.0 ? -1 : 1;
 }
 
 static bool loads_unload(const struct wb_tip_loads *from, const struct wb_tip_loads *to)
@@ -303,9 +299,9 @@ static enum wb_status take_loads(const struct wb_config_node *map, const struct 
     if (action->follower)
         WB_TRY(read_triple(action->follower, "follower_N", 1e6, step->loads.follower));
     if (action->has_unload) {
-        if (dot(before->force, before->force) == 0.0 &&
-            dot(before->moment, before->moment) == 0.0 &&
-            dot(before->follower, before->follower) == 0.0)
+        if (wb_vec3_dot(before->force, before->force) == 0.0 &&
+            wb_vec3_dot(before->moment, before->moment) == 0.0 &&
+            wb_vec3_dot(before->follower, before->follower) == 0.0)
             return wb_config_refuse(map, "unload", "nothing acts at the tip before this step");
         step->loads = none;
     }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vec3.h"
+
 enum {
     NODES = WB_ROD_ELEMENT_NODES,
     POINTS = WB_ROD_ELEMENT_POINTS,
@@ -22,13 +24,6 @@ void wb_rod_element_shape_init(struct wb_rod_element_shape *shape, double h)
         shape->dN[g][1] = -4.0 * z / h;
         shape->dN[g][2] = (2.0 * z + 1.0) / h;
     }
-}
-
-static inline void cross(const double *a, const double *b, double *restrict c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* c = A b and c = A^T b */
@@ -98,7 +93,7 @@ static void rotation_at(const double *a, const double *b, double s, const double
                         double *rotation)
 {
     double axb[3], p[3], q[4];
-    cross(a, b, axb);
+    wb_vec3_cross(a, b, axb);
     for (int i = 0; i < 3; i++)
         p[i] = s * (a[i] + s * (0.5 * b[i] + s / 12.0 * axb[i]));
     wb_rod_element_exponential(p, q);
@@ -151,7 +146,7 @@ void wb_rod_element_add_forces(const struct wb_rod_element_shape *shape, int g,
                                const struct wb_rod_point *p, double *restrict f)
 {
     double arm[3];
-    cross(p->slope, p->n, arm);
+    wb_vec3_cross(p->slope, p->n, arm);
     for (int i = 0; i < NODES; i++) {
         const double d = shape->weight * shape->dN[g][i], N = shape->weight * shape->N[g][i];
         for (int k = 0; k < 3; k++) {
@@ -290,7 +285,7 @@ void wb_rod_element_strain_increment(const struct wb_rod_element_shape *shape, i
         spin[k] = N[0] * d[3 + k] + N[1] * d[U + 3 + k] + N[2] * d[2 * U + 3 + k];
         bend[k] = dN[0] * (d[3 + k] - d[U + 3 + k]) + dN[2] * (d[2 * U + 3 + k] - d[U + 3 + k]);
     }
-    cross(point->slope, spin, sheared);
+    wb_vec3_cross(point->slope, spin, sheared);
     for (int k = 0; k < 3; k++)
         sheared[k] += slope[k];
     turn_back(point->R, sheared, increment->stretch);

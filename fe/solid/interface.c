@@ -4,6 +4,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/vec3.h"
+
 enum {
     NODES = 8, /* of a face */
     LOCAL = 9  /* what a point depends on: distance, two base vectors */
@@ -17,18 +19,6 @@ void wb_interface_default_law(struct wb_interface_law *law, double youngs_modulu
     law->normal_stiffness = confined / thickness;
     law->tangential_stiffness = law->normal_stiffness / 3.0;
     law->friction = friction;
-}
-
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *restrict a, const double *restrict b, double *restrict c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* Serendipity functions of the face with 8 nodes and their derivatives. */
@@ -69,7 +59,7 @@ struct frame {
 /* Jacobians dv_i / d(a1, a2), rows by component of v_i. */
 static void base_jacobian(int i, const double *a1, const double *a2, double J[3][6])
 {
-    const double a11 = dot(a1, a1), a12 = dot(a1, a2);
+    const double a11 = wb_vec3_dot(a1, a1), a12 = wb_vec3_dot(a1, a2);
     memset(J, 0, 3 * sizeof J[0]);
     switch (i) {
     case 0:
@@ -100,14 +90,14 @@ static void frame_init(struct frame *frame, const double q[LOCAL])
     const double *g = q, *a1 = q + 3, *a2 = q + 6;
     double v[3][3], J[3][6];
     memcpy(v[0], a1, sizeof v[0]);
-    cross(a1, a2, v[2]);
-    cross(v[2], a1, v[1]);
+    wb_vec3_cross(a1, a2, v[2]);
+    wb_vec3_cross(v[2], a1, v[1]);
     for (int i = 0; i < 3; i++) {
         double *e = frame->direction[i], *slope = frame->slope[i];
-        frame->length[i] = sqrt(dot(v[i], v[i]));
+        frame->length[i] = sqrt(wb_vec3_dot(v[i], v[i]));
         for (int c = 0; c < 3; c++)
             e[c] = v[i][c] / frame->length[i];
-        frame->gap[i] = dot(g, e);
+        frame->gap[i] = wb_vec3_dot(g, e);
         for (int c = 0; c < 3; c++)
             slope[c] = (g[c] - frame->gap[i] * e[c]) / frame->length[i];
 
@@ -123,7 +113,7 @@ static void frame_init(struct frame *frame, const double q[LOCAL])
 static void add_base_curvature(int i, const double *a1, const double *a2, const double *y, double t,
                                double H[LOCAL][LOCAL])
 {
-    const double y1 = dot(y, a1), y2 = dot(y, a2);
+    const double y1 = wb_vec3_dot(y, a1), y2 = wb_vec3_dot(y, a2);
     if (i == 1) {
         for (int r = 0; r < 3; r++) {
             for (int c = 0; c < 3; c++) {
@@ -258,8 +248,8 @@ static void point_init(struct point *point, int number, const double X[2 * NODES
             A2[c] += point->ds[k] * X[k][c];
         }
     }
-    cross(A1, A2, normal);
-    point->weight = weight[i] * weight[j] * sqrt(dot(normal, normal));
+    wb_vec3_cross(A1, A2, normal);
+    point->weight = weight[i] * weight[j] * sqrt(wb_vec3_dot(normal, normal));
 }
 
 /* The distance is that of displacements: faces that coincide touch exactly. */

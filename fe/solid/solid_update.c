@@ -5,14 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "solid"
+#include "base/vec3.h"
 
-static void cross(const double *a, const double *b, double *c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
+#define WB_LOG_DOMAIN "solid"
 
 static double inner(const double *a, const double *b)
 {
@@ -29,8 +24,8 @@ static void find_turn(const double w[3], const double v[3], double change[3])
     const double c = 0.5 * half * half;
     double once[3], twice[3];
 
-    cross(w, v, once);
-    cross(w, once, twice);
+    wb_vec3_cross(w, v, once);
+    wb_vec3_cross(w, once, twice);
     for (int i = 0; i < 3; i++)
         change[i] = s * once[i] + c * twice[i];
 }
@@ -117,10 +112,10 @@ static void solve_rotation(const double J[6], const double moment[3], double w[3
     const double A[3][3] = {{J[0], J[3], J[5]}, {J[3], J[1], J[4]}, {J[5], J[4], J[2]}};
     double minor[3];
 
-    cross(A[1], A[2], minor);
+    wb_vec3_cross(A[1], A[2], minor);
     const double determinant = inner(A[0], minor);
     for (int k = 0; k < 3; k++) {
-        cross(A[(k + 1) % 3], A[(k + 2) % 3], minor);
+        wb_vec3_cross(A[(k + 1) % 3], A[(k + 2) % 3], minor);
         w[k] = inner(moment, minor) / determinant;
     }
 }
@@ -143,7 +138,7 @@ static void change_vector(const double w[3], const double v[3], const double gro
 {
     double linear[3], stretched[3], turned[3];
 
-    cross(w, v, linear);
+    wb_vec3_cross(w, v, linear);
     for (int i = 0; i < 3; i++)
         stretched[i] = v[i] + growth[i] - linear[i];
     find_turn(w, stretched, turned);
@@ -172,7 +167,7 @@ void wb_solid_update_advance(struct wb_solid_update *update, double *u, const do
             const int a = update->node[k];
             double r[3], arm[3];
             offset(update, a, u, section->centre, r);
-            cross(r, increment + 3 * a, arm);
+            wb_vec3_cross(r, increment + 3 * a, arm);
             for (int i = 0; i < 3; i++)
                 moment[i] += scale * arm[i];
             add_inertia(r, J);
@@ -226,7 +221,7 @@ static void find_rotation(const struct wb_solid_update *update, int s, const dou
             offset(update, update->node[k], before, from, r);
             offset(update, update->node[k], now, to, target);
             turn(w, r, r);
-            cross(r, target, arm);
+            wb_vec3_cross(r, target, arm);
             for (int i = 0; i < 3; i++)
                 moment[i] += arm[i];
             add_inertia(r, J);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "base/vec3.h"
 #include "fe/swept/swept_hex_kernel.h"
 
 enum {
@@ -23,11 +24,6 @@ int wb_swept_hex_stress_points(const struct wb_swept_hex *hex)
 static double log_strain(double e)
 {
     return e - e * e * (1.0 - 4.0 / 3.0 * e);
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* An element as the kernels see it: columns of F, Green's strain, and its logarithm (swept_hex_
@@ -66,12 +62,12 @@ static void find_strain(struct element *e)
 {
     double *E = e->E, *L = e->L;
 
-    E[XX] = 0.5 * (dot(e->F[0], e->F[0]) - 1.0);
-    E[YY] = 0.5 * (dot(e->F[1], e->F[1]) - 1.0);
-    E[ZZ] = 0.5 * (dot(e->F[2], e->F[2]) - 1.0);
-    E[XY] = 0.5 * dot(e->F[0], e->F[1]);
-    E[XZ] = 0.5 * dot(e->F[0], e->F[2]);
-    E[YZ] = 0.5 * dot(e->F[1], e->F[2]);
+    E[XX] = 0.5 * (wb_vec3_dot(e->F[0], e->F[0]) - 1.0);
+    E[YY] = 0.5 * (wb_vec3_dot(e->F[1], e->F[1]) - 1.0);
+    E[ZZ] = 0.5 * (wb_vec3_dot(e->F[2], e->F[2]) - 1.0);
+    E[XY] = 0.5 * wb_vec3_dot(e->F[0], e->F[1]);
+    E[XZ] = 0.5 * wb_vec3_dot(e->F[0], e->F[2]);
+    E[YZ] = 0.5 * wb_vec3_dot(e->F[1], e->F[2]);
     L[XX] = log_strain(E[XX]) - E[XY] * E[XY] - E[XZ] * E[XZ];
     L[YY] = log_strain(E[YY]) - E[XY] * E[XY] - E[YZ] * E[YZ];
     L[ZZ] = log_strain(E[ZZ]) - E[XZ] * E[XZ] - E[YZ] * E[YZ];
@@ -91,12 +87,12 @@ static void vary(const struct element *e, int q, double t[6])
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++)
             F1[i] += e->quad.value[q][a] * e->along[a][i];
-    const double more = log_strain(0.5 * (dot(F1, F1) - 1.0)) - log_strain(e->E[XX]);
+    const double more = log_strain(0.5 * (wb_vec3_dot(F1, F1) - 1.0)) - log_strain(e->E[XX]);
     t[XX] += more;
     t[YY] -= 0.5 * more;
     t[ZZ] -= 0.5 * more;
-    t[XY] += 0.5 * dot(F1, e->F[1]) - e->E[XY];
-    t[XZ] += 0.5 * dot(F1, e->F[2]) - e->E[XZ];
+    t[XY] += 0.5 * wb_vec3_dot(F1, e->F[1]) - e->E[XY];
+    t[XZ] += 0.5 * wb_vec3_dot(F1, e->F[2]) - e->E[XZ];
 }
 
 /* A number of the history at a point. */

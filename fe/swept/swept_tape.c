@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vec3.h"
 #include "fe/swept/swept_hardening.h"
 #include "fe/swept/swept_tape_private.h"
 
@@ -63,18 +64,6 @@ static double get(const struct wb_swept_tape *tape, const void *numbers, size_t 
                                         : (double)((const float *)numbers)[at];
 }
 
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *a, const double *b, double *out)
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* --- the reference state --- */
 
 static bool is_convex(const struct wb_swept_tape_element *e)
@@ -88,8 +77,8 @@ static bool is_convex(const struct wb_swept_tape_element *e)
             one[i] = e->node[next[a]][i] - e->node[a][i];
             other[i] = e->node[before[a]][i] - e->node[a][i];
         }
-        cross(one, other, normal);
-        if (!(dot(normal, e->normal) > 0.0))
+        wb_vec3_cross(one, other, normal);
+        if (!(wb_vec3_dot(normal, e->normal) > 0.0))
             return false;
     }
     return true;
@@ -116,22 +105,22 @@ bool wb_swept_tape_element_of(const struct wb_swept_tape *tape, int k, int j,
         X2[i] = 0.5 * (x[2][i] - x[0][i] + x[3][i] - x[1][i]);
         XH[i] = 0.5 * (x[3][i] - x[2][i] - x[1][i] + x[0][i]);
     }
-    cross(X1, X2, area);
-    element->area = sqrt(dot(area, area));
-    const double length = sqrt(dot(X1, X1));
+    wb_vec3_cross(X1, X2, area);
+    element->area = sqrt(wb_vec3_dot(area, area));
+    const double length = sqrt(wb_vec3_dot(X1, X1));
     if (!(element->area > 0.0 && isfinite(element->area) && length > 0.0))
         return false;
     for (int i = 0; i < 3; i++) {
         e1[i] = X1[i] / length;
         element->normal[i] = area[i] / element->area;
     }
-    cross(element->normal, e1, e2);
-    const double across = dot(X2, e2);
+    wb_vec3_cross(element->normal, e1, e2);
+    const double across = wb_vec3_dot(X2, e2);
     element->B[0] = 1.0 / length;
-    element->B[1] = -dot(X2, e1) / (across * length);
+    element->B[1] = -wb_vec3_dot(X2, e1) / (across * length);
     element->B[2] = 1.0 / across;
-    element->hourglass[0] = dot(XH, e1);
-    element->hourglass[1] = dot(XH, e2);
+    element->hourglass[0] = wb_vec3_dot(XH, e1);
+    element->hourglass[1] = wb_vec3_dot(XH, e2);
     return is_convex(element);
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vec3.h"
 #include "fe/swept/swept_tape_contact_private.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -49,18 +50,6 @@ static void put(const struct wb_swept_tape_contact *c, void *numbers, size_t at,
         ((double *)numbers)[at] = value;
     else
         ((float *)numbers)[at] = (float)value;
-}
-
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *a, const double *b, double *out)
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* --- what is near --- */
@@ -138,7 +127,7 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
         axis[i] = axis_row(c, near->wire, i)[j];
         from[i] = x[i] - centre_row(c, near->wire, i)[j];
     }
-    const double length = dot(axis, axis), shift = dot(from, axis) / length;
+    const double length = wb_vec3_dot(axis, axis), shift = wb_vec3_dot(from, axis) / length;
     const double slack = 0.01; /* beyond the ends, in stations */
     double at = j + shift;
     if (!(at >= -slack && at <= last + slack))
@@ -177,14 +166,14 @@ static bool find_place_round(const struct wb_swept_tape_contact *c, const double
     double across[3], before[3] = {0.0}, u_before = 0.0, v_before = 0.0,
                       farthest = -(double)INFINITY;
 
-    cross(axis, direction, across);
+    wb_vec3_cross(axis, direction, across);
     for (int s = 0; s <= surface->n; s++) {
         double at[3], from[3];
         const int node = surface->node[s % surface->n];
         read_surface(c, position, node, j, near, at);
         for (int i = 0; i < 3; i++)
             from[i] = at[i] - x[i];
-        const double u = dot(from, direction), v = dot(from, across);
+        const double u = wb_vec3_dot(from, direction), v = wb_vec3_dot(from, across);
         if (s > 0 && (v >= 0.0) != (v_before >= 0.0)) {
             const double w = v_before / (v_before - v);
             const double there = (1.0 - w) * u_before + w * u;
@@ -221,10 +210,11 @@ static bool may_be_near(const struct wb_swept_tape_contact *c, const double x[3]
         from[i] = x[i] - centre_row(c, w, i)[j];
         axis[i] = axis_row(c, w, i)[j];
     }
-    const double along = dot(from, axis), shift_square = along * along / dot(axis, axis);
+    const double along = wb_vec3_dot(from, axis),
+                 shift_square = along * along / wb_vec3_dot(axis, axis);
     const double sag = shift_square / (2.0 * sharpest_bend * c->surface[w].radius);
     const double beside = far_off * reach + sag;
-    return dot(from, from) - shift_square <= beside * beside;
+    return wb_vec3_dot(from, from) - shift_square <= beside * beside;
 }
 
 /* The wire nearest to a node, within the margin. */
@@ -244,8 +234,9 @@ static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], 
             continue;
         for (int i = 0; i < 3; i++)
             from[i] = x[i] - at[i];
-        const double beside = dot(from, along);
-        near.gap = sqrt(fmax(dot(from, from) - beside * beside, 0.0)) - c->surface[w].radius - half;
+        const double beside = wb_vec3_dot(from, along);
+        near.gap = sqrt(fmax(wb_vec3_dot(from, from) - beside * beside, 0.0)) -
+                   c->surface[w].radius - half;
         if (near.gap >= best->gap)
             continue;
         *best = near;
@@ -313,11 +304,11 @@ static void begin_slip(struct wb_swept_tape_contact *c, int k, int j, const doub
 /* A vector without its part along a unit vector, and its length. */
 static double take_out(double v[3], const double unit[3])
 {
-    const double along = dot(v, unit);
+    const double along = wb_vec3_dot(v, unit);
 
     for (int i = 0; i < 3; i++)
         v[i] -= along * unit[i];
-    return sqrt(dot(v, v));
+    return sqrt(wb_vec3_dot(v, v));
 }
 
 /* Whether a node is still near the place found before. */
@@ -325,7 +316,7 @@ static bool is_still_there(const struct wb_swept_tape_contact *c, const double *
                            const struct wb_swept_tape_contact_near_place *near, int j,
                            const double x[3], const double d[3])
 {
-    const double size = sqrt(dot(d, d));
+    const double size = sqrt(wb_vec3_dot(d, d));
     double a[3], b[3], g[3], unit[3];
 
     read_surface(c, position, near->partner[0], j, near, a);
@@ -352,9 +343,9 @@ static void find_centre_beside(const struct wb_swept_tape_contact *c, const doub
         from[i] = centre[i] - 0.5 * (a[i] + b[i]);
     }
     const double length = take_out(chord, axis);
-    cross(axis, chord, across);
-    near->aside = dot(from, chord) / length;
-    near->inwards = dot(from, across) / length;
+    wb_vec3_cross(axis, chord, across);
+    near->aside = wb_vec3_dot(from, chord) / length;
+    near->inwards = wb_vec3_dot(from, across) / length;
 }
 
 /* The place on the wire that a node faces. It is sought against the director, so that g has no part
@@ -364,13 +355,13 @@ static bool find_place(const struct wb_swept_tape_contact *c, const double *posi
                        const double axis[3], struct wb_swept_tape_contact_near_place *near,
                        double aside[3])
 {
-    const double size = sqrt(dot(d, d));
+    const double size = sqrt(wb_vec3_dot(d, d));
     double radial[3], direction[3], place[3] = {0.0};
 
     for (int i = 0; i < 3; i++)
         radial[i] = x[i] - centre[i];
     (void)take_out(radial, axis);
-    const double outwards = dot(d, radial) < 0.0 ? -1.0 : 1.0;
+    const double outwards = wb_vec3_dot(d, radial) < 0.0 ? -1.0 : 1.0;
     for (int i = 0; i < 3; i++)
         direction[i] = outwards * d[i];
     const double length = take_out(direction, axis);
@@ -382,7 +373,7 @@ static bool find_place(const struct wb_swept_tape_contact *c, const double *posi
         aside[i] = x[i] - place[i];
         direction[i] = d[i] / size;
     }
-    near->offset = (dot(aside, direction) - outwards * near->gap) / size;
+    near->offset = (wb_vec3_dot(aside, direction) - outwards * near->gap) / size;
     (void)take_out(aside, direction);
     find_centre_beside(c, position, j, centre, axis, near);
     return true;
@@ -400,7 +391,7 @@ static enum wb_status look_at(struct wb_swept_tape_contact *c,
 
     read_node(c, fields->tape.position, k, j, x);
     read_node(c, fields->tape.director, k, j, d);
-    if (!isfinite(dot(x, x) + dot(d, d)))
+    if (!isfinite(wb_vec3_dot(x, x) + wb_vec3_dot(d, d)))
         return wb_fail(WB_ERR_DATA, "positions of the tape are not finite");
     now->wire = -1;
     if (!find_wire(c, x, k, j, &near, centre, axis))

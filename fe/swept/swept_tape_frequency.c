@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vec3.h"
 #include "fe/swept/swept_tape_private.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -12,11 +13,6 @@ enum {
     LENGTHS = WB_SWEPT_TAPE_N_MEASURES,
     ALL_MEASURES = LENGTHS + 4
 };
-
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* The measures of swept_tape_kernel.inc and the directors' lengths, all quadratic in `u`: the plain
  * version of what the kernel does. */
@@ -44,23 +40,24 @@ static void find_measures(const struct wb_swept_tape_element *element, const dou
         hx[i] = XH[i] - c[0] * a1[i] - c[1] * a2[i];
         hd[i] = DH[i] - c[0] * d1[i] - c[1] * d2[i];
     }
-    const double shear[2] = {dot(X1, D0) + 0.5 * dot(XH, D2), dot(X2, D0) + 0.5 * dot(XH, D1)};
-    e[0] = 0.25 * (dot(a1, a1) + dot(a2, a2));
-    e[1] = 0.25 * (dot(a1, a1) - dot(a2, a2));
-    e[2] = 0.5 * dot(a1, a2);
-    e[3] = 0.5 * (dot(a1, d1) + dot(a2, d2));
-    e[4] = 0.5 * (dot(a1, d1) - dot(a2, d2));
-    e[5] = 0.5 * (dot(a1, d2) + dot(a2, d1));
+    const double shear[2] = {wb_vec3_dot(X1, D0) + 0.5 * wb_vec3_dot(XH, D2),
+                             wb_vec3_dot(X2, D0) + 0.5 * wb_vec3_dot(XH, D1)};
+    e[0] = 0.25 * (wb_vec3_dot(a1, a1) + wb_vec3_dot(a2, a2));
+    e[1] = 0.25 * (wb_vec3_dot(a1, a1) - wb_vec3_dot(a2, a2));
+    e[2] = 0.5 * wb_vec3_dot(a1, a2);
+    e[3] = 0.5 * (wb_vec3_dot(a1, d1) + wb_vec3_dot(a2, d2));
+    e[4] = 0.5 * (wb_vec3_dot(a1, d1) - wb_vec3_dot(a2, d2));
+    e[5] = 0.5 * (wb_vec3_dot(a1, d2) + wb_vec3_dot(a2, d1));
     e[6] = B[0] * shear[0];
     e[7] = B[1] * shear[0] + B[2] * shear[1];
-    e[8] = 0.5 * dot(X1, D2) + dot(XH, D0);
-    e[9] = 0.5 * dot(X2, D1) + dot(XH, D0);
-    e[10] = dot(hx, a1);
-    e[11] = dot(hx, a2);
-    e[12] = dot(hd, a1);
-    e[13] = dot(hd, a2);
+    e[8] = 0.5 * wb_vec3_dot(X1, D2) + wb_vec3_dot(XH, D0);
+    e[9] = 0.5 * wb_vec3_dot(X2, D1) + wb_vec3_dot(XH, D0);
+    e[10] = wb_vec3_dot(hx, a1);
+    e[11] = wb_vec3_dot(hx, a2);
+    e[12] = wb_vec3_dot(hd, a1);
+    e[13] = wb_vec3_dot(hd, a2);
     for (int a = 0; a < 4; a++)
-        e[LENGTHS + a] = 0.5 * dot(u + 12 + 3 * a, u + 12 + 3 * a);
+        e[LENGTHS + a] = 0.5 * wb_vec3_dot(u + 12 + 3 * a, u + 12 + 3 * a);
 }
 
 /* Stiffnesses of the measures. */
@@ -139,11 +136,12 @@ static bool is_same(const struct wb_swept_tape_element *a, const struct wb_swept
                 of_a[i] = a->node[q][i] - a->node[0][i];
                 of_b[i] = b->node[q][i] - b->node[0][i];
             }
-            const double size = sqrt(dot(of_a, of_a));
-            if (!(fabs(size - sqrt(dot(of_b, of_b))) <= 1e-9 * size) ||
-                !(fabs(dot(a->director[p], of_a) - dot(b->director[p], of_b)) <= 1e-9 * size) ||
-                !(fabs(dot(a->director[p], a->director[q]) - dot(b->director[p], b->director[q])) <=
-                  1e-9))
+            const double size = sqrt(wb_vec3_dot(of_a, of_a));
+            if (!(fabs(size - sqrt(wb_vec3_dot(of_b, of_b))) <= 1e-9 * size) ||
+                !(fabs(wb_vec3_dot(a->director[p], of_a) - wb_vec3_dot(b->director[p], of_b)) <=
+                  1e-9 * size) ||
+                !(fabs(wb_vec3_dot(a->director[p], a->director[q]) -
+                       wb_vec3_dot(b->director[p], b->director[q])) <= 1e-9))
                 return false;
         }
     }

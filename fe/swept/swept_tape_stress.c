@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "base/vec3.h"
 #include "fe/swept/swept_tape_private.h"
 
 enum {
@@ -20,11 +21,6 @@ struct symmetric {
 int wb_swept_tape_stress_points(const struct wb_swept_tape *tape)
 {
     return tape->numbers.n_points;
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* A number of the kernel's type. */
@@ -66,12 +62,12 @@ static void find_gradient(const struct wb_swept_tape *tape, const double *field,
 static struct symmetric products(double a[2][3], double b[2][3], double factor,
                                  const double reference[3])
 {
-    const double first = dot(a[0], b[0]), second = dot(a[1], b[1]);
+    const double first = wb_vec3_dot(a[0], b[0]), second = wb_vec3_dot(a[1], b[1]);
 
     return (struct symmetric){
         0.5 * factor * (first + second) - reference[0],
         0.5 * factor * (first - second) - reference[1],
-        0.5 * factor * (dot(a[0], b[1]) + dot(a[1], b[0])) - reference[2],
+        0.5 * factor * (wb_vec3_dot(a[0], b[1]) + wb_vec3_dot(a[1], b[0])) - reference[2],
     };
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/log.h"
+#include "base/vec3.h"
 #include "tests/check.h"
 
 #define N 4
@@ -58,11 +59,6 @@ static void film(const struct scene *scene)
     tracks = (struct wb_marker_tracks){.n_markers = N, .n_frames = N_FRAMES, .index = indices};
 }
 
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static struct scene tilted(void)
 {
     /* Vertical 2 degrees off the server's axis, x turned by 40 degrees about it. */
@@ -87,15 +83,15 @@ static void vertical_and_plane_are_found(void **state)
     film(&scene);
     assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
     assert_true(frame.up_from_motion);
-    assert_close(dot(frame.up, scene.up), 1.0, 1e-7);
-    assert_close(dot(frame.along, scene.along), 1.0, 1e-6);
-    assert_close(dot(frame.normal, frame.up), 0.0, 1e-12);
-    assert_close(dot(frame.normal, frame.along), 0.0, 1e-12);
+    assert_close(wb_vec3_dot(frame.up, scene.up), 1.0, 1e-7);
+    assert_close(wb_vec3_dot(frame.along, scene.along), 1.0, 1e-6);
+    assert_close(wb_vec3_dot(frame.normal, frame.up), 0.0, 1e-12);
+    assert_close(wb_vec3_dot(frame.normal, frame.along), 0.0, 1e-12);
     assert_close(frame.tilt, 2.0 * M_PI / 180.0, 1e-3);
     assert_close(frame.motion, scene.motion, 1e-3);
     assert_close(frame.planarity, scene.noise, 0.02e-3);
     assert_close(frame.plane_tilt, 0.0, 2e-3);
-    const double error = acos(fmin(1.0, dot(frame.up, scene.up)));
+    const double error = acos(fmin(1.0, wb_vec3_dot(frame.up, scene.up)));
     assert_true(error < 4.0 * frame.up_uncertainty && frame.up_uncertainty < 0.5e-3);
     wb_frame_release(&frame);
     wb_point_cloud_release(&cloud);
@@ -172,7 +168,7 @@ static void a_clamp_that_stands_still_leaves_the_servers_axis(void **state)
     film(&scene);
     assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
     assert_false(frame.up_from_motion);
-    assert_close(dot(frame.up, server_up), 1.0, 1e-12);
+    assert_close(wb_vec3_dot(frame.up, server_up), 1.0, 1e-12);
     wb_frame_release(&frame);
     wb_point_cloud_release(&cloud);
 }
@@ -207,7 +203,7 @@ static void a_clamp_that_is_hidden_leaves_frames_out(void **state)
     assert_true(isfinite(wb_frame_clamp_height(&frame, 499)));
     assert_true(isnan(wb_frame_clamp_height(&frame, 505)));
     assert_true(isfinite(wb_frame_clamp_height(&frame, 750)));
-    assert_close(dot(frame.along, scene.along), 1.0, 1e-6);
+    assert_close(wb_vec3_dot(frame.along, scene.along), 1.0, 1e-6);
     wb_frame_release(&frame);
     wb_point_cloud_release(&cloud);
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vec3.h"
 #include "tests/twin/bundle_static_private.h"
 
 #define WB_LOG_DOMAIN "bundle_static"
@@ -194,11 +195,6 @@ static void find_slopes(const struct node *node, double eta, double h, double ch
     }
 }
 
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Stress and its derivative by Green's strain from those by the logarithmic one. */
 static void pull_back(const struct wb_bundle_static_sheet_response *r, double J[3][3], double S[3],
                       double D[3][3])
@@ -305,8 +301,9 @@ static void add_element(struct wb_bundle_static *b, int k, int e)
         double J[3][3], S[3], D[3][3];
 
         find_slopes(node, (g == 0 ? -1.0 : 1.0) / sqrt(3.0), b->h, line->chord, &at);
-        const double E[3] = {0.5 * (dot(at.along, at.along) - 1.0),
-                             0.5 * (dot(at.round, at.round) - 1.0), dot(at.along, at.round)};
+        const double E[3] = {0.5 * (wb_vec3_dot(at.along, at.along) - 1.0),
+                             0.5 * (wb_vec3_dot(at.round, at.round) - 1.0),
+                             wb_vec3_dot(at.along, at.round)};
         logarithm(E, point->strain, J);
         wb_bundle_static_sheet_respond(&b->sheet, point->strain, &b->point[i].history,
                                        &point->history, &r);
@@ -379,7 +376,7 @@ double wb_bundle_static_bond_energy(const struct wb_bundle_static *b)
             for (int i = 0; i < 3; i++)
                 u[i] = wb_bundle_static_ring_field(b, b->committed, k, i)[j];
             for (int i = 0; i < 3; i++)
-                sum += 0.5 * u[i] * dot(K[i], u);
+                sum += 0.5 * u[i] * wb_vec3_dot(K[i], u);
         }
     return sum;
 }

@@ -1,4 +1,5 @@
 /* Kinematics, forces and stiffness of the rod's element. */
+#include "base/vec3.h"
 #include "fe/rod/rod_element.h"
 
 #include "tests/fe/rod/wires.h"
@@ -10,13 +11,6 @@ enum {
 };
 
 static const double identity[4] = {1.0, 0.0, 0.0, 0.0};
-
-static void cross(const double *a, const double *b, double *c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static double difference(const double *a, const double *b, int n)
 {
@@ -173,7 +167,7 @@ static void forces_and_moments_balance(void **unused)
         wb_rod_element_add_forces(&shape, g, &points[g], f);
     for (int i = 0; i < NODES; i++) {
         double arm[3];
-        cross(nodes[i].position, f + U * i, arm);
+        wb_vec3_cross(nodes[i].position, f + U * i, arm);
         for (int k = 0; k < 3; k++) {
             force[k] += f[U * i + k];
             moment[k] += f[U * i + 3 + k] + arm[k];

@@ -1,6 +1,7 @@
 /* The elastic rod against exact solutions: elastica, follower, circle, bend in space, shooting. */
 #include <stdlib.h>
 
+#include "base/vec3.h"
 #include "fe/linear/banded.h"
 #include "tests/fe/rod/rods.h"
 
@@ -113,13 +114,6 @@ struct shooting {
     struct wb_tip_loads tip;
 };
 
-static void cross(const double *a, const double *b, double *c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* r' = R (G + e), R' = R [k x], n' = -load, m' = -r' x n. */
 static void slope(const struct shooting *p, const double y[STATE], double dy[STATE])
 {
@@ -140,7 +134,7 @@ static void slope(const struct shooting *p, const double y[STATE], double dy[STA
         dy[5 + 3 * i] = row[0] * k[1] - row[1] * k[0];
         dy[12 + i] = -p->load[i];
     }
-    cross(n, dy, dy + 15);
+    wb_vec3_cross(n, dy, dy + 15);
 }
 
 /* From forces and moments at the clamp to what they leave unbalanced at the tip. */

@@ -1,5 +1,6 @@
 /* The kernels of contact against a slow twin, against each other, in parts, and over a checkpoint;
  * the bound for the stable step against the largest eigenvalue. */
+#include "base/vec3.h"
 #include "fe/swept/swept_contact.h"
 
 #include "tests/fe/swept/contacts.h"
@@ -74,17 +75,6 @@ struct twin {
     double normal, tangential, friction;
 };
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Gaussian elimination of a positive definite system. */
 static void solve3(double A[3][3], const double right[3], double x[3])
 {
@@ -141,8 +131,8 @@ static void frame_of(const struct twin *twin, const double *position, int w, int
 static void inertia(double p[3], double q[3], double J[3][3])
 {
     for (int i = 0; i < 9; i++)
-        J[i / 3][i % 3] = (i / 3 == i % 3 ? dot(p, p) + dot(q, q) : 0.0) - p[i / 3] * p[i % 3] -
-                          q[i / 3] * q[i % 3];
+        J[i / 3][i % 3] = (i / 3 == i % 3 ? wb_vec3_dot(p, p) + wb_vec3_dot(q, q) : 0.0) -
+                          p[i / 3] * p[i % 3] - q[i / 3] * q[i % 3];
 }
 
 /* Centre now, and its move and the turn of the section in this step. */
@@ -160,7 +150,7 @@ static void motion_of(const struct twin *twin, int w, int j, double now[3], doub
         double change[3];
         for (int i = 0; i < 3; i++)
             change[i] = after[a][i] - before[a][i];
-        cross(middle[a], change, part);
+        wb_vec3_cross(middle[a], change, part);
         for (int i = 0; i < 3; i++)
             work[i] += part[i];
     }
@@ -194,8 +184,8 @@ static void load_station(struct twin *twin, int w, int j, double share, const do
     frame_of(twin, twin->c->position[w], w, j, frame);
     inertia(frame[1], frame[2], J);
     solve3(J, M, m);
-    cross(m, frame[1], part[0]);
-    cross(m, frame[2], part[1]);
+    wb_vec3_cross(m, frame[1], part[0]);
+    wb_vec3_cross(m, frame[2], part[1]);
     for (int k = 0; k < CONTACTS_SURFACE; k++) {
         double weight[3];
         weights_of(twin->c, w, k, weight);
@@ -220,25 +210,25 @@ static void rub(struct twin *twin, double k_t, double length, double N, const do
     const struct wb_swept_contact_settings *s = twin->settings;
     double turned[3], twice[3], before[3], tangential[3], trial[3];
 
-    cross(turn, drag, turned);
-    cross(turn, turned, twice);
+    wb_vec3_cross(turn, drag, turned);
+    wb_vec3_cross(turn, turned, twice);
     for (int i = 0; i < 3; i++)
         before[i] = drag[i] + turned[i] + 0.5 * twice[i];
-    const double out = dot(before, n), along = dot(slip, n);
+    const double out = wb_vec3_dot(before, n), along = wb_vec3_dot(slip, n);
     for (int i = 0; i < 3; i++) {
         before[i] -= out * n[i];
         tangential[i] = slip[i] - along * n[i];
         trial[i] = before[i] + k_t * tangential[i];
     }
-    const double rate = sqrt(dot(tangential, tangential)) / dt;
+    const double rate = sqrt(wb_vec3_dot(tangential, tangential)) / dt;
     const double mu = s->friction_kinetic +
                       (s->friction_static - s->friction_kinetic) * exp(-s->friction_decay * rate);
-    const double size = sqrt(dot(trial, trial));
+    const double size = sqrt(wb_vec3_dot(trial, trial));
     for (int i = 0; i < 3; i++) {
         drag[i] = size > mu * N ? trial[i] * mu * N / size : trial[i];
         twin->friction += length * 0.5 * (before[i] + drag[i]) * (trial[i] - drag[i]) / k_t;
     }
-    twin->tangential += length * 0.5 * dot(drag, drag) / k_t;
+    twin->tangential += length * 0.5 * wb_vec3_dot(drag, drag) / k_t;
 }
 
 static void press_point(struct twin *twin, const struct wb_swept_contact_pair *pair,
@@ -259,7 +249,7 @@ static void press_point(struct twin *twin, const struct wb_swept_contact_pair *p
         middle_D[i] = D[i] - 0.5 * slip[i];
         mean[i] = 0.5 * (turn[0][i] + turn[1][i]);
     }
-    const double distance = sqrt(dot(D, D)), depth = fmax(0.0, r[0] + r[1] - distance);
+    const double distance = sqrt(wb_vec3_dot(D, D)), depth = fmax(0.0, r[0] + r[1] - distance);
     const double N = pair->stiffness * depth;
     for (int i = 0; i < 3; i++)
         n[i] = D[i] / distance;
@@ -267,7 +257,7 @@ static void press_point(struct twin *twin, const struct wb_swept_contact_pair *p
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < 3; i++)
             lever[i] = middle_D[i] * r[side] / (r[0] + r[1]);
-        cross(turn[side], lever, part);
+        wb_vec3_cross(turn[side], lever, part);
         for (int i = 0; i < 3; i++)
             slip[i] -= part[i];
     }
@@ -283,7 +273,7 @@ static void press_point(struct twin *twin, const struct wb_swept_contact_pair *p
             own[i] = side ? -F[i] : F[i];
             lever[i] = (side ? -1.0 : 1.0) * D[i] * r[side] / (r[0] + r[1]);
         }
-        cross(lever, own, M);
+        wb_vec3_cross(lever, own, M);
         load_between(twin, pair->wire[side], middle + (side ? 0.5 : -0.5) * point->shift, own, M);
     }
 }

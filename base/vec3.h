@@ -1,0 +1,38 @@
+/* Vectors of three components in space. All functions are pure; results may be an argument. */
+#ifndef WB_BASE_VEC3_H
+#define WB_BASE_VEC3_H
+
+#include <math.h>
+
+static inline double wb_vec3_dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* out = a x b. */
+static inline void wb_vec3_cross(const double *a, const double *b, double *out)
+{
+    const double x = a[1] * b[2] - a[2] * b[1];
+    const double y = a[2] * b[0] - a[0] * b[2];
+    const double z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+/* Scales to length 1 and returns the length before; a vector of no length stays as it is. */
+static inline double wb_vec3_normalise(double *a)
+{
+    const double length = sqrt(wb_vec3_dot(a, a));
+    for (int k = 0; k < 3 && length > 0.0; k++)
+        a[k] /= length;
+    return length;
+}
+
+static inline double wb_vec3_distance(const double *a, const double *b)
+{
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+#endif
