@@ -9,19 +9,6 @@
 static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
 static const double shortest_row = 1e-3; /* s */
 
-enum wb_phase wb_simulated_phase(enum wb_history_phase phase)
-{
-    switch (phase) {
-    case WB_HISTORY_LOAD:
-        return WB_PHASE_LOAD;
-    case WB_HISTORY_UNLOAD:
-        return WB_PHASE_UNLOAD;
-    case WB_HISTORY_SLACK:
-        return WB_PHASE_SLACK;
-    }
-    return WB_PHASE_LOAD;
-}
-
 double wb_simulated_time(const double from[3], const double to[3])
 {
     const double way = hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
@@ -66,7 +53,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_histo
         const struct wb_row out = {
             .t = travelled / stage_speed,
             .cycle = row->cycle,
-            .phase = wb_simulated_phase(row->phase),
+            .phase = row->phase,
             .deflection = row->point.deflection,
             .tension = row->point.tension,
             .force = row->force,

@@ -29,9 +29,6 @@ WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
                                                const double *shape_s,
                                                const struct wb_simulated_origin *origin);
 
-/* A history's phase as a dataset's. */
-enum wb_phase wb_simulated_phase(enum wb_history_phase phase);
-
 /* Bench time, s, in which a free tip goes from one place to the next, m: at least 1 ms. */
 double wb_simulated_time(const double from[3], const double to[3]);
 

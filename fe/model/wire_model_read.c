@@ -187,9 +187,9 @@ static enum wb_status read_interface(struct reader *reader, const struct wb_conf
     if (m->n_parts != 2)
         return wb_config_refuse(reader->root, "interface", "there is none in a wire of one part");
     const struct wb_wire_model_part *const jacket = &m->part[1];
-    wb_interface_default_law(&m->interface, jacket->material.youngs_modulus,
-                             jacket->material.poissons_ratio,
-                             0.5 * (jacket->outer_diameter - jacket->inner_diameter), friction);
+    wb_trial_default_jacket_contact(
+        &m->interface, jacket->material.youngs_modulus, jacket->material.poissons_ratio,
+        0.5 * (jacket->outer_diameter - jacket->inner_diameter), friction);
     if (has_stiffness) {
         m->interface.tangential_stiffness *= normal_stiffness / m->interface.normal_stiffness;
         m->interface.normal_stiffness = normal_stiffness;
@@ -207,7 +207,7 @@ static enum wb_status read_mesh(struct wb_wire_model *model, const struct wb_con
         WB_CONFIG_OPTIONAL_CHOICE("integration", &integration, integrations),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    model->integration = integration == 1 ? WB_HEX20_REDUCED : WB_HEX20_SELECTIVE;
+    model->integration = integration == 1 ? WB_INTEGRATION_REDUCED : WB_INTEGRATION_SELECTIVE;
     return WB_OK;
 }
 

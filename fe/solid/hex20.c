@@ -25,7 +25,7 @@ struct points {
 
 /* Motions of all points; false when J <= 0 at one. */
 static bool find_motions(struct points *points, const struct wb_hex20_geometry *geometry,
-                         enum wb_hex20_integration integration, const double *restrict u)
+                         enum wb_integration integration, const double *restrict u)
 {
     double relative[3][NODES], h[ALL_POINTS][9];
     const int n = wb_hex20_points(integration);
@@ -37,7 +37,7 @@ static bool find_motions(struct points *points, const struct wb_hex20_geometry *
     }
     points->n = points->n_deviatoric = n;
     wb_hex20_points_gradients(n, geometry->gradient[0][0], relative[0], h[0]);
-    if (integration == WB_HEX20_SELECTIVE) {
+    if (integration == WB_INTEGRATION_SELECTIVE) {
         wb_hex20_points_gradients(CORNERS, geometry->corner_gradient[0][0], relative[0], h[n]);
         points->n += CORNERS;
     }
@@ -102,11 +102,11 @@ static bool all_finite(const double *x, int n)
     return sum == 0.0;
 }
 
-bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
-                       enum wb_hex20_integration integration, const struct wb_material *material,
-                       const double *restrict u, const struct wb_hex20_state *before,
-                       struct wb_hex20_state *after, double *restrict force,
-                       double *restrict stiffness, struct wb_hex20_result *result)
+bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
+                       const struct wb_material *material, const double *restrict u,
+                       const struct wb_hex20_state *before, struct wb_hex20_state *after,
+                       double *restrict force, double *restrict stiffness,
+                       struct wb_hex20_result *result)
 {
     struct points points;
     double rows[3][NODES] = {{0.0}}, accumulated = 0.0;
@@ -182,10 +182,9 @@ static void find_corner_values(const struct points *points, const struct wb_mate
 }
 
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
-                           enum wb_hex20_integration integration,
-                           const struct wb_material *material, const double *restrict u,
-                           const struct wb_hex20_state *state, double stress[WB_HEX20_NODES][6],
-                           double plastic[WB_HEX20_NODES])
+                           enum wb_integration integration, const struct wb_material *material,
+                           const double *restrict u, const struct wb_hex20_state *state,
+                           double stress[WB_HEX20_NODES][6], double plastic[WB_HEX20_NODES])
 {
     struct points points;
     double value[CORNERS][7];

@@ -241,15 +241,15 @@ static void find_parent_shares(double share[NODES][CORNERS])
     }
 }
 
-int wb_hex20_points(enum wb_hex20_integration integration)
+int wb_hex20_points(enum wb_integration integration)
 {
-    return integration == WB_HEX20_SELECTIVE ? WB_HEX20_MOST_POINTS : WB_HEX20_CORNER_POINTS;
+    return integration == WB_INTEGRATION_SELECTIVE ? WB_HEX20_MOST_POINTS : WB_HEX20_CORNER_POINTS;
 }
 
-bool wb_hex20_geometry_init(struct wb_hex20_geometry *geometry,
-                            enum wb_hex20_integration integration, const double position[NODES][3])
+bool wb_hex20_geometry_init(struct wb_hex20_geometry *geometry, enum wb_integration integration,
+                            const double position[NODES][3])
 {
-    const struct rule *rule = integration == WB_HEX20_SELECTIVE ? &three : &two;
+    const struct rule *rule = integration == WB_INTEGRATION_SELECTIVE ? &three : &two;
 
     memset(geometry, 0, sizeof *geometry);
     if (!fill_points(rule, position, geometry->gradient, geometry->weight) ||

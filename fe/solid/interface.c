@@ -11,16 +11,6 @@ enum {
     LOCAL = 9  /* what a point depends on: distance, two base vectors */
 };
 
-void wb_interface_default_law(struct wb_interface_law *law, double youngs_modulus,
-                              double poissons_ratio, double thickness, double friction)
-{
-    const double nu = poissons_ratio;
-    const double confined = youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-    law->normal_stiffness = confined / thickness;
-    law->tangential_stiffness = law->normal_stiffness / 3.0;
-    law->friction = friction;
-}
-
 /* Serendipity functions of the face with 8 nodes and their derivatives. */
 static void shape_functions(double r, double s, double N[NODES], double dr[NODES], double ds[NODES])
 {
@@ -181,7 +171,7 @@ struct response {
     double dissipated, stored; /* J/m2 */
 };
 
-static void respond(const struct wb_interface_law *law, const double gap[3],
+static void respond(const struct wb_jacket_contact_law *law, const double gap[3],
                     const struct wb_interface_state *before, struct wb_interface_state *after,
                     struct response *response)
 {
@@ -352,7 +342,7 @@ static void collect(struct wb_interface_result *result, const struct frame *fram
     result->slipping += response->slipping;
 }
 
-void wb_interface_evaluate(const struct wb_interface_law *law, const double X[16][3],
+void wb_interface_evaluate(const struct wb_jacket_contact_law *law, const double X[16][3],
                            const double *restrict u,
                            const struct wb_interface_state before[WB_INTERFACE_POINTS],
                            struct wb_interface_state after[WB_INTERFACE_POINTS],

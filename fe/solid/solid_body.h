@@ -15,7 +15,7 @@
 
 struct wb_solid_body {
     const struct wb_solid_mesh *mesh; /* borrowed */
-    enum wb_hex20_integration integration;
+    enum wb_integration integration;
     int n_points; /* of an element */
     struct wb_solid_part *parts;
     struct wb_hex20_geometry *geometry; /* (n_elements) */
@@ -23,7 +23,7 @@ struct wb_solid_body {
     int n_equations;
     struct wb_hex20_state *committed, *trial; /* (n_elements x n_points) */
     bool has_contact;                         /* its tangent is unsymmetric */
-    struct wb_interface_law interface;
+    struct wb_jacket_contact_law interface;
     struct wb_interface_state *committed_pairs, *trial_pairs; /* (n_pairs x 9) */
     double *weight;                                           /* (3 n_nodes) N: forces of gravity */
     struct wb_layered *tangent; /* of the last evaluation with stiffness */

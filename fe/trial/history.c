@@ -12,19 +12,6 @@ enum {
     MOST_SHAPE = 1000
 };
 
-const char *wb_history_phase_text(enum wb_history_phase phase)
-{
-    switch (phase) {
-    case WB_HISTORY_LOAD:
-        return "load";
-    case WB_HISTORY_UNLOAD:
-        return "unload";
-    case WB_HISTORY_SLACK:
-        return "slack";
-    }
-    return "unknown";
-}
-
 int wb_history_planned_rows(const struct wb_history_plan *plan)
 {
     return 1 + plan->steps * (plan->cycles == 0 ? 1 : 2 * plan->cycles);
@@ -98,7 +85,7 @@ static bool is_follower(const struct wb_history_plan *plan)
 /* Moves to step `index` of the way up and adds the row, if it gets there. */
 static enum wb_status add_row(struct wb_history *history, const struct wb_history_plan *plan,
                               struct wb_cantilever *cantilever, int cycle, int index,
-                              enum wb_history_phase phase)
+                              enum wb_phase phase)
 {
     const double target =
         index == plan->steps ? plan->maximum : plan->maximum * index / plan->steps;
@@ -114,7 +101,7 @@ static enum wb_status add_row(struct wb_history *history, const struct wb_histor
     if (history->n_rows == 0 && !follows)
         history->zero_force = row->point.vertical_force;
     row->cycle = cycle;
-    row->phase = row->point.slack ? WB_HISTORY_SLACK : phase;
+    row->phase = row->point.slack ? WB_PHASE_SLACK : phase;
     row->force = follows ? row->point.follower : row->point.vertical_force - history->zero_force;
     if (history->n_shape > 0) {
         const size_t at = (size_t)history->n_rows * (size_t)history->n_shape;
@@ -127,11 +114,10 @@ static enum wb_status add_row(struct wb_history *history, const struct wb_histor
 
 /* `steps` rows from one end to the other. */
 static enum wb_status run_branch(struct wb_history *history, const struct wb_history_plan *plan,
-                                 struct wb_cantilever *cantilever, int cycle,
-                                 enum wb_history_phase phase)
+                                 struct wb_cantilever *cantilever, int cycle, enum wb_phase phase)
 {
     for (int i = 1; i <= plan->steps && goes_on(history, plan); i++) {
-        const int index = phase == WB_HISTORY_LOAD ? i : plan->steps - i;
+        const int index = phase == WB_PHASE_LOAD ? i : plan->steps - i;
         WB_TRY(add_row(history, plan, cantilever, cycle, index, phase));
     }
     return WB_OK;
@@ -149,13 +135,13 @@ enum wb_status wb_history_run(struct wb_history *history, const struct wb_histor
     history->converged = true;
     history->stopped = false;
     if (goes_on(history, plan))
-        WB_TRY(add_row(history, plan, cantilever, 1, 0, WB_HISTORY_LOAD));
+        WB_TRY(add_row(history, plan, cantilever, 1, 0, WB_PHASE_LOAD));
 
     const int cycles = plan->cycles == 0 ? 1 : plan->cycles;
     for (int cycle = 1; cycle <= cycles; cycle++) {
-        WB_TRY(run_branch(history, plan, cantilever, cycle, WB_HISTORY_LOAD));
+        WB_TRY(run_branch(history, plan, cantilever, cycle, WB_PHASE_LOAD));
         if (plan->cycles > 0)
-            WB_TRY(run_branch(history, plan, cantilever, cycle, WB_HISTORY_UNLOAD));
+            WB_TRY(run_branch(history, plan, cantilever, cycle, WB_PHASE_UNLOAD));
     }
     return WB_OK;
 }

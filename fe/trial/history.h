@@ -13,13 +13,8 @@
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "fe/linear/trial.h"
 #include "fe/trial/cantilever.h"
-
-enum wb_history_phase {
-    WB_HISTORY_LOAD,
-    WB_HISTORY_UNLOAD,
-    WB_HISTORY_SLACK
-};
 
 struct wb_history_plan {
     enum wb_cantilever_control control; /* WB_CONTROL_DEFLECTION in the usual test */
@@ -34,7 +29,7 @@ struct wb_history_plan {
 
 struct wb_history_row {
     int cycle; /* from 1 */
-    enum wb_history_phase phase;
+    enum wb_phase phase;
     double force; /* N, zeroed vertical force, or the follower force */
     struct wb_cantilever_point point;
 };
@@ -49,9 +44,6 @@ struct wb_history {
     struct wb_cantilever_point end; /* of the last move: where it stopped short of its target */
     bool stopped;                   /* by plan->stop */
 };
-
-/* "load", "unload" or "slack". */
-const char *wb_history_phase_text(enum wb_history_phase phase);
 
 /* Number of rows that a plan gives when it runs through. */
 int wb_history_planned_rows(const struct wb_history_plan *plan);

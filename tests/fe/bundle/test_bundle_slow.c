@@ -28,8 +28,8 @@ static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles,
         assert_int_equal(row->cycle, expected.rows[i].cycle);
         assert_close(error, 0.0, limit);
         worst = fmax(worst, fabs(error));
-        slack += row->phase == WB_HISTORY_SLACK;
-        if (row->phase == WB_HISTORY_SLACK) {
+        slack += row->phase == WB_PHASE_SLACK;
+        if (row->phase == WB_PHASE_SLACK) {
             assert_true(row->tension == 0.0);
             assert_close_relative(row->deflection, expected.rows[i].point.deflection, 0.02);
         }

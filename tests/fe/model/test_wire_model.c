@@ -138,7 +138,7 @@ static void every_key_is_read(void **state)
     assert_close(model.strand_length, 0.76, 1e-15);
     assert_int_equal(model.elements_along, 40);
     assert_int_equal(model.section_density, 2);
-    assert_int_equal(model.integration, WB_HEX20_REDUCED);
+    assert_int_equal(model.integration, WB_INTEGRATION_REDUCED);
     assert_int_equal(model.n_sections, 2);
     assert_close(model.section[0], 3.26e-3, 1e-15);
     assert_close(model.section[1], 0.05, 1e-15);
@@ -214,7 +214,7 @@ static void without_parts_it_is_the_homogenised_wire(void **state)
     assert_close(model.strand_length, 0.0, 0.0);
     assert_int_equal(model.elements_along, 60);
     assert_int_equal(model.section_density, 1);
-    assert_int_equal(model.integration, WB_HEX20_SELECTIVE);
+    assert_int_equal(model.integration, WB_INTEGRATION_SELECTIVE);
     assert_int_equal(model.n_sections, 0);
 
     assert_close_relative(wb_wire_model_mass_per_length(&model),

@@ -9,7 +9,7 @@ enum {
     POINTS = WB_INTERFACE_POINTS
 };
 
-static const struct wb_interface_law law = {4e11, 1.5e11, 0.3};
+static const struct wb_jacket_contact_law law = {4e11, 1.5e11, 0.3};
 
 /* A face, its history and what an evaluation gives. */
 struct contact {
@@ -96,7 +96,7 @@ static void shake(struct contact *contact, double size, uint64_t seed)
         contact->u[i] += size * (test_random(&seed) - 0.5);
 }
 
-static void evaluate_with(struct contact *contact, const struct wb_interface_law *its)
+static void evaluate_with(struct contact *contact, const struct wb_jacket_contact_law *its)
 {
     wb_interface_evaluate(its, (const double(*)[3])contact->X, contact->u, contact->before,
                           contact->after, contact->force, contact->tangent, &contact->result);
@@ -278,7 +278,7 @@ static void shear_sticks_below_the_bound_and_slips_at_it(void **unused)
 static void frictionless_face_bears_no_shear(void **unused)
 {
     (void)unused;
-    const struct wb_interface_law smooth = {4e11, 1.5e11, 0.0};
+    const struct wb_jacket_contact_law smooth = {4e11, 1.5e11, 0.0};
     struct contact contact;
     double sum[3];
     make_flat(&contact, 0.5e-3, 0.5e-3);
@@ -649,8 +649,8 @@ static void default_law_is_as_stiff_as_the_layer(void **unused)
 {
     (void)unused;
     /* A layer of PVC, 0.8 mm, that cannot spread: squeezed by p it gets thinner by p h / M. */
-    struct wb_interface_law its;
-    wb_interface_default_law(&its, 41e6, 0.43, 0.8e-3, 0.1);
+    struct wb_jacket_contact_law its;
+    wb_trial_default_jacket_contact(&its, 41e6, 0.43, 0.8e-3, 0.1);
     const double bulk = 41e6 / (3.0 * (1.0 - 0.86)), shear = 41e6 / (2.0 * 1.43);
     const double thinner = 0.8e-3 * 1e6 / (bulk + 4.0 * shear / 3.0);
     assert_close_relative(1e6 / its.normal_stiffness, thinner, 1e-12);

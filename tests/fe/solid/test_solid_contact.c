@@ -20,7 +20,7 @@ struct stack {
     int n_lower;       /* nodes of the lower block */
     double axis[3][3]; /* up, and two directions across */
     struct wb_solid_part parts[2];
-    struct wb_interface_law law;
+    struct wb_jacket_contact_law law;
     struct wb_solid_settings settings;
     int n_supports;
     struct wb_solid_support *supports;
@@ -100,7 +100,7 @@ static struct stack *stack_begin(const double up[3], const double across[3], dou
     for (int p = 0; p < 2; p++)
         s->parts[p].material =
             (struct wb_material){WB_HARDENING_NONE_ELASTIC, young, 0.3, 0.0, 0.0, 0.0};
-    s->law = (struct wb_interface_law){1e13, 3e11, mu};
+    s->law = (struct wb_jacket_contact_law){1e13, 3e11, mu};
     s->settings = (struct wb_solid_settings){.force_tolerance = 1e-8};
     return s;
 }
@@ -131,7 +131,7 @@ static void stack_create(struct stack *s)
     const struct wb_solid_model model = {
         .mesh = &s->mesh,
         .parts = s->parts,
-        .integration = WB_HEX20_SELECTIVE,
+        .integration = WB_INTEGRATION_SELECTIVE,
         .n_supports = s->n_supports,
         .supports = s->supports,
         .nodal_force = (const double(*)[3])s->force,
@@ -382,8 +382,8 @@ static struct bent bend(double mu, const double poissons_ratio[2], double pull, 
         model->part[p].material = (struct wb_material){
             WB_HARDENING_NONE_ELASTIC, wire_young, poissons_ratio[p], 0.0, 0.0, 0.0};
     model->has_contact = mu >= 0.0;
-    wb_interface_default_law(&model->interface, wire_young, poissons_ratio[1],
-                             0.5 * (jacket - core), mu);
+    wb_trial_default_jacket_contact(&model->interface, wire_young, poissons_ratio[1],
+                                    0.5 * (jacket - core), mu);
     model->interface.normal_stiffness *= stiffer;
     model->interface.tangential_stiffness *= stiffer;
     model->elements_along = 12;

@@ -46,7 +46,7 @@ static void one_loading_has_a_row_at_zero_and_one_per_step(void **unused)
     for (int i = 0; i < 54; i++) {
         const struct wb_history_row *row = &h.rows[i];
         assert_int_equal(row->cycle, 1);
-        assert_int_equal(row->phase, WB_HISTORY_LOAD);
+        assert_int_equal(row->phase, WB_PHASE_LOAD);
         assert_close(row->point.deflection, i * WB_MM, 1e-9);
         assert_close(row->force, row->point.vertical_force - h.zero_force, 1e-15);
         /* Shapes belong to their rows. */
@@ -75,15 +75,15 @@ static void cycles_load_and_unload_and_go_slack(void **unused)
         const int within = (i - 1) % 40;
         assert_int_equal(row->cycle, 1 + (i - 1) / 40);
         if (row->point.slack)
-            assert_int_equal(row->phase, WB_HISTORY_SLACK);
+            assert_int_equal(row->phase, WB_PHASE_SLACK);
         else
-            assert_int_equal(row->phase, within < 20 ? WB_HISTORY_LOAD : WB_HISTORY_UNLOAD);
+            assert_int_equal(row->phase, within < 20 ? WB_PHASE_LOAD : WB_PHASE_UNLOAD);
         const int step = within < 20 ? within + 1 : 39 - within;
         assert_close(row->point.control, 0.053 * step / 20.0, 1e-15);
     }
-    assert_int_equal(h.rows[40].phase, WB_HISTORY_SLACK);
-    assert_int_equal(h.rows[41].phase, WB_HISTORY_SLACK);
-    assert_string_equal(wb_history_phase_text(h.rows[40].phase), "slack");
+    assert_int_equal(h.rows[40].phase, WB_PHASE_SLACK);
+    assert_int_equal(h.rows[41].phase, WB_PHASE_SLACK);
+    assert_string_equal(wb_trial_phase_name(h.rows[40].phase), "slack");
     /* A slack strand's vertical force is zero, so its zeroed force is less than nothing. */
     assert_close(h.rows[40].force, -h.zero_force, 1e-15);
     wb_history_release(&h);
