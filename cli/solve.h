@@ -8,8 +8,8 @@
 
 #include "base/json.h"
 #include "cli/command.h"
+#include "fe/linear/trial.h"
 #include "fe/model/bundle_override.h"
-#include "fe/trial/history.h"
 
 enum wb_solve_kind {
     WB_SOLVE_NONE,

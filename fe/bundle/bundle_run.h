@@ -31,8 +31,8 @@
 
 #include "base/status.h"
 #include "fe/bundle/bundle.h"
+#include "fe/linear/trial.h"
 #include "fe/model/bundle_model.h"
-#include "fe/trial/history.h"
 
 enum {
     WB_BUNDLE_RUN_ATTEMPTS = 5

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "fe/linear/trial.h"
 #include "fe/model/wire_model.h"
-#include "fe/trial/history.h"
 
 struct wb_wire_row {
     int step;                  /* index into the model's steps */
