@@ -83,7 +83,7 @@ struct wb_solid_loads wb_solid_loads_at(const struct wb_solid_increment *increme
 bool wb_solid_newton(struct wb_solid *solid, struct wb_solid_increment *increment, bool predicted);
 
 /* Whether the equilibrium just found is unstable under its control (with an arc: under its loads).
- * Of conservative loads by the inertia of the tangent; of loads that turn with the tip, and with
+ * Of conservative loads by the signature of the tangent; of loads that turn with the tip, and with
  * contact, by the sign of its determinant, which two critical points at once leave as it is. */
 bool wb_solid_newton_unstable(const struct wb_solid *solid,
                               const struct wb_solid_increment *increment);
