@@ -41,15 +41,15 @@ void wb_simulated_describe_tool(struct wb_json *document)
     wb_json_set_text(tool, "revision", wb_version_revision());
 }
 
-static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_history *history,
+static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *loading,
                                const double *shape_s)
 {
     double travelled = 0.0;
 
-    for (int i = 0; i < history->n_rows; i++) {
-        const struct wb_history_row *row = &history->rows[i];
+    for (int i = 0; i < loading->n_rows; i++) {
+        const struct wb_loading_steps_row *row = &loading->rows[i];
         if (i > 0)
-            travelled += fabs(row->point.control - history->rows[i - 1].point.control);
+            travelled += fabs(row->point.control - loading->rows[i - 1].point.control);
         const struct wb_row out = {
             .t = travelled / stage_speed,
             .cycle = row->cycle,
@@ -63,15 +63,15 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_histo
         };
         WB_TRY(wb_dataset_add_row(dataset, &out));
 
-        for (int k = 0; k < history->n_shape; k++) {
-            const size_t at = (size_t)i * (size_t)history->n_shape + (size_t)k;
+        for (int k = 0; k < loading->n_shape; k++) {
+            const size_t at = (size_t)i * (size_t)loading->n_shape + (size_t)k;
             const struct wb_shape_row shape = {
                 .t = out.t,
                 .deflection = out.deflection,
                 .marker = k,
                 .s = shape_s[k],
-                .x = history->shape_x[at],
-                .y = history->shape_y[at],
+                .x = loading->shape_x[at],
+                .y = loading->shape_y[at],
             };
             WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
         }
@@ -80,7 +80,8 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_histo
 }
 
 static void describe(struct wb_json *document, const struct wb_test_info *info,
-                     const struct wb_history *history, const struct wb_simulated_origin *origin)
+                     const struct wb_loading_steps *loading,
+                     const struct wb_simulated_origin *origin)
 {
     char name[128];
     snprintf(name, sizeof name, "%s, simulated %s", info->wire, origin->model);
@@ -98,8 +99,8 @@ static void describe(struct wb_json *document, const struct wb_test_info *info,
                            origin->material->strength_coefficient / WB_MPA);
         wb_json_set_number(simulation, "hardening_exponent", origin->material->hardening_exponent);
     }
-    wb_json_set_boolean(simulation, "converged", history->converged);
-    wb_json_set_number(simulation, "zero_force_N", history->zero_force);
+    wb_json_set_boolean(simulation, "converged", loading->converged);
+    wb_json_set_number(simulation, "zero_force_N", loading->zero_force);
     wb_json_set_number(simulation, "wall_s", origin->wall);
     wb_json_set_number(simulation, "cpu_s", origin->cpu);
 
@@ -107,12 +108,12 @@ static void describe(struct wb_json *document, const struct wb_test_info *info,
 }
 
 enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,
-                                 const struct wb_history *history, const double *shape_s,
+                                 const struct wb_loading_steps *loading, const double *shape_s,
                                  const struct wb_simulated_origin *origin)
 {
     dataset->info = *info;
     dataset->info.is_simulation = true;
-    WB_TRY(add_rows(dataset, history, shape_s));
-    describe(dataset->document, info, history, origin);
+    WB_TRY(add_rows(dataset, loading, shape_s));
+    describe(dataset->document, info, loading, origin);
     return WB_OK;
 }

@@ -1,5 +1,5 @@
 /* A wire to be computed, from its YAML file in fixtures/models: geometry, parts with their
- * materials, mesh, loads in the order of their history.
+ * materials, mesh, loading steps in their order.
  *
  *     name: residual-1-8awg
  *     title: Residual 1 of section 2.4

@@ -223,9 +223,9 @@ static enum wb_status read_sections(struct wb_wire_model *model, const struct wb
     return WB_OK;
 }
 
-/* --- history --- */
+/* --- loading steps --- */
 
-/* What a step of the history starts from. */
+/* What a loading step starts from. */
 struct standing {
     struct wb_tip_loads loads;
     bool held;         /* at a deflection */
@@ -371,7 +371,7 @@ static enum wb_status read_step(struct wb_wire_model *model, const struct wb_con
     return WB_OK;
 }
 
-static enum wb_status read_history(struct reader *reader, const struct wb_config_node *list)
+static enum wb_status read_loading_steps(struct reader *reader, const struct wb_config_node *list)
 {
     struct wb_wire_model *const m = reader->model;
     struct standing standing = {0};
@@ -438,7 +438,7 @@ static enum wb_status read_root(struct reader *reader)
         WB_TRY(read_mesh(m, mesh));
     if (sections)
         WB_TRY(read_sections(m, sections));
-    return read_history(reader, history);
+    return read_loading_steps(reader, history);
 }
 
 static enum wb_status read_all(struct reader *reader, const char *path)

@@ -1,5 +1,5 @@
 /* What computing a wire model gives, by the 3D solid (fe/trial/wire3d.h) and by the 1D rod
- * (fe/trial/wire1d.h) alike: rows along its history, the axis' shapes, and how it ended.
+ * (fe/trial/wire1d.h) alike: rows along its loading steps, the axis' shapes, and how it ended.
  */
 #ifndef WB_FE_TRIAL_WIRE_RUN_H
 #define WB_FE_TRIAL_WIRE_RUN_H
@@ -35,7 +35,7 @@ struct wb_wire_run {
     int n_shape;
     double *shape_s;                      /* (n_shape) m, reference arc lengths, owned */
     double (*shape)[3];                   /* (n_rows x n_shape), m, owned */
-    bool converged;                       /* false: the history ends early */
+    bool converged;                       /* false: they end early */
     bool stopped;                         /* by the observer */
     char problem[320];                    /* where and why it did not converge; "" otherwise */
     int increments, iterations, cutbacks; /* in all */
@@ -47,7 +47,7 @@ struct wb_wire_run {
 /* Told during a run; each may be NULL. */
 struct wb_wire_observer {
     /* After every converged increment: step, share of it done, iterations of the increment, share
-     * of the whole history done (for the time left). False stops the run. */
+     * of all steps done (for the time left). False stops the run. */
     bool (*increment)(void *context, const struct wb_wire_run *run, int step, double fraction,
                       int iterations, double done);
     /* After every row; `last` in its step. The solver stands at that state. */

@@ -164,7 +164,7 @@ static void ways_to_files_may_be_long(void **state)
     assert_string_equal(model.part[0].material_name, "soft");
 }
 
-static void history_goes_on_from_step_to_step(void **state)
+static void loads_go_on_from_step_to_step(void **state)
 {
     (void)state;
     read_text(full);
@@ -588,7 +588,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_key_is_read),
         cmocka_unit_test(ways_to_files_may_be_long),
-        cmocka_unit_test(history_goes_on_from_step_to_step),
+        cmocka_unit_test(loads_go_on_from_step_to_step),
         cmocka_unit_test(without_parts_it_is_the_homogenised_wire),
         cmocka_unit_test(rules_of_mixtures_give_the_papers_wire),
         cmocka_unit_test(elastic_law_takes_yield_from_all_parts),

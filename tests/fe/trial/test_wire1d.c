@@ -285,7 +285,7 @@ static void strand_goes_slack_and_comes_back(void **unused)
     release(&c);
 }
 
-static void a_limit_load_ends_the_history_with_its_rows_kept(void **unused)
+static void a_limit_load_ends_the_steps_with_its_rows_kept(void **unused)
 {
     (void)unused;
     make_type3(2);
@@ -449,7 +449,7 @@ int main(void)
         cmocka_unit_test(paper_histories_run_through),
         cmocka_unit_test(longer_increments_change_little),
         cmocka_unit_test(strand_goes_slack_and_comes_back),
-        cmocka_unit_test(a_limit_load_ends_the_history_with_its_rows_kept),
+        cmocka_unit_test(a_limit_load_ends_the_steps_with_its_rows_kept),
         cmocka_unit_test(a_strut_ends_before_it_buckles),
         cmocka_unit_test(observer_is_told_and_can_stop),
         cmocka_unit_test(a_second_run_begins_anew),
