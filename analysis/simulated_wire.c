@@ -118,9 +118,9 @@ static void describe_solid(struct wb_json *simulation, const struct wb_wire_mode
     struct wb_json *const interface = wb_json_set_object(simulation, "interface");
     wb_json_set_text(interface, "kind", model->has_contact ? "contact" : "bonded");
     if (model->has_contact) {
-        wb_json_set_number(interface, "friction", model->interface.friction);
+        wb_json_set_number(interface, "friction", model->jacket_contact.friction);
         wb_json_set_number(interface, "normal_stiffness_N_mm3",
-                           model->interface.normal_stiffness / pa_per_m);
+                           model->jacket_contact.normal_stiffness / pa_per_m);
         wb_json_set_number(interface, "penetration_mm", balance->penetration / WB_MM);
         wb_json_set_number(interface, "opening_mm", balance->opening / WB_MM);
         wb_json_set_number(interface, "slip_mm", balance->slip / WB_MM);

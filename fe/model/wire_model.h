@@ -107,7 +107,7 @@ struct wb_wire_model {
     int n_parts;
     struct wb_wire_model_part part[WB_WIRE_MODEL_PARTS];
     bool has_contact;
-    struct wb_jacket_contact_law interface;
+    struct wb_jacket_contact_law jacket_contact;
     enum wb_wire_clamp clamp;
     double gravity[3];    /* m/s2 */
     double strand_length; /* m; 0: vertical force */

@@ -172,7 +172,7 @@ static enum wb_status take_homogenised(struct reader *reader)
     return WB_OK;
 }
 
-static enum wb_status read_interface(struct reader *reader, const struct wb_config_node *map)
+static enum wb_status read_jacket_contact(struct reader *reader, const struct wb_config_node *map)
 {
     struct wb_wire_model *const m = reader->model;
     double friction = 0.0, normal_stiffness = 0.0;
@@ -188,11 +188,12 @@ static enum wb_status read_interface(struct reader *reader, const struct wb_conf
         return wb_config_refuse(reader->root, "interface", "there is none in a wire of one part");
     const struct wb_wire_model_part *const jacket = &m->part[1];
     wb_trial_default_jacket_contact(
-        &m->interface, jacket->material.youngs_modulus, jacket->material.poissons_ratio,
+        &m->jacket_contact, jacket->material.youngs_modulus, jacket->material.poissons_ratio,
         0.5 * (jacket->outer_diameter - jacket->inner_diameter), friction);
     if (has_stiffness) {
-        m->interface.tangential_stiffness *= normal_stiffness / m->interface.normal_stiffness;
-        m->interface.normal_stiffness = normal_stiffness;
+        m->jacket_contact.tangential_stiffness *=
+            normal_stiffness / m->jacket_contact.normal_stiffness;
+        m->jacket_contact.normal_stiffness = normal_stiffness;
     }
     m->has_contact = true;
     return WB_OK;
@@ -432,7 +433,7 @@ static enum wb_status read_root(struct reader *reader)
     else
         WB_TRY(take_homogenised(reader));
     if (interface)
-        WB_TRY(read_interface(reader, interface));
+        WB_TRY(read_jacket_contact(reader, interface));
     WB_TRY(read_triple(gravity, "gravity", 1e4, m->gravity));
     if (mesh)
         WB_TRY(read_mesh(m, mesh));

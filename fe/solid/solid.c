@@ -222,7 +222,7 @@ static void accept(struct wb_solid *solid, const struct wb_solid_increment *incr
     solid->balance.elastic = solid->found.elastic;
     solid->balance.dissipated += solid->found.dissipated;
     solid->balance.friction += solid->found.friction;
-    solid->balance.interface = solid->found.interface;
+    solid->balance.jacket_contact = solid->found.jacket_contact;
 
     double *oldest = solid->before;
     solid->before = solid->committed;

@@ -128,9 +128,9 @@ static void every_key_is_read(void **state)
     assert_close(jacket->material.strength_coefficient, 0.0, 0.0);
 
     assert_true(model.has_contact);
-    assert_close(model.interface.friction, 0.1, 0.0);
-    assert_close_relative(model.interface.normal_stiffness, 400e9, 1e-12);
-    assert_close_relative(model.interface.tangential_stiffness, 400e9 / 3.0, 1e-12);
+    assert_close(model.jacket_contact.friction, 0.1, 0.0);
+    assert_close_relative(model.jacket_contact.normal_stiffness, 400e9, 1e-12);
+    assert_close_relative(model.jacket_contact.tangential_stiffness, 400e9 / 3.0, 1e-12);
     assert_int_equal(model.clamp, WB_WIRE_CLAMP_FIXED);
     assert_close(model.gravity[0], 1.0, 0.0);
     assert_close(model.gravity[1], -9.81, 0.0);
@@ -265,8 +265,8 @@ static void contact_is_as_stiff_as_the_jacket_by_default(void **state)
     char *const line = strstr(text, "  normal_stiffness_N_mm3: 400\n");
     memmove(line, line + 30, strlen(line + 30) + 1);
     read_text(text);
-    assert_close_relative(model.interface.normal_stiffness, 41e6 * 0.57 / (1.43 * 0.14) / 0.8e-3,
-                          1e-12);
+    assert_close_relative(model.jacket_contact.normal_stiffness,
+                          41e6 * 0.57 / (1.43 * 0.14) / 0.8e-3, 1e-12);
 }
 
 static void checksum_covers_all_files(void **state)

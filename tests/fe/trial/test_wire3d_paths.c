@@ -288,7 +288,7 @@ static void sliding_beyond_what_contact_is_made_for_is_told(void **state)
         m->part[1].outer_diameter = m->wire.outer_diameter = 1.4e-3;
         m->part[1].material = soft;
         m->has_contact = true;
-        wb_trial_default_jacket_contact(&m->interface, 1e9, 0.3, 0.2e-3, 0.0);
+        wb_trial_default_jacket_contact(&m->jacket_contact, 1e9, 0.3, 0.2e-3, 0.0);
         /* Each part carries a share of the force as large as its share of sum E A. */
         const double area = M_PI * 1.96e-6 / 4.0;
         const double stress = 1e6 + 50e6 * strains[k];

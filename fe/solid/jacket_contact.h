@@ -10,25 +10,25 @@
  * exactly, and their moments too. Source: P. Wriggers, Computational Contact Mechanics, 2nd ed.,
  * chapters 5, 6 and 9.
  */
-#ifndef WB_FE_SOLID_INTERFACE_H
-#define WB_FE_SOLID_INTERFACE_H
+#ifndef WB_FE_SOLID_JACKET_CONTACT_H
+#define WB_FE_SOLID_JACKET_CONTACT_H
 
 #include "fe/linear/trial.h"
 
 enum {
-    WB_INTERFACE_UNKNOWNS = 48, /* 8 inner nodes, then 8 outer ones */
-    WB_INTERFACE_POINTS = 9     /* 3 x 3 Gauss points */
+    WB_JACKET_CONTACT_UNKNOWNS = 48, /* 8 inner nodes, then 8 outer ones */
+    WB_JACKET_CONTACT_POINTS = 9     /* 3 x 3 Gauss points */
 };
 
 /* History of a point; all zero is virgin (touching without pressure). */
-struct wb_interface_state {
+struct wb_jacket_contact_state {
     double traction[2]; /* Pa, tangential, in the convected frame: along the face's first parametric
                            direction (node 0 to node 1), and across it */
     double gap[2];      /* m, tangential distance in that frame at the end of the last step */
     double slip;        /* m, accumulated frictional slip; it does not grow while open */
 };
 
-struct wb_interface_result {
+struct wb_jacket_contact_result {
     double penetration;     /* m, largest */
     double opening;         /* m, largest */
     double slip;            /* m, largest accumulated */
@@ -44,11 +44,10 @@ struct wb_interface_result {
  * receives the histories at the end of the step (it may be `before`). Pressures are per reference
  * area. Sign: internal forces, as an element's. What is not finite in u comes out as forces that
  * are not. Pure. */
-void wb_interface_evaluate(const struct wb_jacket_contact_law *law, const double X[16][3],
-                           const double *restrict u,
-                           const struct wb_interface_state before[WB_INTERFACE_POINTS],
-                           struct wb_interface_state after[WB_INTERFACE_POINTS],
-                           double *restrict force, double *restrict tangent,
-                           struct wb_interface_result *result);
+void wb_jacket_contact_evaluate(
+    const struct wb_jacket_contact_law *law, const double X[16][3], const double *restrict u,
+    const struct wb_jacket_contact_state before[WB_JACKET_CONTACT_POINTS],
+    struct wb_jacket_contact_state after[WB_JACKET_CONTACT_POINTS], double *restrict force,
+    double *restrict tangent, struct wb_jacket_contact_result *result);
 
 #endif

@@ -1,12 +1,12 @@
-#include "fe/solid/interface.h"
+#include "fe/solid/jacket_contact.h"
 
 #include "tests/check.h"
 #include "tests/fe/rod/wires.h"
 
 enum {
     NODES = 8,
-    ALL = WB_INTERFACE_UNKNOWNS,
-    POINTS = WB_INTERFACE_POINTS
+    ALL = WB_JACKET_CONTACT_UNKNOWNS,
+    POINTS = WB_JACKET_CONTACT_POINTS
 };
 
 static const struct wb_jacket_contact_law law = {4e11, 1.5e11, 0.3};
@@ -14,9 +14,9 @@ static const struct wb_jacket_contact_law law = {4e11, 1.5e11, 0.3};
 /* A face, its history and what an evaluation gives. */
 struct contact {
     double X[2 * NODES][3], u[ALL];
-    struct wb_interface_state before[POINTS], after[POINTS];
+    struct wb_jacket_contact_state before[POINTS], after[POINTS];
     double force[ALL], tangent[ALL * ALL];
-    struct wb_interface_result result;
+    struct wb_jacket_contact_result result;
 };
 
 static const double corner[NODES][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1},
@@ -98,8 +98,8 @@ static void shake(struct contact *contact, double size, uint64_t seed)
 
 static void evaluate_with(struct contact *contact, const struct wb_jacket_contact_law *its)
 {
-    wb_interface_evaluate(its, (const double(*)[3])contact->X, contact->u, contact->before,
-                          contact->after, contact->force, contact->tangent, &contact->result);
+    wb_jacket_contact_evaluate(its, (const double(*)[3])contact->X, contact->u, contact->before,
+                               contact->after, contact->force, contact->tangent, &contact->result);
 }
 
 static void evaluate(struct contact *contact)
@@ -504,15 +504,15 @@ static void check_tangent(struct contact *contact)
     assert_true(largest > 0.0);
     for (int j = 0; j < ALL; j++) {
         double plus[ALL];
-        struct wb_interface_state after[POINTS];
-        struct wb_interface_result result;
+        struct wb_jacket_contact_state after[POINTS];
+        struct wb_jacket_contact_result result;
         const double u = contact->u[j];
         contact->u[j] = u + step;
-        wb_interface_evaluate(&law, (const double(*)[3])contact->X, contact->u, contact->before,
-                              after, plus, NULL, &result);
+        wb_jacket_contact_evaluate(&law, (const double(*)[3])contact->X, contact->u,
+                                   contact->before, after, plus, NULL, &result);
         contact->u[j] = u - step;
-        wb_interface_evaluate(&law, (const double(*)[3])contact->X, contact->u, contact->before,
-                              after, contact->force, NULL, &result);
+        wb_jacket_contact_evaluate(&law, (const double(*)[3])contact->X, contact->u,
+                                   contact->before, after, contact->force, NULL, &result);
         contact->u[j] = u;
         for (int i = 0; i < ALL; i++)
             assert_close((plus[i] - contact->force[i]) / (2.0 * step), tangent[ALL * i + j],
@@ -639,8 +639,8 @@ static void history_may_be_updated_in_place(void **unused)
     shake(&apart, 2e-6, 8);
     in_place = apart;
     evaluate(&apart);
-    wb_interface_evaluate(&law, (const double(*)[3])in_place.X, in_place.u, in_place.before,
-                          in_place.before, in_place.force, NULL, &in_place.result);
+    wb_jacket_contact_evaluate(&law, (const double(*)[3])in_place.X, in_place.u, in_place.before,
+                               in_place.before, in_place.force, NULL, &in_place.result);
     assert_memory_equal(in_place.before, apart.after, sizeof apart.after);
     assert_memory_equal(in_place.force, apart.force, sizeof apart.force);
 }
