@@ -16,8 +16,6 @@
 /* Version of dataset.json's layout. */
 #define SCHEMA 1
 
-static const char *const phase_names[] = {"load", "unload", "slack"};
-
 enum loading {
     LOADING_TIP,
     LOADING_FOLLOWER,
@@ -32,11 +30,6 @@ static enum loading loading_of(const struct wb_test_info *info)
     if (info->is_general)
         return LOADING_GENERAL;
     return info->is_follower ? LOADING_FOLLOWER : LOADING_TIP;
-}
-
-const char *wb_phase_name(enum wb_phase phase)
-{
-    return phase_names[phase];
 }
 
 /* theta0(s) = sum_i b_i u^(i+1), u = s/L, and its derivative over s by Horner's scheme. */

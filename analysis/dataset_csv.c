@@ -120,7 +120,7 @@ static enum wb_status append_field(struct wb_text *text, const struct column *co
     } else if (column->kind == KIND_PHASE) {
         enum wb_phase phase;
         memcpy(&phase, member, sizeof phase);
-        wb_text_append(text, "%s", wb_phase_name(phase));
+        wb_text_append(text, "%s", wb_trial_phase_name(phase));
     } else {
         char number[WB_DATASET_CSV_NUMBER];
         double value;
@@ -267,7 +267,7 @@ static enum wb_status read_header(struct reader *reader, const struct column *co
 static bool parse_phase(const char *text, enum wb_phase *phase)
 {
     for (int i = WB_PHASE_LOAD; i <= WB_PHASE_SLACK; i++) {
-        if (strcmp(text, wb_phase_name((enum wb_phase)i)) == 0) {
+        if (strcmp(text, wb_trial_phase_name((enum wb_phase)i)) == 0) {
             *phase = (enum wb_phase)i;
             return true;
         }

@@ -30,7 +30,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundl
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
-            .phase = wb_simulated_phase(row->phase),
+            .phase = row->phase,
             .deflection = row->deflection,
             .tension = row->tension,
             .force = row->force,

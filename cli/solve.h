@@ -8,8 +8,8 @@
 
 #include "base/json.h"
 #include "cli/command.h"
+#include "fe/linear/trial.h"
 #include "fe/model/bundle_override.h"
-#include "fe/trial/history.h"
 
 enum wb_solve_kind {
     WB_SOLVE_NONE,
@@ -49,7 +49,7 @@ int wb_solve_bundle(const struct wb_solve_options *options);
 /* A row of any model, as it is printed. */
 struct wb_solve_point {
     int cycle;
-    enum wb_history_phase phase;
+    enum wb_phase phase;
     double deflection, tension, force, tip_x, tip_angle;
 };
 

@@ -423,7 +423,7 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
         const struct wb_bundle_run_options plain = {.threads = threads};
         run_with(&plain);
         assert_int_equal(history.parts, threads);
-        assert_int_equal(history.rows[8].phase, WB_HISTORY_SLACK);
+        assert_int_equal(history.rows[8].phase, WB_PHASE_SLACK);
         const struct wb_bundle_history straight = history;
         history = (struct wb_bundle_history){0};
 

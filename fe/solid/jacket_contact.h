@@ -10,38 +10,25 @@
  * exactly, and their moments too. Source: P. Wriggers, Computational Contact Mechanics, 2nd ed.,
  * chapters 5, 6 and 9.
  */
-#ifndef WB_FE_SOLID_INTERFACE_H
-#define WB_FE_SOLID_INTERFACE_H
+#ifndef WB_FE_SOLID_JACKET_CONTACT_H
+#define WB_FE_SOLID_JACKET_CONTACT_H
+
+#include "fe/linear/trial.h"
 
 enum {
-    WB_INTERFACE_UNKNOWNS = 48, /* 8 inner nodes, then 8 outer ones */
-    WB_INTERFACE_POINTS = 9     /* 3 x 3 Gauss points */
+    WB_JACKET_CONTACT_UNKNOWNS = 48, /* 8 inner nodes, then 8 outer ones */
+    WB_JACKET_CONTACT_POINTS = 9     /* 3 x 3 Gauss points */
 };
-
-struct wb_interface_law {
-    double normal_stiffness;     /* Pa/m */
-    double tangential_stiffness; /* Pa/m, of sticking */
-    double friction;             /* mu, 1 */
-};
-
-/* Stiffnesses for an outer part of such a material and thickness (m). Normal: that of this layer
- * when it is pressed between plates, M / thickness with M = E (1 - nu) / ((1 + nu) (1 - 2 nu)); the
- * penetration is then what the layer itself is squeezed by, p / M of its thickness (1 % at 1 MPa
- * for a jacket of PVC, whose pressures are a tenth of that). Stiffer ones make Newton's method
- * wander among points that open and close. Tangential: a third of it; before it slips, a point
- * moves by 3 mu times its penetration. */
-void wb_interface_default_law(struct wb_interface_law *law, double youngs_modulus,
-                              double poissons_ratio, double thickness, double friction);
 
 /* History of a point; all zero is virgin (touching without pressure). */
-struct wb_interface_state {
+struct wb_jacket_contact_state {
     double traction[2]; /* Pa, tangential, in the convected frame: along the face's first parametric
                            direction (node 0 to node 1), and across it */
     double gap[2];      /* m, tangential distance in that frame at the end of the last step */
     double slip;        /* m, accumulated frictional slip; it does not grow while open */
 };
 
-struct wb_interface_result {
+struct wb_jacket_contact_result {
     double penetration;     /* m, largest */
     double opening;         /* m, largest */
     double slip;            /* m, largest accumulated */
@@ -57,11 +44,10 @@ struct wb_interface_result {
  * receives the histories at the end of the step (it may be `before`). Pressures are per reference
  * area. Sign: internal forces, as an element's. What is not finite in u comes out as forces that
  * are not. Pure. */
-void wb_interface_evaluate(const struct wb_interface_law *law, const double X[16][3],
-                           const double *restrict u,
-                           const struct wb_interface_state before[WB_INTERFACE_POINTS],
-                           struct wb_interface_state after[WB_INTERFACE_POINTS],
-                           double *restrict force, double *restrict tangent,
-                           struct wb_interface_result *result);
+void wb_jacket_contact_evaluate(
+    const struct wb_jacket_contact_law *law, const double X[16][3], const double *restrict u,
+    const struct wb_jacket_contact_state before[WB_JACKET_CONTACT_POINTS],
+    struct wb_jacket_contact_state after[WB_JACKET_CONTACT_POINTS], double *restrict force,
+    double *restrict tangent, struct wb_jacket_contact_result *result);
 
 #endif

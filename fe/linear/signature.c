@@ -1,15 +1,15 @@
-#include "fe/linear/inertia.h"
+#include "fe/linear/signature.h"
 
 #include <math.h>
 
 enum {
-    MOST = WB_INERTIA_MOST
+    MOST = WB_SIGNATURE_MOST
 };
 
 /* A pivot that elimination has made as small as this beside the diagonal is round-off. */
 static const double small_pivot = 1e-12;
 
-int wb_inertia_negative(int n, int stride, const double *matrix)
+int wb_signature_negative(int n, int stride, const double *matrix)
 {
     double A[MOST][MOST], largest[MOST];
     int negative = 0;
@@ -30,7 +30,7 @@ int wb_inertia_negative(int n, int stride, const double *matrix)
     return negative;
 }
 
-bool wb_inertia_is_odd(int n, int stride, const double *matrix)
+bool wb_signature_is_odd(int n, int stride, const double *matrix)
 {
     double A[MOST][MOST];
     bool odd = false;

@@ -1,5 +1,5 @@
 /* Signs of eigenvalues against LAPACK's eigenvalues, and of a chain of blocks against the whole. */
-#include "fe/linear/inertia.h"
+#include "fe/linear/signature.h"
 
 #include <lapacke.h>
 
@@ -7,7 +7,7 @@
 #include "tests/fe/rod/wires.h"
 
 enum {
-    N = WB_INERTIA_MOST,
+    N = WB_SIGNATURE_MOST,
     STRIDE = 8,
     BLOCKS = 5,
     ALL = N * BLOCKS
@@ -42,7 +42,7 @@ static void negative_eigenvalues_are_counted(void **unused)
         for (int i = 0; i < N; i++)
             negative += value[i] < 0.0;
         seen[negative]++;
-        assert_int_equal(wb_inertia_negative(N, STRIDE, A), negative);
+        assert_int_equal(wb_signature_negative(N, STRIDE, A), negative);
     }
     for (int i = 1; i < N; i++)
         assert_true(seen[i] > 10);
@@ -67,7 +67,7 @@ static void oddness_is_the_determinants_sign(void **unused)
         int negative = 0;
         for (int i = 0; i < n; i++)
             negative += imaginary[i] == 0.0 && real[i] < 0.0;
-        assert_int_equal(wb_inertia_is_odd(n, STRIDE, A), negative % 2 != 0);
+        assert_int_equal(wb_signature_is_odd(n, STRIDE, A), negative % 2 != 0);
         odd += negative % 2;
     }
     assert_in_range(odd, 500, 1500);
@@ -77,9 +77,9 @@ static void what_is_zero_but_for_round_off_is_not_negative(void **unused)
 {
     (void)unused;
     double A[4] = {1.0, 1.0, 1.0, 1.0 - 1e-14};
-    assert_int_equal(wb_inertia_negative(2, 2, A), 0);
+    assert_int_equal(wb_signature_negative(2, 2, A), 0);
     A[3] = 1.0 - 1e-9;
-    assert_int_equal(wb_inertia_negative(2, 2, A), 1);
+    assert_int_equal(wb_signature_negative(2, 2, A), 1);
 }
 
 /* Inertia adds up over what is eliminated and what is left (Haynsworth). */
@@ -113,7 +113,7 @@ static void a_chain_counts_as_the_whole_matrix(void **unused)
         for (int i = 0; i < ALL; i++)
             negative += value[i] < 0.0;
         wb_rod_chain_condense(&chain);
-        assert_int_equal(chain.negative + wb_inertia_negative(N, N, diagonal[BLOCKS - 1]),
+        assert_int_equal(chain.negative + wb_signature_negative(N, N, diagonal[BLOCKS - 1]),
                          negative);
         most = negative > most ? negative : most;
     }

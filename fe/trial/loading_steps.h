@@ -7,21 +7,16 @@
  * The force is zeroed as the bench zeroes it: vertical part of the tension less its value at zero
  * deflection on the first loading. Under a follower force it is that force's size, as it is.
  */
-#ifndef WB_FE_TRIAL_HISTORY_H
-#define WB_FE_TRIAL_HISTORY_H
+#ifndef WB_FE_TRIAL_LOADING_STEPS_H
+#define WB_FE_TRIAL_LOADING_STEPS_H
 
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "fe/linear/trial.h"
 #include "fe/trial/cantilever.h"
 
-enum wb_history_phase {
-    WB_HISTORY_LOAD,
-    WB_HISTORY_UNLOAD,
-    WB_HISTORY_SLACK
-};
-
-struct wb_history_plan {
+struct wb_loading_steps_plan {
     enum wb_cantilever_control control; /* WB_CONTROL_DEFLECTION in the usual test */
     double maximum;                     /* in the control's unit; may be negative */
     int steps;                          /* equal steps from zero to the maximum, at least 1 */
@@ -32,16 +27,16 @@ struct wb_history_plan {
     void *stop_context;
 };
 
-struct wb_history_row {
+struct wb_loading_steps_row {
     int cycle; /* from 1 */
-    enum wb_history_phase phase;
+    enum wb_phase phase;
     double force; /* N, zeroed vertical force, or the follower force */
     struct wb_cantilever_point point;
 };
 
-struct wb_history {
+struct wb_loading_steps {
     int n_rows, capacity;
-    struct wb_history_row *rows; /* (n_rows), owned; only those that were reached */
+    struct wb_loading_steps_row *rows; /* (n_rows), owned; only those that were reached */
     int n_shape;
     double *shape_x, *shape_y;      /* (n_rows x n_shape), m, owned; NULL without shape */
     double zero_force;              /* N: what was subtracted, vertical; 0 with a follower force */
@@ -50,22 +45,19 @@ struct wb_history {
     bool stopped;                   /* by plan->stop */
 };
 
-/* "load", "unload" or "slack". */
-const char *wb_history_phase_text(enum wb_history_phase phase);
-
 /* Number of rows that a plan gives when it runs through. */
-int wb_history_planned_rows(const struct wb_history_plan *plan);
+int wb_loading_steps_planned_rows(const struct wb_loading_steps_plan *plan);
 
-/* Takes memory for a plan; wb_history_release() accepts a zeroed history. */
-WB_MUST_CHECK enum wb_status wb_history_init(struct wb_history *history,
-                                             const struct wb_history_plan *plan);
-void wb_history_release(struct wb_history *history);
+/* Takes memory for a plan; wb_loading_steps_release() accepts zeroed ones. */
+WB_MUST_CHECK enum wb_status wb_loading_steps_init(struct wb_loading_steps *loading,
+                                                   const struct wb_loading_steps_plan *plan);
+void wb_loading_steps_release(struct wb_loading_steps *loading);
 
-/* Runs the plan from wherever the cantilever is (usually just created or reset). The history must
+/* Runs the plan from wherever the cantilever is (usually just created or reset). The rows must
  * have been made for a plan of as many rows. Not converging is a result, not an error. Allocates
  * nothing. */
-WB_MUST_CHECK enum wb_status wb_history_run(struct wb_history *history,
-                                            const struct wb_history_plan *plan,
-                                            struct wb_cantilever *cantilever);
+WB_MUST_CHECK enum wb_status wb_loading_steps_run(struct wb_loading_steps *loading,
+                                                  const struct wb_loading_steps_plan *plan,
+                                                  struct wb_cantilever *cantilever);
 
 #endif

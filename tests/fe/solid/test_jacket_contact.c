@@ -1,22 +1,22 @@
-#include "fe/solid/interface.h"
+#include "fe/solid/jacket_contact.h"
 
 #include "tests/check.h"
 #include "tests/fe/rod/wires.h"
 
 enum {
     NODES = 8,
-    ALL = WB_INTERFACE_UNKNOWNS,
-    POINTS = WB_INTERFACE_POINTS
+    ALL = WB_JACKET_CONTACT_UNKNOWNS,
+    POINTS = WB_JACKET_CONTACT_POINTS
 };
 
-static const struct wb_interface_law law = {4e11, 1.5e11, 0.3};
+static const struct wb_jacket_contact_law law = {4e11, 1.5e11, 0.3};
 
 /* A face, its history and what an evaluation gives. */
 struct contact {
     double X[2 * NODES][3], u[ALL];
-    struct wb_interface_state before[POINTS], after[POINTS];
+    struct wb_jacket_contact_state before[POINTS], after[POINTS];
     double force[ALL], tangent[ALL * ALL];
-    struct wb_interface_result result;
+    struct wb_jacket_contact_result result;
 };
 
 static const double corner[NODES][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1},
@@ -96,10 +96,10 @@ static void shake(struct contact *contact, double size, uint64_t seed)
         contact->u[i] += size * (test_random(&seed) - 0.5);
 }
 
-static void evaluate_with(struct contact *contact, const struct wb_interface_law *its)
+static void evaluate_with(struct contact *contact, const struct wb_jacket_contact_law *its)
 {
-    wb_interface_evaluate(its, (const double(*)[3])contact->X, contact->u, contact->before,
-                          contact->after, contact->force, contact->tangent, &contact->result);
+    wb_jacket_contact_evaluate(its, (const double(*)[3])contact->X, contact->u, contact->before,
+                               contact->after, contact->force, contact->tangent, &contact->result);
 }
 
 static void evaluate(struct contact *contact)
@@ -278,7 +278,7 @@ static void shear_sticks_below_the_bound_and_slips_at_it(void **unused)
 static void frictionless_face_bears_no_shear(void **unused)
 {
     (void)unused;
-    const struct wb_interface_law smooth = {4e11, 1.5e11, 0.0};
+    const struct wb_jacket_contact_law smooth = {4e11, 1.5e11, 0.0};
     struct contact contact;
     double sum[3];
     make_flat(&contact, 0.5e-3, 0.5e-3);
@@ -504,15 +504,15 @@ static void check_tangent(struct contact *contact)
     assert_true(largest > 0.0);
     for (int j = 0; j < ALL; j++) {
         double plus[ALL];
-        struct wb_interface_state after[POINTS];
-        struct wb_interface_result result;
+        struct wb_jacket_contact_state after[POINTS];
+        struct wb_jacket_contact_result result;
         const double u = contact->u[j];
         contact->u[j] = u + step;
-        wb_interface_evaluate(&law, (const double(*)[3])contact->X, contact->u, contact->before,
-                              after, plus, NULL, &result);
+        wb_jacket_contact_evaluate(&law, (const double(*)[3])contact->X, contact->u,
+                                   contact->before, after, plus, NULL, &result);
         contact->u[j] = u - step;
-        wb_interface_evaluate(&law, (const double(*)[3])contact->X, contact->u, contact->before,
-                              after, contact->force, NULL, &result);
+        wb_jacket_contact_evaluate(&law, (const double(*)[3])contact->X, contact->u,
+                                   contact->before, after, contact->force, NULL, &result);
         contact->u[j] = u;
         for (int i = 0; i < ALL; i++)
             assert_close((plus[i] - contact->force[i]) / (2.0 * step), tangent[ALL * i + j],
@@ -639,8 +639,8 @@ static void history_may_be_updated_in_place(void **unused)
     shake(&apart, 2e-6, 8);
     in_place = apart;
     evaluate(&apart);
-    wb_interface_evaluate(&law, (const double(*)[3])in_place.X, in_place.u, in_place.before,
-                          in_place.before, in_place.force, NULL, &in_place.result);
+    wb_jacket_contact_evaluate(&law, (const double(*)[3])in_place.X, in_place.u, in_place.before,
+                               in_place.before, in_place.force, NULL, &in_place.result);
     assert_memory_equal(in_place.before, apart.after, sizeof apart.after);
     assert_memory_equal(in_place.force, apart.force, sizeof apart.force);
 }
@@ -649,8 +649,8 @@ static void default_law_is_as_stiff_as_the_layer(void **unused)
 {
     (void)unused;
     /* A layer of PVC, 0.8 mm, that cannot spread: squeezed by p it gets thinner by p h / M. */
-    struct wb_interface_law its;
-    wb_interface_default_law(&its, 41e6, 0.43, 0.8e-3, 0.1);
+    struct wb_jacket_contact_law its;
+    wb_trial_default_jacket_contact(&its, 41e6, 0.43, 0.8e-3, 0.1);
     const double bulk = 41e6 / (3.0 * (1.0 - 0.86)), shear = 41e6 / (2.0 * 1.43);
     const double thinner = 0.8e-3 * 1e6 / (bulk + 4.0 * shear / 3.0);
     assert_close_relative(1e6 / its.normal_stiffness, thinner, 1e-12);

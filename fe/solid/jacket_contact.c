@@ -1,4 +1,4 @@
-#include "fe/solid/interface.h"
+#include "fe/solid/jacket_contact.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -10,16 +10,6 @@ enum {
     NODES = 8, /* of a face */
     LOCAL = 9  /* what a point depends on: distance, two base vectors */
 };
-
-void wb_interface_default_law(struct wb_interface_law *law, double youngs_modulus,
-                              double poissons_ratio, double thickness, double friction)
-{
-    const double nu = poissons_ratio;
-    const double confined = youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-    law->normal_stiffness = confined / thickness;
-    law->tangential_stiffness = law->normal_stiffness / 3.0;
-    law->friction = friction;
-}
 
 /* Serendipity functions of the face with 8 nodes and their derivatives. */
 static void shape_functions(double r, double s, double N[NODES], double dr[NODES], double ds[NODES])
@@ -181,14 +171,14 @@ struct response {
     double dissipated, stored; /* J/m2 */
 };
 
-static void respond(const struct wb_interface_law *law, const double gap[3],
-                    const struct wb_interface_state *before, struct wb_interface_state *after,
-                    struct response *response)
+static void respond(const struct wb_jacket_contact_law *law, const double gap[3],
+                    const struct wb_jacket_contact_state *before,
+                    struct wb_jacket_contact_state *after, struct response *response)
 {
     const double kn = law->normal_stiffness, kt = law->tangential_stiffness, mu = law->friction;
-    const struct wb_interface_state old = *before;
+    const struct wb_jacket_contact_state old = *before;
     memset(response, 0, sizeof *response);
-    *after = (struct wb_interface_state){.gap = {gap[0], gap[1]}, .slip = old.slip};
+    *after = (struct wb_jacket_contact_state){.gap = {gap[0], gap[1]}, .slip = old.slip};
     if (gap[2] > 0.0 && isfinite(gap[0] + gap[1] + gap[2]))
         return; /* open: the friction is forgotten */
 
@@ -282,7 +272,7 @@ static void add_force(const struct point *point, const double slope[LOCAL], doub
 static void add_tangent(const struct point *point, double H[LOCAL][LOCAL], double *restrict tangent)
 {
     enum {
-        ALL = WB_INTERFACE_UNKNOWNS,
+        ALL = WB_JACKET_CONTACT_UNKNOWNS,
         HALF = 3 * NODES
     };
     double HB[LOCAL][ALL];
@@ -335,7 +325,7 @@ static void keep_largest(double *largest, double value)
         *largest = value;
 }
 
-static void collect(struct wb_interface_result *result, const struct frame *frame,
+static void collect(struct wb_jacket_contact_result *result, const struct frame *frame,
                     const struct response *response, double slip, double weight)
 {
     keep_largest(&result->slip, slip);
@@ -352,19 +342,19 @@ static void collect(struct wb_interface_result *result, const struct frame *fram
     result->slipping += response->slipping;
 }
 
-void wb_interface_evaluate(const struct wb_interface_law *law, const double X[16][3],
-                           const double *restrict u,
-                           const struct wb_interface_state before[WB_INTERFACE_POINTS],
-                           struct wb_interface_state after[WB_INTERFACE_POINTS],
-                           double *restrict force, double *restrict tangent,
-                           struct wb_interface_result *result)
+void wb_jacket_contact_evaluate(
+    const struct wb_jacket_contact_law *law, const double X[16][3], const double *restrict u,
+    const struct wb_jacket_contact_state before[WB_JACKET_CONTACT_POINTS],
+    struct wb_jacket_contact_state after[WB_JACKET_CONTACT_POINTS], double *restrict force,
+    double *restrict tangent, struct wb_jacket_contact_result *result)
 {
-    memset(force, 0, WB_INTERFACE_UNKNOWNS * sizeof *force);
+    memset(force, 0, WB_JACKET_CONTACT_UNKNOWNS * sizeof *force);
     if (tangent)
-        memset(tangent, 0, WB_INTERFACE_UNKNOWNS * WB_INTERFACE_UNKNOWNS * sizeof *tangent);
-    *result = (struct wb_interface_result){0};
+        memset(tangent, 0,
+               WB_JACKET_CONTACT_UNKNOWNS * WB_JACKET_CONTACT_UNKNOWNS * sizeof *tangent);
+    *result = (struct wb_jacket_contact_result){0};
 
-    for (int p = 0; p < WB_INTERFACE_POINTS; p++) {
+    for (int p = 0; p < WB_JACKET_CONTACT_POINTS; p++) {
         struct point point;
         struct frame frame;
         struct response response;
