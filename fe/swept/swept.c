@@ -1,5 +1,6 @@
 #include "fe/swept/swept.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,50 @@ struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n)
 {
     const int end = range.end == 0 || range.end > n ? n : range.end;
     return (struct wb_swept_range){range.first < end ? range.first : end, end};
+}
+
+static bool is_supported(enum wb_swept_instructions instructions)
+{
+    switch (instructions) {
+    case WB_SWEPT_BASELINE:
+        return true;
+#ifdef __x86_64__
+    case WB_SWEPT_AVX2:
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case WB_SWEPT_AVX512:
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512vl") && is_supported(WB_SWEPT_AVX2);
+#endif
+    default:
+        return false;
+    }
+}
+
+static enum wb_swept_instructions best_supported(void)
+{
+    enum wb_swept_instructions best = WB_SWEPT_AVX512;
+
+    while (!is_supported(best))
+        best--;
+    return best;
+}
+
+enum wb_status wb_swept_choose_instructions(enum wb_swept_instructions *chosen,
+                                            enum wb_swept_instructions wanted)
+{
+    const enum wb_swept_instructions set = wanted == WB_SWEPT_BEST ? best_supported() : wanted;
+    if (!is_supported(set))
+        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    *chosen = set;
+    return WB_OK;
+}
+
+const char *wb_swept_instructions_name(enum wb_swept_instructions instructions)
+{
+    static const char *const names[] = {
+        [WB_SWEPT_BASELINE] = "baseline", [WB_SWEPT_AVX2] = "avx2", [WB_SWEPT_AVX512] = "avx512"};
+
+    return names[instructions == WB_SWEPT_BEST ? best_supported() : instructions];
 }
 
 enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)

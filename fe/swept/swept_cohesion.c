@@ -14,6 +14,9 @@ enum {
     ROWS = WB_SWEPT_COHESION_ROWS
 };
 
+static const struct wb_swept_cohesion_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_cohesion_kernel);
+
 struct wb_swept_cohesion {
     const struct wb_swept_tape *tape; /* borrowed */
     struct wb_swept_cohesion_settings settings;
@@ -247,25 +250,6 @@ static enum wb_status check(const struct wb_swept_cohesion_settings *s)
     return WB_OK;
 }
 
-static const struct wb_swept_cohesion_kernel *find_kernel(const struct wb_swept_tape *tape)
-{
-    static const struct wb_swept_cohesion_kernel *const kernels[] = {
-#ifdef __x86_64__
-        &wb_swept_cohesion_kernel_float_avx512,   &wb_swept_cohesion_kernel_double_avx512,
-        &wb_swept_cohesion_kernel_float_avx2,     &wb_swept_cohesion_kernel_double_avx2,
-#endif
-        &wb_swept_cohesion_kernel_float_baseline, &wb_swept_cohesion_kernel_double_baseline,
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = 0; i < n; i++) {
-        if (kernels[i]->is_double == tape->model.double_precision &&
-            strcmp(kernels[i]->name, tape->kernel->name) == 0)
-            return kernels[i];
-    }
-    return NULL;
-}
-
 static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_cohesion_wire *wires,
                            const struct wb_swept_cohesion_bond *bond)
 {
@@ -275,9 +259,7 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
     const bool breaks = s->strength > 0.0;
 
     WB_TRY(check(s));
-    c->kernel = find_kernel(c->tape);
-    if (!c->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "no cohesion for the instructions of the tape");
+    c->kernel = kernels[c->tape->model.instructions][c->tape->model.double_precision];
     c->first = calloc(n_blocks + 1, sizeof *c->first);
     c->strip_of = calloc((size_t)layout->n_nodes * (size_t)layout->n_stations, sizeof *c->strip_of);
     if (!c->first || !c->strip_of)

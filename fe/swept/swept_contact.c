@@ -14,6 +14,9 @@ enum {
     MOST_SURFACE = 1 << 16
 };
 
+static const struct wb_swept_contact_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_contact_kernel);
+
 /* Beyond this part of the smallest radius the penalty is no contact any more. */
 static const double deepest_part = 0.5;
 
@@ -65,34 +68,6 @@ static enum wb_status check_wire(const struct wb_swept_contact_wire *wire, int w
               in_range(fabs(wire->node[node][1]), 0.0, 1e12)))
             return wb_fail(WB_ERR_ARGUMENT, "wire %d has no surface node %d", w, node);
     }
-    return WB_OK;
-}
-
-static enum wb_status choose_kernel(const struct wb_swept_contact_settings *settings,
-                                    const struct wb_swept_contact_kernel **out)
-{
-    static const struct wb_swept_contact_kernel *const kernels[][2] = {
-        [WB_SWEPT_CONTACT_BASELINE] = {&wb_swept_contact_kernel_float_baseline,
-                                       &wb_swept_contact_kernel_double_baseline},
-#ifdef __x86_64__
-        [WB_SWEPT_CONTACT_AVX2] = {&wb_swept_contact_kernel_float_avx2,
-                                   &wb_swept_contact_kernel_double_avx2},
-        [WB_SWEPT_CONTACT_AVX512] = {&wb_swept_contact_kernel_float_avx512,
-                                     &wb_swept_contact_kernel_double_avx512},
-#endif
-    };
-    const int n = (int)(sizeof kernels / sizeof kernels[0]), type = settings->double_precision;
-    int set = (int)settings->instructions;
-
-    if (set == WB_SWEPT_CONTACT_BEST) {
-        set = n - 1;
-        while (!kernels[set][type]->runs_here())
-            set--;
-    }
-    if (set < 0 || set >= n || !kernels[set][type]->runs_here())
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor lacks the instructions asked for (%d)",
-                       set);
-    *out = kernels[set][type];
     return WB_OK;
 }
 
@@ -258,7 +233,7 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
                                        int n_wires, const struct wb_swept_contact_wire *wires,
                                        int n_stations, double spacing)
 {
-    const struct wb_swept_contact_kernel *kernel;
+    enum wb_swept_instructions instructions;
     int n_surface = 0;
 
     if (n_wires < 1 || n_wires > MOST_WIRES || n_stations < 2 || n_stations > MOST_STATIONS ||
@@ -266,7 +241,7 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
         return wb_fail(WB_ERR_ARGUMENT, "contact of %d wires with %d stations %g m apart", n_wires,
                        n_stations, spacing);
     WB_TRY(check_settings(settings));
-    WB_TRY(choose_kernel(settings, &kernel));
+    WB_TRY(wb_swept_choose_instructions(&instructions, settings->instructions));
     for (int w = 0; w < n_wires; w++) {
         WB_TRY(check_wire(&wires[w], w));
         n_surface += wires[w].n_surface;
@@ -275,7 +250,8 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
     if (!c)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of %d wires", n_wires);
     c->settings = *settings;
-    c->kernel = kernel;
+    c->settings.instructions = instructions;
+    c->kernel = kernels[instructions][settings->double_precision];
     c->spacing = spacing;
     size_model(c, n_wires, n_stations);
     enum wb_status status = allocate(c, n_surface);
@@ -324,7 +300,7 @@ void wb_swept_contact_reset(struct wb_swept_contact *contact)
 
 const char *wb_swept_contact_instructions(const struct wb_swept_contact *contact)
 {
-    return contact->kernel->name;
+    return wb_swept_instructions_name(contact->settings.instructions);
 }
 
 int wb_swept_contact_blocks(const struct wb_swept_contact *contact)

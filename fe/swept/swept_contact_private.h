@@ -48,14 +48,14 @@ static inline double wb_swept_contact_stiffness(const struct wb_swept_contact *c
 
 static inline size_t wb_swept_contact_real_size(const struct wb_swept_contact *contact)
 {
-    return contact->kernel->is_double ? sizeof(double) : sizeof(float);
+    return contact->settings.double_precision ? sizeof(double) : sizeof(float);
 }
 
 /* Element i of an array of the kernel's type. */
 static inline void wb_swept_contact_set(const struct wb_swept_contact *contact, void *array,
                                         ptrdiff_t i, double value)
 {
-    if (contact->kernel->is_double)
+    if (contact->settings.double_precision)
         ((double *)array)[i] = value;
     else
         ((float *)array)[i] = (float)value;
@@ -64,8 +64,8 @@ static inline void wb_swept_contact_set(const struct wb_swept_contact *contact, 
 static inline double wb_swept_contact_get(const struct wb_swept_contact *contact, const void *array,
                                           ptrdiff_t i)
 {
-    return contact->kernel->is_double ? ((const double *)array)[i]
-                                      : (double)((const float *)array)[i];
+    return contact->settings.double_precision ? ((const double *)array)[i]
+                                              : (double)((const float *)array)[i];
 }
 
 static inline void *wb_swept_contact_at(const struct wb_swept_contact *contact, void *array,

@@ -21,6 +21,9 @@ enum {
 static const double default_hourglass = 0.05;
 static const double table_tolerance = 1e-5;
 
+static const struct wb_swept_hex_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_hex_kernel);
+
 struct wb_swept_hex {
     struct wb_swept_hex_model model;
     const struct wb_swept_hex_kernel *kernel;
@@ -174,29 +177,6 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
     return take_over(&hex->constants, hex, hex->rows, count);
 }
 
-static const struct wb_swept_hex_kernel *find_kernel(const struct wb_swept_hex_model *model)
-{
-    static const struct wb_swept_hex_kernel *const kernels[][2] = {
-#ifdef __x86_64__
-        [WB_SWEPT_HEX_AVX512] = {&wb_swept_hex_kernel_float_avx512,
-                                 &wb_swept_hex_kernel_double_avx512},
-        [WB_SWEPT_HEX_AVX2] = {&wb_swept_hex_kernel_float_avx2, &wb_swept_hex_kernel_double_avx2},
-#endif
-        [WB_SWEPT_HEX_BASELINE] = {&wb_swept_hex_kernel_float_baseline,
-                                   &wb_swept_hex_kernel_double_baseline},
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = n - 1; i >= WB_SWEPT_HEX_BASELINE; i--) {
-        const struct wb_swept_hex_kernel *kernel = kernels[i][model->double_precision];
-        const bool wanted =
-            model->instructions == WB_SWEPT_HEX_BEST || (int)model->instructions == i;
-        if (wanted && kernel->runs_here())
-            return kernel;
-    }
-    return NULL;
-}
-
 static enum wb_status check(const struct wb_swept_hex_model *m)
 {
     const struct wb_material *material = &m->material;
@@ -247,9 +227,8 @@ static enum wb_status fill(struct wb_swept_hex *hex)
     const bool elastic = m->material.hardening == WB_HARDENING_NONE_ELASTIC;
 
     WB_TRY(check(m));
-    hex->kernel = find_kernel(m);
-    if (!hex->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    WB_TRY(wb_swept_choose_instructions(&hex->model.instructions, m->instructions));
+    hex->kernel = kernels[m->instructions][m->double_precision];
     hex->n_points = m->formulation == WB_SWEPT_HEX_ONE_POINT ? 1 : 4;
     WB_TRY(make_constants(hex));
     WB_TRY(make_table(hex));
@@ -331,13 +310,12 @@ int wb_swept_hex_blocks(const struct wb_swept_hex *hex)
 
 const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex)
 {
-    return hex->kernel->name;
+    return wb_swept_instructions_name(hex->model.instructions);
 }
 
 const char *wb_swept_hex_best_instructions(void)
 {
-    const struct wb_swept_hex_model model = {.instructions = WB_SWEPT_HEX_BEST};
-    return find_kernel(&model)->name;
+    return wb_swept_instructions_name(WB_SWEPT_BEST);
 }
 
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4])

@@ -27,7 +27,7 @@ static double log_strain(double e)
 }
 
 /* An element as the kernels see it: columns of F, Green's strain, and its logarithm (swept_hex_
- * kernel.inc has the formulas). */
+ * kernel.c has the formulas). */
 struct element {
     struct wb_swept_quad quad;
     double along[4][3]; /* d_a / h */

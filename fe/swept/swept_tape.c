@@ -18,6 +18,9 @@ enum {
 static const double default_hourglass = 0.1;
 static const double shear_correction = 5.0 / 6.0;
 
+static const struct wb_swept_tape_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_tape_kernel);
+
 struct wb_swept_tape_state {
     const struct wb_swept_tape *tape;
     void *history, *carry;
@@ -268,30 +271,6 @@ static enum wb_status check(const struct wb_swept_tape_model *m)
     return WB_OK;
 }
 
-static const struct wb_swept_tape_kernel *find_kernel(const struct wb_swept_tape_model *model)
-{
-    static const struct wb_swept_tape_kernel *const kernels[][2] = {
-#ifdef __x86_64__
-        [WB_SWEPT_TAPE_AVX512] = {&wb_swept_tape_kernel_float_avx512,
-                                  &wb_swept_tape_kernel_double_avx512},
-        [WB_SWEPT_TAPE_AVX2] = {&wb_swept_tape_kernel_float_avx2,
-                                &wb_swept_tape_kernel_double_avx2},
-#endif
-        [WB_SWEPT_TAPE_BASELINE] = {&wb_swept_tape_kernel_float_baseline,
-                                    &wb_swept_tape_kernel_double_baseline},
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = n - 1; i >= WB_SWEPT_TAPE_BASELINE; i--) {
-        const struct wb_swept_tape_kernel *kernel = kernels[i][model->double_precision];
-        const bool wanted =
-            model->instructions == WB_SWEPT_TAPE_BEST || (int)model->instructions == i;
-        if (wanted && kernel->runs_here())
-            return kernel;
-    }
-    return NULL;
-}
-
 static void set_numbers(struct wb_swept_tape *tape)
 {
     const struct wb_swept_tape_model *m = &tape->model;
@@ -362,9 +341,8 @@ static enum wb_status fill(struct wb_swept_tape *tape)
     double table[WB_SWEPT_HARDENING_TERMS][WB_SWEPT_HARDENING_OCTAVES];
 
     WB_TRY(check(m));
-    tape->kernel = find_kernel(m);
-    if (!tape->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    WB_TRY(wb_swept_choose_instructions(&tape->model.instructions, m->instructions));
+    tape->kernel = kernels[m->instructions][m->double_precision];
     set_numbers(tape);
     WB_TRY(allocate(tape));
     WB_TRY(wb_swept_hardening_tabulate(&m->material, table));
@@ -432,7 +410,7 @@ int wb_swept_tape_elements(const struct wb_swept_tape *tape)
 
 const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape)
 {
-    return tape->kernel->name;
+    return wb_swept_instructions_name(tape->model.instructions);
 }
 
 const double *wb_swept_tape_directors(const struct wb_swept_tape *tape)

@@ -11,7 +11,7 @@
  * Hourglass stiffness is elastic, of what bends an element in its plane and of its directors. Total
  * Lagrangian: nothing is integrated in time but the plastic strain. Stresses are per reference area
  * (of Kirchhoff): as plastic flow keeps the volume, that a stretched tape gets thinner is in them.
- * Details are in swept_tape_kernel.inc.
+ * Details are in swept_tape_kernel.c.
  *
  * The logarithm is a polynomial: at a strain of 10 % it is 0.03 % off, forces 0.2 %. Elements with
  * a larger strain are counted; whoever runs the model must say so.
@@ -31,13 +31,6 @@
 
 #define WB_SWEPT_TAPE_STRAIN_LIMIT 0.1
 
-enum wb_swept_tape_instructions {
-    WB_SWEPT_TAPE_BEST, /* of what this processor has */
-    WB_SWEPT_TAPE_BASELINE,
-    WB_SWEPT_TAPE_AVX2,
-    WB_SWEPT_TAPE_AVX512
-};
-
 struct wb_swept_tape_model {
     struct wb_material material; /* elastic or power law */
     double density;              /* kg/m3 */
@@ -55,7 +48,7 @@ struct wb_swept_tape_model {
                                       tape (cohesion, contact); all is computed */
     bool closed;                   /* the last node of the ring is joined to the first */
     bool double_precision;
-    enum wb_swept_tape_instructions instructions;
+    enum wb_swept_instructions instructions;
 };
 
 struct wb_swept_tape_sums {

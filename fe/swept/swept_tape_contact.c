@@ -15,6 +15,9 @@ enum {
     HISTORY = WB_SWEPT_TAPE_CONTACT_HISTORY
 };
 
+static const struct wb_swept_tape_contact_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_tape_contact_kernel);
+
 static const double default_margin = 0.05; /* of the smallest radius */
 static const int default_interval = 100;
 /* A wire that is farther from a node than this times what would be near is far off beyond doubt,
@@ -459,25 +462,6 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
     return WB_OK;
 }
 
-static const struct wb_swept_tape_contact_kernel *find_kernel(const struct wb_swept_tape *tape)
-{
-    static const struct wb_swept_tape_contact_kernel *const kernels[] = {
-#ifdef __x86_64__
-        &wb_swept_tape_contact_kernel_float_avx512,   &wb_swept_tape_contact_kernel_double_avx512,
-        &wb_swept_tape_contact_kernel_float_avx2,     &wb_swept_tape_contact_kernel_double_avx2,
-#endif
-        &wb_swept_tape_contact_kernel_float_baseline, &wb_swept_tape_contact_kernel_double_baseline,
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = 0; i < n; i++) {
-        if (kernels[i]->is_double == tape->model.double_precision &&
-            strcmp(kernels[i]->name, tape->kernel->name) == 0)
-            return kernels[i];
-    }
-    return NULL;
-}
-
 static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
                                  const struct wb_swept_cohesion_wire *wires)
 {
@@ -529,9 +513,7 @@ static enum wb_status fill(struct wb_swept_tape_contact *c,
     const struct wb_swept_tape_contact_settings *s = &c->settings;
 
     WB_TRY(check(s, c->n_wires, wires));
-    c->kernel = find_kernel(c->tape);
-    if (!c->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "no contact for the instructions of the tape");
+    c->kernel = kernels[c->tape->model.instructions][c->tape->model.double_precision];
     if (c->settings.refresh_interval == 0)
         c->settings.refresh_interval = default_interval;
     WB_TRY(copy_wires(c, wires));

@@ -14,7 +14,7 @@ enum {
     ALL_MEASURES = LENGTHS + 4
 };
 
-/* The measures of swept_tape_kernel.inc and the directors' lengths, all quadratic in `u`: the plain
+/* The measures of swept_tape_kernel.c and the directors' lengths, all quadratic in `u`: the plain
  * version of what the kernel does. */
 static void find_measures(const struct wb_swept_tape_element *element, const double *u, double *e)
 {
