@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "fe/swept/swept_cohesion_kernel.h"
-#include "fe/swept/swept_tape_private.h"
 
 #define WB_LOG_DOMAIN "swept"
 
@@ -18,7 +17,8 @@ static const struct wb_swept_cohesion_kernel *const kernels[][2] =
     WB_SWEPT_KERNEL_VERSIONS(wb_swept_cohesion_kernel);
 
 struct wb_swept_cohesion {
-    const struct wb_swept_tape *tape; /* borrowed */
+    const struct wb_swept_tape *tape;             /* borrowed */
+    const struct wb_swept_tape_model *tape_model; /* the tape's */
     struct wb_swept_cohesion_settings settings;
     const struct wb_swept_cohesion_kernel *kernel;
     struct wb_swept_cohesion_kernel_model model;
@@ -45,12 +45,12 @@ void wb_swept_cohesion_default_settings(struct wb_swept_cohesion_settings *setti
 
 static const struct wb_swept_layout *layout_of(const struct wb_swept_cohesion *c)
 {
-    return &c->tape->model.layout;
+    return &c->tape_model->layout;
 }
 
 static size_t real_size(const struct wb_swept_cohesion *c)
 {
-    return c->tape->model.double_precision ? sizeof(double) : sizeof(float);
+    return c->tape_model->double_precision ? sizeof(double) : sizeof(float);
 }
 
 /* --- places --- */
@@ -63,7 +63,8 @@ struct ray {
 static struct ray ray_of(const struct wb_swept_cohesion *c, int k, int j)
 {
     const size_t stride = (size_t)layout_of(c)->stride, at = 3 * (size_t)k * stride + (size_t)j;
-    const double *x = c->tape->position + at, *d = c->tape->director + at;
+    const double *x = wb_swept_tape_positions(c->tape) + at,
+                 *d = wb_swept_tape_directors(c->tape) + at;
     return (struct ray){x[stride], x[2 * stride], d[stride], d[2 * stride]};
 }
 
@@ -102,7 +103,7 @@ static void face_wire(const struct ray *ray, const struct wb_swept_cohesion_wire
 static void face_tape(const struct wb_swept_cohesion *c, int k, int j, const struct ray *ray,
                       struct facing *best)
 {
-    const int n = layout_of(c)->n_nodes, last = c->tape->model.closed ? n : n - 1;
+    const int n = layout_of(c)->n_nodes, last = c->tape_model->closed ? n : n - 1;
 
     for (int i = 0; i < last; i++) {
         const int nodes[2] = {i, (i + 1) % n};
@@ -217,7 +218,7 @@ static enum wb_status take_over(struct wb_swept_cohesion *c)
 
     WB_TRY(wb_swept_allocate(&c->rows, count, real_size(c)));
     for (size_t i = 0; i < count; i++) {
-        if (c->tape->model.double_precision)
+        if (c->tape_model->double_precision)
             ((double *)c->rows)[i] = c->numbers[i];
         else
             ((float *)c->rows)[i] = (float)c->numbers[i];
@@ -259,7 +260,7 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
     const bool breaks = s->strength > 0.0;
 
     WB_TRY(check(s));
-    c->kernel = kernels[c->tape->model.instructions][c->tape->model.double_precision];
+    c->kernel = kernels[c->tape_model->instructions][c->tape_model->double_precision];
     c->first = calloc(n_blocks + 1, sizeof *c->first);
     c->strip_of = calloc((size_t)layout->n_nodes * (size_t)layout->n_stations, sizeof *c->strip_of);
     if (!c->first || !c->strip_of)
@@ -277,7 +278,7 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
         .per_strength = breaks ? s->normal_stiffness / s->strength : 0.0,
         .per_shear_strength = breaks ? s->shear_stiffness / s->shear_strength : 0.0,
         .fracture_energy = s->fracture_energy,
-        .counted = wb_swept_range_within(c->tape->model.counted, layout->n_stations),
+        .counted = wb_swept_range_within(c->tape_model->counted, layout->n_stations),
     };
     return WB_OK;
 }
@@ -293,6 +294,7 @@ enum wb_status wb_swept_cohesion_create(struct wb_swept_cohesion **out,
     if (!c)
         return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     c->tape = tape;
+    c->tape_model = wb_swept_tape_get_model(tape);
     c->settings = *settings;
     c->n_wires = n_wires;
     const enum wb_status status = fill(c, wires, bond);
@@ -369,7 +371,7 @@ double wb_swept_cohesion_damage(const struct wb_swept_cohesion *cohesion, int no
 
     if (s < 0)
         return 1.0;
-    return cohesion->tape->model.double_precision ? ((const double *)cohesion->damage)[at]
+    return cohesion->tape_model->double_precision ? ((const double *)cohesion->damage)[at]
                                                   : (double)((const float *)cohesion->damage)[at];
 }
 

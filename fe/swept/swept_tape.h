@@ -66,13 +66,17 @@ WB_MUST_CHECK enum wb_status wb_swept_tape_create(struct wb_swept_tape **out,
                                                   const struct wb_swept_tape_model *model);
 void wb_swept_tape_destroy(struct wb_swept_tape *tape);
 
+/* As given, without the positions (see below); defaults and the instructions chosen are filled in.
+ */
+const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_tape *tape);
 struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape);
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape);   /* of WB_SWEPT_LANES stations */
 int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* round the ring */
 const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
 
-/* Directors of the reference state (a field): the mean of the adjoining elements' normals, in the
- * plane of the section. */
+/* Positions and directors of the reference state (fields). Directors are the mean of the adjoining
+ * elements' normals, in the plane of the section. */
+const double *wb_swept_tape_positions(const struct wb_swept_tape *tape);
 const double *wb_swept_tape_directors(const struct wb_swept_tape *tape);
 
 /* Area of the middle surface that goes with a node, m2. */
@@ -121,5 +125,34 @@ double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state);
  * and the next) at a point through the thickness, from the inside. */
 double wb_swept_tape_plastic_strain(const struct wb_swept_tape_state *state, int element, int along,
                                     int point);
+
+/* --- stresses ---
+ *
+ * Asked one element at a time: the kernels' law once more, slowly and in double, from positions,
+ * directors and the plastic strains kept. Positions must be those of the last forces, or of the
+ * step after them; then the plastic strains go with them but for a step's strain (some 1e-7). */
+
+enum {
+    WB_SWEPT_TAPE_STRESS_MOST = 5 /* points through the thickness */
+};
+
+struct wb_swept_tape_stress {
+    double stress[3]; /* Pa, per reference area (of Kirchhoff): 11, 22, 12 in the element's frame,
+                         1 along the tape's stations; without the transverse shear */
+    double plastic;   /* accumulated plastic strain */
+};
+
+/* Points through the thickness. */
+int wb_swept_tape_stress_points(const struct wb_swept_tape *tape);
+
+/* Of the element between nodes `element` and the next of the ring, stations `along` and the next:
+ * its points from the inside. `state` is not changed. */
+void wb_swept_tape_stress_find(const struct wb_swept_tape *tape, struct wb_swept_tape_state *state,
+                               const double *position, const double *director, int element,
+                               int along,
+                               struct wb_swept_tape_stress out[WB_SWEPT_TAPE_STRESS_MOST]);
+
+/* Von Mises stress of plane stress, Pa. */
+double wb_swept_tape_stress_von_mises(const double stress[3]);
 
 #endif
