@@ -121,7 +121,7 @@ static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle
     const int n = body->n_nodes, around = wb_swept_tape_elements(bundle->tape);
     int cell = 0;
 
-    read_points(body, bundle->ring.layout.stride, wb_swept_tape_positions(bundle->tape),
+    read_points(body, bundle->ring.layout.stride, wb_swept_tape_get_model(bundle->tape)->position,
                 f->reference);
     for (int j = 0; j < body->n_stations - 1; j++)
         for (int k = 0; k < around; k++, cell++) {

@@ -1,9 +1,10 @@
 #include "fe/swept/swept.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "fe/swept/swept_kernel.h"
 
 #define WB_LOG_DOMAIN "swept"
 
@@ -80,5 +81,14 @@ enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)
         return wb_fail(WB_ERR_MEMORY, "out of memory for %zu values", count);
     memset(memory, 0, bytes);
     *out = memory;
+    return WB_OK;
+}
+
+enum wb_status wb_swept_kernel_convert(void **out, bool is_double, const double *numbers,
+                                       size_t count)
+{
+    WB_TRY(wb_swept_allocate(out, count, wb_swept_kernel_real_size(is_double)));
+    for (size_t i = 0; i < count; i++)
+        wb_swept_kernel_put(is_double, *out, (ptrdiff_t)i, numbers[i]);
     return WB_OK;
 }

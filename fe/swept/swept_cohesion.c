@@ -48,11 +48,6 @@ static const struct wb_swept_layout *layout_of(const struct wb_swept_cohesion *c
     return &c->tape_model->layout;
 }
 
-static size_t real_size(const struct wb_swept_cohesion *c)
-{
-    return c->tape_model->double_precision ? sizeof(double) : sizeof(float);
-}
-
 /* --- places --- */
 
 /* A node's position and director at a station, in the plane of the section. */
@@ -63,8 +58,7 @@ struct ray {
 static struct ray ray_of(const struct wb_swept_cohesion *c, int k, int j)
 {
     const size_t stride = (size_t)layout_of(c)->stride, at = 3 * (size_t)k * stride + (size_t)j;
-    const double *x = wb_swept_tape_positions(c->tape) + at,
-                 *d = wb_swept_tape_directors(c->tape) + at;
+    const double *x = c->tape_model->position + at, *d = wb_swept_tape_directors(c->tape) + at;
     return (struct ray){x[stride], x[2 * stride], d[stride], d[2 * stride]};
 }
 
@@ -212,20 +206,6 @@ static enum wb_status make_strips(struct wb_swept_cohesion *c,
     return WB_OK;
 }
 
-static enum wb_status take_over(struct wb_swept_cohesion *c)
-{
-    const size_t count = (size_t)c->n_strips * ROWS * LANES;
-
-    WB_TRY(wb_swept_allocate(&c->rows, count, real_size(c)));
-    for (size_t i = 0; i < count; i++) {
-        if (c->tape_model->double_precision)
-            ((double *)c->rows)[i] = c->numbers[i];
-        else
-            ((float *)c->rows)[i] = (float)c->numbers[i];
-    }
-    return wb_swept_allocate(&c->damage, (size_t)c->n_strips * LANES, real_size(c));
-}
-
 /* --- creation --- */
 
 static enum wb_status check(const struct wb_swept_cohesion_settings *s)
@@ -257,16 +237,19 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
     const struct wb_swept_layout *layout = layout_of(c);
     const struct wb_swept_cohesion_settings *s = &c->settings;
     const size_t n_blocks = (size_t)layout->stride / LANES;
-    const bool breaks = s->strength > 0.0;
+    const bool breaks = s->strength > 0.0, is_double = c->tape_model->double_precision;
 
     WB_TRY(check(s));
-    c->kernel = kernels[c->tape_model->instructions][c->tape_model->double_precision];
+    c->kernel = kernels[c->tape_model->instructions][is_double];
     c->first = calloc(n_blocks + 1, sizeof *c->first);
     c->strip_of = calloc((size_t)layout->n_nodes * (size_t)layout->n_stations, sizeof *c->strip_of);
     if (!c->first || !c->strip_of)
         return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     WB_TRY(make_strips(c, wires, bond));
-    WB_TRY(take_over(c));
+    WB_TRY(wb_swept_kernel_convert(&c->rows, is_double, c->numbers,
+                                   (size_t)c->n_strips * ROWS * LANES));
+    WB_TRY(wb_swept_allocate(&c->damage, (size_t)c->n_strips * LANES,
+                             wb_swept_kernel_real_size(is_double)));
     c->model = (struct wb_swept_cohesion_kernel_model){
         .stride = layout->stride,
         .first = c->first,
@@ -321,13 +304,16 @@ void wb_swept_cohesion_destroy(struct wb_swept_cohesion *cohesion)
 
 void *wb_swept_cohesion_data(struct wb_swept_cohesion *cohesion, size_t *bytes)
 {
-    *bytes = (size_t)cohesion->n_strips * LANES * real_size(cohesion);
+    *bytes = (size_t)cohesion->n_strips * LANES *
+             wb_swept_kernel_real_size(cohesion->tape_model->double_precision);
     return cohesion->damage;
 }
 
 void wb_swept_cohesion_reset(struct wb_swept_cohesion *cohesion)
 {
-    memset(cohesion->damage, 0, (size_t)cohesion->n_strips * LANES * real_size(cohesion));
+    memset(cohesion->damage, 0,
+           (size_t)cohesion->n_strips * LANES *
+               wb_swept_kernel_real_size(cohesion->tape_model->double_precision));
 }
 
 void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
@@ -371,8 +357,8 @@ double wb_swept_cohesion_damage(const struct wb_swept_cohesion *cohesion, int no
 
     if (s < 0)
         return 1.0;
-    return cohesion->tape_model->double_precision ? ((const double *)cohesion->damage)[at]
-                                                  : (double)((const float *)cohesion->damage)[at];
+    return wb_swept_kernel_get(cohesion->tape_model->double_precision, cohesion->damage,
+                               (ptrdiff_t)at);
 }
 
 static double largest_stiffness(const struct wb_swept_cohesion *c)

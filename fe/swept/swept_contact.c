@@ -61,22 +61,18 @@ static double pair_stiffness(const struct wb_swept_contact *contact, int a, int 
 
 static size_t real_size(const struct wb_swept_contact *contact)
 {
-    return contact->settings.double_precision ? sizeof(double) : sizeof(float);
+    return wb_swept_kernel_real_size(contact->settings.double_precision);
 }
 
 /* Element i of an array of the kernel's type. */
 static void set(const struct wb_swept_contact *contact, void *array, ptrdiff_t i, double value)
 {
-    if (contact->settings.double_precision)
-        ((double *)array)[i] = value;
-    else
-        ((float *)array)[i] = (float)value;
+    wb_swept_kernel_put(contact->settings.double_precision, array, i, value);
 }
 
 static double get(const struct wb_swept_contact *contact, const void *array, ptrdiff_t i)
 {
-    return contact->settings.double_precision ? ((const double *)array)[i]
-                                              : (double)((const float *)array)[i];
+    return wb_swept_kernel_get(contact->settings.double_precision, array, i);
 }
 
 static void *address(const struct wb_swept_contact *contact, void *array, ptrdiff_t i)

@@ -48,21 +48,7 @@ static double shear_modulus(const struct wb_material *m)
 
 static size_t real_size(const struct wb_swept_hex *hex)
 {
-    return hex->model.double_precision ? sizeof(double) : sizeof(float);
-}
-
-/* What lies in `from` into aligned memory of the kernel's type. */
-static enum wb_status take_over(void **out, const struct wb_swept_hex *hex, const double *from,
-                                size_t count)
-{
-    WB_TRY(wb_swept_allocate(out, count, real_size(hex)));
-    for (size_t i = 0; i < count; i++) {
-        if (hex->model.double_precision)
-            ((double *)*out)[i] = from[i];
-        else
-            ((float *)*out)[i] = (float)from[i];
-    }
-    return WB_OK;
+    return wb_swept_kernel_real_size(hex->model.double_precision);
 }
 
 /* Powers of t = m - 3/2 (m the mantissa, 1 to 2) of p / x in an octave, by Newton's divided
@@ -124,7 +110,8 @@ static enum wb_status make_table(struct wb_swept_hex *hex)
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "the hardening law (K = %g Pa, n = %g) cannot be tabulated: error %.1e",
                        radial.strength_coefficient, radial.hardening_exponent, worst);
-    return take_over(&hex->table, hex, &table[0][0], TERMS * OCTAVES);
+    return wb_swept_kernel_convert(&hex->table, hex->model.double_precision, &table[0][0],
+                                   TERMS * OCTAVES);
 }
 
 static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
@@ -174,7 +161,7 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
             memcpy(at[a], section->node[section->quad[e][a]], sizeof at[a]);
         fill_row(&hex->model, &quad, (const double(*)[2])at, hex->rows + e * CONSTANTS);
     }
-    return take_over(&hex->constants, hex, hex->rows, count);
+    return wb_swept_kernel_convert(&hex->constants, hex->model.double_precision, hex->rows, count);
 }
 
 static enum wb_status check(const struct wb_swept_hex_model *m)
@@ -422,8 +409,7 @@ double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int q
     const size_t at = (place * WB_SWEPT_HEX_KERNEL_HISTORY + 5) * WB_SWEPT_LANES +
                       (size_t)(element % WB_SWEPT_LANES);
 
-    return hex->model.double_precision ? ((const double *)state->history)[at]
-                                       : (double)((const float *)state->history)[at];
+    return wb_swept_kernel_get(hex->model.double_precision, state->history, (ptrdiff_t)at);
 }
 
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)

@@ -9,6 +9,9 @@
 #ifndef WB_FE_SWEPT_SWEPT_KERNEL_H
 #define WB_FE_SWEPT_SWEPT_KERNEL_H
 
+#include <stdbool.h>
+#include <stddef.h>
+
 #include "fe/swept/swept.h"
 
 /* Declares the versions of a kernel, and lists them as [enum wb_swept_instructions][is double]. */
@@ -31,5 +34,28 @@
         [WB_SWEPT_BASELINE] = {&kernel##_float_baseline, &kernel##_double_baseline},               \
     }
 #endif
+
+/* Numbers of a kernel's type: double or float. */
+static inline size_t wb_swept_kernel_real_size(bool is_double)
+{
+    return is_double ? sizeof(double) : sizeof(float);
+}
+
+static inline void wb_swept_kernel_put(bool is_double, void *numbers, ptrdiff_t at, double value)
+{
+    if (is_double)
+        ((double *)numbers)[at] = value;
+    else
+        ((float *)numbers)[at] = (float)value;
+}
+
+static inline double wb_swept_kernel_get(bool is_double, const void *numbers, ptrdiff_t at)
+{
+    return is_double ? ((const double *)numbers)[at] : (double)((const float *)numbers)[at];
+}
+
+/* A copy of `count` numbers in a kernel's type, as wb_swept_allocate() gives memory. */
+WB_MUST_CHECK enum wb_status wb_swept_kernel_convert(void **out, bool is_double,
+                                                     const double *numbers, size_t count);
 
 #endif

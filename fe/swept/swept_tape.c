@@ -73,24 +73,15 @@ static double shear_modulus(const struct wb_material *m)
     return m->youngs_modulus / (2.0 * (1.0 + m->poissons_ratio));
 }
 
-static size_t real_size(const struct wb_swept_tape *tape)
-{
-    return tape->model.double_precision ? sizeof(double) : sizeof(float);
-}
-
 /* Numbers in the kernel's type. */
 static void put(const struct wb_swept_tape *tape, void *numbers, size_t at, double value)
 {
-    if (tape->model.double_precision)
-        ((double *)numbers)[at] = value;
-    else
-        ((float *)numbers)[at] = (float)value;
+    wb_swept_kernel_put(tape->model.double_precision, numbers, (ptrdiff_t)at, value);
 }
 
 static double get(const struct wb_swept_tape *tape, const void *numbers, size_t at)
 {
-    return tape->model.double_precision ? ((const double *)numbers)[at]
-                                        : (double)((const float *)numbers)[at];
+    return wb_swept_kernel_get(tape->model.double_precision, numbers, (ptrdiff_t)at);
 }
 
 /* --- the reference state --- */
@@ -333,15 +324,12 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
     const size_t nodes = (size_t)layout->n_nodes, stride = (size_t)layout->stride;
-    const size_t size = real_size(tape);
+    const size_t size = wb_swept_kernel_real_size(tape->model.double_precision);
     const size_t elements = (size_t)tape->numbers.n_elements * stride;
     void *fields[3] = {NULL};
 
     enum wb_status status =
         wb_swept_allocate(&tape->reference, elements * WB_SWEPT_TAPE_REFERENCE, size);
-    if (status == WB_OK)
-        status = wb_swept_allocate(&tape->table,
-                                   WB_SWEPT_HARDENING_TERMS * WB_SWEPT_HARDENING_OCTAVES, size);
     if (status == WB_OK)
         status = wb_swept_allocate(&tape->length_stiffness, nodes * stride, size);
     for (int i = 0; i < 2 && status == WB_OK; i++)
@@ -355,7 +343,6 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
     tape->mass = tape->area + nodes * stride;
     tape->inertia = tape->mass + nodes;
     tape->numbers.reference = tape->reference;
-    tape->numbers.table = tape->table;
     tape->numbers.length_stiffness = tape->length_stiffness;
     return WB_OK;
 }
@@ -371,8 +358,9 @@ static enum wb_status fill(struct wb_swept_tape *tape)
     set_numbers(tape);
     WB_TRY(allocate(tape));
     WB_TRY(wb_swept_hardening_tabulate(&m->material, table));
-    for (size_t i = 0; i < WB_SWEPT_HARDENING_TERMS * WB_SWEPT_HARDENING_OCTAVES; i++)
-        put(tape, tape->table, i, (&table[0][0])[i]);
+    WB_TRY(wb_swept_kernel_convert(&tape->table, m->double_precision, &table[0][0],
+                                   sizeof table / sizeof table[0][0]));
+    tape->numbers.table = tape->table;
     for (int row = 0; row < 3 * m->layout.n_nodes; row++) {
         const size_t at = (size_t)row * (size_t)m->layout.stride;
         memcpy(tape->position + at, m->position + at,
@@ -443,11 +431,6 @@ const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape)
     return wb_swept_instructions_name(tape->model.instructions);
 }
 
-const double *wb_swept_tape_positions(const struct wb_swept_tape *tape)
-{
-    return tape->position;
-}
-
 const double *wb_swept_tape_directors(const struct wb_swept_tape *tape)
 {
     return tape->director;
@@ -481,10 +464,12 @@ enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
     state->history_size = (size_t)tape->numbers.n_elements * (size_t)layout->stride *
                           (size_t)tape->numbers.n_points * WB_SWEPT_TAPE_HISTORY;
     enum wb_status status =
-        wb_swept_allocate(&state->history, state->history_size, real_size(tape));
+        wb_swept_allocate(&state->history, state->history_size,
+                          wb_swept_kernel_real_size(tape->model.double_precision));
     if (status == WB_OK)
-        status = wb_swept_allocate(
-            &state->carry, (size_t)layout->n_nodes * WB_SWEPT_TAPE_CARRY * LANES, real_size(tape));
+        status =
+            wb_swept_allocate(&state->carry, (size_t)layout->n_nodes * WB_SWEPT_TAPE_CARRY * LANES,
+                              wb_swept_kernel_real_size(tape->model.double_precision));
     if (status != WB_OK) {
         wb_swept_tape_state_destroy(state);
         return status;
@@ -504,12 +489,13 @@ void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state)
 
 void wb_swept_tape_state_reset(struct wb_swept_tape_state *state)
 {
-    memset(state->history, 0, state->history_size * real_size(state->tape));
+    memset(state->history, 0,
+           state->history_size * wb_swept_kernel_real_size(state->tape->model.double_precision));
 }
 
 void *wb_swept_tape_state_data(struct wb_swept_tape_state *state, size_t *bytes)
 {
-    *bytes = state->history_size * real_size(state->tape);
+    *bytes = state->history_size * wb_swept_kernel_real_size(state->tape->model.double_precision);
     return state->history;
 }
 

@@ -66,17 +66,15 @@ WB_MUST_CHECK enum wb_status wb_swept_tape_create(struct wb_swept_tape **out,
                                                   const struct wb_swept_tape_model *model);
 void wb_swept_tape_destroy(struct wb_swept_tape *tape);
 
-/* As given, without the positions (see below); defaults and the instructions chosen are filled in.
- */
+/* As given, with a copy of the positions, and with defaults and instructions filled in. */
 const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_tape *tape);
 struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape);
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape);   /* of WB_SWEPT_LANES stations */
 int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* round the ring */
 const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
 
-/* Positions and directors of the reference state (fields). Directors are the mean of the adjoining
- * elements' normals, in the plane of the section. */
-const double *wb_swept_tape_positions(const struct wb_swept_tape *tape);
+/* Directors of the reference state (a field): the mean of the adjoining elements' normals, in the
+ * plane of the section. */
 const double *wb_swept_tape_directors(const struct wb_swept_tape *tape);
 
 /* Area of the middle surface that goes with a node, m2. */

@@ -76,15 +76,12 @@ static const struct wb_swept_layout *layout_of(const struct wb_swept_tape_contac
 
 static size_t real_size(const struct wb_swept_tape_contact *c)
 {
-    return c->tape_model->double_precision ? sizeof(double) : sizeof(float);
+    return wb_swept_kernel_real_size(c->tape_model->double_precision);
 }
 
 static void put(const struct wb_swept_tape_contact *c, void *numbers, size_t at, double value)
 {
-    if (c->tape_model->double_precision)
-        ((double *)numbers)[at] = value;
-    else
-        ((float *)numbers)[at] = (float)value;
+    wb_swept_kernel_put(c->tape_model->double_precision, numbers, (ptrdiff_t)at, value);
 }
 
 /* --- what is near --- */
