@@ -7,8 +7,6 @@
 
 #include "fe/bundle/bundle_private.h"
 #include "fe/swept/swept_hex_stress.h"
-#include "fe/swept/swept_tape_private.h"
-#include "fe/swept/swept_tape_stress.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -123,7 +121,8 @@ static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle
     const int n = body->n_nodes, around = wb_swept_tape_elements(bundle->tape);
     int cell = 0;
 
-    read_points(body, bundle->ring.layout.stride, bundle->tape->position, f->reference);
+    read_points(body, bundle->ring.layout.stride, wb_swept_tape_get_model(bundle->tape)->position,
+                f->reference);
     for (int j = 0; j < body->n_stations - 1; j++)
         for (int k = 0; k < around; k++, cell++) {
             const int here = body->first + j * n, next = (k + 1) % n;

@@ -1,22 +1,48 @@
-/* Vectors of numbers for fe/swept/swept_hex_kernel.inc: what the compiler's vector types lack. The type
- * is float, or double where REAL_IS_DOUBLE is defined; the width is the instruction set's. */
+/* Vectors of numbers for kernels: what the compiler's vector types lack.
+ *
+ * For kernels only (swept_..._kernel.c): its names are short. meson.build defines REAL_IS_DOUBLE (0
+ * or 1) and INSTRUCTIONS (the name of the instruction set whose flags it gives to the compiler);
+ * the width of a vector is the widest of that set. Without these definitions the header is that of
+ * float and the baseline.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_SIMD_H
+#define WB_FE_SWEPT_SWEPT_SIMD_H
+
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
+#include "fe/swept/swept.h"
+
+#ifndef REAL_IS_DOUBLE
+#define REAL_IS_DOUBLE 0
+#endif
+#ifndef INSTRUCTIONS
+#define INSTRUCTIONS baseline
+#endif
+
 #define INLINE static inline __attribute__((always_inline))
 
-#ifdef REAL_IS_DOUBLE
+/* The name of a kernel's version: wb_swept_hex_kernel and so on, then precision, then instructions
+ * (swept_kernel.h). */
+#define KERNEL_VERSION(kernel) JOIN(kernel, PRECISION, INSTRUCTIONS)
+#define JOIN(kernel, precision, instructions) JOIN_EXPANDED(kernel, precision, instructions)
+#define JOIN_EXPANDED(kernel, precision, instructions) kernel##_##precision##_##instructions
+
+#if REAL_IS_DOUBLE
 typedef double real;
+#define PRECISION double
 typedef long long bits;
 #define MANTISSA 52
 #define ONE_BITS 0x3FF0000000000000LL
 #define BELOW_TWO 0x1.fffffffffffffp0
 #else
 typedef float real;
+#define PRECISION float
 typedef int bits;
 #define MANTISSA 23
 #define ONE_BITS 0x3F800000
@@ -34,8 +60,7 @@ typedef int bits;
 enum {
     LANES = BYTES / (int)sizeof(real),
     PART_LANES = BYTES / (int)sizeof(double),
-    PARTS = LANES / PART_LANES, /* vectors of double in one of real */
-    OCTAVES = WB_SWEPT_HEX_KERNEL_OCTAVES
+    PARTS = LANES / PART_LANES /* vectors of double in one of real */
 };
 
 typedef real vec __attribute__((vector_size(BYTES), may_alias));
@@ -89,16 +114,16 @@ INLINE struct wide subtract(struct wide a, struct wide b)
 /* 1 / sqrt(x) for x > 0, to about round-off. */
 INLINE vec inverse_root(vec x)
 {
-#if BYTES == 64 && !defined(REAL_IS_DOUBLE)
+#if BYTES == 64 && !REAL_IS_DOUBLE
     const vec y = (vec)_mm512_rsqrt14_ps((__m512)x);
     return y * (splat(1.5f) - splat(0.5f) * x * y * y);
 #elif BYTES == 64
     return 1.0 / (vec)_mm512_sqrt_pd((__m512d)x);
-#elif BYTES == 32 && !defined(REAL_IS_DOUBLE)
+#elif BYTES == 32 && !REAL_IS_DOUBLE
     return 1.0f / (vec)_mm256_sqrt_ps((__m256)x);
 #elif BYTES == 32
     return 1.0 / (vec)_mm256_sqrt_pd((__m256d)x);
-#elif defined(__SSE2__) && !defined(REAL_IS_DOUBLE)
+#elif defined(__SSE2__) && !REAL_IS_DOUBLE
     return 1.0f / (vec)_mm_sqrt_ps((__m128)x);
 #elif defined(__SSE2__)
     return 1.0 / (vec)_mm_sqrt_pd((__m128d)x);
@@ -126,7 +151,7 @@ INLINE part part_root(part x)
 }
 
 /* What comparisons give, and how it chooses. A comparison with NaN is false. */
-#if BYTES == 64 && !defined(REAL_IS_DOUBLE)
+#if BYTES == 64 && !REAL_IS_DOUBLE
 typedef __mmask16 mask;
 INLINE mask above(vec a, vec b)
 {
@@ -176,7 +201,7 @@ INLINE vec minimum(vec a, vec b)
 {
     return (vec)_mm512_min_pd((__m512d)a, (__m512d)b);
 }
-#elif BYTES == 32 && !defined(REAL_IS_DOUBLE)
+#elif BYTES == 32 && !REAL_IS_DOUBLE
 typedef __m256 mask;
 INLINE mask above(vec a, vec b)
 {
@@ -226,7 +251,7 @@ INLINE vec minimum(vec a, vec b)
 {
     return (vec)_mm256_min_pd((__m256d)a, (__m256d)b);
 }
-#elif defined(__SSE2__) && !defined(REAL_IS_DOUBLE)
+#elif defined(__SSE2__) && !REAL_IS_DOUBLE
 typedef __m128 mask;
 INLINE mask above(vec a, vec b)
 {
@@ -299,7 +324,7 @@ INLINE vec minimum(vec a, vec b)
 {
     return choose(above(b, a), a, b);
 }
-#ifndef REAL_IS_DOUBLE
+#if !REAL_IS_DOUBLE
 INLINE vec narrow(struct wide a)
 {
     vec out;
@@ -310,7 +335,7 @@ INLINE vec narrow(struct wide a)
 #endif
 #endif
 
-#ifdef REAL_IS_DOUBLE
+#if REAL_IS_DOUBLE
 INLINE vec narrow(struct wide a)
 {
     return a.of[0];
@@ -320,6 +345,20 @@ INLINE vec narrow(struct wide a)
 INLINE vec size_of(vec a)
 {
     return maximum(a, -a);
+}
+
+INLINE vec dot(const vec a[3], const vec b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Which lanes are elements: the first `n`. */
+INLINE mask first_lanes(int n)
+{
+    vec lane;
+    for (int i = 0; i < LANES; i++)
+        lane[i] = (real)i;
+    return above(splat((real)n - (real)0.5), lane);
 }
 
 /* Of the lanes that are stations from `j` on, those in a range. */
@@ -343,40 +382,16 @@ INLINE vec only_counted(const struct wb_swept_range *range, int j, vec v)
 /* The last lane of `before`, then v without its last. */
 INLINE vec shift_in(vec before, vec v)
 {
-#if BYTES == 64 && !defined(REAL_IS_DOUBLE)
+#if BYTES == 64 && !REAL_IS_DOUBLE
     return __builtin_shufflevector(before, v, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27,
                                    28, 29, 30);
-#elif BYTES == 64 || (BYTES == 32 && !defined(REAL_IS_DOUBLE))
+#elif BYTES == 64 || (BYTES == 32 && !REAL_IS_DOUBLE)
     return __builtin_shufflevector(before, v, 7, 8, 9, 10, 11, 12, 13, 14);
-#elif BYTES == 32 || (BYTES == 16 && !defined(REAL_IS_DOUBLE))
+#elif BYTES == 32 || (BYTES == 16 && !REAL_IS_DOUBLE)
     return __builtin_shufflevector(before, v, 3, 4, 5, 6);
 #else
     return __builtin_shufflevector(before, v, 1, 2);
 #endif
 }
 
-/* Term `row` of the table for each lane's octave. Exponents are biased by 31 and a multiple of 32,
- * so that their last five bits count the octaves from 2^-31. */
-INLINE vec look_up(const real *row, vec_bits exponent)
-{
-#if BYTES == 64 && !defined(REAL_IS_DOUBLE)
-    return (vec)_mm512_permutex2var_ps(_mm512_load_ps(row), (__m512i)exponent,
-                                       _mm512_load_ps(row + 16));
-#elif BYTES == 64
-    const __m512i place = (__m512i)exponent;
-    const __m512d low = _mm512_permutex2var_pd(_mm512_load_pd(row), place, _mm512_load_pd(row + 8));
-    const __m512d high =
-        _mm512_permutex2var_pd(_mm512_load_pd(row + 16), place, _mm512_load_pd(row + 24));
-    const __mmask8 is_high = _mm512_test_epi64_mask(place, _mm512_set1_epi64(16));
-    return (vec)_mm512_mask_blend_pd(is_high, low, high);
-#elif BYTES == 32 && !defined(REAL_IS_DOUBLE)
-    return (vec)_mm256_i32gather_ps(row, (__m256i)(exponent & (OCTAVES - 1)), sizeof *row);
-#elif BYTES == 32
-    return (vec)_mm256_i64gather_pd(row, (__m256i)(exponent & (OCTAVES - 1)), sizeof *row);
-#else
-    vec out;
-    for (int i = 0; i < LANES; i++)
-        out[i] = row[exponent[i] & (OCTAVES - 1)];
-    return out;
 #endif
-}

@@ -1,11 +1,9 @@
-/* The law of contact with friction for vectors of points: a penalty on the distance of two places,
- * and an elastic tangential spring that is returned to Coulomb's limit. Included by kernels, after
- * fe/swept/swept_hex_simd.inc. */
+/* For kernels: the law of contact with friction for vectors of points, a penalty on the distance of
+ * two places, and an elastic tangential spring that is returned to Coulomb's limit. */
+#ifndef WB_FE_SWEPT_SWEPT_CONTACT_LAW_H
+#define WB_FE_SWEPT_SWEPT_CONTACT_LAW_H
 
-INLINE vec dot(const vec a[3], const vec b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include "fe/swept/swept_simd.h"
 
 /* a x b added to out. */
 INLINE void add_cross(const vec a[3], const vec b[3], vec out[3])
@@ -136,3 +134,5 @@ INLINE void friction_force(const struct contact_law *law, const struct meeting *
     energy->tangential = (real)0.5 * law->compliance * dot(drag, drag);
     energy->friction = (real)0.5 * law->compliance * (1 - kept) * work;
 }
+
+#endif

@@ -1,22 +1,15 @@
-/* Forces of cohesion, compiled once for each type and instruction set (see fe/swept/swept_cohesion.h and
- * swept_cohesion_kernel.h). Lanes are stations.
+/* Forces of cohesion, compiled once for each type and instruction set (see
+ * fe/swept/swept_cohesion.h and swept_cohesion_kernel.h). Lanes are stations.
  *
  * With n = g.d, p = (1 - D) K_nn or, when pressed together, K_nn, and q = (1 - D) K_ss, the energy
  * is A / 2 (q (g.g - n^2) + p n^2); force on the node is less A t, t = q g + (p - q) n d, on the
  * director A (o t - (p - q) n g). */
 #include "fe/swept/swept_cohesion_kernel.h"
-#include "fe/swept/swept_hex_kernel.h"
-
-#include "fe/swept/swept_hex_simd.inc"
+#include "fe/swept/swept_simd.h"
 
 enum {
     BLOCK = WB_SWEPT_LANES
 };
-
-INLINE vec dot(const vec a[3], const vec b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 INLINE struct wide read(const double *field, int node, int i, int stride, int j)
 {
@@ -147,15 +140,4 @@ static void add_forces(const struct wb_swept_cohesion_kernel_call *call)
     }
 }
 
-static bool runs_here(void)
-{
-#if defined(__AVX512F__)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx2") &&
-           __builtin_cpu_supports("fma");
-#elif defined(__AVX2__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#else
-    return true;
-#endif
-}
+const struct wb_swept_cohesion_kernel KERNEL_VERSION(wb_swept_cohesion_kernel) = {add_forces};

@@ -1,11 +1,8 @@
 /* Contact between tape and wires, compiled once for each type and instruction set (see
  * fe/swept/swept_tape_contact.h and swept_tape_contact_kernel.h). Lanes are stations. */
-#include "fe/swept/swept_hex_kernel.h"
 #include "fe/swept/swept_tape_contact_kernel.h"
-
-#include "fe/swept/swept_hex_simd.inc"
-
-#include "fe/swept/swept_contact_law.inc"
+#include "fe/swept/swept_contact_law.h"
+#include "fe/swept/swept_simd.h"
 
 enum {
     BLOCK = WB_SWEPT_LANES
@@ -252,3 +249,6 @@ static void add_forces(const struct wb_swept_tape_contact_kernel_call *call)
         call->sums->deepest = fmax(call->sums->deepest, (double)totals.deepest[i]);
     }
 }
+
+const struct wb_swept_tape_contact_kernel KERNEL_VERSION(wb_swept_tape_contact_kernel) = {
+    add_forces};

@@ -30,11 +30,9 @@
  *
  * Forces are less the derivatives of all that, exactly, at given plastic strains.
  */
-#include "fe/swept/swept_hardening.h"
-#include "fe/swept/swept_hex_kernel.h"
 #include "fe/swept/swept_tape_kernel.h"
-
-#include "fe/swept/swept_hex_simd.inc"
+#include "fe/swept/swept_simd.h"
+#include "fe/swept/swept_yield.h"
 
 enum {
     REFERENCE = WB_SWEPT_TAPE_REFERENCE,
@@ -75,11 +73,6 @@ struct law {
 struct totals {
     vec stored, artificial, largest;
 };
-
-INLINE vec dot(const vec a[3], const vec b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* The node's numbers from station j on. */
 INLINE void read_line(const struct wb_swept_tape_kernel_call *call, int k, int j, struct line *line)
@@ -209,18 +202,10 @@ INLINE void pull_back(const struct symmetric *E, struct symmetric *T)
 }
 
 /* p / x of p + K / (3 mu) p^n = x. */
-INLINE vec yielded_part(const struct law *law, vec x)
+INLINE vec part_of(const struct law *law, vec x)
 {
-    const real *term = law->table;
     x = minimum(maximum(x, splat((real)0x1p-31)), splat((real)BELOW_TWO));
-    const vec_bits exponent = (vec_bits)x >> MANTISSA;
-    const vec_bits rest = ((vec_bits)x & (((bits)1 << MANTISSA) - 1)) | ONE_BITS;
-    const vec t = (vec)rest - (real)1.5;
-    vec r = look_up(term + 5 * OCTAVES, exponent);
-#pragma GCC unroll 5
-    for (int i = 4; i >= 0; i--)
-        r = r * t + look_up(term + i * OCTAVES, exponent);
-    return r;
+    return yielded_part(law->table, WB_SWEPT_HARDENING_TERMS, x);
 }
 
 /* Takes the plastic strain from a strain, and returns the rest to the yield surface.
@@ -249,7 +234,7 @@ INLINE void return_to_yield(const struct law *law, real *history, struct symmetr
 
     const vec p0 = load(history + 3 * BLOCK), square = choose(beyond, t2 + s2, splat((real)1));
     vec B = square * inverse_root(square), x = B - law->yield + p0;
-    vec r = yielded_part(law, x), p = x * r;
+    vec r = part_of(law, x), p = x * r;
     const mask yields = above(choose(beyond, p, (vec){0}), p0);
     if (!any(yields))
         return;
@@ -270,7 +255,7 @@ INLINE void return_to_yield(const struct law *law, real *history, struct symmetr
         A += step - less * of_p;
         if (!any(above(size_of(step), enough * x)))
             break;
-        r = yielded_part(law, x);
+        r = part_of(law, x);
         p = x * r;
         A = B - less * (p - p0);
     }
@@ -423,15 +408,6 @@ static void add_sums(const struct totals *totals, const struct wb_swept_range *l
     }
 }
 
-/* Which lanes are elements: the first `n`. */
-INLINE mask first_lanes(int n)
-{
-    vec lane;
-    for (int i = 0; i < LANES; i++)
-        lane[i] = (real)i;
-    return above(splat((real)n - (real)0.5), lane);
-}
-
 /* Padding, whose positions are of no meaning, has no forces. */
 INLINE void clear_padding(int left, struct line *line)
 {
@@ -578,15 +554,4 @@ static void measure(const struct wb_swept_tape_kernel_call *call)
     }
 }
 
-static bool runs_here(void)
-{
-#if defined(__AVX512F__)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx2") &&
-           __builtin_cpu_supports("fma");
-#elif defined(__AVX2__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#else
-    return true;
-#endif
-}
+const struct wb_swept_tape_kernel KERNEL_VERSION(wb_swept_tape_kernel) = {forces, measure};

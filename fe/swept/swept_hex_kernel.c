@@ -28,10 +28,8 @@
  * slender wire by strains of 1e-7.)
  */
 #include "fe/swept/swept_hex_kernel.h"
-
-#include "fe/swept/swept_hex_simd.inc"
-
-#include "fe/swept/swept_hex_nodes.inc"
+#include "fe/swept/swept_simd.h"
+#include "fe/swept/swept_yield.h"
 
 enum {
     GROUP_OF_ONE = 4, /* elements at a time: with one point each, and with four */
@@ -46,6 +44,181 @@ enum {
     XZ,
     YZ
 };
+
+/* A section node between two stations, in the section's frame: what its elements read, less the
+ * rigid motion, and what they add to. */
+struct node {
+    vec s[3], d[3];
+    vec fs[3], fd[3]; /* less the derivatives of the energy */
+};
+
+/* The frame's three axes. */
+struct frame {
+    vec axis[3][3];
+};
+
+INLINE struct wide wide_dot(const struct wide a[3], const struct wide b[3])
+{
+    struct wide out;
+    for (int p = 0; p < PARTS; p++)
+        out.of[p] = a[0].of[p] * b[0].of[p] + a[1].of[p] * b[1].of[p] + a[2].of[p] * b[2].of[p];
+    return out;
+}
+
+/* a + factor b */
+INLINE struct wide add_times(struct wide a, struct wide factor, struct wide b)
+{
+    for (int p = 0; p < PARTS; p++)
+        a.of[p] += factor.of[p] * b.of[p];
+    return a;
+}
+
+INLINE void normalise(struct wide a[3])
+{
+    const struct wide square = wide_dot(a, a);
+    for (int p = 0; p < PARTS; p++) {
+        const part factor = 1.0 / part_root(square.of[p]);
+        for (int i = 0; i < 3; i++)
+            a[i].of[p] *= factor;
+    }
+}
+
+/* Sum and difference of a node's positions at stations j and j + 1. */
+INLINE void read_node(const struct wb_swept_hex_kernel_model *m, const double *position, int node,
+                      int j, struct wide sum[3], struct wide difference[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const double *at = position + (size_t)(3 * node + i) * (size_t)m->layout.stride + j;
+        const struct wide begin = load_wide(at), end = load_wide(at + 1);
+        sum[i] = add(begin, end);
+        difference[i] = subtract(end, begin);
+    }
+}
+
+/* The section's frame: the first axis along the central node's line, the others turned with the
+ * line from there to the node beside it. To round-off of double they are orthonormal. */
+INLINE void find_axes(const struct wb_swept_hex_kernel_model *m, const struct wide centre[3],
+                      const struct wide along[3], const struct wide beside[3],
+                      struct wide axes[3][3])
+{
+    const double *from = m->node[m->centre], *to = m->node[m->beside];
+    const double y = to[0] - from[0], z = to[1] - from[1], length = sqrt(y * y + z * z);
+    const double c = y / length, s = z / length;
+    struct wide side[3], across[3];
+
+    for (int i = 0; i < 3; i++) {
+        axes[0][i] = along[i];
+        side[i] = subtract(beside[i], centre[i]);
+    }
+    normalise(axes[0]);
+    struct wide lean = wide_dot(side, axes[0]);
+    for (int p = 0; p < PARTS; p++)
+        lean.of[p] = -lean.of[p];
+    for (int i = 0; i < 3; i++)
+        side[i] = add_times(side[i], lean, axes[0][i]);
+    normalise(side);
+    for (int i = 0; i < 3; i++) {
+        const int k = (i + 1) % 3, l = (i + 2) % 3;
+        for (int p = 0; p < PARTS; p++)
+            across[i].of[p] = axes[0][k].of[p] * side[l].of[p] - axes[0][l].of[p] * side[k].of[p];
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int p = 0; p < PARTS; p++) {
+            axes[1][i].of[p] = c * side[i].of[p] - s * across[i].of[p];
+            axes[2][i].of[p] = s * side[i].of[p] + c * across[i].of[p];
+        }
+    }
+}
+
+/* s and d of all nodes from station j on. The lanes behind the last element are at rest. */
+INLINE void read_nodes(const struct wb_swept_hex_kernel_model *m, const double *position, int j,
+                       struct node *nodes, struct frame *frame)
+{
+    const double *middle = m->node[m->centre];
+    const int left = m->n_elements - j;
+    const mask active = first_lanes(left);
+    struct wide centre[3], along[3], s[3], d[3], axes[3][3];
+
+    read_node(m, position, m->centre, j, centre, along);
+    read_node(m, position, m->beside, j, s, d);
+    find_axes(m, centre, along, s, axes);
+    for (int i = 0; i < 9; i++)
+        frame->axis[i / 3][i % 3] = narrow(axes[i / 3][i % 3]);
+    for (int k = 0; k < m->layout.n_nodes; k++) {
+        const double y = -2.0 * (m->node[k][0] - middle[0]), z = -2.0 * (m->node[k][1] - middle[1]);
+        vec own_s[3], own_d[3];
+        read_node(m, position, k, j, s, d);
+        for (int i = 0; i < 3; i++) {
+            for (int p = 0; p < PARTS; p++) {
+                s[i].of[p] += y * axes[1][i].of[p] + z * axes[2][i].of[p] - centre[i].of[p];
+                d[i].of[p] -= m->length * axes[0][i].of[p];
+            }
+            own_s[i] = narrow(s[i]);
+            own_d[i] = narrow(d[i]);
+        }
+        for (int i = 0; i < 3; i++) {
+            nodes[k].s[i] = dot(frame->axis[i], own_s);
+            nodes[k].d[i] = dot(frame->axis[i], own_d);
+            nodes[k].fs[i] = nodes[k].fd[i] = (vec){0};
+        }
+    }
+    for (int k = 0; left < LANES && k < m->layout.n_nodes; k++) {
+        for (int i = 0; i < 3; i++) {
+            nodes[k].s[i] = choose(active, nodes[k].s[i], (vec){0});
+            nodes[k].d[i] = choose(active, nodes[k].d[i], (vec){0});
+        }
+    }
+}
+
+/* Forces at stations j to j + LANES - 1: of the elements that begin there, and of those that end
+ * there, whose last comes with the next vector. */
+INLINE void put(real *at, vec value, bool adds)
+{
+    if (adds)
+        value += load(at);
+    store(at, value);
+}
+
+INLINE void write_forces(const struct wb_swept_hex_kernel_model *m, real *force, int first_added,
+                         int j, const struct node *nodes, const struct frame *frame,
+                         vec (*carry)[3])
+{
+    const int left = m->n_elements - j;
+    const mask active = first_lanes(left);
+
+    for (int k = 0; k < m->layout.n_nodes; k++) {
+        const struct node *n = &nodes[k];
+        vec f0[3], f1[3];
+        for (int i = 0; i < 3; i++) {
+            f0[i] = n->fs[i] - n->fd[i];
+            f1[i] = n->fs[i] + n->fd[i];
+        }
+        for (int i = 0; i < 3; i++) {
+            const vec axes[3] = {frame->axis[0][i], frame->axis[1][i], frame->axis[2][i]};
+            vec begin = dot(axes, f0), end = dot(axes, f1);
+            if (left < LANES) {
+                begin = choose(active, begin, (vec){0});
+                end = choose(active, end, (vec){0});
+            }
+            put(force + (size_t)(3 * k + i) * (size_t)m->layout.stride + j,
+                begin + shift_in(carry[k][i], end), k >= first_added);
+            carry[k][i] = end;
+        }
+    }
+}
+
+/* Behind the last element. */
+INLINE void write_last_force(const struct wb_swept_hex_kernel_model *m, real *force,
+                             int first_added, int j, vec (*carry)[3])
+{
+    for (int k = 0; k < m->layout.n_nodes; k++) {
+        for (int i = 0; i < 3; i++) {
+            put(force + (size_t)(3 * k + i) * (size_t)m->layout.stride + j,
+                shift_in(carry[k][i], (vec){0}), k >= first_added);
+            carry[k][i] = (vec){0};
+        }
+    }
+}
 
 struct law {
     const real *table;
@@ -151,16 +324,8 @@ INLINE void pull_back(const vec E[6], vec T[6])
  * p / x is in the table; of smaller x than that has p is wrong, and negligible. */
 INLINE vec yielded_strain(const struct law *law, vec x)
 {
-    const real *term = law->table;
     x = minimum(x, splat((real)BELOW_TWO));
-    const vec_bits exponent = (vec_bits)x >> MANTISSA;
-    const vec_bits rest = ((vec_bits)x & (((bits)1 << MANTISSA) - 1)) | ONE_BITS;
-    const vec t = (vec)rest - (real)1.5;
-    vec r = look_up(term + (TERMS - 1) * OCTAVES, exponent);
-#pragma GCC unroll 8
-    for (int i = TERMS - 2; i >= 0; i--)
-        r = r * t + look_up(term + i * OCTAVES, exponent);
-    return x * r;
+    return x * yielded_part(law->table, TERMS, x);
 }
 
 /* e : e / 2 of a deviator; ZZ is not read. */
@@ -511,15 +676,4 @@ static void one_point(const struct wb_swept_hex_kernel_call *call)
         run(call, 1, false);
 }
 
-static bool runs_here(void)
-{
-#if defined(__AVX512F__)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx2") &&
-           __builtin_cpu_supports("fma");
-#elif defined(__AVX2__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#else
-    return true;
-#endif
-}
+const struct wb_swept_hex_kernel KERNEL_VERSION(wb_swept_hex_kernel) = {four_points, one_point};

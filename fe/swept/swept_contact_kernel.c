@@ -11,11 +11,8 @@
  * Gather and press are long chains of dependent operations. They prepare several vectors before
  * they work these out, so that no branch keeps the processor from overlapping them. */
 #include "fe/swept/swept_contact_kernel.h"
-#include "fe/swept/swept_hex_kernel.h"
-
-#include "fe/swept/swept_hex_simd.inc"
-
-#include "fe/swept/swept_contact_law.inc"
+#include "fe/swept/swept_contact_law.h"
+#include "fe/swept/swept_simd.h"
 
 typedef long long part_bits __attribute__((vector_size(BYTES), may_alias));
 
@@ -433,15 +430,5 @@ static void scatter(const struct wb_swept_contact_call *call)
     }
 }
 
-static bool runs_here(void)
-{
-#if defined(__AVX512F__)
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx2") &&
-           __builtin_cpu_supports("fma");
-#elif defined(__AVX2__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#else
-    return true;
-#endif
-}
+const struct wb_swept_contact_kernel KERNEL_VERSION(wb_swept_contact_kernel) = {gather, press,
+                                                                                scatter};
