@@ -8,8 +8,8 @@
 #include <gsl/gsl_multifit.h>
 
 #include "analysis/align_private.h"
+#include "analysis/axis_fit.h"
 #include "analysis/fit.h"
-#include "analysis/shape.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -191,7 +191,7 @@ static void average_frames(const struct wb_align *align, size_t first, size_t la
 
 /* Fits the axis to the markers of a row but the one `left_out` (-1: none). */
 static bool fit_axis(const struct wb_align *align, const struct means *means, int left_out,
-                     struct wb_shape_fit *fit)
+                     struct wb_axis_fit *fit)
 {
     double s[WB_SPECIMEN_MAX_MARKERS], x[WB_SPECIMEN_MAX_MARKERS], y[WB_SPECIMEN_MAX_MARKERS];
     int n = 0;
@@ -202,22 +202,22 @@ static bool fit_axis(const struct wb_align *align, const struct means *means, in
         x[n] = means->x[k];
         y[n++] = means->y[k];
     }
-    const struct wb_shape_markers markers = {
+    const struct wb_axis_fit_markers markers = {
         .n = n, .s = s, .x = x, .y = y, .offset = align->specimen.marker_offset};
-    return wb_shape_fit(fit, align->specimen.length, &markers) == WB_OK;
+    return wb_axis_fit(fit, align->specimen.length, &markers) == WB_OK;
 }
 
 /* The axis of a row. A marker that alone spoils the fit is dropped; a bad tip drops the row. */
-static bool find_axis(const struct wb_align *align, struct means *means, struct wb_shape_fit *fit)
+static bool find_axis(const struct wb_align *align, struct means *means, struct wb_axis_fit *fit)
 {
     const int tip = align->specimen.n_markers - 1;
     const bool fits = fit_axis(align, means, -1, fit);
     if (fits && fit->residual <= BAD_RESIDUAL)
         return true;
     int best = -1;
-    struct wb_shape_fit best_fit = {.residual = GOOD_RESIDUAL};
+    struct wb_axis_fit best_fit = {.residual = GOOD_RESIDUAL};
     for (int k = 1; k <= tip; k++) {
-        struct wb_shape_fit trial;
+        struct wb_axis_fit trial;
         if (means->n[k] > 0 && fit_axis(align, means, k, &trial) &&
             trial.residual < best_fit.residual) {
             best = k;
@@ -239,7 +239,7 @@ static bool make_row(const struct wb_align *align, size_t first, size_t last, do
     const struct wb_specimen *const specimen = &align->specimen;
     const int tip = specimen->n_markers - 1;
     struct means means;
-    struct wb_shape_fit fit;
+    struct wb_axis_fit fit;
     average_frames(align, first, last, &means);
     memset(row, 0, sizeof *row);
     /* Beside a loss of tip or clamp a mean of the few frames left would stand at the bin's edge. */
@@ -253,12 +253,12 @@ static bool make_row(const struct wb_align *align, size_t first, size_t last, do
         row->x[k] = means.x[k];
         row->y[k] = means.y[k];
         if (means.n[k] > 0)
-            wb_shape_to_axis(&fit, specimen->marker_offset, specimen->markers[k], &row->x[k],
+            wb_axis_fit_move(&fit, specimen->marker_offset, specimen->markers[k], &row->x[k],
                              &row->y[k]);
     }
     row->tip_x = row->x[tip];
     row->tip_y = row->y[tip];
-    row->tip_angle = wb_shape_angle(&fit, specimen->length);
+    row->tip_angle = wb_axis_fit_angle(&fit, specimen->length);
     row->commanded = (double)NAN;
     /* Direction of the strand: its upper end is straight above the straight wire's tip. */
     const double strand = align->rig.strand.length;
