@@ -146,10 +146,6 @@ WB_MUST_CHECK enum wb_status wb_align_stage(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_force(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_natural(struct wb_align *align);
 
-/* Reading less tare at bench time t: a local straight line over +-half seconds, or between the two
- * neighbours. False when a neighbour is farther than the longest gap. */
-bool wb_align_reading_at(const struct wb_align *align, double t, double half, double *reading);
-
 /* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
  * vertical over the wire's length. */
 double wb_align_level_uncertainty(const struct wb_align *align);

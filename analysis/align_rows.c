@@ -115,7 +115,9 @@ static size_t first_reading_at(const struct wb_align *align, double t)
     return low;
 }
 
-bool wb_align_reading_at(const struct wb_align *align, double t, double half, double *reading)
+/* Reading less tare at bench time t: a local straight line over +-half seconds, or between the two
+ * neighbours. False when a neighbour is farther than the longest gap. */
+static bool reading_at(const struct wb_align *align, double t, double half, double *reading)
 {
     const struct wb_align_reading *const r = wb_align_readings(align);
     const size_t next = first_reading_at(align, t);
@@ -244,8 +246,7 @@ static bool make_row(const struct wb_align *align, size_t first, size_t last, do
     memset(row, 0, sizeof *row);
     /* Beside a loss of tip or clamp a mean of the few frames left would stand at the bin's edge. */
     if (2 * (size_t)means.n_tip < last - first ||
-        !wb_align_reading_at(align, means.t, half, &row->reading) ||
-        !find_axis(align, &means, &fit))
+        !reading_at(align, means.t, half, &row->reading) || !find_axis(align, &means, &fit))
         return false;
     row->t = means.t;
     row->travel = -means.height;

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "analysis/csv_table_private.h"
 #include "base/file.h"
 #include "base/number.h"
 

@@ -26,10 +26,6 @@ struct wb_csv_table {
     void *context;
 };
 
-/* Reads a table's text, which is taken apart in place. */
-WB_MUST_CHECK enum wb_status wb_csv_table_parse(struct wb_csv_table *table, char *text,
-                                                size_t size);
-
 /* For take(): refuses a field, or reads a whole number from 0 to `most`. */
 enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
                                    const char *expected, const char *text);

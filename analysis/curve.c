@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/curve_private.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "curve"
@@ -231,7 +232,8 @@ static bool same(double a, double b, double relative)
     return fabs(a - b) <= relative * fmax(fabs(a), fabs(b));
 }
 
-bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info *b)
+/* Same wire, length and loading: tests that may be averaged. */
+static bool same_kind(const struct wb_test_info *a, const struct wb_test_info *b)
 {
     return strcmp(a->wire, b->wire) == 0 && fabs(a->length - b->length) <= SAME_LENGTH &&
            a->is_follower == b->is_follower;
@@ -239,7 +241,7 @@ bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info 
 
 static enum wb_status check_same_test(const struct wb_test_info *a, const struct wb_test_info *b)
 {
-    if (!wb_curve_same_kind(a, b))
+    if (!same_kind(a, b))
         return wb_fail(WB_ERR_DATA,
                        "datasets of different kinds cannot be averaged: wire '%s' of %.4g mm%s and "
                        "wire '%s' of %.4g mm%s",
@@ -580,7 +582,7 @@ int wb_curve_group(const struct wb_dataset *const *datasets, int n, int *group)
     for (int i = 0; i < n; i++) {
         group[i] = -1;
         for (int k = 0; k < i && group[i] < 0; k++) {
-            if (wb_curve_same_kind(&datasets[k]->info, &datasets[i]->info))
+            if (same_kind(&datasets[k]->info, &datasets[i]->info))
                 group[i] = group[k];
         }
         if (group[i] < 0)

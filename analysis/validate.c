@@ -10,6 +10,7 @@
 #include "analysis/errors.h"
 #include "analysis/marker_distance.h"
 #include "analysis/scatter.h"
+#include "analysis/validate_private.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/progress.h"

@@ -243,11 +243,6 @@ struct wb_json *wb_json_append_object(struct wb_json *array)
     return put_list(append(array, NULL), KIND_OBJECT);
 }
 
-struct wb_json *wb_json_append_array(struct wb_json *array)
-{
-    return put_list(append(array, NULL), KIND_ARRAY);
-}
-
 /* Copied before it is set: `value` may be the member that is replaced, or have `object` in it. */
 void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value)
 {

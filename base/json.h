@@ -36,7 +36,6 @@ struct wb_json *wb_json_set_array(struct wb_json *object, const char *key);
 void wb_json_append_text(struct wb_json *array, const char *text);
 void wb_json_append_number(struct wb_json *array, double value);
 struct wb_json *wb_json_append_object(struct wb_json *array);
-struct wb_json *wb_json_append_array(struct wb_json *array);
 
 /* Sets a deep copy of `value` (any document's) as a member. */
 void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value);

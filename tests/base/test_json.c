@@ -62,11 +62,11 @@ static void numbers_are_as_short_as_they_can_be(void **state)
     struct wb_json *list = wb_json_set_array(root, "a");
     wb_json_append_number(list, 0.1);
     wb_json_append_number(list, 85.0);
-    wb_json_append_array(list);
     wb_json_append_object(list);
+    wb_json_set_array(root, "b");
     char *text;
     assert_int_equal(wb_json_format(root, &text), WB_OK);
-    assert_string_equal(text, "{\n  \"a\": [\n    0.1,\n    85,\n    [],\n    {}\n  ]\n}\n");
+    assert_string_equal(text, "{\n  \"a\": [\n    0.1,\n    85,\n    {}\n  ],\n  \"b\": []\n}\n");
     free(text);
     wb_json_destroy(root);
 }
