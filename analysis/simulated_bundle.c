@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/dataset_csv.h"
+#include "analysis/csv_table.h"
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -255,9 +255,9 @@ static void append_row(struct wb_text *text, double t, const struct wb_bundle_ro
                               wb_bundle_imbalance(e)};
 
     for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
-        char number[WB_DATASET_CSV_NUMBER] = "";
+        char number[WB_CSV_TABLE_NUMBER] = "";
         if (isfinite(columns[i]))
-            wb_dataset_csv_format_number(columns[i], i == 1 ? MM_SHIFT : 0, number);
+            wb_csv_table_format_number(columns[i], i == 1 ? MM_SHIFT : 0, number);
         wb_text_append(text, "%s%s", i == 0 ? "" : ",", number);
     }
     wb_text_append(text, "\n");

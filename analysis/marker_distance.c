@@ -1,10 +1,10 @@
-#include "analysis/shapes.h"
+#include "analysis/marker_distance.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "shapes"
+#define WB_LOG_DOMAIN "marker_distance"
 
 /* Most different arc lengths at which markers sit. */
 #define MOST_POSITIONS 256
@@ -137,7 +137,7 @@ static bool marker_distance(const struct gallery *gallery, const struct wb_datas
     return true;
 }
 
-static void compare(struct wb_shapes_distance *distance, const struct gallery *gallery,
+static void compare(struct wb_marker_distance *distance, const struct gallery *gallery,
                     const struct wb_dataset *const *datasets, int n, double last)
 {
     double squares = 0.0;
@@ -161,13 +161,14 @@ static void compare(struct wb_shapes_distance *distance, const struct gallery *g
         distance->rms = distance->largest = (double)NAN;
 }
 
-enum wb_status wb_shapes_compare(struct wb_shapes_distance *distance, struct wb_computed *computed,
-                                 const struct wb_material *material,
-                                 const struct wb_dataset *const *datasets, int n,
-                                 const struct wb_shapes_range *range)
+enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
+                                       struct wb_computed *computed,
+                                       const struct wb_material *material,
+                                       const struct wb_dataset *const *datasets, int n,
+                                       const struct wb_marker_distance_range *range)
 {
     const double step = range->step, last = range->last;
-    struct wb_shapes_distance result = {(double)NAN, (double)NAN, 0};
+    struct wb_marker_distance result = {(double)NAN, (double)NAN, 0};
     struct gallery gallery = {.step = step, .is_follower = datasets[0]->info.is_follower};
     WB_TRY(collect_positions(&gallery, datasets, n, last));
     if (gallery.n_positions == 0) {

@@ -1,4 +1,4 @@
-#include "analysis/shape.h"
+#include "analysis/axis_fit.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -10,7 +10,7 @@
 #define INTERVALS 24
 #define MAX_ITERATIONS 30
 
-double wb_shape_angle(const struct wb_shape_fit *fit, double s)
+double wb_axis_fit_angle(const struct wb_axis_fit *fit, double s)
 {
     const double u = s / fit->length;
     double sum = 0.0;
@@ -19,9 +19,9 @@ double wb_shape_angle(const struct wb_shape_fit *fit, double s)
     return sum;
 }
 
-void wb_shape_to_axis(const struct wb_shape_fit *fit, double offset, double s, double *x, double *y)
+void wb_axis_fit_move(const struct wb_axis_fit *fit, double offset, double s, double *x, double *y)
 {
-    const double angle = wb_shape_angle(fit, s);
+    const double angle = wb_axis_fit_angle(fit, s);
     *x += offset * sin(angle);
     *y -= offset * cos(angle);
 }
@@ -29,16 +29,16 @@ void wb_shape_to_axis(const struct wb_shape_fit *fit, double offset, double s, d
 /* A marker's computed place and its derivatives over the terms. */
 struct place {
     double x, y;
-    double dx[WB_SHAPE_TERMS], dy[WB_SHAPE_TERMS];
+    double dx[WB_AXIS_FIT_TERMS], dy[WB_AXIS_FIT_TERMS];
 };
 
 /* Adds a piece of the axis integrals from s0 to s1. */
-static void integrate(const struct wb_shape_fit *fit, double s0, double s1, struct place *place)
+static void integrate(const struct wb_axis_fit *fit, double s0, double s1, struct place *place)
 {
     static const double points[2] = {0.21132486540518713, 0.78867513459481287};
     for (int g = 0; g < 2; g++) {
         const double s = s0 + (s1 - s0) * points[g];
-        const double weight = 0.5 * (s1 - s0), angle = wb_shape_angle(fit, s);
+        const double weight = 0.5 * (s1 - s0), angle = wb_axis_fit_angle(fit, s);
         const double c = weight * cos(angle), d = weight * sin(angle);
         double power = s / fit->length;
         place->x += c;
@@ -51,9 +51,9 @@ static void integrate(const struct wb_shape_fit *fit, double s0, double s1, stru
     }
 }
 
-static void add_offset(const struct wb_shape_fit *fit, double offset, double s, struct place *place)
+static void add_offset(const struct wb_axis_fit *fit, double offset, double s, struct place *place)
 {
-    const double angle = wb_shape_angle(fit, s);
+    const double angle = wb_axis_fit_angle(fit, s);
     double power = s / fit->length;
     place->x -= offset * sin(angle);
     place->y += offset * cos(angle);
@@ -65,7 +65,7 @@ static void add_offset(const struct wb_shape_fit *fit, double offset, double s, 
 }
 
 struct normal_equations {
-    double matrix[WB_SHAPE_TERMS][WB_SHAPE_TERMS], right[WB_SHAPE_TERMS];
+    double matrix[WB_AXIS_FIT_TERMS][WB_AXIS_FIT_TERMS], right[WB_AXIS_FIT_TERMS];
     double squares;
 };
 
@@ -83,7 +83,7 @@ static void add_residual(struct normal_equations *equations, int n_terms, double
 /* Solves by Cholesky's method, in place; false when the matrix is not positive definite. */
 static bool solve(struct normal_equations *equations, int n, double *step)
 {
-    double(*const a)[WB_SHAPE_TERMS] = equations->matrix;
+    double(*const a)[WB_AXIS_FIT_TERMS] = equations->matrix;
     for (int i = 0; i < n; i++) {
         for (int k = 0; k <= i; k++) {
             double sum = a[i][k];
@@ -108,7 +108,7 @@ static bool solve(struct normal_equations *equations, int n, double *step)
     return true;
 }
 
-static void assemble(const struct wb_shape_fit *fit, const struct wb_shape_markers *markers,
+static void assemble(const struct wb_axis_fit *fit, const struct wb_axis_fit_markers *markers,
                      struct normal_equations *equations)
 {
     memset(equations, 0, sizeof *equations);
@@ -128,21 +128,21 @@ static void assemble(const struct wb_shape_fit *fit, const struct wb_shape_marke
     }
 }
 
-enum wb_status wb_shape_fit(struct wb_shape_fit *fit, double length,
-                            const struct wb_shape_markers *markers)
+enum wb_status wb_axis_fit(struct wb_axis_fit *fit, double length,
+                           const struct wb_axis_fit_markers *markers)
 {
     const int n = markers->n;
     if (n < 1)
         return WB_ERR_DATA;
-    struct wb_shape_fit current = {.length = length};
+    struct wb_axis_fit current = {.length = length};
     /* Both coordinates of a marker count, but x hardly tells anything of a straight wire. */
-    current.n_terms = n < WB_SHAPE_TERMS ? n : WB_SHAPE_TERMS;
+    current.n_terms = n < WB_AXIS_FIT_TERMS ? n : WB_AXIS_FIT_TERMS;
     /* Start from the chord to the last marker: the angle of a uniformly bent wire is twice its. */
     current.terms[0] = 2.0 * atan2(markers->y[n - 1] - markers->offset, markers->x[n - 1]) *
                        length / markers->s[n - 1];
     for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
         struct normal_equations equations;
-        double step[WB_SHAPE_TERMS] = {0.0}, largest = 0.0;
+        double step[WB_AXIS_FIT_TERMS] = {0.0}, largest = 0.0;
         assemble(&current, markers, &equations);
         current.residual = sqrt(equations.squares / (2.0 * n));
         if (!isfinite(current.residual) || !solve(&equations, current.n_terms, step))

@@ -1,19 +1,20 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/shapes.h"
+#include "analysis/marker_distance.h"
 
 static const double mm = WB_MM;
 
 /* Compares a dataset of the beam, changed by the caller, with the beam. */
-static struct wb_shapes_distance compare(const struct wb_dataset *dataset,
+static struct wb_marker_distance compare(const struct wb_dataset *dataset,
                                          const struct wb_material *material)
 {
     const struct wb_computed_settings settings = {.n_elements = BEAM_ELEMENTS};
     struct wb_computed *computed;
-    struct wb_shapes_distance distance;
+    struct wb_marker_distance distance;
     assert_int_equal(wb_computed_create(&computed, &dataset->info, material, &settings), WB_OK);
-    const struct wb_shapes_range range = {1.0 * mm, 50 * mm};
-    assert_int_equal(wb_shapes_compare(&distance, computed, material, &dataset, 1, &range), WB_OK);
+    const struct wb_marker_distance_range range = {1.0 * mm, 50 * mm};
+    assert_int_equal(wb_marker_distance_find(&distance, computed, material, &dataset, 1, &range),
+                     WB_OK);
     wb_computed_destroy(computed);
     return distance;
 }
@@ -33,7 +34,7 @@ static void the_beams_own_shapes_are_no_distance_away(void **state)
     make(&dataset);
     /* 71 frames of six markers beyond the clamp; between the grid's frames shapes are joined by a
      * straight line. */
-    const struct wb_shapes_distance distance = compare(&dataset, &material);
+    const struct wb_marker_distance distance = compare(&dataset, &material);
     assert_int_equal(distance.n_points, 71 * 6);
     assert_true(distance.largest < 0.01 * mm);
     wb_dataset_release(&dataset);
@@ -49,7 +50,7 @@ static void a_shift_is_measured(void **state)
         dataset.shape_rows[i].x += 0.3 * mm;
         dataset.shape_rows[i].y += 0.4 * mm;
     }
-    const struct wb_shapes_distance distance = compare(&dataset, &material);
+    const struct wb_marker_distance distance = compare(&dataset, &material);
     assert_close(distance.rms, 0.5 * mm, 0.01 * mm);
     assert_close(distance.largest, 0.5 * mm, 0.01 * mm);
     wb_dataset_release(&dataset);
@@ -74,7 +75,7 @@ static void clamp_unloading_and_far_frames_do_not_count(void **state)
     };
     for (size_t i = 0; i < sizeof strangers / sizeof strangers[0]; i++)
         assert_int_equal(wb_dataset_add_shape_row(&dataset, &strangers[i]), WB_OK);
-    const struct wb_shapes_distance distance = compare(&dataset, &material);
+    const struct wb_marker_distance distance = compare(&dataset, &material);
     assert_int_equal(distance.n_points, 71 * 6);
     assert_true(distance.largest < 0.01 * mm);
     wb_dataset_release(&dataset);
@@ -87,7 +88,7 @@ static void without_shapes_there_is_no_distance(void **state)
     struct wb_dataset dataset;
     make(&dataset);
     dataset.n_shape_rows = 0;
-    const struct wb_shapes_distance distance = compare(&dataset, &material);
+    const struct wb_marker_distance distance = compare(&dataset, &material);
     assert_int_equal(distance.n_points, 0);
     assert_true(isnan(distance.rms) && isnan(distance.largest));
     wb_dataset_release(&dataset);

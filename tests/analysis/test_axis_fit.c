@@ -1,5 +1,5 @@
 /* A wire's axis from its markers. */
-#include "analysis/shape.h"
+#include "analysis/axis_fit.h"
 
 #include "tests/check.h"
 
@@ -30,18 +30,18 @@ static void place(double bend, double offset, double s, double *x, double *y)
     *y += offset * cos(angle_at(bend, s));
 }
 
-static enum wb_status fit_markers(struct wb_shape_fit *fit, double offset, int n, const double *s,
+static enum wb_status fit_markers(struct wb_axis_fit *fit, double offset, int n, const double *s,
                                   const double *x, const double *y)
 {
-    const struct wb_shape_markers markers = {.n = n, .s = s, .x = x, .y = y, .offset = offset};
-    return wb_shape_fit(fit, LENGTH, &markers);
+    const struct wb_axis_fit_markers markers = {.n = n, .s = s, .x = x, .y = y, .offset = offset};
+    return wb_axis_fit(fit, LENGTH, &markers);
 }
 
 static void offset_is_taken_off_along_the_normal(void **state)
 {
     (void)state;
     for (double bend = -0.3; bend < 1.6; bend += 0.3) {
-        struct wb_shape_fit fit;
+        struct wb_axis_fit fit;
         double x[N], y[N];
         for (int i = 0; i < N; i++)
             place(bend, 1e-3, arcs[i], &x[i], &y[i]);
@@ -50,10 +50,10 @@ static void offset_is_taken_off_along_the_normal(void **state)
         for (int i = 0; i < N; i++) {
             double axis_x, axis_y;
             place(bend, 0.0, arcs[i], &axis_x, &axis_y);
-            wb_shape_to_axis(&fit, 1e-3, arcs[i], &x[i], &y[i]);
+            wb_axis_fit_move(&fit, 1e-3, arcs[i], &x[i], &y[i]);
             assert_close(x[i], axis_x, 1e-6);
             assert_close(y[i], axis_y, 1e-6);
-            assert_close(wb_shape_angle(&fit, arcs[i]), angle_at(bend, arcs[i]), 1e-4);
+            assert_close(wb_axis_fit_angle(&fit, arcs[i]), angle_at(bend, arcs[i]), 1e-4);
         }
     }
 }
@@ -62,7 +62,7 @@ static void missing_markers_are_done_without(void **state)
 {
     (void)state;
     for (int missing = 0; missing < N - 1; missing++) {
-        struct wb_shape_fit fit;
+        struct wb_axis_fit fit;
         double s[N], x[N], y[N], tip_x, tip_y;
         int n = 0;
         for (int i = 0; i < N; i++) {
@@ -74,7 +74,7 @@ static void missing_markers_are_done_without(void **state)
         }
         assert_int_equal(fit_markers(&fit, 1e-3, n, s, x, y), WB_OK);
         place(1.1, 0.0, LENGTH, &tip_x, &tip_y);
-        wb_shape_to_axis(&fit, 1e-3, LENGTH, &x[n - 1], &y[n - 1]);
+        wb_axis_fit_move(&fit, 1e-3, LENGTH, &x[n - 1], &y[n - 1]);
         assert_close(y[n - 1], tip_y, 2e-6);
     }
 }
@@ -82,18 +82,18 @@ static void missing_markers_are_done_without(void **state)
 static void a_single_marker_gives_an_arc(void **state)
 {
     (void)state;
-    struct wb_shape_fit fit;
+    struct wb_axis_fit fit;
     const double s = LENGTH, radius = 0.1;
     const double x = radius * sin(s / radius), y = radius * (1.0 - cos(s / radius));
     assert_int_equal(fit_markers(&fit, 0.0, 1, &s, &x, &y), WB_OK);
     assert_int_equal(fit.n_terms, 1);
-    assert_close(wb_shape_angle(&fit, s), s / radius, 1e-5);
+    assert_close(wb_axis_fit_angle(&fit, s), s / radius, 1e-5);
 }
 
 static void nothing_and_nonsense_are_no_data(void **state)
 {
     (void)state;
-    struct wb_shape_fit fit;
+    struct wb_axis_fit fit;
     const double s[2] = {0.04, 0.085}, x[2] = {(double)NAN, 0.08}, y[2] = {0.0, 0.0};
     assert_int_equal(fit_markers(&fit, 0.0, 0, s, x, y), WB_ERR_DATA);
     assert_int_equal(fit_markers(&fit, 0.0, 2, s, x, y), WB_ERR_DATA);

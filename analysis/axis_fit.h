@@ -6,22 +6,22 @@
  * fitted to all markers by least squares (Gauss-Newton). The fit serves for the slope only: a
  * marker's point on the axis is its measured place less offset times the fitted normal.
  */
-#ifndef WB_ANALYSIS_SHAPE_H
-#define WB_ANALYSIS_SHAPE_H
+#ifndef WB_ANALYSIS_AXIS_FIT_H
+#define WB_ANALYSIS_AXIS_FIT_H
 
 #include "base/status.h"
 
-#define WB_SHAPE_TERMS 4
+#define WB_AXIS_FIT_TERMS 4
 
-struct wb_shape_fit {
+struct wb_axis_fit {
     double length;
     int n_terms;
-    double terms[WB_SHAPE_TERMS]; /* a_1.., rad */
-    double residual;              /* m, RMS of the markers' coordinates about the fit */
+    double terms[WB_AXIS_FIT_TERMS]; /* a_1.., rad */
+    double residual;                 /* m, RMS of the markers' coordinates about the fit */
 };
 
 /* Markers on a wire. */
-struct wb_shape_markers {
+struct wb_axis_fit_markers {
     int n;
     const double *s;     /* (n) m, arc lengths: ascending, within 0..length, not 0 itself */
     const double *x, *y; /* (n) m, in the clamp's frame, offset not removed */
@@ -30,14 +30,13 @@ struct wb_shape_markers {
 
 /* Fits the axis of a wire of `length` (m). WB_ERR_DATA, silent, when there is no marker or the fit
  * does not settle. */
-WB_MUST_CHECK enum wb_status wb_shape_fit(struct wb_shape_fit *fit, double length,
-                                          const struct wb_shape_markers *markers);
+WB_MUST_CHECK enum wb_status wb_axis_fit(struct wb_axis_fit *fit, double length,
+                                         const struct wb_axis_fit_markers *markers);
 
 /* Angle of the fitted axis, rad. */
-double wb_shape_angle(const struct wb_shape_fit *fit, double s);
+double wb_axis_fit_angle(const struct wb_axis_fit *fit, double s);
 
 /* Moves a marker's place at arc length s onto the axis. */
-void wb_shape_to_axis(const struct wb_shape_fit *fit, double offset, double s, double *x,
-                      double *y);
+void wb_axis_fit_move(const struct wb_axis_fit *fit, double offset, double s, double *x, double *y);
 
 #endif
