@@ -12,9 +12,6 @@
 
 #define WB_LOG_DOMAIN "dataset"
 
-static const double pa_per_m = 1e9;       /* of one N/mm3 */
-static const double s_per_m = 1e3;        /* of one s/mm */
-static const double j_per_m2 = 1e3;       /* of one N/mm */
 static const double poissons_ratio = 0.3; /* of the homogenised beam, as the paper has it */
 
 /* --- rows --- */
@@ -69,18 +66,20 @@ static void describe_interface(struct wb_json *simulation, const struct wb_bundl
     struct wb_json *const friction = wb_json_set_object(simulation, "friction");
     wb_json_set_number(friction, "static", interface->friction_static);
     wb_json_set_number(friction, "kinetic", interface->friction_kinetic);
-    wb_json_set_number(friction, "decay_s_mm", interface->friction_decay / s_per_m);
+    wb_json_set_number(friction, "decay_s_mm", interface->friction_decay / WB_S_PER_MM);
     if (!model->has_tape)
         return;
     struct wb_json *const cohesion = wb_json_set_object(simulation, "cohesion");
-    wb_json_set_number(cohesion, "normal_stiffness_N_mm3", interface->normal_stiffness / pa_per_m);
-    wb_json_set_number(cohesion, "shear_stiffness_N_mm3", interface->shear_stiffness / pa_per_m);
+    wb_json_set_number(cohesion, "normal_stiffness_N_mm3",
+                       interface->normal_stiffness / WB_N_PER_MM3);
+    wb_json_set_number(cohesion, "shear_stiffness_N_mm3",
+                       interface->shear_stiffness / WB_N_PER_MM3);
     if (!interface->has_damage)
         return;
     wb_json_set_number(cohesion, "strength_MPa", interface->damage.strength / WB_MPA);
     wb_json_set_number(cohesion, "shear_strength_MPa", interface->damage.shear_strength / WB_MPA);
     wb_json_set_number(cohesion, "fracture_energy_N_mm",
-                       interface->damage.fracture_energy / j_per_m2);
+                       interface->damage.fracture_energy / WB_N_PER_MM);
 }
 
 static void describe_mesh(struct wb_json *object, const struct wb_simulated_bundle *bundle)
@@ -180,10 +179,10 @@ static void describe_override(struct wb_json *simulation, const struct wb_bundle
         struct wb_json *const friction = wb_json_set_object(out, "friction");
         wb_json_set_number(friction, "static", o->friction_static);
         wb_json_set_number(friction, "kinetic", o->friction_kinetic);
-        wb_json_set_number(friction, "decay_s_mm", o->friction_decay / s_per_m);
+        wb_json_set_number(friction, "decay_s_mm", o->friction_decay / WB_S_PER_MM);
     }
     if (o->cohesive_stiffness > 0.0)
-        wb_json_set_number(out, "cohesive_stiffness_N_mm3", o->cohesive_stiffness / pa_per_m);
+        wb_json_set_number(out, "cohesive_stiffness_N_mm3", o->cohesive_stiffness / WB_N_PER_MM3);
 }
 
 static void describe(struct wb_json *document, const struct wb_simulated_bundle *bundle)

@@ -36,9 +36,6 @@ enum {
     KEY_CHECKPOINT_MINUTES
 };
 
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-static const double s_per_m = 1e3;  /* of one s/mm */
-
 static const struct argp_option option_table[] = {
     {"wire", KEY_WIRE, "NAME|FILE", 0, "Wire with its properties (fixtures/wires or a file)", 0},
     {"length-mm", KEY_LENGTH, "L", 0, "Free length from clamp to tip", 0},
@@ -166,7 +163,7 @@ static void take_friction(struct argp_state *state, const char *argument,
     override->has_friction = true;
     override->friction_static = value[0];
     override->friction_kinetic = value[1];
-    override->friction_decay = value[2] * s_per_m;
+    override->friction_decay = value[2] * WB_S_PER_MM;
 }
 
 static error_t take_bundle_option(int key, char *argument, struct argp_state *state,
@@ -211,7 +208,7 @@ static error_t take_bundle_option(int key, char *argument, struct argp_state *st
         return 0;
     case KEY_COHESIVE_STIFFNESS:
         override->cohesive_stiffness =
-            pa_per_m * wb_command_number(state, "--cohesive-stiffness", argument, 1e-6, 1e9);
+            WB_N_PER_MM3 * wb_command_number(state, "--cohesive-stiffness", argument, 1e-6, 1e9);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

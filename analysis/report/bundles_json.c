@@ -6,9 +6,7 @@
 #include "base/units.h"
 #include "base/version.h"
 
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-static const double s_per_m = 1e3;  /* of one s/mm */
-static const double n_mm2 = 1e-6;   /* N m2 of one N mm2 */
+static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
 
 static void put_values(struct wb_json *object, const char *key, const double *values, int n,
                        double unit)
@@ -83,8 +81,9 @@ static void put_run(struct wb_json *list, const struct wb_bundles_results *resul
     struct wb_json *const friction = wb_json_set_object(entry, "friction");
     wb_json_set_number(friction, "static", m->interface.friction_static);
     wb_json_set_number(friction, "kinetic", m->interface.friction_kinetic);
-    wb_json_set_number(friction, "decay_s_mm", m->interface.friction_decay / s_per_m);
-    wb_json_set_number(entry, "cohesive_stiffness_N_mm3", m->interface.normal_stiffness / pa_per_m);
+    wb_json_set_number(friction, "decay_s_mm", m->interface.friction_decay / WB_S_PER_MM);
+    wb_json_set_number(entry, "cohesive_stiffness_N_mm3",
+                       m->interface.normal_stiffness / WB_N_PER_MM3);
     wb_json_set_number(entry, "strand_mm", m->loads.strand_length / WB_MM);
     wb_json_set_boolean(entry, "weight", m->loads.weight);
     wb_json_set_number(entry, "mass_scaling", m->run.mass_scaling);

@@ -10,9 +10,6 @@
 
 #define WB_LOG_DOMAIN "campaign"
 
-static const double s_per_m = 1e3;  /* of one s/mm */
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-
 /* What a run has in place of its bundle's, as the command's options say it; has_... tells what else
  * was given. */
 struct settings {
@@ -28,7 +25,7 @@ static enum wb_status read_friction(struct wb_bundle_override *o, const struct w
     const struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("static", &o->friction_static, 1.0, 0.0, 10.0),
         WB_CONFIG_NUMBER("kinetic", &o->friction_kinetic, 1.0, 0.0, 10.0),
-        WB_CONFIG_NUMBER("decay_s_mm", &o->friction_decay, s_per_m, 1e-9, 1e9),
+        WB_CONFIG_NUMBER("decay_s_mm", &o->friction_decay, WB_S_PER_MM, 1e-9, 1e9),
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     if (o->friction_kinetic > o->friction_static)
@@ -50,7 +47,7 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
     const bool is_constant = friction && wb_config_scalar(friction);
     bool has_friction = false, has_load = false, has_weight = false;
     const struct wb_config_key shared[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("cohesive_stiffness_N_mm3", &o->cohesive_stiffness, pa_per_m,
+        WB_CONFIG_OPTIONAL_NUMBER("cohesive_stiffness_N_mm3", &o->cohesive_stiffness, WB_N_PER_MM3,
                                   1e-6, 1e9),
         WB_CONFIG_OPTIONAL_TEXT("mesh", s->mesh),
         WB_CONFIG_OPTIONAL_NUMBER("mass_scaling", &o->mass_scaling, 1.0, 1.0, 1e6),
@@ -141,7 +138,7 @@ static enum wb_status argue_friction(struct wb_bundles_dataset *dataset,
     snprintf(text, sizeof text, "%.10g", o->friction_static);
     if (o->friction_decay > 0.0)
         snprintf(text, sizeof text, "%.10g,%.10g,%.10g", o->friction_static, o->friction_kinetic,
-                 o->friction_decay / s_per_m);
+                 o->friction_decay / WB_S_PER_MM);
     WB_TRY(wb_bundles_dataset_argue(dataset, "--friction", NULL));
     return wb_bundles_dataset_argue(dataset, text, NULL);
 }
@@ -158,7 +155,7 @@ static enum wb_status argue(struct wb_bundles_run *run, const struct wb_bundle_o
     if (o->no_weight)
         WB_TRY(wb_bundles_dataset_argue(d, "--no-weight", NULL));
     WB_TRY(argue_friction(d, o));
-    WB_TRY(argue_number(d, "--cohesive-stiffness", o->cohesive_stiffness / pa_per_m));
+    WB_TRY(argue_number(d, "--cohesive-stiffness", o->cohesive_stiffness / WB_N_PER_MM3));
     if (o->mesh) {
         WB_TRY(wb_bundles_dataset_argue(d, "--mesh", NULL));
         WB_TRY(wb_bundles_dataset_argue(d, o->mesh, NULL));

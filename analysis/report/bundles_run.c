@@ -13,9 +13,6 @@
 
 #define WB_LOG_DOMAIN "report"
 
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-static const double s_per_m = 1e3;  /* of one s/mm */
-
 bool wb_bundles_run_is_missing(const struct wb_bundles_result *result)
 {
     return result->state == WB_BUNDLES_MISSING || result->state == WB_BUNDLES_STALE;
@@ -128,7 +125,7 @@ static enum wb_status check_run(const struct wb_bundles_result *result,
         {"the static friction", number_of(friction, "static"), interface->friction_static},
         {"the kinetic friction", number_of(friction, "kinetic"), interface->friction_kinetic},
         {"the decay of friction (s/mm)", number_of(friction, "decay_s_mm"),
-         interface->friction_decay / s_per_m},
+         interface->friction_decay / WB_S_PER_MM},
         {"the strand's length (mm)", info->strand_length / WB_MM, m->loads.strand_length / WB_MM},
         {"gravity (m/s2)", info->gravity, m->loads.weight ? WB_STANDARD_GRAVITY : 0.0},
         {"the mass scaling", number_of(simulation, "mass_scaling"), m->run.mass_scaling},
@@ -138,7 +135,7 @@ static enum wb_status check_run(const struct wb_bundles_result *result,
     WB_TRY(check_settings(settings, sizeof settings / sizeof settings[0]));
     const struct setting normal = {"the cohesive stiffness (N/mm3)",
                                    number_of(cohesion, "normal_stiffness_N_mm3"),
-                                   interface->normal_stiffness / pa_per_m};
+                                   interface->normal_stiffness / WB_N_PER_MM3};
     const struct setting duration = {"the duration (s)", number_of(simulation, "duration_s"),
                                      m->run.duration};
     if (m->has_tape)

@@ -17,9 +17,6 @@ static const double pi = 3.14159265358979323846;
 static const double n_mm2 = 1e-6;    /* N m2 of one N mm2 */
 static const double g_per_m = 1e-3;  /* kg/m of one g/m */
 static const double touching = 1e-9; /* m: wires so near to the tape touch it */
-static const double pa_per_m = 1e9;  /* of one N/mm3 */
-static const double s_per_m = 1e3;   /* of one s/mm */
-static const double j_per_m2 = 1e3;  /* of one N/mm */
 static const double largest_poisson = 0.499;
 
 static const char *const length_sources[] = {"own", "printed", "inferred", NULL};
@@ -751,7 +748,7 @@ static enum wb_status read_friction(struct wb_bundle_interface *interface,
     const struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("static", &interface->friction_static, 1.0, 0.0, 10.0),
         WB_CONFIG_NUMBER("kinetic", &interface->friction_kinetic, 1.0, 0.0, 10.0),
-        WB_CONFIG_NUMBER("decay_s_mm", &interface->friction_decay, s_per_m, 1e-9, 1e9),
+        WB_CONFIG_NUMBER("decay_s_mm", &interface->friction_decay, WB_S_PER_MM, 1e-9, 1e9),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     if (interface->friction_kinetic > interface->friction_static)
@@ -768,7 +765,7 @@ static enum wb_status check_energy(const struct wb_config_node *map, double stre
     if (!(damage->fracture_energy > least))
         return wb_config_refuse(map, "fracture_energy_N_mm",
                                 "%g N/mm is not more than the %g N/mm it takes to reach %g MPa",
-                                damage->fracture_energy / j_per_m2, least / j_per_m2,
+                                damage->fracture_energy / WB_N_PER_MM, least / WB_N_PER_MM,
                                 strength / WB_MPA);
     return WB_OK;
 }
@@ -781,7 +778,7 @@ static enum wb_status read_damage(struct wb_bundle_interface *interface,
     struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("strength_MPa", &damage->strength, WB_MPA, 1e-6, 1e6),
         WB_CONFIG_OPTIONAL_NUMBER("shear_strength_MPa", &damage->shear_strength, WB_MPA, 1e-6, 1e6),
-        WB_CONFIG_NUMBER("fracture_energy_N_mm", &damage->fracture_energy, j_per_m2, 1e-9, 1e6),
+        WB_CONFIG_NUMBER("fracture_energy_N_mm", &damage->fracture_energy, WB_N_PER_MM, 1e-9, 1e6),
     };
     keys[1].present = &has_shear;
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
@@ -800,8 +797,8 @@ static enum wb_status read_interface(struct wb_bundle_model *model,
     const bool is_constant = friction && wb_config_scalar(friction);
     double share = 1.0 / 3.0;
     const struct wb_config_key keys[] = {
-        WB_CONFIG_NUMBER("cohesive_stiffness_N_mm3", &interface->normal_stiffness, pa_per_m, 1e-6,
-                         1e9),
+        WB_CONFIG_NUMBER("cohesive_stiffness_N_mm3", &interface->normal_stiffness, WB_N_PER_MM3,
+                         1e-6, 1e9),
         WB_CONFIG_OPTIONAL_NUMBER("shear_to_normal_stiffness", &share, 1.0, 1e-6, 1e3),
         WB_CONFIG_OPTIONAL_NODE("damage", &damage),
         is_constant ? (struct wb_config_key)WB_CONFIG_NUMBER(

@@ -7,8 +7,6 @@
 
 #define WB_LOG_DOMAIN "bundle"
 
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-static const double j_per_m2 = 1e3; /* of one N/mm */
 static const double most_friction = 10.0;
 
 bool wb_bundle_override_is_empty(const struct wb_bundle_override *o)
@@ -73,7 +71,8 @@ static enum wb_status check_softening(double strength, double stiffness, double 
         WB_ERR_ARGUMENT,
         "with a cohesive stiffness of %g N/mm3 the fracture energy, %g N/mm, is not more "
         "than the %g N/mm it takes to reach %g MPa",
-        stiffness / pa_per_m, fracture_energy / j_per_m2, least / j_per_m2, strength / WB_MPA);
+        stiffness / WB_N_PER_MM3, fracture_energy / WB_N_PER_MM, least / WB_N_PER_MM,
+        strength / WB_MPA);
 }
 
 static enum wb_status override_cohesion(const struct wb_bundle_override *o,
@@ -86,7 +85,7 @@ static enum wb_status override_cohesion(const struct wb_bundle_override *o,
         return WB_OK;
     if (!(stiffness > 0.0 && isfinite(stiffness)))
         return wb_fail(WB_ERR_ARGUMENT, "a cohesive stiffness of %g N/mm3: expected above 0",
-                       stiffness / pa_per_m);
+                       stiffness / WB_N_PER_MM3);
     interface->shear_stiffness *= stiffness / interface->normal_stiffness;
     interface->normal_stiffness = stiffness;
     if (!interface->has_damage)
