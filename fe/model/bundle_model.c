@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +24,194 @@ static const char *const length_sources[] = {"own", "printed", "inferred", NULL}
 static const char *const tips[] = {"free", "capped", NULL};
 static const char *const formulations[] = {"2x2x1", "one-point", NULL};
 static const char *const precisions[] = {"single", "double", NULL};
+
+/* --- settings --- */
+
+const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTINGS] = {
+    [WB_BUNDLE_MODEL_MESH] = {.name = "mesh",
+                              .type = WB_SETTING_TEXT,
+                              .offset = offsetof(struct wb_bundle_run, mesh),
+                              .size = sizeof((struct wb_bundle_run *)NULL)->mesh,
+                              .otherwise = "engineering",
+                              .option = "mesh",
+                              .argument = "NAME",
+                              .help = "Mesh: engineering, paper, or one of the file"},
+    [WB_BUNDLE_MODEL_DURATION] = {.name = "duration_s",
+                                  .title = "duration",
+                                  .unit = "s",
+                                  .type = WB_SETTING_NUMBER,
+                                  .offset = offsetof(struct wb_bundle_run, duration),
+                                  .least = 1e-6,
+                                  .largest = 1e6,
+                                  .otherwise = "chosen",
+                                  .option = "duration-s",
+                                  .argument = "T",
+                                  .help = "Duration of a loading; given neither here nor in the "
+                                          "file, it is chosen so that kinetic energy stays small"},
+    [WB_BUNDLE_MODEL_MASS_SCALING] = {.name = "mass_scaling",
+                                      .title = "mass scaling",
+                                      .type = WB_SETTING_NUMBER,
+                                      .offset = offsetof(struct wb_bundle_run, mass_scaling),
+                                      .least = 1.0,
+                                      .largest = 1e6,
+                                      .fallback = 25.0,
+                                      .option = "mass-scaling",
+                                      .argument = "F",
+                                      .help = "Factor on all masses"},
+    [WB_BUNDLE_MODEL_SELECTIVE] = {.name = "selective_mass_scaling",
+                                   .title = "selective mass scaling",
+                                   .type = WB_SETTING_NUMBER,
+                                   .offset = offsetof(struct wb_bundle_run, selective),
+                                   .least = 1.0,
+                                   .largest = 1e6,
+                                   .fallback = 1.0,
+                                   .option = "selective",
+                                   .argument = "B",
+                                   .help = "Selective mass scaling of sections"},
+    [WB_BUNDLE_MODEL_DEFLECTION] = {.name = "deflection_mm",
+                                    .title = "deflection",
+                                    .unit = "mm",
+                                    .type = WB_SETTING_NUMBER,
+                                    .offset = offsetof(struct wb_bundle_run, deflection),
+                                    .scale = WB_MM,
+                                    .least = 1e-6,
+                                    .largest = 1e6,
+                                    .fallback = 53.0},
+    [WB_BUNDLE_MODEL_ROWS] = {.name = "rows",
+                              .type = WB_SETTING_INTEGER,
+                              .offset = offsetof(struct wb_bundle_run, rows),
+                              .least = 1,
+                              .largest = 10000,
+                              .fallback = 53},
+    [WB_BUNDLE_MODEL_CYCLES] = {.name = "cycles",
+                                .type = WB_SETTING_INTEGER,
+                                .offset = offsetof(struct wb_bundle_run, cycles),
+                                .least = 0,
+                                .largest = 1000},
+    [WB_BUNDLE_MODEL_KINETIC_LIMIT] = {.name = "kinetic_energy_limit",
+                                       .title = "limit of kinetic energy",
+                                       .type = WB_SETTING_NUMBER,
+                                       .offset = offsetof(struct wb_bundle_run, kinetic_limit),
+                                       .least = 1e-6,
+                                       .largest = 1.0,
+                                       .fallback = 0.05},
+    [WB_BUNDLE_MODEL_PRECISION] = {.name = "precision",
+                                   .type = WB_SETTING_CHOICE,
+                                   .offset = offsetof(struct wb_bundle_run, double_precision),
+                                   .choices = precisions},
+};
+
+static const struct wb_setting_table run_table = {.rows = wb_bundle_model_run_settings,
+                                                  .n = WB_BUNDLE_MODEL_RUN_SETTINGS};
+
+static const struct wb_setting friction_rows[] = {
+    {.name = "static",
+     .title = "static friction",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, friction_static),
+     .least = 0.0,
+     .largest = 10.0,
+     .required = true},
+    {.name = "kinetic",
+     .title = "kinetic friction",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, friction_kinetic),
+     .least = 0.0,
+     .largest = 10.0,
+     .required = true},
+    {.name = "decay_s_mm",
+     .title = "decay of friction",
+     .unit = "s/mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, friction_decay),
+     .scale = WB_S_PER_MM,
+     .least = 1e-9,
+     .largest = 1e9,
+     .required = true},
+};
+
+static const struct wb_setting_table friction_table = {.rows = friction_rows,
+                                                       .n = WB_COUNT(friction_rows)};
+
+/* A coefficient alone is constant. */
+static int complete_friction(void *members, int n, char *problem, size_t size)
+{
+    struct wb_bundle_interface *const interface = members;
+    if (n == 1) {
+        interface->friction_kinetic = interface->friction_static;
+        interface->friction_decay = 0.0;
+    }
+    if (!(interface->friction_kinetic > interface->friction_static))
+        return -1;
+    snprintf(problem, size, "%g is more than the static one, %g", interface->friction_kinetic,
+             interface->friction_static);
+    return 1;
+}
+
+const struct wb_setting wb_bundle_model_friction_setting[1] = {
+    {.name = "friction",
+     .type = WB_SETTING_LIST,
+     .required = true,
+     .option = "friction",
+     .argument = "S[,K,D]",
+     .help = "Friction: constant, or static and kinetic with the decay between them in s/mm",
+     .members = &friction_table,
+     .given = offsetof(struct wb_bundle_interface, has_friction),
+     .complete = complete_friction},
+};
+
+const struct wb_setting wb_bundle_model_cohesion_setting[1] = {
+    {.name = "cohesive_stiffness_N_mm3",
+     .title = "cohesive stiffness",
+     .unit = "N/mm3",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, normal_stiffness),
+     .scale = WB_N_PER_MM3,
+     .least = 1e-6,
+     .largest = 1e9,
+     .required = true,
+     .option = "cohesive-stiffness",
+     .argument = "K",
+     .help = "Normal stiffness between tape and wires; the shear stiffness keeps its ratio to it"},
+};
+
+static const struct wb_setting_table cohesion_table = {.rows = wb_bundle_model_cohesion_setting,
+                                                       .n = 1};
+
+static const struct wb_setting loads_rows[] = {
+    {.name = "strand_mm",
+     .title = "strand's length",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_loads, strand_length),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e9,
+     .otherwise = "none"},
+    {.name = "weight",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_bundle_loads, weight),
+     .required = true},
+};
+
+static const struct wb_setting_table loads_table = {.rows = loads_rows, .n = WB_COUNT(loads_rows)};
+
+void wb_bundle_model_identify(const struct wb_bundle_model *model, char sha256[WB_SHA256_TEXT])
+{
+    const struct wb_bundle_interface *const i = &model->interface;
+    struct wb_text text = {0};
+    wb_text_append(&text, "%s;%d;%d;%.17g;", model->sha256, model->has_tape, (int)model->tip,
+                   model->length);
+    wb_setting_identify(&run_table, &model->run, &text);
+    wb_setting_identify(&loads_table, &model->loads, &text);
+    wb_setting_identify(&friction_table, i, &text);
+    wb_setting_identify(&cohesion_table, i, &text);
+    wb_text_append(&text, "%.17g;%d;%.17g;%.17g;%.17g;", i->shear_stiffness, i->has_damage,
+                   i->damage.strength, i->damage.shear_strength, i->damage.fracture_energy);
+    /* Without memory for all of it the sum is that of a part, and of no other run. */
+    wb_hash_bytes(wb_text_string(&text), text.length, sha256);
+    wb_text_release(&text);
+}
 
 static const struct wb_bundle_mesh own_meshes[2] = {
     {.name = "engineering",
@@ -741,22 +930,6 @@ static enum wb_status read_section(struct reader *reader, const struct section_n
 
 /* --- interface --- */
 
-/* A number, or static and kinetic coefficient with the decay between them. */
-static enum wb_status read_friction(struct wb_bundle_interface *interface,
-                                    const struct wb_config_node *map)
-{
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_NUMBER("static", &interface->friction_static, 1.0, 0.0, 10.0),
-        WB_CONFIG_NUMBER("kinetic", &interface->friction_kinetic, 1.0, 0.0, 10.0),
-        WB_CONFIG_NUMBER("decay_s_mm", &interface->friction_decay, WB_S_PER_MM, 1e-9, 1e9),
-    };
-    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    if (interface->friction_kinetic > interface->friction_static)
-        return wb_config_refuse(map, "kinetic", "%g is more than static, %g",
-                                interface->friction_kinetic, interface->friction_static);
-    return WB_OK;
-}
-
 /* The law has to soften after it reaches its strength. */
 static enum wb_status check_energy(const struct wb_config_node *map, double strength,
                                    double stiffness, const struct wb_bundle_damage *damage)
@@ -793,23 +966,17 @@ static enum wb_status read_interface(struct wb_bundle_model *model,
                                      const struct wb_config_node *map)
 {
     struct wb_bundle_interface *const interface = &model->interface;
-    const struct wb_config_node *friction = wb_config_find(map, "friction"), *damage;
-    const bool is_constant = friction && wb_config_scalar(friction);
+    const struct wb_config_node *friction, *damage;
     double share = 1.0 / 3.0;
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_NUMBER("cohesive_stiffness_N_mm3", &interface->normal_stiffness, WB_N_PER_MM3,
-                         1e-6, 1e9),
+    struct wb_config_key keys[4] = {
         WB_CONFIG_OPTIONAL_NUMBER("shear_to_normal_stiffness", &share, 1.0, 1e-6, 1e3),
         WB_CONFIG_OPTIONAL_NODE("damage", &damage),
-        is_constant ? (struct wb_config_key)WB_CONFIG_NUMBER(
-                          "friction", &interface->friction_static, 1.0, 0.0, 10.0)
-                    : (struct wb_config_key)WB_CONFIG_NODE("friction", &friction),
+        WB_CONFIG_NODE("friction", &friction),
     };
+    (void)wb_setting_keys(&cohesion_table, 0, interface, keys + 3);
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     interface->shear_stiffness = share * interface->normal_stiffness;
-    interface->friction_kinetic = interface->friction_static;
-    if (!is_constant)
-        WB_TRY(read_friction(interface, friction));
+    WB_TRY(wb_setting_read_list(wb_bundle_model_friction_setting, friction, interface));
     return damage ? read_damage(interface, damage) : WB_OK;
 }
 
@@ -868,21 +1035,10 @@ static enum wb_status read_run(struct reader *reader, const struct wb_config_nod
 {
     struct wb_bundle_model *const m = reader->model;
     struct wb_bundle_run *const run = &m->run;
-    int precision = 0;
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_TEXT("mesh", run->mesh),
-        WB_CONFIG_OPTIONAL_NUMBER("deflection_mm", &run->deflection, WB_MM, 1e-6, 1e6),
-        WB_CONFIG_OPTIONAL_INTEGER("rows", &run->rows, 1, 10000),
-        WB_CONFIG_OPTIONAL_INTEGER("cycles", &run->cycles, 0, 1000),
-        WB_CONFIG_OPTIONAL_NUMBER("duration_s", &run->duration, 1.0, 1e-6, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("mass_scaling", &run->mass_scaling, 1.0, 1.0, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("selective_mass_scaling", &run->selective, 1.0, 1.0, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("kinetic_energy_limit", &run->kinetic_limit, 1.0, 1e-6, 1.0),
-        WB_CONFIG_OPTIONAL_CHOICE("precision", &precision, precisions),
-    };
+    struct wb_config_key keys[WB_BUNDLE_MODEL_RUN_SETTINGS];
+    const size_t n = wb_setting_keys(&run_table, 0, run, keys);
     if (map)
-        WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    run->double_precision = precision == 1;
+        WB_TRY(wb_config_map(map, keys, n));
     if (!wb_bundle_model_mesh(m, run->mesh))
         return wb_config_refuse(map, "mesh", "there is no mesh %s", run->mesh);
     if (run->deflection < m->length)
@@ -894,12 +1050,8 @@ static enum wb_status read_run(struct reader *reader, const struct wb_config_nod
 
 static enum wb_status read_loads(struct wb_bundle_loads *loads, const struct wb_config_node *map)
 {
-    struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("strand_mm", &loads->strand_length, WB_MM, 1e-3, 1e9),
-        WB_CONFIG_OPTIONAL_BOOLEAN("weight", &loads->weight),
-    };
-    keys[1].optional = false;
-    return wb_config_map(map, keys, WB_COUNT(keys));
+    struct wb_config_key keys[WB_COUNT(loads_rows)];
+    return wb_config_map(map, keys, wb_setting_keys(&loads_table, 0, loads, keys));
 }
 
 static enum wb_status read_published(struct reader *reader, const struct wb_config_node *map)
@@ -981,12 +1133,8 @@ static void set_defaults(struct wb_bundle_model *model)
 {
     memcpy(model->mesh, own_meshes, sizeof own_meshes);
     model->n_meshes = (int)WB_COUNT(own_meshes);
-    model->run = (struct wb_bundle_run){.mesh = "engineering",
-                                        .deflection = 53.0 * WB_MM,
-                                        .rows = 53,
-                                        .mass_scaling = 25.0,
-                                        .selective = 1.0,
-                                        .kinetic_limit = 0.05};
+    wb_setting_fill(&run_table, &model->run);
+    strcpy(model->run.mesh, own_meshes[0].name);
 }
 
 static enum wb_status read_all(struct reader *reader, const char *path)
