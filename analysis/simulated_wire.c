@@ -8,7 +8,6 @@
 #include "base/units.h"
 
 static const double megabyte = 1e6; /* bytes */
-static const double pa_per_m = 1e9; /* of one N/mm3 */
 
 static const char *const kind_names[] = {
     [WB_WIRE_STEP_LOADS] = "loads",
@@ -120,7 +119,7 @@ static void describe_solid(struct wb_json *simulation, const struct wb_wire_mode
     if (model->has_contact) {
         wb_json_set_number(interface, "friction", model->jacket_contact.friction);
         wb_json_set_number(interface, "normal_stiffness_N_mm3",
-                           model->jacket_contact.normal_stiffness / pa_per_m);
+                           model->jacket_contact.normal_stiffness / WB_N_PER_MM3);
         wb_json_set_number(interface, "penetration_mm", balance->penetration / WB_MM);
         wb_json_set_number(interface, "opening_mm", balance->opening / WB_MM);
         wb_json_set_number(interface, "slip_mm", balance->slip / WB_MM);

@@ -40,7 +40,7 @@ static enum wb_status prepare(struct run *run)
     if (!run->wire.has_properties)
         return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);
     run->material = run->wire.material;
-    if (o->elastic)
+    if (o->law == WB_SOLVE_ELASTIC)
         run->material.hardening = WB_HARDENING_NONE_ELASTIC;
 
     struct wb_cantilever_model model;
@@ -102,7 +102,7 @@ static enum wb_status write_dataset(const struct run *run)
     };
     const struct wb_simulated_origin origin = {
         .model = o->kind_name,
-        .law = o->elastic ? "elastic" : "elastoplastic",
+        .law = o->law == WB_SOLVE_ELASTIC ? "elastic" : "elastoplastic",
         .source = run->wire.source,
         .material = &run->material,
         .wall = run->wall,

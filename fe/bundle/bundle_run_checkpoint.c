@@ -45,19 +45,10 @@ void wb_bundle_run_take_time(struct wb_bundle_run_now *r)
 static void identify(const struct wb_bundle_run_now *r, char text[MOST_IDENTITY])
 {
     const struct wb_bundle_model *m = r->model;
-    const struct wb_bundle_interface *i = &m->interface;
     const char *mesh = r->options.mesh ? r->options.mesh : m->run.mesh;
-    char settings[1024], hash[WB_SHA256_TEXT];
+    char hash[WB_SHA256_TEXT];
 
-    snprintf(settings, sizeof settings,
-             "%s %d %d %d %d %.17g %.17g %.17g %.17g %.17g %.17g %d %.17g %.17g %.17g %d %.17g "
-             "%.17g %.17g %.17g %.17g %.17g",
-             m->sha256, m->has_tape, (int)m->tip, m->run.rows, m->run.cycles, m->run.deflection,
-             m->run.duration, m->run.mass_scaling, m->run.selective, m->run.kinetic_limit,
-             m->loads.strand_length, m->loads.weight, m->length, i->normal_stiffness,
-             i->shear_stiffness, i->has_damage, i->damage.strength, i->damage.shear_strength,
-             i->damage.fracture_energy, i->friction_static, i->friction_kinetic, i->friction_decay);
-    wb_hash_bytes(settings, strlen(settings), hash);
+    wb_bundle_model_identify(m, hash);
     snprintf(text, MOST_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
              "%s precision, %s, wirebench %s, program %.12s",

@@ -22,7 +22,6 @@ enum {
     MOST_ROWS = 10000
 };
 
-static const double pa_per_m = 1e9; /* of one N/mm3 */
 /* Beyond this a solid is as good as incompressible. */
 static const double largest_poisson = 0.499;
 
@@ -179,7 +178,8 @@ static enum wb_status read_jacket_contact(struct reader *reader, const struct wb
     bool has_stiffness = false;
     struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("friction", &friction, 1.0, 0.0, 10.0),
-        WB_CONFIG_OPTIONAL_NUMBER("normal_stiffness_N_mm3", &normal_stiffness, pa_per_m, 1e-3, 1e9),
+        WB_CONFIG_OPTIONAL_NUMBER("normal_stiffness_N_mm3", &normal_stiffness, WB_N_PER_MM3, 1e-3,
+                                  1e9),
     };
     keys[1].present = &has_stiffness;
 
