@@ -76,9 +76,9 @@ int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *mesh, in
  * then. Nothing where it was done since the last step. */
 void wb_bundle_gather(const struct wb_bundle *bundle);
 
-/* Carries the state of a bundle of the same model, settings and number of parts to a checkpoint or
- * back: it goes on bit for bit. */
-void wb_bundle_carry(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
+/* Saves the state, or restores that of a bundle of the same model, settings and number of parts,
+ * which then goes on bit for bit. */
+void wb_bundle_visit(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
 
 double wb_bundle_time_step(const struct wb_bundle *bundle); /* s */
 long wb_bundle_hexahedra(const struct wb_bundle *bundle);

@@ -36,8 +36,8 @@ WB_MUST_CHECK enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bo
  * stations. */
 void wb_bundle_bond_add_areas(const struct wb_bundle_bond *bond, double area[2]);
 
-/* What a checkpoint keeps. */
-void wb_bundle_bond_carry(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint);
+/* Saves or restores damage and friction. */
+void wb_bundle_bond_visit(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint);
 
 /* Bounds of what it adds to the largest squared frequency, 1/s2: of a wire whose section nodes have
  * the masses given (kg at an inner station, scaled), and of the ring. */

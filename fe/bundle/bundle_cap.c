@@ -257,10 +257,17 @@ void wb_bundle_cap_stop(struct wb_bundle_cap *cap)
     cap->motion.kinetic = 0.0;
 }
 
-void *wb_bundle_cap_data(struct wb_bundle_cap *cap, size_t *bytes)
+void wb_bundle_cap_visit(struct wb_bundle_cap *cap, struct wb_checkpoint *c)
 {
-    *bytes = sizeof cap->motion;
-    return &cap->motion;
+    struct motion *motion = &cap->motion;
+
+    wb_checkpoint_enter(c, "cap");
+    wb_checkpoint_visit_member(c, motion, centre);
+    wb_checkpoint_visit_member(c, motion, velocity);
+    wb_checkpoint_visit_member(c, motion, turned);
+    wb_checkpoint_visit_member(c, motion, turn);
+    wb_checkpoint_visit_member(c, motion, kinetic);
+    wb_checkpoint_leave(c);
 }
 
 /* --- creation --- */

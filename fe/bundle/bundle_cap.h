@@ -17,8 +17,7 @@
 #ifndef WB_FE_BUNDLE_BUNDLE_CAP_H
 #define WB_FE_BUNDLE_BUNDLE_CAP_H
 
-#include <stddef.h>
-
+#include "base/checkpoint.h"
 #include "base/status.h"
 #include "fe/bundle/bundle.h"
 
@@ -39,7 +38,7 @@ double wb_bundle_cap_kinetic(const struct wb_bundle_cap *cap);
 /* Brings it to rest where it is. */
 void wb_bundle_cap_stop(struct wb_bundle_cap *cap);
 
-/* What a checkpoint keeps: `bytes` at the address returned. */
-void *wb_bundle_cap_data(struct wb_bundle_cap *cap, size_t *bytes);
+/* Saves or restores its motion. */
+void wb_bundle_cap_visit(struct wb_bundle_cap *cap, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -583,8 +583,9 @@ static void save_part(struct wb_bundle_parts *parts, int member, struct wb_check
     struct wb_checkpoint own;
 
     wb_checkpoint_init(&own);
+    wb_checkpoint_enter(&own, "part %d", member + 1);
     if (part)
-        wb_bundle_carry_fields(part->bundle, &own);
+        wb_bundle_visit_fields(part->bundle, &own);
     size_t size = own.size;
     wb_team_share(&size, sizeof size, member / parts->n_here);
     unsigned char *bytes = part ? own.bytes : malloc(size);
@@ -593,33 +594,26 @@ static void save_part(struct wb_bundle_parts *parts, int member, struct wb_check
         wb_team_abort(1);
     }
     wb_team_share(bytes, size, member / parts->n_here);
-    wb_checkpoint_carry(out, &size, sizeof size);
-    wb_checkpoint_carry(out, bytes, size);
+    wb_checkpoint_append(out, bytes, size);
     if (!part)
         free(bytes);
     wb_checkpoint_release(&own);
 }
 
+/* A rank passes over the parts of others. */
 static void restore_part(struct wb_bundle_parts *parts, int member, struct wb_checkpoint *in)
 {
     struct part *part = part_here(parts, member);
-    size_t size = 0;
 
-    wb_checkpoint_carry(in, &size, sizeof size);
-    if (in->status == WB_OK && size > in->size - in->at)
-        in->status = wb_fail(WB_ERR_DATA, "the checkpoint ends early, in part %d", member + 1);
-    if (in->status != WB_OK)
-        return;
-    if (part) {
-        struct wb_checkpoint own = {.restores = true, .bytes = in->bytes + in->at, .size = size};
-        wb_bundle_carry_fields(part->bundle, &own);
-        if (in->status == WB_OK)
-            in->status = wb_checkpoint_finish(&own);
-    }
-    in->at += size;
+    wb_checkpoint_enter(in, "part %d", member + 1);
+    if (part)
+        wb_bundle_visit_fields(part->bundle, in);
+    else
+        wb_checkpoint_skip(in);
+    wb_checkpoint_leave(in);
 }
 
-void wb_bundle_parts_carry(struct wb_bundle_parts *parts, struct wb_checkpoint *checkpoint)
+void wb_bundle_parts_visit(struct wb_bundle_parts *parts, struct wb_checkpoint *checkpoint)
 {
     for (int i = 0; i < parts->count; i++) {
         if (checkpoint->restores)

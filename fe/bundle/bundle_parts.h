@@ -53,7 +53,7 @@ void wb_bundle_parts_add_bonds(struct wb_bundle_parts *parts, double area[2]);
 /* Fields and histories of all parts into the whole's, if there was a step since. */
 void wb_bundle_parts_gather(struct wb_bundle_parts *parts);
 
-/* The parts' own states, of all ranks. */
-void wb_bundle_parts_carry(struct wb_bundle_parts *parts, struct wb_checkpoint *checkpoint);
+/* Saves or restores the parts' own states, of all ranks. */
+void wb_bundle_parts_visit(struct wb_bundle_parts *parts, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef WB_FE_BUNDLE_BUNDLE_PRIVATE_H
 #define WB_FE_BUNDLE_BUNDLE_PRIVATE_H
 
+#include "base/checkpoint.h"
 #include "fe/bundle/bundle.h"
 #include "fe/bundle/bundle_bond.h"
 #include "fe/bundle/bundle_cap.h"
@@ -71,8 +72,6 @@ struct wb_bundle {
     double time_step;
     double gravity; /* m/s2, downwards */
 
-    /* From here on all is in a checkpoint. */
-
     /* The way of the tip: a smooth step from `from` to `to`. */
     double from, to, way_start, way_duration;
     bool let_go; /* of the tip: no force acts there */
@@ -129,6 +128,6 @@ WB_MUST_CHECK enum wb_status wb_bundle_create_part(struct wb_bundle **out,
                                                    int n_stations, struct wb_swept_range own);
 
 /* Fields, histories and contacts, without the scalars, to a checkpoint or back. */
-void wb_bundle_carry_fields(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
+void wb_bundle_visit_fields(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -557,7 +557,7 @@ static enum verdict attempt(struct wb_bundle_run_now *r)
     if (r->status == WB_OK && !resumes)
         begin_attempt(r);
     else if (resumes)
-        wb_bundle_run_carry(r, &checkpoint);
+        wb_bundle_run_visit(r, &checkpoint);
     const struct wb_bundle_settings settings = {
         .mesh = r->options.mesh, .duration = h->duration, .threads = r->options.threads};
     if (r->status == WB_OK)
