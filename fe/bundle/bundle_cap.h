@@ -19,16 +19,16 @@
 
 #include "base/checkpoint.h"
 #include "base/status.h"
-#include "fe/bundle/bundle.h"
+#include "fe/bundle/bundle_body.h"
 
 struct wb_bundle_cap; /* opaque */
 
-/* For a bundle whose wires and tape are made, straight; holds their last station. */
+/* For bodies that are straight, wires and tape; holds their last station. They must outlive it. */
 WB_MUST_CHECK enum wb_status wb_bundle_cap_create(struct wb_bundle_cap **out,
-                                                  const struct wb_bundle *bundle);
+                                                  const struct wb_bundle_bodies *bodies);
 void wb_bundle_cap_destroy(struct wb_bundle_cap *cap); /* accepts NULL */
 
-/* One step under the forces of the bundle's fields: velocities of the last station, for the update
+/* One step under the forces of the bodies' fields: velocities of the last station, for the update
  * of its bodies. `half` is 0.5 in the first step from rest, else 1. */
 void wb_bundle_cap_advance(struct wb_bundle_cap *cap, double half);
 

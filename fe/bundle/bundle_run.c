@@ -433,7 +433,7 @@ static enum verdict show_place(struct wb_bundle_run_now *r)
 
     if (!observer || !observer->place)
         return GO_ON;
-    wb_bundle_gather(r->bundle);
+    (void)wb_bundle_whole(r->bundle); /* all ranks take part in that */
     r->status = wb_team_agree(observer->place(observer->context, r->history, &r->row, r->bundle));
     return r->status == WB_OK ? GO_ON : NO_MEMORY;
 }

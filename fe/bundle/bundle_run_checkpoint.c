@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "fe/bundle/bundle_parts.h"
 #include "fe/bundle/bundle_run_private.h"
 #include "fe/swept/swept_hex.h"
 #include "fe/team/team.h"

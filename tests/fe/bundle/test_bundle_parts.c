@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "fe/bundle/bundle_parts.h"
 #include "fe/team/team.h"
 
 enum {
