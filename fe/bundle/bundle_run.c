@@ -433,7 +433,7 @@ static enum verdict show_place(struct wb_bundle_run_now *r)
 
     if (!observer || !observer->place)
         return GO_ON;
-    wb_bundle_gather(r->bundle);
+    (void)wb_bundle_whole(r->bundle); /* all ranks take part in that */
     r->status = wb_team_agree(observer->place(observer->context, r->history, &r->row, r->bundle));
     return r->status == WB_OK ? GO_ON : NO_MEMORY;
 }
@@ -557,7 +557,7 @@ static enum verdict attempt(struct wb_bundle_run_now *r)
     if (r->status == WB_OK && !resumes)
         begin_attempt(r);
     else if (resumes)
-        wb_bundle_run_carry(r, &checkpoint);
+        wb_bundle_run_visit(r, &checkpoint);
     const struct wb_bundle_settings settings = {
         .mesh = r->options.mesh, .duration = h->duration, .threads = r->options.threads};
     if (r->status == WB_OK)

@@ -105,8 +105,8 @@ struct wb_bundle_observer {
      */
     enum wb_status (*place)(void *context, const struct wb_bundle_history *history,
                             const struct wb_bundle_row *row, const struct wb_bundle *bundle);
-    /* What the observer itself keeps in a checkpoint, to there or back. May be NULL. */
-    void (*carry)(void *context, struct wb_checkpoint *checkpoint);
+    /* Saves or restores what the observer itself keeps in a checkpoint. May be NULL. */
+    void (*visit)(void *context, struct wb_checkpoint *checkpoint);
     void *context;
 };
 
