@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/report/index.h"
+#include "analysis/report/bench/index.h"
 #include "base/config.h"
 #include "base/units.h"
 

@@ -95,8 +95,8 @@ struct wb_campaign {
 /* What a campaign file is about. */
 enum wb_campaign_kind {
     WB_CAMPAIGN_RECORDINGS, /* this file's */
-    WB_CAMPAIGN_COMPARISON, /* analysis/report/comparison.h */
-    WB_CAMPAIGN_BUNDLES     /* analysis/report/bundles.h */
+    WB_CAMPAIGN_COMPARISON, /* analysis/report/wires/wires.h */
+    WB_CAMPAIGN_BUNDLES     /* analysis/report/bundles/bundles.h */
 };
 WB_MUST_CHECK enum wb_status wb_campaign_read_kind(enum wb_campaign_kind *kind, const char *path);
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "analysis/report/figures_private.h"
-#include "analysis/report/report_pdf.h"
+#include "analysis/report/pdf.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -12,8 +12,8 @@
 #define SHAPE_POINTS 60
 
 /* Measured markers and the computed shape at half and at full deflection. */
-static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_results_wire *wire,
-                                 const struct wb_results_tests *tests,
+static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_bench_results_wire *wire,
+                                 const struct wb_bench_results_tests *tests,
                                  const struct wb_validate_result *result, struct wb_colour colour)
 {
     const struct wb_dataset *dataset = NULL;
@@ -63,12 +63,12 @@ static const struct wb_figure_style computed_style = {
     .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
 
 enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
-                                           const struct wb_results *results,
-                                           const struct wb_results_wire *wire,
+                                           const struct wb_bench_results *results,
+                                           const struct wb_bench_results_wire *wire,
                                            struct wb_colour colour)
 {
     const struct wb_validate_result *const fit = &wire->fit;
-    WB_TRY(wb_figures_start(figure, results, wire, "calibration", WB_REPORT_WIDTH, 208.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "calibration", WB_PDF_WIDTH, 208.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, fit->curve.max_force);
     wb_figures_state_max_force(*figure, results, fit->curve.max_force);
@@ -81,12 +81,12 @@ enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
 }
 
 enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
-                                          const struct wb_results *results,
-                                          const struct wb_results_wire *wire,
+                                          const struct wb_bench_results *results,
+                                          const struct wb_bench_results_wire *wire,
                                           struct wb_colour colour)
 {
     const struct wb_validate_result *const validation = &wire->validation;
-    WB_TRY(wb_figures_start(figure, results, wire, "validation", WB_REPORT_WIDTH, 208.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "validation", WB_PDF_WIDTH, 208.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, validation->curve.max_force);
     wb_figures_state_max_force(*figure, results, validation->curve.max_force);
@@ -112,18 +112,20 @@ static void add_error(struct wb_panel *panel, const char *what, double length,
     wb_figures_add_curve(panel, label, &result->curve, result->elastoplastic.error, 1.0, style);
 }
 
-enum wb_status wb_figures_draw_error(struct wb_figure **figure, const struct wb_results *results,
-                                     const struct wb_results_wire *wire, struct wb_colour colour)
+enum wb_status wb_figures_draw_error(struct wb_figure **figure,
+                                     const struct wb_bench_results *results,
+                                     const struct wb_bench_results_wire *wire,
+                                     struct wb_colour colour)
 {
     const struct wb_campaign *const campaign = results->campaign;
-    WB_TRY(wb_figures_start(figure, results, wire, "error", WB_REPORT_WIDTH, 155.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "error", WB_PDF_WIDTH, 155.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
     const struct wb_figure_style calibration = {
         .colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED};
     add_error(panel, "calibration", campaign->calibration_length, &wire->fit, &calibration);
     const struct wb_figure_style validation = {.colour = colour, .width = 1.5};
-    if (wire->validation_state == WB_RESULTS_DONE)
+    if (wire->validation_state == WB_BENCH_DONE)
         add_error(panel, "validation", campaign->validation_length, &wire->validation, &validation);
     return WB_OK;
 }
@@ -174,12 +176,12 @@ static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibra
 }
 
 enum wb_status wb_figures_draw_optimiser(struct wb_figure **figure,
-                                         const struct wb_results *results,
-                                         const struct wb_results_wire *wire,
+                                         const struct wb_bench_results *results,
+                                         const struct wb_bench_results_wire *wire,
                                          struct wb_colour colour)
 {
     if (wire->calibration.n_path < 1)
         return WB_OK;
-    WB_TRY(wb_figures_start(figure, results, wire, "optimiser", WB_REPORT_WIDTH, 170.0));
+    WB_TRY(wb_figures_start(figure, results, wire, "optimiser", WB_PDF_WIDTH, 170.0));
     return add_path(*figure, &wire->calibration, colour);
 }
