@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "analysis/jobs/jobs.h"
-#include "analysis/report/bench/bench_report.h"
+#include "analysis/report/bench/recordings_report.h"
 #include "analysis/report/bundles/bundles_report.h"
 #include "analysis/report/wires/wires_report.h"
 #include "base/file.h"
@@ -84,11 +84,12 @@ static int prepare(const struct options *o)
 
 /* --- recordings --- */
 
-static void print_rms(const char *what, enum wb_bench_results_state state, double rms, double limit)
+static void print_rms(const char *what, enum wb_recordings_results_state state, double rms,
+                      double limit)
 {
-    if (state == WB_BENCH_NOT_WANTED)
+    if (state == WB_RECORDINGS_NOT_WANTED)
         return;
-    if (state != WB_BENCH_DONE)
+    if (state != WB_RECORDINGS_DONE)
         printf("  %s missing", what);
     else if (limit > 0.0 && !(rms <= limit))
         printf("  %s RMS %.4f (limit %.4g exceeded)", what, rms, limit);
@@ -96,13 +97,13 @@ static void print_rms(const char *what, enum wb_bench_results_state state, doubl
         printf("  %s RMS %.4f", what, rms);
 }
 
-static void print_summary(const struct wb_bench_results *results)
+static void print_summary(const struct wb_recordings_results *results)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     printf("%s%s: %d of %d recordings used\n", campaign->title,
            results->any_virtual ? " (virtual rig)" : "", results->n_usable, results->n_tests);
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         printf("%-10s", wire->wanted->label);
         print_rms("calibration", wire->calibration_state, wire->calibration.rms,
                   campaign->calibration_limit);
@@ -143,11 +144,11 @@ static int refuse_interrupted(void)
     return WB_EXIT_FAILED;
 }
 
-static int finish(const struct options *o, const struct wb_bench_results *results)
+static int finish(const struct options *o, const struct wb_recordings_results *results)
 {
     if (results->interrupted)
         return refuse_interrupted();
-    if (wb_bench_report_write(results, o->common.output, o->common.force) != WB_OK)
+    if (wb_recordings_report_write(results, o->common.output, o->common.force) != WB_OK)
         return WB_EXIT_FAILED;
     if (!o->common.json)
         print_summary(results);
@@ -156,25 +157,25 @@ static int finish(const struct options *o, const struct wb_bench_results *result
 
 static int report_recordings(const struct options *o, const char *path)
 {
-    struct wb_campaign campaign;
-    struct wb_bench_results results;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
     struct wb_progress progress;
     int n_missing;
-    if (wb_campaign_read(&campaign, path) != WB_OK)
+    if (wb_recordings_read(&campaign, path) != WB_OK)
         return WB_EXIT_FAILED;
     int code = prepare(o);
     if (code == WB_EXIT_OK) {
         wb_progress_start(&progress, "report", "steps",
-                          wb_campaign_count(&campaign, &n_missing) + 2.0 * campaign.n_wires);
-        code = wb_command_exit(
-            wb_bench_results_compute(&results, &campaign, o->threads, show_progress, &progress));
+                          wb_recordings_count(&campaign, &n_missing) + 2.0 * campaign.n_wires);
+        code = wb_command_exit(wb_recordings_results_compute(&results, &campaign, o->threads,
+                                                             show_progress, &progress));
         wb_progress_finish(&progress);
         if (code == WB_EXIT_OK) {
             code = finish(o, &results);
-            wb_bench_results_release(&results);
+            wb_recordings_results_release(&results);
         }
     }
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
     return code;
 }
 

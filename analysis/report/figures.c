@@ -12,7 +12,7 @@
 
 #define WB_LOG_DOMAIN "report"
 
-const char *wb_figures_measured(const struct wb_bench_results *results)
+const char *wb_figures_measured(const struct wb_recordings_results *results)
 {
     return results->any_virtual ? "measured (virtual rig)" : "measured";
 }
@@ -73,8 +73,9 @@ void wb_figures_set_force_axes(struct wb_panel *panel, double max_force)
         wb_figure_set_right_axis(panel, "<i>F</i> / <i>F</i><sub>max</sub>", WB_MN / max_force);
 }
 
-enum wb_status wb_figures_start(struct wb_figure **figure, const struct wb_bench_results *results,
-                                const struct wb_bench_results_wire *wire, const char *kind,
+enum wb_status wb_figures_start(struct wb_figure **figure,
+                                const struct wb_recordings_results *results,
+                                const struct wb_recordings_results_wire *wire, const char *kind,
                                 double width, double height)
 {
     char slug[64] = "all", name[128];
@@ -86,8 +87,8 @@ enum wb_status wb_figures_start(struct wb_figure **figure, const struct wb_bench
     return WB_OK;
 }
 
-void wb_figures_state_max_force(struct wb_figure *figure, const struct wb_bench_results *results,
-                                double max_force)
+void wb_figures_state_max_force(struct wb_figure *figure,
+                                const struct wb_recordings_results *results, double max_force)
 {
     char footer[160];
     snprintf(footer, sizeof footer, "%s \xc2\xb7 <i>F</i><sub>max</sub> = %.1f mN",
@@ -97,8 +98,8 @@ void wb_figures_state_max_force(struct wb_figure *figure, const struct wb_bench_
 
 /* --- all wires in one --- */
 
-static void add_overview(struct wb_panel *panel, const struct wb_bench_results *results, int index,
-                         const struct wb_validate_result *result)
+static void add_overview(struct wb_panel *panel, const struct wb_recordings_results *results,
+                         int index, const struct wb_validate_result *result)
 {
     static const enum wb_figure_marker markers[] = {WB_MARKER_CIRCLE, WB_MARKER_SQUARE,
                                                     WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND};
@@ -127,12 +128,12 @@ static void add_overview(struct wb_panel *panel, const struct wb_bench_results *
 }
 
 static enum wb_status draw_overview(struct wb_figure **figure,
-                                    const struct wb_bench_results *results, bool validation)
+                                    const struct wb_recordings_results *results, bool validation)
 {
     int n = 0;
     for (int i = 0; i < results->n_wires; i++)
-        n += validation ? results->wires[i].validation_state == WB_BENCH_DONE
-                        : results->wires[i].calibration_state == WB_BENCH_DONE;
+        n += validation ? results->wires[i].validation_state == WB_RECORDINGS_DONE
+                        : results->wires[i].calibration_state == WB_RECORDINGS_DONE;
     if (n == 0)
         return WB_OK;
     WB_TRY(wb_figures_start(figure, results, NULL, validation ? "validation" : "calibration",
@@ -140,23 +141,24 @@ static enum wb_status draw_overview(struct wb_figure **figure,
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figures_set_force_axes(panel, 0.0);
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
-        if (validation && wire->validation_state == WB_BENCH_DONE)
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        if (validation && wire->validation_state == WB_RECORDINGS_DONE)
             add_overview(panel, results, i, &wire->validation);
-        if (!validation && wire->calibration_state == WB_BENCH_DONE)
+        if (!validation && wire->calibration_state == WB_RECORDINGS_DONE)
             add_overview(panel, results, i, &wire->fit);
     }
     return WB_OK;
 }
 
-static enum wb_status draw_errors(struct wb_figure **figure, const struct wb_bench_results *results)
+static enum wb_status draw_errors(struct wb_figure **figure,
+                                  const struct wb_recordings_results *results)
 {
     static const enum wb_figure_dash dashes[] = {WB_DASH_SOLID, WB_DASH_DASHED, WB_DASH_MIXED,
                                                  WB_DASH_DOTTED};
     struct wb_panel *panel = NULL;
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
-        if (wire->validation_state != WB_BENCH_DONE)
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        if (wire->validation_state != WB_RECORDINGS_DONE)
             continue;
         if (!*figure) {
             WB_TRY(wb_figures_start(figure, results, NULL, "errors", WB_PDF_WIDTH, 165.0));
@@ -177,24 +179,25 @@ static enum wb_status draw_errors(struct wb_figure **figure, const struct wb_ben
 }
 
 static enum wb_status draw_wire(struct wb_figures_wire *figures,
-                                const struct wb_bench_results *results, int index)
+                                const struct wb_recordings_results *results, int index)
 {
-    const struct wb_bench_results_wire *const wire = &results->wires[index];
+    const struct wb_recordings_results_wire *const wire = &results->wires[index];
     const struct wb_colour colour = wb_palette_wire(index);
     WB_TRY(wb_figures_draw_cycles(figures, results, wire));
     WB_TRY(wb_figures_draw_shapes(figures, results, wire, colour));
-    if (wire->calibration_state == WB_BENCH_DONE) {
+    if (wire->calibration_state == WB_RECORDINGS_DONE) {
         WB_TRY(wb_figures_draw_samples(&figures->samples, results, wire, colour));
         WB_TRY(wb_figures_draw_calibration(&figures->calibration, results, wire, colour));
         WB_TRY(wb_figures_draw_optimiser(&figures->optimiser, results, wire, colour));
         WB_TRY(wb_figures_draw_error(&figures->error, results, wire, colour));
     }
-    if (wire->validation_state == WB_BENCH_DONE)
+    if (wire->validation_state == WB_RECORDINGS_DONE)
         WB_TRY(wb_figures_draw_validation(&figures->validation, results, wire, colour));
     return WB_OK;
 }
 
-enum wb_status wb_figures_create(struct wb_figures *figures, const struct wb_bench_results *results)
+enum wb_status wb_figures_create(struct wb_figures *figures,
+                                 const struct wb_recordings_results *results)
 {
     memset(figures, 0, sizeof *figures);
     figures->wires = calloc((size_t)results->n_wires + 1, sizeof *figures->wires);

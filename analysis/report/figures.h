@@ -5,7 +5,7 @@
 #define WB_ANALYSIS_REPORT_FIGURES_H
 
 #include "analysis/plot/figure.h"
-#include "analysis/report/bench/bench_results.h"
+#include "analysis/report/bench/recordings_results.h"
 #include "base/status.h"
 
 struct wb_figures_wire {
@@ -16,7 +16,7 @@ struct wb_figures_wire {
     struct wb_figure *validation;  /* Fig. 14, with the linear elastic curve */
     struct wb_figure *error;       /* Fig. 15 */
     struct wb_figure *optimiser;   /* path of the Nelder-Mead search */
-    const struct wb_bench_results_test *cycles_test,
+    const struct wb_recordings_results_test *cycles_test,
         *shapes_test; /* shown in the first and third */
 };
 
@@ -29,7 +29,7 @@ struct wb_figures {
 
 /* Draws all figures that the results give; on a failure nothing needs a release. */
 WB_MUST_CHECK enum wb_status wb_figures_create(struct wb_figures *figures,
-                                               const struct wb_bench_results *results);
+                                               const struct wb_recordings_results *results);
 void wb_figures_release(struct wb_figures *figures); /* accepts a zeroed one */
 
 /* All figures there are, in the report's order, into `list`; returns how many. `list` NULL only
@@ -37,7 +37,7 @@ void wb_figures_release(struct wb_figures *figures); /* accepts a zeroed one */
 int wb_figures_list(const struct wb_figures *figures, const struct wb_figure **list);
 
 /* "measured (virtual rig)" or "measured", after where the used recordings come from. */
-const char *wb_figures_measured(const struct wb_bench_results *results);
+const char *wb_figures_measured(const struct wb_recordings_results *results);
 
 /* Largest deflection of the first loading, m, and when it was reached, s (infinite without one). */
 double wb_figures_turn(const struct wb_dataset *dataset, double *t);

@@ -12,8 +12,9 @@
 #define SHAPE_POINTS 60
 
 /* Measured markers and the computed shape at half and at full deflection. */
-static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_bench_results_wire *wire,
-                                 const struct wb_bench_results_tests *tests,
+static enum wb_status add_shapes(struct wb_panel *inset,
+                                 const struct wb_recordings_results_wire *wire,
+                                 const struct wb_recordings_results_tests *tests,
                                  const struct wb_validate_result *result, struct wb_colour colour)
 {
     const struct wb_dataset *dataset = NULL;
@@ -63,8 +64,8 @@ static const struct wb_figure_style computed_style = {
     .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
 
 enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
-                                           const struct wb_bench_results *results,
-                                           const struct wb_bench_results_wire *wire,
+                                           const struct wb_recordings_results *results,
+                                           const struct wb_recordings_results_wire *wire,
                                            struct wb_colour colour)
 {
     const struct wb_validate_result *const fit = &wire->fit;
@@ -81,8 +82,8 @@ enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
 }
 
 enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
-                                          const struct wb_bench_results *results,
-                                          const struct wb_bench_results_wire *wire,
+                                          const struct wb_recordings_results *results,
+                                          const struct wb_recordings_results_wire *wire,
                                           struct wb_colour colour)
 {
     const struct wb_validate_result *const validation = &wire->validation;
@@ -113,11 +114,11 @@ static void add_error(struct wb_panel *panel, const char *what, double length,
 }
 
 enum wb_status wb_figures_draw_error(struct wb_figure **figure,
-                                     const struct wb_bench_results *results,
-                                     const struct wb_bench_results_wire *wire,
+                                     const struct wb_recordings_results *results,
+                                     const struct wb_recordings_results_wire *wire,
                                      struct wb_colour colour)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     WB_TRY(wb_figures_start(figure, results, wire, "error", WB_PDF_WIDTH, 155.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
@@ -125,7 +126,7 @@ enum wb_status wb_figures_draw_error(struct wb_figure **figure,
         .colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED};
     add_error(panel, "calibration", campaign->calibration_length, &wire->fit, &calibration);
     const struct wb_figure_style validation = {.colour = colour, .width = 1.5};
-    if (wire->validation_state == WB_BENCH_DONE)
+    if (wire->validation_state == WB_RECORDINGS_DONE)
         add_error(panel, "validation", campaign->validation_length, &wire->validation, &validation);
     return WB_OK;
 }
@@ -176,8 +177,8 @@ static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibra
 }
 
 enum wb_status wb_figures_draw_optimiser(struct wb_figure **figure,
-                                         const struct wb_bench_results *results,
-                                         const struct wb_bench_results_wire *wire,
+                                         const struct wb_recordings_results *results,
+                                         const struct wb_recordings_results_wire *wire,
                                          struct wb_colour colour)
 {
     if (wire->calibration.n_path < 1)

@@ -98,16 +98,16 @@ static enum wb_status add_rows(struct wb_panel *panel, const char *label,
 /* --- the paper's Fig. 9 --- */
 
 enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
-                                      const struct wb_bench_results *results,
-                                      const struct wb_bench_results_wire *wire)
+                                      const struct wb_recordings_results *results,
+                                      const struct wb_recordings_results_wire *wire)
 {
-    const struct wb_bench_results_test *best = NULL;
+    const struct wb_recordings_results_test *best = NULL;
     int most = 0;
-    const struct wb_bench_results_tests *const both[] = {&wire->calibration_tests,
-                                                         &wire->validation_tests};
+    const struct wb_recordings_results_tests *const both[] = {&wire->calibration_tests,
+                                                              &wire->validation_tests};
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < both[k]->n; i++) {
-            const struct wb_bench_results_test *const test = &both[k]->items[i];
+            const struct wb_recordings_results_test *const test = &both[k]->items[i];
             if (test->usable && n_cycles(&test->dataset) > most) {
                 most = n_cycles(&test->dataset);
                 best = test;
@@ -134,8 +134,8 @@ enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
 }
 
 enum wb_status wb_figures_draw_samples(struct wb_figure **figure,
-                                       const struct wb_bench_results *results,
-                                       const struct wb_bench_results_wire *wire,
+                                       const struct wb_recordings_results *results,
+                                       const struct wb_recordings_results_wire *wire,
                                        struct wb_colour colour)
 {
     static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
@@ -148,7 +148,7 @@ enum wb_status wb_figures_draw_samples(struct wb_figure **figure,
     wb_figures_add_range(panel, label, &wire->fit.curve, colour);
     const struct wb_figure_style mean = {.colour = colour, .width = 1.6};
     for (int i = 0; i < wire->calibration_tests.n; i++) {
-        const struct wb_bench_results_test *const test = &wire->calibration_tests.items[i];
+        const struct wb_recordings_results_test *const test = &wire->calibration_tests.items[i];
         if (!test->usable)
             continue;
         const int sample = test->dataset.info.sample;
@@ -164,14 +164,14 @@ enum wb_status wb_figures_draw_samples(struct wb_figure **figure,
 /* --- the paper's Fig. 10 --- */
 
 enum wb_status wb_figures_draw_shapes(struct wb_figures_wire *figures,
-                                      const struct wb_bench_results *results,
-                                      const struct wb_bench_results_wire *wire,
+                                      const struct wb_recordings_results *results,
+                                      const struct wb_recordings_results_wire *wire,
                                       struct wb_colour colour)
 {
     static const enum wb_figure_marker markers[] = {
         WB_MARKER_CIRCLE, WB_MARKER_SQUARE, WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND, WB_MARKER_RING};
     (void)colour;
-    const struct wb_bench_results_test *test = NULL;
+    const struct wb_recordings_results_test *test = NULL;
     for (int i = 0; i < wire->calibration_tests.n && !test; i++) {
         if (wire->calibration_tests.items[i].usable &&
             wire->calibration_tests.items[i].dataset.n_shape_rows > 0)
@@ -206,11 +206,12 @@ enum wb_status wb_figures_draw_shapes(struct wb_figures_wire *figures,
 
 /* --- the bench --- */
 
-static const struct wb_bench_results_test *any_test(const struct wb_bench_results *results)
+static const struct wb_recordings_results_test *
+any_test(const struct wb_recordings_results *results)
 {
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_tests *const both[] = {&results->wires[i].calibration_tests,
-                                                             &results->wires[i].validation_tests};
+        const struct wb_recordings_results_tests *const both[] = {
+            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
         for (int k = 0; k < 2; k++) {
             for (int j = 0; j < both[k]->n; j++) {
                 if (both[k]->items[j].usable && both[k]->items[j].dataset.n_shape_rows > 0)
@@ -238,7 +239,7 @@ static void add_arrow(struct wb_panel *panel, double x, double from, double to,
 }
 
 /* Clamp, strand, cell and counterweight around the wire; all lengths in mm. */
-static void add_bench(struct wb_panel *panel, const struct wb_bench_results_test *test,
+static void add_bench(struct wb_panel *panel, const struct wb_recordings_results_test *test,
                       double tip_x, double tip_y)
 {
     const struct wb_figure_style solid = {.colour = wb_palette_ink(), .width = 1.2};
@@ -260,7 +261,7 @@ static void add_bench(struct wb_panel *panel, const struct wb_bench_results_test
     wb_figure_add_line(panel, NULL, 2, strand_x, strand_y, &strand);
     add_box(panel, top_x - 7.0, top, top_x + 7.0, top + 8.0, &solid);
     snprintf(text, sizeof text, "load cell, %.3g g, stands still",
-             wb_bench_results_capacity(&test->rig) / WB_G);
+             wb_recordings_results_capacity(&test->rig) / WB_G);
     wb_figure_add_text(panel, top_x + 10.0, top + 4.0, -1, text);
     if (strand_mm > 0.0) {
         snprintf(text, sizeof text, "strand of %.4g mm, drawn shortened", strand_mm);
@@ -276,9 +277,9 @@ static void add_bench(struct wb_panel *panel, const struct wb_bench_results_test
 }
 
 enum wb_status wb_figures_draw_bench(struct wb_figure **figure,
-                                     const struct wb_bench_results *results)
+                                     const struct wb_recordings_results *results)
 {
-    const struct wb_bench_results_test *const test = any_test(results);
+    const struct wb_recordings_results_test *const test = any_test(results);
     if (!test)
         return WB_OK;
     struct wb_figures_frame frame;

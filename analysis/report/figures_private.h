@@ -19,48 +19,45 @@ void wb_figures_set_force_axes(struct wb_panel *panel, double max_force);
 
 /* A figure named WIRE-KIND ("all-KIND" for all wires) that says where its data come from. */
 WB_MUST_CHECK enum wb_status wb_figures_start(struct wb_figure **figure,
-                                              const struct wb_bench_results *results,
-                                              const struct wb_bench_results_wire *wire,
+                                              const struct wb_recordings_results *results,
+                                              const struct wb_recordings_results_wire *wire,
                                               const char *kind, double width, double height);
 
 /* Adds F_max to the footer, where a scale or an error is a part of it. */
-void wb_figures_state_max_force(struct wb_figure *figure, const struct wb_bench_results *results,
-                                double max_force);
+void wb_figures_state_max_force(struct wb_figure *figure,
+                                const struct wb_recordings_results *results, double max_force);
 
 /* The test to scale, with the first usable recording's rig and shape; NULL without one. */
 WB_MUST_CHECK enum wb_status wb_figures_draw_bench(struct wb_figure **figure,
-                                                   const struct wb_bench_results *results);
+                                                   const struct wb_recordings_results *results);
 
 /* Measured: need usable recordings only. */
 WB_MUST_CHECK enum wb_status wb_figures_draw_cycles(struct wb_figures_wire *figures,
-                                                    const struct wb_bench_results *results,
-                                                    const struct wb_bench_results_wire *wire);
+                                                    const struct wb_recordings_results *results,
+                                                    const struct wb_recordings_results_wire *wire);
 WB_MUST_CHECK enum wb_status wb_figures_draw_shapes(struct wb_figures_wire *figures,
-                                                    const struct wb_bench_results *results,
-                                                    const struct wb_bench_results_wire *wire,
+                                                    const struct wb_recordings_results *results,
+                                                    const struct wb_recordings_results_wire *wire,
                                                     struct wb_colour colour);
 
 /* Compared: need a calibration, and the one of the validation that. */
 WB_MUST_CHECK enum wb_status wb_figures_draw_samples(struct wb_figure **figure,
-                                                     const struct wb_bench_results *results,
-                                                     const struct wb_bench_results_wire *wire,
+                                                     const struct wb_recordings_results *results,
+                                                     const struct wb_recordings_results_wire *wire,
                                                      struct wb_colour colour);
-WB_MUST_CHECK enum wb_status wb_figures_draw_calibration(struct wb_figure **figure,
-                                                         const struct wb_bench_results *results,
-                                                         const struct wb_bench_results_wire *wire,
-                                                         struct wb_colour colour);
-WB_MUST_CHECK enum wb_status wb_figures_draw_validation(struct wb_figure **figure,
-                                                        const struct wb_bench_results *results,
-                                                        const struct wb_bench_results_wire *wire,
-                                                        struct wb_colour colour);
+WB_MUST_CHECK enum wb_status
+wb_figures_draw_calibration(struct wb_figure **figure, const struct wb_recordings_results *results,
+                            const struct wb_recordings_results_wire *wire, struct wb_colour colour);
+WB_MUST_CHECK enum wb_status
+wb_figures_draw_validation(struct wb_figure **figure, const struct wb_recordings_results *results,
+                           const struct wb_recordings_results_wire *wire, struct wb_colour colour);
 WB_MUST_CHECK enum wb_status wb_figures_draw_error(struct wb_figure **figure,
-                                                   const struct wb_bench_results *results,
-                                                   const struct wb_bench_results_wire *wire,
+                                                   const struct wb_recordings_results *results,
+                                                   const struct wb_recordings_results_wire *wire,
                                                    struct wb_colour colour);
-WB_MUST_CHECK enum wb_status wb_figures_draw_optimiser(struct wb_figure **figure,
-                                                       const struct wb_bench_results *results,
-                                                       const struct wb_bench_results_wire *wire,
-                                                       struct wb_colour colour);
+WB_MUST_CHECK enum wb_status
+wb_figures_draw_optimiser(struct wb_figure **figure, const struct wb_recordings_results *results,
+                          const struct wb_recordings_results_wire *wire, struct wb_colour colour);
 
 /* Markers of one frame, in the order of the dataset. */
 #define WB_FIGURES_MARKERS 64

@@ -94,11 +94,11 @@ void wb_pages_put_row(struct wb_document *document, struct wb_document_table *ta
     row->n = 0;
 }
 
-int wb_pages_missing(struct wb_document *document, const struct wb_bench_results_tests *tests)
+int wb_pages_missing(struct wb_document *document, const struct wb_recordings_results_tests *tests)
 {
     int n = 0;
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         if (test->usable)
             continue;
         char name[400], problem[1200], item[1800];
@@ -111,12 +111,12 @@ int wb_pages_missing(struct wb_document *document, const struct wb_bench_results
     return n;
 }
 
-static void add_overview(struct wb_document *document, const struct wb_bench_results *results,
+static void add_overview(struct wb_document *document, const struct wb_recordings_results *results,
                          const struct wb_figures *figures)
 {
     if (!figures->calibration && !figures->validation)
         return;
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     const char *const measured = wb_figures_measured(results);
     char caption[600];
     wb_document_heading(document, 1, "overview", "All wires");
@@ -144,7 +144,7 @@ static void add_overview(struct wb_document *document, const struct wb_bench_res
     }
 }
 
-void wb_pages_build(struct wb_document *document, const struct wb_bench_results *results,
+void wb_pages_build(struct wb_document *document, const struct wb_recordings_results *results,
                     const struct wb_figures *figures)
 {
     char subtitle[300], footer[300];

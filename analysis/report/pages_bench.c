@@ -7,7 +7,7 @@
 #include "analysis/report/pages_private.h"
 #include "base/units.h"
 
-static void put_wires(struct wb_document *document, const struct wb_bench_results *results)
+static void put_wires(struct wb_document *document, const struct wb_recordings_results *results)
 {
     static const struct wb_document_column columns[] = {
         {"Wire"},
@@ -48,11 +48,11 @@ static double largest_force(const struct wb_dataset *dataset, int *cycles)
 }
 
 static void put_specimen_rows(struct wb_document *document, struct wb_document_table *table,
-                              const struct wb_bench_results_wire *wire,
-                              const struct wb_bench_results_tests *tests, bool *first)
+                              const struct wb_recordings_results_wire *wire,
+                              const struct wb_recordings_results_tests *tests, bool *first)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         if (!test->usable)
             continue;
         const struct wb_dataset *const dataset = &test->dataset;
@@ -78,11 +78,11 @@ static void put_specimen_rows(struct wb_document *document, struct wb_document_t
 }
 
 /* Names of usual length stay in one line: "make-/recordings" reads as two. */
-static bool has_long_operator(const struct wb_bench_results *results)
+static bool has_long_operator(const struct wb_recordings_results *results)
 {
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_tests *const both[] = {&results->wires[i].calibration_tests,
-                                                             &results->wires[i].validation_tests};
+        const struct wb_recordings_results_tests *const both[] = {
+            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
         for (int k = 0; k < 2; k++) {
             for (int j = 0; j < both[k]->n; j++) {
                 if (strlen(both[k]->items[j].operator_name) > 20)
@@ -93,7 +93,7 @@ static bool has_long_operator(const struct wb_bench_results *results)
     return false;
 }
 
-static void put_specimens(struct wb_document *document, const struct wb_bench_results *results)
+static void put_specimens(struct wb_document *document, const struct wb_recordings_results *results)
 {
     const struct wb_document_column columns[] = {
         {"Wire"},
@@ -114,7 +114,7 @@ static void put_specimens(struct wb_document *document, const struct wb_bench_re
         9, columns);
     for (int i = 0; i < results->n_wires; i++) {
         bool first = true;
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         put_specimen_rows(document, table, wire, &wire->calibration_tests, &first);
         put_specimen_rows(document, table, wire, &wire->validation_tests, &first);
     }
@@ -122,12 +122,12 @@ static void put_specimens(struct wb_document *document, const struct wb_bench_re
 
 /* --- the bench --- */
 
-static const struct wb_bench_results_test *test_at(const struct wb_bench_results *results,
-                                                   int index)
+static const struct wb_recordings_results_test *test_at(const struct wb_recordings_results *results,
+                                                        int index)
 {
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_tests *const both[] = {&results->wires[i].calibration_tests,
-                                                             &results->wires[i].validation_tests};
+        const struct wb_recordings_results_tests *const both[] = {
+            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
         for (int k = 0; k < 2; k++) {
             for (int j = 0; j < both[k]->n; j++) {
                 if (both[k]->items[j].usable && index-- == 0)
@@ -176,8 +176,8 @@ static bool same_bench(const struct wb_rig *a, const struct wb_rig *b)
            a->strand.counterweight == b->strand.counterweight && a->stage.speed == b->stage.speed;
 }
 
-static void put_rig(struct wb_document *document, const struct wb_bench_results *results,
-                    const struct wb_bench_results_test *test)
+static void put_rig(struct wb_document *document, const struct wb_recordings_results *results,
+                    const struct wb_recordings_results_test *test)
 {
     static const struct wb_document_column columns[] = {{""}, {.heading = "", .wraps = true}};
     const struct wb_rig *const rig = &test->rig;
@@ -195,7 +195,7 @@ static void put_rig(struct wb_document *document, const struct wb_bench_results 
     put_pair(document, table, "Load cell",
              "%.4g g, reads on to %.4g %%, serial number %s, "
              "calibrated %s",
-             wb_bench_results_capacity(rig) / WB_G,
+             wb_recordings_results_capacity(rig) / WB_G,
              cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
              cell->serial_number[0] ? cell->serial_number : "not given",
              cell->calibration_date[0] ? cell->calibration_date : "not given");
@@ -235,7 +235,7 @@ static bool correction_value(const struct wb_json *entry, const char *what, doub
     return false;
 }
 
-static const struct wb_json *correction_of(const struct wb_bench_results_test *test,
+static const struct wb_json *correction_of(const struct wb_recordings_results_test *test,
                                            const char *name)
 {
     const struct wb_json *const list = wb_json_get(test->dataset.document, "corrections");
@@ -250,11 +250,11 @@ static const struct wb_json *correction_of(const struct wb_bench_results_test *t
 
 /* One correction over all recordings: the range of its size and the largest uncertainty. */
 static void put_correction(struct wb_document *document, struct wb_document_table *table,
-                           const struct wb_bench_results *results, const char *name)
+                           const struct wb_recordings_results *results, const char *name)
 {
     double low = (double)NAN, high = (double)NAN, largest = (double)NAN;
     const char *unit = "";
-    const struct wb_bench_results_test *test;
+    const struct wb_recordings_results_test *test;
     for (int i = 0; (test = test_at(results, i)); i++) {
         const struct wb_json *const entry = correction_of(test, name);
         double value;
@@ -274,8 +274,9 @@ static void put_correction(struct wb_document *document, struct wb_document_tabl
     wb_pages_put_row(document, table, false, &row);
 }
 
-static void put_corrections(struct wb_document *document, const struct wb_bench_results *results,
-                            const struct wb_bench_results_test *first)
+static void put_corrections(struct wb_document *document,
+                            const struct wb_recordings_results *results,
+                            const struct wb_recordings_results_test *first)
 {
     static const struct wb_document_column columns[] = {
         {"Correction"},
@@ -300,10 +301,10 @@ static void put_corrections(struct wb_document *document, const struct wb_bench_
     }
 }
 
-void wb_pages_bench(struct wb_document *document, const struct wb_bench_results *results,
+void wb_pages_bench(struct wb_document *document, const struct wb_recordings_results *results,
                     const struct wb_figures *figures)
 {
-    const struct wb_bench_results_test *const first = test_at(results, 0);
+    const struct wb_recordings_results_test *const first = test_at(results, 0);
     wb_document_new_page(document);
     wb_document_heading(document, 1, "bench", "Specimens and bench");
     if (figures->bench) {

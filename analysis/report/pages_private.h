@@ -45,14 +45,14 @@ extern const struct wb_pages_property wb_pages_properties[4];
 double wb_pages_value(const struct wb_material *material, int property);
 
 /* The parts of the report, in order; each adds its headings. */
-void wb_pages_summary(struct wb_document *document, const struct wb_bench_results *results);
-void wb_pages_bench(struct wb_document *document, const struct wb_bench_results *results,
+void wb_pages_summary(struct wb_document *document, const struct wb_recordings_results *results);
+void wb_pages_bench(struct wb_document *document, const struct wb_recordings_results *results,
                     const struct wb_figures *figures);
-void wb_pages_wire(struct wb_document *document, const struct wb_bench_results *results, int index,
-                   const struct wb_figures_wire *figures);
-void wb_pages_provenance(struct wb_document *document, const struct wb_bench_results *results);
+void wb_pages_wire(struct wb_document *document, const struct wb_recordings_results *results,
+                   int index, const struct wb_figures_wire *figures);
+void wb_pages_provenance(struct wb_document *document, const struct wb_recordings_results *results);
 
 /* Tells why recordings are missing or were refused, one item each. Returns how many. */
-int wb_pages_missing(struct wb_document *document, const struct wb_bench_results_tests *tests);
+int wb_pages_missing(struct wb_document *document, const struct wb_recordings_results_tests *tests);
 
 #endif

@@ -7,10 +7,10 @@
 #include "base/version.h"
 
 static void put_test_rows(struct wb_document *document, struct wb_document_table *table,
-                          const struct wb_bench_results_tests *tests, bool begins_group)
+                          const struct wb_recordings_results_tests *tests, bool begins_group)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         struct wb_pages_row row = {.n = 0};
         wb_pages_cell_plain(&row, WB_TONE_PLAIN, test->wanted->name);
         if (!test->usable) {
@@ -34,12 +34,12 @@ static void put_test_rows(struct wb_document *document, struct wb_document_table
 }
 
 /* The revisions that recorded, each once, in the order of the list. */
-static void append_revisions(struct wb_text *caption, const struct wb_bench_results *results)
+static void append_revisions(struct wb_text *caption, const struct wb_recordings_results *results)
 {
     struct wb_text list = {0};
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_tests *const both[] = {&results->wires[i].calibration_tests,
-                                                             &results->wires[i].validation_tests};
+        const struct wb_recordings_results_tests *const both[] = {
+            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
         for (int k = 0; k < 2; k++) {
             for (int j = 0; j < both[k]->n; j++) {
                 char revision[400];
@@ -56,7 +56,8 @@ static void append_revisions(struct wb_text *caption, const struct wb_bench_resu
     wb_text_release(&list);
 }
 
-static void put_recordings(struct wb_document *document, const struct wb_bench_results *results)
+static void put_recordings(struct wb_document *document,
+                           const struct wb_recordings_results *results)
 {
     static const struct wb_document_column columns[] = {
         {.heading = "Recording", .wraps = true},
@@ -89,11 +90,11 @@ static void put_setting(struct wb_document *document, struct wb_document_table *
     wb_pages_put_row(document, table, false, &row);
 }
 
-static void put_settings(struct wb_document *document, const struct wb_bench_results *results)
+static void put_settings(struct wb_document *document, const struct wb_recordings_results *results)
 {
     static const struct wb_document_column columns[] = {
         {"Setting"}, {"Value"}, {.heading = "Meaning", .wraps = true}};
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     const struct wb_calibrate_settings *const s = &campaign->calibrate;
     char value[80];
     wb_document_heading(document, 2, "settings", "Settings");
@@ -139,9 +140,9 @@ void wb_pages_put_origin(struct wb_document *document, const char *campaign, con
         wb_document_paragraph(document, wb_pages_escape(escaped, sizeof escaped, notes));
 }
 
-void wb_pages_provenance(struct wb_document *document, const struct wb_bench_results *results)
+void wb_pages_provenance(struct wb_document *document, const struct wb_recordings_results *results)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     wb_pages_put_origin(document, campaign->name, campaign->sha256, campaign->notes, "recordings");
     put_settings(document, results);
     put_recordings(document, results);

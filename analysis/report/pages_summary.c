@@ -9,7 +9,7 @@
 
 #define MOST_WARNINGS 4
 
-static void put_origin(struct wb_document *document, const struct wb_bench_results *results)
+static void put_origin(struct wb_document *document, const struct wb_recordings_results *results)
 {
     if (!results->any_virtual)
         return;
@@ -55,19 +55,19 @@ static void put_miss(struct wb_document *document, const char *label, double rms
     wb_text_release(&text);
 }
 
-static void put_limits(struct wb_document *document, const struct wb_bench_results *results)
+static void put_limits(struct wb_document *document, const struct wb_recordings_results *results)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     int judged = 0;
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const char *const label = wire->wanted->label;
-        if (wire->calibration_state == WB_BENCH_DONE && campaign->calibration_limit > 0.0) {
+        if (wire->calibration_state == WB_RECORDINGS_DONE && campaign->calibration_limit > 0.0) {
             judged++;
             if (!(wire->calibration.rms <= campaign->calibration_limit))
                 put_miss(document, label, wire->calibration.rms, campaign->calibration_limit, NULL);
         }
-        if (wire->validation_state == WB_BENCH_DONE && campaign->validation_limit > 0.0) {
+        if (wire->validation_state == WB_RECORDINGS_DONE && campaign->validation_limit > 0.0) {
             judged++;
             if (!(wire->validation.elastoplastic.rms <= campaign->validation_limit))
                 put_miss(document, label, wire->validation.elastoplastic.rms,
@@ -93,9 +93,9 @@ static void put_limits(struct wb_document *document, const struct wb_bench_resul
 }
 
 static void put_step_problem(struct wb_document *document, const char *label, const char *step,
-                             enum wb_bench_results_state state, const struct wb_text *problem)
+                             enum wb_recordings_results_state state, const struct wb_text *problem)
 {
-    if (state != WB_BENCH_MISSING && state != WB_BENCH_FAILED)
+    if (state != WB_RECORDINGS_MISSING && state != WB_RECORDINGS_FAILED)
         return;
     char name[300], reason[1200], item[1700];
     snprintf(item, sizeof item, "<b>%s: no %s</b>: %s", wb_pages_escape(name, sizeof name, label),
@@ -103,7 +103,7 @@ static void put_step_problem(struct wb_document *document, const char *label, co
     wb_document_item(document, WB_TONE_WARNING, item);
 }
 
-static void put_missing(struct wb_document *document, const struct wb_bench_results *results)
+static void put_missing(struct wb_document *document, const struct wb_recordings_results *results)
 {
     if (results->is_complete)
         return;
@@ -120,7 +120,7 @@ static void put_missing(struct wb_document *document, const struct wb_bench_resu
                  "step could be done.");
     wb_document_notice(document, WB_TONE_WARNING, text);
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         wb_pages_missing(document, &wire->calibration_tests);
         wb_pages_missing(document, &wire->validation_tests);
         put_step_problem(document, wire->wanted->label, "calibration", wire->calibration_state,
@@ -131,11 +131,11 @@ static void put_missing(struct wb_document *document, const struct wb_bench_resu
 }
 
 static void put_property(struct wb_document *document, struct wb_document_table *table,
-                         const struct wb_bench_results_wire *wire, int i)
+                         const struct wb_recordings_results_wire *wire, int i)
 {
     const struct wb_pages_property *const property = &wb_pages_properties[i];
-    const struct wb_campaign_wire *const wanted = wire->wanted;
-    const bool done = wire->calibration_state == WB_BENCH_DONE;
+    const struct wb_recordings_wire *const wanted = wire->wanted;
+    const bool done = wire->calibration_state == WB_RECORDINGS_DONE;
     const double value =
         done ? wb_pages_value(&wire->calibration.material, i) / property->factor : (double)NAN;
     /* K's is a factor. */
@@ -157,7 +157,8 @@ static void put_property(struct wb_document *document, struct wb_document_table 
     wb_pages_put_row(document, table, i == 0, &row);
 }
 
-static void put_properties(struct wb_document *document, const struct wb_bench_results *results)
+static void put_properties(struct wb_document *document,
+                           const struct wb_recordings_results *results)
 {
     static const struct wb_document_column columns[] = {
         {"Wire"},
@@ -213,9 +214,9 @@ static void put_share(struct wb_pages_row *row, double share)
         wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");
 }
 
-static void put_merits(struct wb_document *document, const struct wb_bench_results *results)
+static void put_merits(struct wb_document *document, const struct wb_recordings_results *results)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     static const struct wb_document_column columns[] = {
         {"Wire"},
         {.heading = "Calibration RMS", .right = true, .wraps = true},
@@ -248,20 +249,20 @@ static void put_merits(struct wb_document *document, const struct wb_bench_resul
     wb_document_heading(document, 2, "merits", "How well the model fits");
     struct wb_document_table *const table = wb_document_table(document, caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
-        const bool validated = wire->validation_state == WB_BENCH_DONE;
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        const bool validated = wire->validation_state == WB_RECORDINGS_DONE;
         const struct wb_validate_result *const v = &wire->validation;
         struct wb_pages_row row = {.n = 0};
         wb_pages_cell_plain(&row, WB_TONE_PLAIN, wire->wanted->label);
-        put_rms(&row, wire->calibration_state == WB_BENCH_DONE, wire->calibration.rms,
+        put_rms(&row, wire->calibration_state == WB_RECORDINGS_DONE, wire->calibration.rms,
                 campaign->calibration_limit);
-        if (wire->validation_state == WB_BENCH_NOT_WANTED)
+        if (wire->validation_state == WB_RECORDINGS_NOT_WANTED)
             wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
         else
             put_rms(&row, validated, v->elastoplastic.rms, campaign->validation_limit);
         wb_pages_cell_number(&row, validated ? v->elastoplastic.max_error : (double)NAN, 4);
         wb_pages_cell_number(&row, validated ? v->elastic.rms : (double)NAN, 4);
-        put_share(&row, wb_bench_results_validation_share(wire));
+        put_share(&row, wb_recordings_results_validation_share(wire));
         wb_pages_cell_number(&row, validated ? v->shape_rms / WB_MM : (double)NAN, 2);
         wb_pages_cell_number(&row, validated ? v->curve.max_force / WB_MN : (double)NAN, 1);
         wb_pages_put_row(document, table, false, &row);
@@ -273,10 +274,10 @@ static bool is_about_gaps(const char *warning)
     return strstr(warning, WB_ALIGN_GAPS_TEXT);
 }
 
-static void count_gaps(const struct wb_bench_results_tests *tests, int *n, double *longest)
+static void count_gaps(const struct wb_recordings_results_tests *tests, int *n, double *longest)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         const struct wb_json *const rows =
             test->usable ? wb_json_get(wb_json_get(test->dataset.document, "checks"), "rows")
                          : NULL;
@@ -290,7 +291,7 @@ static void count_gaps(const struct wb_bench_results_tests *tests, int *n, doubl
 }
 
 /* Recordings with gaps, in one line: their curves stay usable, a gap is left out of them. */
-static int put_gaps(struct wb_document *document, const struct wb_bench_results *results)
+static int put_gaps(struct wb_document *document, const struct wb_recordings_results *results)
 {
     char item[300];
     double longest = 0.0;
@@ -311,10 +312,10 @@ static int put_gaps(struct wb_document *document, const struct wb_bench_results 
 
 /* Warnings of alignments, at most a few here; each wire's pages list its own. */
 static int put_alignment_warnings(struct wb_document *document,
-                                  const struct wb_bench_results_tests *tests, int shown)
+                                  const struct wb_recordings_results_tests *tests, int shown)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         const struct wb_json *const warnings =
             test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
         for (size_t k = 0; k < wb_json_length(warnings); k++) {
@@ -334,12 +335,12 @@ static int put_alignment_warnings(struct wb_document *document,
 
 /* What a reader must know of a search before trusting K and n. */
 static int put_search_warnings(struct wb_document *document,
-                               const struct wb_bench_results_wire *wire)
+                               const struct wb_recordings_results_wire *wire)
 {
     const struct wb_calibrate_result *const c = &wire->calibration;
     char label[300], item[700];
     int n = 0;
-    if (wire->calibration_state != WB_BENCH_DONE)
+    if (wire->calibration_state != WB_RECORDINGS_DONE)
         return 0;
     wb_pages_escape(label, sizeof label, wire->wanted->label);
     if (c->end != WB_CALIBRATE_SIZE && c->end != WB_CALIBRATE_ERROR) {
@@ -365,7 +366,7 @@ static int put_search_warnings(struct wb_document *document,
     return n;
 }
 
-static void put_warnings(struct wb_document *document, const struct wb_bench_results *results)
+static void put_warnings(struct wb_document *document, const struct wb_recordings_results *results)
 {
     wb_document_heading(document, 2, "warnings", "Warnings");
     int shown = 0, of_searches = 0;
@@ -373,7 +374,7 @@ static void put_warnings(struct wb_document *document, const struct wb_bench_res
     for (int i = 0; i < results->n_wires; i++)
         of_searches += put_search_warnings(document, &results->wires[i]);
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         shown = put_alignment_warnings(document, &wire->calibration_tests, shown);
         shown = put_alignment_warnings(document, &wire->validation_tests, shown);
     }
@@ -386,7 +387,7 @@ static void put_warnings(struct wb_document *document, const struct wb_bench_res
     }
 }
 
-void wb_pages_summary(struct wb_document *document, const struct wb_bench_results *results)
+void wb_pages_summary(struct wb_document *document, const struct wb_recordings_results *results)
 {
     wb_document_heading(document, 1, "summary", "Summary");
     put_origin(document, results);

@@ -7,10 +7,10 @@
 #include "base/units.h"
 
 static void put_calibration_text(struct wb_document *document,
-                                 const struct wb_bench_results *results,
-                                 const struct wb_bench_results_wire *wire)
+                                 const struct wb_recordings_results *results,
+                                 const struct wb_recordings_results_wire *wire)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     const struct wb_calibrate_result *const c = &wire->calibration;
     struct wb_text text = {0};
     wb_text_append(&text,
@@ -23,7 +23,7 @@ static void put_calibration_text(struct wb_document *document,
                    c->material.yield_stress / WB_MPA, c->material.strength_coefficient / WB_MPA,
                    c->material.hardening_exponent, c->rms, wire->fit.curve.max_force / WB_MN,
                    c->max_error);
-    if (wire->validation_state == WB_BENCH_DONE)
+    if (wire->validation_state == WB_RECORDINGS_DONE)
         wb_text_append(&text,
                        " Predicts %d %s of %g mm with RMS %.4f of <i>F</i><sub>max</sub> = %.1f mN "
                        "(largest error %.4f); a linear elastic wire would be off by RMS %.4f.",
@@ -38,9 +38,9 @@ static void put_calibration_text(struct wb_document *document,
 }
 
 static void put_problem(struct wb_document *document, const char *step,
-                        enum wb_bench_results_state state, const struct wb_text *problem)
+                        enum wb_recordings_results_state state, const struct wb_text *problem)
 {
-    if (state != WB_BENCH_MISSING && state != WB_BENCH_FAILED)
+    if (state != WB_RECORDINGS_MISSING && state != WB_RECORDINGS_FAILED)
         return;
     char reason[1200], text[1500];
     snprintf(text, sizeof text, "<b>No %s:</b> %s", step,
@@ -48,8 +48,8 @@ static void put_problem(struct wb_document *document, const char *step,
     wb_document_notice(document, WB_TONE_WARNING, text);
 }
 
-static void put_measured(struct wb_document *document, const struct wb_bench_results *results,
-                         const struct wb_bench_results_wire *wire,
+static void put_measured(struct wb_document *document, const struct wb_recordings_results *results,
+                         const struct wb_recordings_results_wire *wire,
                          const struct wb_figures_wire *figures)
 {
     const char *const measured = wb_figures_measured(results);
@@ -81,11 +81,11 @@ static void put_measured(struct wb_document *document, const struct wb_bench_res
     }
 }
 
-static void put_compared(struct wb_document *document, const struct wb_bench_results *results,
-                         const struct wb_bench_results_wire *wire,
+static void put_compared(struct wb_document *document, const struct wb_recordings_results *results,
+                         const struct wb_recordings_results_wire *wire,
                          const struct wb_figures_wire *figures)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     const char *const measured = wb_figures_measured(results);
     char caption[900];
     if (figures->calibration) {
@@ -131,7 +131,7 @@ static void put_merit(struct wb_document *document, struct wb_document_table *ta
     wb_pages_put_row(document, table, false, &row);
 }
 
-static void put_numbers(struct wb_document *document, const struct wb_bench_results_wire *wire)
+static void put_numbers(struct wb_document *document, const struct wb_recordings_results_wire *wire)
 {
     static const struct wb_document_column columns[] = {
         {"Figure of merit"},
@@ -140,7 +140,7 @@ static void put_numbers(struct wb_document *document, const struct wb_bench_resu
         {.heading = "Validation", .right = true},
     };
     const double none = (double)NAN;
-    const bool v = wire->validation_state == WB_BENCH_DONE;
+    const bool v = wire->validation_state == WB_RECORDINGS_DONE;
     const struct wb_calibrate_result *const c = &wire->calibration;
     const struct wb_validate_result *const fit = &wire->fit, *const val = &wire->validation;
     const bool scatters = fit->curve.n_samples > 1, v_scatters = v && val->curve.n_samples > 1;
@@ -159,7 +159,7 @@ static void put_numbers(struct wb_document *document, const struct wb_bench_resu
          4},
         {"RMS expected from scatter, at most", part, none, v ? val->expected_rms : none, 4},
         {"Share that the scatter explains, at most", "1", none,
-         wb_bench_results_validation_share(wire), 2},
+         wb_recordings_results_validation_share(wire), 2},
         {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? val->shape_rms / WB_MM : none,
          2},
         {"Shapes, largest distance", "mm", fit->shape_max / WB_MM,
@@ -201,7 +201,7 @@ static void put_remarks(struct wb_document *document, const struct wb_calibrate_
     }
 }
 
-static void put_search(struct wb_document *document, const struct wb_bench_results_wire *wire,
+static void put_search(struct wb_document *document, const struct wb_recordings_results_wire *wire,
                        const struct wb_figures_wire *figures)
 {
     const struct wb_calibrate_result *const c = &wire->calibration;
@@ -232,10 +232,10 @@ static void put_search(struct wb_document *document, const struct wb_bench_resul
 }
 
 static void put_test_warnings(struct wb_document *document,
-                              const struct wb_bench_results_tests *tests)
+                              const struct wb_recordings_results_tests *tests)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         const struct wb_json *const warnings =
             test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
         for (size_t k = 0; k < wb_json_length(warnings); k++) {
@@ -251,20 +251,20 @@ static void put_test_warnings(struct wb_document *document,
     }
 }
 
-static bool has_warnings(const struct wb_bench_results_tests *tests)
+static bool has_warnings(const struct wb_recordings_results_tests *tests)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         if (!test->usable || wb_json_length(wb_json_get(test->dataset.document, "warnings")) > 0)
             return true;
     }
     return false;
 }
 
-void wb_pages_wire(struct wb_document *document, const struct wb_bench_results *results, int index,
-                   const struct wb_figures_wire *figures)
+void wb_pages_wire(struct wb_document *document, const struct wb_recordings_results *results,
+                   int index, const struct wb_figures_wire *figures)
 {
-    const struct wb_bench_results_wire *const wire = &results->wires[index];
+    const struct wb_recordings_results_wire *const wire = &results->wires[index];
     char slug[64], anchor[80];
     wb_figures_slug(slug, wire->wanted->product.name);
     snprintf(anchor, sizeof anchor, "wire-%s", slug);
@@ -272,10 +272,10 @@ void wb_pages_wire(struct wb_document *document, const struct wb_bench_results *
     wb_document_heading(document, 1, anchor, wire->wanted->label);
     put_problem(document, "calibration", wire->calibration_state, &wire->calibration_problem);
     put_problem(document, "validation", wire->validation_state, &wire->validation_problem);
-    if (wire->calibration_state == WB_BENCH_DONE)
+    if (wire->calibration_state == WB_RECORDINGS_DONE)
         put_calibration_text(document, results, wire);
     put_measured(document, results, wire, figures);
-    if (wire->calibration_state == WB_BENCH_DONE) {
+    if (wire->calibration_state == WB_RECORDINGS_DONE) {
         put_compared(document, results, wire, figures);
         put_search(document, wire, figures);
         put_numbers(document, wire);

@@ -1,4 +1,4 @@
-#include "analysis/report/bench/bench_json.h"
+#include "analysis/report/bench/recordings_json.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,13 +8,13 @@
 #include "base/units.h"
 #include "base/version.h"
 
-static const char *state_text(enum wb_bench_results_state state)
+static const char *state_text(enum wb_recordings_results_state state)
 {
     static const char *const texts[] = {"not wanted", "missing", "failed", "done"};
     return texts[state];
 }
 
-static void put_settings(struct wb_json *root, const struct wb_campaign *campaign)
+static void put_settings(struct wb_json *root, const struct wb_recordings *campaign)
 {
     const struct wb_calibrate_settings *const s = &campaign->calibrate;
     struct wb_json *const settings = wb_json_set_object(root, "settings");
@@ -36,11 +36,11 @@ static void put_settings(struct wb_json *root, const struct wb_campaign *campaig
         wb_json_set_number(limits, "validation_rms_max", campaign->validation_limit);
 }
 
-static void put_tests(struct wb_json *list, const struct wb_bench_results_wire *wire,
-                      const struct wb_bench_results_tests *tests, const char *purpose)
+static void put_tests(struct wb_json *list, const struct wb_recordings_results_wire *wire,
+                      const struct wb_recordings_results_tests *tests, const char *purpose)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         struct wb_json *const entry = wb_json_append_object(list);
         wb_json_set_text(entry, "name", test->wanted->name);
         wb_json_set_text(entry, "wire", wire->wanted->product.name);
@@ -120,14 +120,14 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
     put_prediction(object, "linear_elastic", &result->elastic);
 }
 
-static void put_validation(struct wb_json *object, const struct wb_bench_results_wire *wire)
+static void put_validation(struct wb_json *object, const struct wb_recordings_results_wire *wire)
 {
     put_comparison(object, &wire->validation, wire->validation.scatter_rms,
                    wire->validation.residual_scatter_rms);
     wb_json_set_number(object, "rms_expected_from_scatter_at_most_over_F_max",
                        wire->validation.expected_rms);
     wb_json_set_number(object, "share_explained_by_scatter_at_most",
-                       wb_bench_results_validation_share(wire));
+                       wb_recordings_results_validation_share(wire));
 }
 
 static void put_values(struct wb_json *object, const char *name, const double values[4])
@@ -177,9 +177,9 @@ static void put_search(struct wb_json *object, const struct wb_calibrate_result 
     }
 }
 
-static void put_wire(struct wb_json *list, const struct wb_bench_results_wire *wire)
+static void put_wire(struct wb_json *list, const struct wb_recordings_results_wire *wire)
 {
-    const struct wb_campaign_wire *const wanted = wire->wanted;
+    const struct wb_recordings_wire *const wanted = wire->wanted;
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_text(entry, "wire", wanted->product.name);
     wb_json_set_text(entry, "label", wanted->label);
@@ -192,7 +192,7 @@ static void put_wire(struct wb_json *list, const struct wb_bench_results_wire *w
     }
     struct wb_json *const calibration = wb_json_set_object(entry, "calibration");
     wb_json_set_text(calibration, "state", state_text(wire->calibration_state));
-    if (wire->calibration_state == WB_BENCH_DONE) {
+    if (wire->calibration_state == WB_RECORDINGS_DONE) {
         const struct wb_material *const m = &wire->calibration.material;
         const double values[] = {m->youngs_modulus, m->yield_stress, m->strength_coefficient,
                                  m->hardening_exponent};
@@ -208,16 +208,16 @@ static void put_wire(struct wb_json *list, const struct wb_bench_results_wire *w
     }
     struct wb_json *const validation = wb_json_set_object(entry, "validation");
     wb_json_set_text(validation, "state", state_text(wire->validation_state));
-    if (wire->validation_state == WB_BENCH_DONE)
+    if (wire->validation_state == WB_RECORDINGS_DONE)
         put_validation(validation, wire);
-    else if (wire->validation_state != WB_BENCH_NOT_WANTED)
+    else if (wire->validation_state != WB_RECORDINGS_NOT_WANTED)
         wb_json_set_text(validation, "problem", wb_text_string(&wire->validation_problem));
 }
 
-struct wb_json *wb_bench_json_build(const struct wb_bench_results *results,
-                                    const char *const *files, int n_files)
+struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *results,
+                                         const char *const *files, int n_files)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "title", campaign->title);
     wb_json_set_text(root, "data", wb_figures_measured(results));
@@ -235,7 +235,7 @@ struct wb_json *wb_bench_json_build(const struct wb_bench_results *results,
     struct wb_json *const recordings = wb_json_set_array(root, "recordings");
     struct wb_json *const wires = wb_json_set_array(root, "wires");
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_bench_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         put_tests(recordings, wire, &wire->calibration_tests, "calibration");
         put_tests(recordings, wire, &wire->validation_tests, "validation");
         put_wire(wires, wire);

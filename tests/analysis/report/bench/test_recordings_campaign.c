@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "analysis/report/bench/index.h"
-#include "analysis/report/campaign.h"
+#include "analysis/report/bench/recordings.h"
 #include "base/file.h"
 
 #define SHA_A "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
@@ -50,11 +50,11 @@ static const char head[] = "title: Some wires\n"
                            "validation_length_mm: 100\n"
                            "samples: 2\n";
 
-static enum wb_status read_text(struct wb_campaign *campaign, const char *tail)
+static enum wb_status read_text(struct wb_recordings *campaign, const char *tail)
 {
     char text[4096];
     snprintf(text, sizeof text, "%s%s", head, tail);
-    return wb_campaign_read(campaign, write_file("campaign.yaml", text));
+    return wb_recordings_read(campaign, write_file("campaign.yaml", text));
 }
 
 static void recordings_come_from_the_index_and_missing_ones_are_named(void **state)
@@ -62,10 +62,10 @@ static void recordings_come_from_the_index_and_missing_ones_are_named(void **sta
     (void)state;
     write_file("index.yaml", index_text);
     write_file("one.wbr.zst", "x");
-    struct wb_campaign campaign;
+    struct wb_recordings campaign;
     assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n    label: Type 1\n"), WB_OK);
     assert_int_equal(campaign.n_wires, 1);
-    const struct wb_campaign_tests *const calibration = &campaign.wires[0].calibration;
+    const struct wb_recordings_tests *const calibration = &campaign.wires[0].calibration;
     assert_int_equal(calibration->n, 2);
     /* In the order of the samples, not of the index. */
     assert_string_equal(calibration->items[0].name, "two.wbr.zst");
@@ -74,26 +74,26 @@ static void recordings_come_from_the_index_and_missing_ones_are_named(void **sta
     assert_string_equal(calibration->items[1].missing, "");
     assert_string_equal(calibration->items[1].sha256, SHA_A);
     assert_int_equal(calibration->items[1].seed, 4);
-    const struct wb_campaign_tests *const validation = &campaign.wires[0].validation;
+    const struct wb_recordings_tests *const validation = &campaign.wires[0].validation;
     assert_int_equal(validation->n, 2);
     assert_string_equal(validation->items[1].name, "Type 1, 100 mm, sample 2");
     assert_non_null(strstr(validation->items[1].missing, "not in the index"));
     int n_missing;
-    assert_int_equal(wb_campaign_count(&campaign, &n_missing), 4);
+    assert_int_equal(wb_recordings_count(&campaign, &n_missing), 4);
     assert_int_equal(n_missing, 3);
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
 }
 
 static void the_wire_files_properties_are_the_reference_unless_another_is_given(void **state)
 {
     (void)state;
-    struct wb_campaign campaign;
+    struct wb_recordings campaign;
     assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
     assert_true(campaign.wires[0].has_reference);
     assert_close(campaign.wires[0].reference[0], 5021e6, 1.0);
     assert_close(campaign.wires[0].reference[3], 0.99, 1e-12);
     assert_string_equal(campaign.wires[0].label, "type1");
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
     assert_int_equal(read_text(&campaign,
                                "wires:\n  - wire: type1\n    reference:\n"
                                "      source: a catalogue\n      youngs_modulus_MPa: 4000\n"
@@ -102,19 +102,19 @@ static void the_wire_files_properties_are_the_reference_unless_another_is_given(
                      WB_OK);
     assert_string_equal(campaign.wires[0].reference_source, "a catalogue");
     assert_close(campaign.wires[0].reference[2], 1e8, 1e-3);
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
 }
 
 static void settings_and_limits_are_read_and_have_defaults(void **state)
 {
     (void)state;
-    struct wb_campaign campaign;
+    struct wb_recordings campaign;
     struct wb_calibrate_settings defaults;
     wb_calibrate_default_settings(&defaults);
     assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
     assert_close(campaign.calibrate.elastic_zone, defaults.elastic_zone, 0.0);
     assert_close(campaign.calibration_limit, 0.0, 0.0);
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
     assert_int_equal(
         read_text(&campaign, "settings:\n  yield_point: 0.04\n  step_mm: 0.25\n  straight: true\n  "
                              "bow_corrected: true\n"
@@ -131,7 +131,7 @@ static void settings_and_limits_are_read_and_have_defaults(void **state)
     assert_close(campaign.calibration_limit, 0.01, 1e-15);
     assert_close(campaign.validation_limit, 0.0365, 1e-15);
     assert_close(campaign.reference_rms[1], 0.03, 1e-15);
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
 }
 
 static void recordings_may_be_named_by_path_and_glob(void **state)
@@ -139,35 +139,35 @@ static void recordings_may_be_named_by_path_and_glob(void **state)
     (void)state;
     write_file("own-b.wbr", "x");
     write_file("own-a.wbr", "x");
-    struct wb_campaign campaign;
+    struct wb_recordings campaign;
     assert_int_equal(read_text(&campaign,
                                "wires:\n  - wire: type1\n"
                                "    calibration: [\"own-*.wbr\", one.wbr.zst, none.wbr]\n"
                                "    validation: []\n"),
                      WB_OK);
-    const struct wb_campaign_tests *const tests = &campaign.wires[0].calibration;
+    const struct wb_recordings_tests *const tests = &campaign.wires[0].calibration;
     assert_int_equal(tests->n, 4);
     assert_string_equal(tests->items[0].name, "own-a.wbr");
     assert_string_equal(tests->items[1].name, "own-b.wbr");
     assert_string_equal(tests->items[2].sha256, SHA_A);
     assert_string_equal(tests->items[3].missing, "no such file");
     assert_int_equal(campaign.wires[0].validation.n, 0);
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
 }
 
 static void without_an_index_all_recordings_are_missing(void **state)
 {
     (void)state;
-    struct wb_campaign campaign;
+    struct wb_recordings campaign;
     const char *const path = write_file("no-index.yaml", "title: t\nindex: none.yaml\n"
                                                          "calibration_length_mm: 85\nsamples: 3\n"
                                                          "wires:\n  - wire: type1\n");
-    assert_int_equal(wb_campaign_read(&campaign, path), WB_OK);
+    assert_int_equal(wb_recordings_read(&campaign, path), WB_OK);
     int n_missing;
-    assert_int_equal(wb_campaign_count(&campaign, &n_missing), 3);
+    assert_int_equal(wb_recordings_count(&campaign, &n_missing), 3);
     assert_int_equal(n_missing, 3);
     assert_non_null(strstr(campaign.wires[0].calibration.items[0].missing, "no index"));
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
 }
 
 static void errors_name_file_line_and_key(void **state)
@@ -194,15 +194,15 @@ static void errors_name_file_line_and_key(void **state)
         {"samples: 2\nwires:\n  - wire: type1\n", "samples"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct wb_campaign campaign;
+        struct wb_recordings campaign;
         last_message_install();
         assert_int_not_equal(read_text(&campaign, cases[i].tail), WB_OK);
         assert_said(cases[i].said);
         assert_int_equal(message_count, 1);
         assert_null(campaign.wires);
     }
-    struct wb_campaign campaign;
-    assert_int_equal(wb_campaign_read(&campaign, "/nowhere/campaign.yaml"), WB_ERR_NOT_FOUND);
+    struct wb_recordings campaign;
+    assert_int_equal(wb_recordings_read(&campaign, "/nowhere/campaign.yaml"), WB_ERR_NOT_FOUND);
 }
 
 static void a_damaged_index_is_an_error(void **state)
@@ -236,8 +236,8 @@ the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void
     (void)state;
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/single-wires.yaml"), WB_OK);
-    struct wb_campaign campaign;
-    assert_int_equal(wb_campaign_read(&campaign, path), WB_OK);
+    struct wb_recordings campaign;
+    assert_int_equal(wb_recordings_read(&campaign, path), WB_OK);
     assert_string_equal(campaign.name, "fixtures/campaigns/single-wires.yaml");
     assert_int_equal(campaign.n_wires, 3);
     assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
@@ -246,7 +246,7 @@ the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void
         assert_int_equal(campaign.wires[i].calibration.n, 3);
         assert_int_equal(campaign.wires[i].validation.n, 3);
     }
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
 }
 
 int main(void)

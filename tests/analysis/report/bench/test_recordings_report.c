@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "analysis/align.h"
-#include "analysis/report/bench/bench_report.h"
+#include "analysis/report/bench/recordings_report.h"
 #include "analysis/report/figures.h"
 #include "base/file.h"
 #include "base/interrupt.h"
@@ -77,12 +77,12 @@ static const char good_campaign[] = "title: Wires <A> & B\n"
                                     "    label: Type <1>\n";
 
 struct good {
-    struct wb_campaign campaign;
-    struct wb_bench_results results;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
 };
 
 /* As the alignment tells of a gap. */
-static void add_gap(struct wb_bench_results_test *test, double longest_gap)
+static void add_gap(struct wb_recordings_results_test *test, double longest_gap)
 {
     struct wb_json *const checks = wb_json_set_object(test->dataset.document, "checks");
     struct wb_json *const rows = wb_json_set_object(checks, "rows");
@@ -92,11 +92,11 @@ static void add_gap(struct wb_bench_results_test *test, double longest_gap)
     wb_json_append_text(warnings, "1 gap " WB_ALIGN_GAPS_TEXT " 0.85 s");
 }
 
-static void fill_tests(struct wb_bench_results_tests *tests, double length, double factor)
+static void fill_tests(struct wb_recordings_results_tests *tests, double length, double factor)
 {
     const struct wb_material truth = beam_material(0);
     for (int i = 0; i < tests->n; i++) {
-        struct wb_bench_results_test *const test = &tests->items[i];
+        struct wb_recordings_results_test *const test = &tests->items[i];
         struct wb_test_info info = beam_info(0, length, i == 0 ? 3e-3 : -2e-3);
         info.sample = i + 1;
         info.is_simulation = false;
@@ -119,9 +119,9 @@ static void fill_tests(struct wb_bench_results_tests *tests, double length, doub
 static void make_good(struct good *good, double validation_factor)
 {
     write_text("good.yaml", good_campaign);
-    assert_int_equal(wb_campaign_read(&good->campaign, in_folder("good.yaml")), WB_OK);
-    assert_int_equal(wb_bench_results_init(&good->results, &good->campaign), WB_OK);
-    struct wb_bench_results_wire *const wire = &good->results.wires[0];
+    assert_int_equal(wb_recordings_read(&good->campaign, in_folder("good.yaml")), WB_OK);
+    assert_int_equal(wb_recordings_results_init(&good->results, &good->campaign), WB_OK);
+    struct wb_recordings_results_wire *const wire = &good->results.wires[0];
     fill_tests(&wire->calibration_tests, 0.085, 1.0);
     fill_tests(&wire->validation_tests, 0.100, validation_factor);
     const struct wb_dataset *const calibration[] = {&wire->calibration_tests.items[0].dataset,
@@ -137,14 +137,14 @@ static void make_good(struct good *good, double validation_factor)
     assert_int_equal(wb_validate_run(&wire->validation, &wire->properties, validation, 2,
                                      &good->campaign.validate),
                      WB_OK);
-    wire->calibration_state = wire->validation_state = WB_BENCH_DONE;
-    wb_bench_results_judge(&good->results);
+    wire->calibration_state = wire->validation_state = WB_RECORDINGS_DONE;
+    wb_recordings_results_judge(&good->results);
 }
 
 static void release_good(struct good *good)
 {
-    wb_bench_results_release(&good->results);
-    wb_campaign_release(&good->campaign);
+    wb_recordings_results_release(&good->results);
+    wb_recordings_release(&good->campaign);
 }
 
 static const char *const good_files[] = {
@@ -182,8 +182,9 @@ static void the_same_results_give_the_same_bytes_in_all_files(void **state)
     const struct good *const good = *state;
     assert_true(good->results.is_complete);
     assert_false(good->results.exceeds_limit);
-    assert_int_equal(wb_bench_report_write(&good->results, in_folder("once"), false), WB_OK);
-    assert_int_equal(wb_bench_report_write(&good->results, in_folder("twice/deep"), false), WB_OK);
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), false), WB_OK);
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("twice/deep"), false),
+                     WB_OK);
     for (size_t i = 0; i < sizeof good_files / sizeof good_files[0]; i++) {
         char a[128], b[128];
         size_t n, m;
@@ -277,11 +278,11 @@ static void the_capacity_is_what_weighs_so_much_on_that_bench(void **state)
     (void)state;
     assert_true(says("once/report.html", "20 g, reads on to"));
     const struct wb_rig unknown = {.gravity = 0.0};
-    assert_true(isnan(wb_bench_results_capacity(&unknown)));
+    assert_true(isnan(wb_recordings_results_capacity(&unknown)));
 }
 
 /* How often the lines of the figure of all cycles are begun. */
-static int begun_lines(const struct wb_bench_results *results)
+static int begun_lines(const struct wb_recordings_results *results)
 {
     struct wb_figures figures;
     struct wb_text svg = {0};
@@ -315,7 +316,7 @@ static void a_slack_strand_or_a_gap_breaks_the_line(void **state)
 static void the_json_file_holds_the_computed_numbers(void **state)
 {
     const struct good *const good = *state;
-    const struct wb_bench_results_wire *const wire = &good->results.wires[0];
+    const struct wb_recordings_results_wire *const wire = &good->results.wires[0];
     struct wb_json *root;
     assert_int_equal(wb_json_read(&root, in_folder("once/report.json")), WB_OK);
     const struct wb_json *const entry = wb_json_item(wb_json_get(root, "wires"), 0);
@@ -365,14 +366,14 @@ static void a_full_folder_is_refused_and_force_replaces_only_the_reports_own_fil
 {
     const struct good *const good = *state;
     last_message_install();
-    assert_int_equal(wb_bench_report_write(&good->results, in_folder("once"), false),
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), false),
                      WB_ERR_EXISTS);
     assert_said("--force");
     write_text("once/mine.txt", "mine");
     write_text("once/figures/mine.svg", "mine");
     write_text("once/figures/stale.svg", "an old figure");
     write_text("once/report.json", "{\"files\": [\"figures/stale.svg\", \"../good.yaml\"]}");
-    assert_int_equal(wb_bench_report_write(&good->results, in_folder("once"), true), WB_OK);
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), true), WB_OK);
     assert_true(says("once/mine.txt", "mine"));
     assert_true(says("once/figures/mine.svg", "mine"));
     assert_false(wb_file_exists(in_folder("once/figures/stale.svg")));
@@ -384,8 +385,9 @@ static void a_folder_that_cannot_be_written_leaves_nothing(void **state)
 {
     const struct good *const good = *state;
     write_text("file", "a file");
-    assert_int_not_equal(wb_bench_report_write(&good->results, in_folder("file"), false), WB_OK);
-    assert_int_not_equal(wb_bench_report_write(&good->results, in_folder("file/below"), true),
+    assert_int_not_equal(wb_recordings_report_write(&good->results, in_folder("file"), false),
+                         WB_OK);
+    assert_int_not_equal(wb_recordings_report_write(&good->results, in_folder("file/below"), true),
                          WB_OK);
     assert_true(says("file", "a file"));
 }
@@ -397,14 +399,14 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
     make_good(&bad, 1.12);
     assert_true(bad.results.exceeds_limit);
     assert_true(bad.results.is_complete);
-    const struct wb_bench_results_wire *const wire = &bad.results.wires[0];
-    const double share = wb_bench_results_validation_share(wire);
+    const struct wb_recordings_results_wire *const wire = &bad.results.wires[0];
+    const double share = wb_recordings_results_validation_share(wire);
     const double r_v = fmin(wire->validation.scatter_rms, wire->validation.residual_scatter_rms);
     const double r_c = fmin(wire->calibration.scatter_rms, wire->calibration.residual_scatter_rms);
     const double rms = wire->validation.elastoplastic.rms;
     assert_close(share, fmin(1.0, (r_v * r_v + r_c * r_c) / 2.0 / (rms * rms)), 1e-12);
     assert_true(share > 0.01 && share < 0.9);
-    assert_int_equal(wb_bench_report_write(&bad.results, in_folder("bad"), false), WB_OK);
+    assert_int_equal(wb_recordings_report_write(&bad.results, in_folder("bad"), false), WB_OK);
     char text[80];
     snprintf(text, sizeof text, "explains at most %.0f %% of the mean square error", 100.0 * share);
     assert_true(says("bad/report.html", "Limit exceeded."));
@@ -415,31 +417,31 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
 
 /* --- campaigns that lack something --- */
 
-static void compute(const char *name, const char *text, int threads, struct wb_campaign *campaign,
-                    struct wb_bench_results *results)
+static void compute(const char *name, const char *text, int threads, struct wb_recordings *campaign,
+                    struct wb_recordings_results *results)
 {
     write_text(name, text);
-    assert_int_equal(wb_campaign_read(campaign, in_folder(name)), WB_OK);
-    assert_int_equal(wb_bench_results_compute(results, campaign, threads, NULL, NULL), WB_OK);
+    assert_int_equal(wb_recordings_read(campaign, in_folder(name)), WB_OK);
+    assert_int_equal(wb_recordings_results_compute(results, campaign, threads, NULL, NULL), WB_OK);
 }
 
 static void a_campaign_without_any_recording_still_reports(void **state)
 {
     (void)state;
-    struct wb_campaign campaign;
-    struct wb_bench_results results;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
     compute("empty.yaml", good_campaign, 2, &campaign, &results);
     assert_false(results.is_complete);
     assert_false(results.any_virtual);
     assert_int_equal(results.n_tests, 4);
     assert_int_equal(results.n_usable, 0);
-    assert_int_equal(wb_bench_report_write(&results, in_folder("empty"), false), WB_OK);
+    assert_int_equal(wb_recordings_report_write(&results, in_folder("empty"), false), WB_OK);
     assert_true(says("empty/report.html", "4 of 4 recordings are missing"));
     assert_true(says("empty/report.html", "there is no index of recordings"));
     assert_true(says("empty/report.json", "\"complete\": false"));
     assert_false(says("empty/report.html", "irtual rig"));
-    wb_bench_results_release(&results);
-    wb_campaign_release(&campaign);
+    wb_recordings_results_release(&results);
+    wb_recordings_release(&campaign);
 }
 
 static const char made_up_campaign[] = "title: Made up\n"
@@ -472,23 +474,24 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
     write_text("made-up.yaml", index);
     char *texts[2];
     for (int threads = 1; threads <= 2; threads++) {
-        struct wb_campaign campaign;
-        struct wb_bench_results results;
+        struct wb_recordings campaign;
+        struct wb_recordings_results results;
         compute("campaign.yaml", made_up_campaign, threads, &campaign, &results);
         assert_int_equal(results.n_usable, 1);
         assert_true(results.all_virtual);
         assert_false(results.is_complete);
-        const struct wb_bench_results_wire *const wire = &results.wires[0];
-        const struct wb_bench_results_test *const tests = wire->calibration_tests.items;
+        const struct wb_recordings_results_wire *const wire = &results.wires[0];
+        const struct wb_recordings_results_test *const tests = wire->calibration_tests.items;
         assert_true(tests[0].usable);
         assert_string_equal(tests[0].start_utc, "2026-01-01T00:00:00Z");
         assert_non_null(strstr(wb_text_string(&tests[1].problem), "not the recording"));
         assert_non_null(strstr(wb_text_string(&tests[2].problem), "not a recording"));
         assert_null(strstr(wb_text_string(&tests[2].problem), folder));
-        assert_int_equal(wire->calibration_state, WB_BENCH_FAILED);
+        assert_int_equal(wire->calibration_state, WB_RECORDINGS_FAILED);
         assert_true(wire->calibration_problem.length > 10);
-        assert_int_equal(wire->validation_state, WB_BENCH_NOT_WANTED);
-        assert_int_equal(wb_bench_report_write(&results, in_folder("made-up"), threads > 1), WB_OK);
+        assert_int_equal(wire->validation_state, WB_RECORDINGS_NOT_WANTED);
+        assert_int_equal(wb_recordings_report_write(&results, in_folder("made-up"), threads > 1),
+                         WB_OK);
         texts[threads - 1] = read_text("made-up/report.json", NULL);
         if (threads == 2) {
             assert_true(says("made-up/report.html", "2 of 3 recordings are missing"));
@@ -496,8 +499,8 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
             assert_false(says("made-up/report.html", folder));
             assert_false(says("made-up/report.json", folder));
         }
-        wb_bench_results_release(&results);
-        wb_campaign_release(&campaign);
+        wb_recordings_results_release(&results);
+        wb_recordings_release(&campaign);
     }
     /* The numbers do not depend on the number of threads. */
     assert_string_equal(texts[0], texts[1]);
@@ -508,14 +511,14 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
 static void an_interrupt_ends_the_computation(void **state)
 {
     (void)state;
-    struct wb_campaign campaign;
-    struct wb_bench_results results;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
     wb_interrupt_set(true);
     compute("campaign.yaml", made_up_campaign, 2, &campaign, &results);
     wb_interrupt_set(false);
     assert_true(results.interrupted);
-    wb_bench_results_release(&results);
-    wb_campaign_release(&campaign);
+    wb_recordings_results_release(&results);
+    wb_recordings_release(&campaign);
 }
 
 static int setup(void **state)

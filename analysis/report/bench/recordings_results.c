@@ -1,4 +1,4 @@
-#include "analysis/report/bench/bench_results.h"
+#include "analysis/report/bench/recordings_results.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -29,18 +29,18 @@ enum job_state {
 struct job {
     enum job_kind kind;
     enum job_state state;
-    struct wb_bench_results_wire *wire;
-    struct wb_bench_results_test *test; /* of an alignment */
-    bool calibrates;                    /* an alignment for the calibration */
+    struct wb_recordings_results_wire *wire;
+    struct wb_recordings_results_test *test; /* of an alignment */
+    bool calibrates;                         /* an alignment for the calibration */
 };
 
 struct schedule {
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    struct wb_bench_results *results;
+    struct wb_recordings_results *results;
     int n, n_finished;
     struct job *jobs; /* in order of preference: calibrations, alignments, validations */
-    wb_bench_results_progress *progress;
+    wb_recordings_results_progress *progress;
     void *context;
 };
 
@@ -55,7 +55,7 @@ static void read_meta(struct wb_recording *recording, const char *key, char *tex
 }
 
 /* What the recording says about bench and specimen. The truth of a virtual rig is not read. */
-static enum wb_status read_bench(struct wb_bench_results_test *test)
+static enum wb_status read_bench(struct wb_recordings_results_test *test)
 {
     struct wb_recording *recording;
     /* Aligning opens it again and tells what is wrong with the file. */
@@ -80,8 +80,8 @@ static enum wb_status read_bench(struct wb_bench_results_test *test)
     return status == WB_OK ? closed : status;
 }
 
-static enum wb_status check_identity(const struct wb_bench_results_test *test,
-                                     const struct wb_bench_results_wire *wire, double length)
+static enum wb_status check_identity(const struct wb_recordings_results_test *test,
+                                     const struct wb_recordings_results_wire *wire, double length)
 {
     const struct wb_test_info *const info = &test->dataset.info;
     if (test->wanted->sha256[0] && strcmp(test->wanted->sha256, test->sha256) != 0)
@@ -95,8 +95,8 @@ static enum wb_status check_identity(const struct wb_bench_results_test *test,
     return WB_OK;
 }
 
-static enum wb_status align(struct wb_bench_results_test *test,
-                            const struct wb_bench_results_wire *wire, double length)
+static enum wb_status align(struct wb_recordings_results_test *test,
+                            const struct wb_recordings_results_wire *wire, double length)
 {
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
@@ -109,9 +109,9 @@ static enum wb_status align(struct wb_bench_results_test *test,
     return status;
 }
 
-static void run_align(const struct wb_campaign *campaign, const struct job *job)
+static void run_align(const struct wb_recordings *campaign, const struct job *job)
 {
-    struct wb_bench_results_test *const test = job->test;
+    struct wb_recordings_results_test *const test = job->test;
     if (test->wanted->missing[0]) {
         wb_text_append(&test->problem, "%s", test->wanted->missing);
         return;
@@ -129,7 +129,7 @@ static void run_align(const struct wb_campaign *campaign, const struct job *job)
         wb_text_append(&test->problem, "%s", wb_status_text(status));
 }
 
-static int usable_datasets(const struct wb_bench_results_tests *tests,
+static int usable_datasets(const struct wb_recordings_results_tests *tests,
                            const struct wb_dataset **datasets)
 {
     int n = 0;
@@ -149,8 +149,8 @@ static bool go_on(void *context, int evaluation, double error, double size)
     return !wb_interrupted();
 }
 
-static enum wb_status calibrate(const struct wb_campaign *campaign,
-                                struct wb_bench_results_wire *wire,
+static enum wb_status calibrate(const struct wb_recordings *campaign,
+                                struct wb_recordings_results_wire *wire,
                                 const struct wb_dataset *const *datasets, int n)
 {
     struct wb_calibrate_settings settings = campaign->calibrate;
@@ -164,22 +164,22 @@ static enum wb_status calibrate(const struct wb_campaign *campaign,
     return status;
 }
 
-static enum wb_bench_results_state run_step(const struct wb_campaign *campaign,
-                                            const struct job *job)
+static enum wb_recordings_results_state run_step(const struct wb_recordings *campaign,
+                                                 const struct job *job)
 {
-    struct wb_bench_results_wire *const wire = job->wire;
+    struct wb_recordings_results_wire *const wire = job->wire;
     const bool calibrates = job->kind == JOB_CALIBRATE;
-    const struct wb_bench_results_tests *const tests =
+    const struct wb_recordings_results_tests *const tests =
         calibrates ? &wire->calibration_tests : &wire->validation_tests;
     struct wb_text *const problem =
         calibrates ? &wire->calibration_problem : &wire->validation_problem;
     const struct wb_dataset **const datasets = calloc((size_t)tests->n + 1, sizeof *datasets);
     const int n = datasets ? usable_datasets(tests, datasets) : 0;
-    if (n == 0 || (!calibrates && wire->calibration_state != WB_BENCH_DONE)) {
+    if (n == 0 || (!calibrates && wire->calibration_state != WB_RECORDINGS_DONE)) {
         wb_text_append(problem, n == 0 ? "no usable recording"
                                        : "the calibration that it builds on is missing");
         free(datasets);
-        return WB_BENCH_MISSING;
+        return WB_RECORDINGS_MISSING;
     }
     struct wb_reasons reasons = {problem, NULL, NULL};
     wb_reasons_begin(&reasons);
@@ -190,14 +190,14 @@ static enum wb_bench_results_state run_step(const struct wb_campaign *campaign,
     free(datasets);
     if (status == WB_OK) {
         wb_text_release(problem);
-        return WB_BENCH_DONE;
+        return WB_RECORDINGS_DONE;
     }
     if (problem->length == 0)
         wb_text_append(problem, "%s", wb_status_text(status));
-    return WB_BENCH_FAILED;
+    return WB_RECORDINGS_FAILED;
 }
 
-static void run_job(const struct wb_campaign *campaign, const struct job *job)
+static void run_job(const struct wb_recordings *campaign, const struct job *job)
 {
     switch (job->kind) {
     case JOB_ALIGN:
@@ -282,14 +282,14 @@ static void *work(void *context)
 
 static void add_jobs(struct schedule *schedule)
 {
-    struct wb_bench_results *const results = schedule->results;
+    struct wb_recordings_results *const results = schedule->results;
     for (int i = 0; i < results->n_wires; i++)
         schedule->jobs[schedule->n++] =
             (struct job){.kind = JOB_CALIBRATE, .wire = &results->wires[i]};
     for (int round = 0; round < 2; round++) {
         for (int i = 0; i < results->n_wires; i++) {
-            struct wb_bench_results_wire *const wire = &results->wires[i];
-            struct wb_bench_results_tests *const tests =
+            struct wb_recordings_results_wire *const wire = &results->wires[i];
+            struct wb_recordings_results_tests *const tests =
                 round == 0 ? &wire->calibration_tests : &wire->validation_tests;
             for (int k = 0; k < tests->n; k++)
                 schedule->jobs[schedule->n++] = (struct job){.kind = JOB_ALIGN,
@@ -299,7 +299,7 @@ static void add_jobs(struct schedule *schedule)
         }
     }
     for (int i = 0; i < results->n_wires; i++) {
-        if (results->wires[i].validation_state != WB_BENCH_NOT_WANTED)
+        if (results->wires[i].validation_state != WB_RECORDINGS_NOT_WANTED)
             schedule->jobs[schedule->n++] =
                 (struct job){.kind = JOB_VALIDATE, .wire = &results->wires[i]};
     }
@@ -319,8 +319,8 @@ static void run_threads(struct schedule *schedule, int n_threads)
 
 /* --- all of it --- */
 
-static enum wb_status prepare_tests(struct wb_bench_results_tests *tests,
-                                    const struct wb_campaign_tests *wanted)
+static enum wb_status prepare_tests(struct wb_recordings_results_tests *tests,
+                                    const struct wb_recordings_tests *wanted)
 {
     tests->items = calloc((size_t)wanted->n + 1, sizeof *tests->items);
     if (!tests->items)
@@ -331,8 +331,8 @@ static enum wb_status prepare_tests(struct wb_bench_results_tests *tests,
     return WB_OK;
 }
 
-enum wb_status wb_bench_results_init(struct wb_bench_results *results,
-                                     const struct wb_campaign *campaign)
+enum wb_status wb_recordings_results_init(struct wb_recordings_results *results,
+                                          const struct wb_recordings *campaign)
 {
     memset(results, 0, sizeof *results);
     results->campaign = campaign;
@@ -341,11 +341,11 @@ enum wb_status wb_bench_results_init(struct wb_bench_results *results,
         return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
     results->n_wires = campaign->n_wires;
     for (int i = 0; i < campaign->n_wires; i++) {
-        struct wb_bench_results_wire *const wire = &results->wires[i];
+        struct wb_recordings_results_wire *const wire = &results->wires[i];
         wire->wanted = &campaign->wires[i];
-        wire->calibration_state = WB_BENCH_MISSING;
+        wire->calibration_state = WB_RECORDINGS_MISSING;
         wire->validation_state =
-            campaign->validation_length > 0.0 ? WB_BENCH_MISSING : WB_BENCH_NOT_WANTED;
+            campaign->validation_length > 0.0 ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
         WB_TRY(prepare_tests(&wire->calibration_tests, &wire->wanted->calibration));
         WB_TRY(prepare_tests(&wire->validation_tests, &wire->wanted->validation));
         results->n_tests += wire->calibration_tests.n + wire->validation_tests.n;
@@ -353,10 +353,11 @@ enum wb_status wb_bench_results_init(struct wb_bench_results *results,
     return WB_OK;
 }
 
-static void count_tests(struct wb_bench_results *results, struct wb_bench_results_tests *tests)
+static void count_tests(struct wb_recordings_results *results,
+                        struct wb_recordings_results_tests *tests)
 {
     for (int i = 0; i < tests->n; i++) {
-        const struct wb_bench_results_test *const test = &tests->items[i];
+        const struct wb_recordings_results_test *const test = &tests->items[i];
         if (!test->usable)
             continue;
         tests->n_usable++;
@@ -368,19 +369,19 @@ static void count_tests(struct wb_bench_results *results, struct wb_bench_result
     }
 }
 
-void wb_bench_results_judge(struct wb_bench_results *results)
+void wb_recordings_results_judge(struct wb_recordings_results *results)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     results->all_virtual = true;
     results->is_complete = true;
     for (int i = 0; i < results->n_wires; i++) {
-        struct wb_bench_results_wire *const wire = &results->wires[i];
+        struct wb_recordings_results_wire *const wire = &results->wires[i];
         count_tests(results, &wire->calibration_tests);
         count_tests(results, &wire->validation_tests);
-        const bool calibrated = wire->calibration_state == WB_BENCH_DONE;
-        const bool validated = wire->validation_state == WB_BENCH_DONE;
+        const bool calibrated = wire->calibration_state == WB_RECORDINGS_DONE;
+        const bool validated = wire->validation_state == WB_RECORDINGS_DONE;
         results->is_complete &=
-            calibrated && (validated || wire->validation_state == WB_BENCH_NOT_WANTED);
+            calibrated && (validated || wire->validation_state == WB_RECORDINGS_NOT_WANTED);
         /* Compared so that a NaN exceeds. */
         if (calibrated && campaign->calibration_limit > 0.0 &&
             !(wire->calibration.rms <= campaign->calibration_limit))
@@ -393,11 +394,12 @@ void wb_bench_results_judge(struct wb_bench_results *results)
     results->all_virtual &= results->n_usable > 0;
 }
 
-enum wb_status wb_bench_results_compute(struct wb_bench_results *results,
-                                        const struct wb_campaign *campaign, int n_threads,
-                                        wb_bench_results_progress *progress, void *context)
+enum wb_status wb_recordings_results_compute(struct wb_recordings_results *results,
+                                             const struct wb_recordings *campaign, int n_threads,
+                                             wb_recordings_results_progress *progress,
+                                             void *context)
 {
-    enum wb_status status = wb_bench_results_init(results, campaign);
+    enum wb_status status = wb_recordings_results_init(results, campaign);
     struct schedule schedule = {.lock = PTHREAD_MUTEX_INITIALIZER,
                                 .changed = PTHREAD_COND_INITIALIZER,
                                 .results = results,
@@ -410,7 +412,7 @@ enum wb_status wb_bench_results_compute(struct wb_bench_results *results,
             status = wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
     }
     if (status != WB_OK) {
-        wb_bench_results_release(results);
+        wb_recordings_results_release(results);
         return status;
     }
     add_jobs(&schedule);
@@ -421,11 +423,11 @@ enum wb_status wb_bench_results_compute(struct wb_bench_results *results,
     run_threads(&schedule, n_threads);
     free(schedule.jobs);
     results->interrupted = wb_interrupted();
-    wb_bench_results_judge(results);
+    wb_recordings_results_judge(results);
     return WB_OK;
 }
 
-static void release_tests(struct wb_bench_results_tests *tests)
+static void release_tests(struct wb_recordings_results_tests *tests)
 {
     for (int i = 0; i < tests->n; i++) {
         wb_text_release(&tests->items[i].problem);
@@ -434,31 +436,32 @@ static void release_tests(struct wb_bench_results_tests *tests)
     free(tests->items);
 }
 
-void wb_bench_results_release(struct wb_bench_results *results)
+void wb_recordings_results_release(struct wb_recordings_results *results)
 {
     for (int i = 0; i < results->n_wires; i++) {
-        struct wb_bench_results_wire *const wire = &results->wires[i];
+        struct wb_recordings_results_wire *const wire = &results->wires[i];
         release_tests(&wire->calibration_tests);
         release_tests(&wire->validation_tests);
         wb_text_release(&wire->calibration_problem);
         wb_text_release(&wire->validation_problem);
-        if (wire->calibration_state == WB_BENCH_DONE) {
+        if (wire->calibration_state == WB_RECORDINGS_DONE) {
             wb_calibrate_result_release(&wire->calibration);
             wb_validate_result_release(&wire->fit);
         }
-        if (wire->validation_state == WB_BENCH_DONE)
+        if (wire->validation_state == WB_RECORDINGS_DONE)
             wb_validate_result_release(&wire->validation);
     }
     free(results->wires);
     memset(results, 0, sizeof *results);
 }
 
-double wb_bench_results_capacity(const struct wb_rig *rig)
+double wb_recordings_results_capacity(const struct wb_rig *rig)
 {
     return rig->gravity > 0.0 ? rig->load_cell.capacity / rig->gravity : (double)NAN;
 }
 
-double wb_bench_results_validation_share(const struct wb_bench_results_wire *wire)
+double wb_recordings_results_validation_share(const struct wb_recordings_results_wire *wire)
 {
-    return wire->validation_state == WB_BENCH_DONE ? wire->validation.scatter_share : (double)NAN;
+    return wire->validation_state == WB_RECORDINGS_DONE ? wire->validation.scatter_share
+                                                        : (double)NAN;
 }

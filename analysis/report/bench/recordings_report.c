@@ -1,8 +1,8 @@
-#include "analysis/report/bench/bench_report.h"
+#include "analysis/report/bench/recordings_report.h"
 
 #include <stdlib.h>
 
-#include "analysis/report/bench/bench_json.h"
+#include "analysis/report/bench/recordings_json.h"
 #include "analysis/report/figures.h"
 #include "analysis/report/files.h"
 #include "analysis/report/pages.h"
@@ -11,10 +11,10 @@
 
 static struct wb_json *build_json(const void *context, const char *const *files, int n_files)
 {
-    return wb_bench_json_build(context, files, n_files);
+    return wb_recordings_json_build(context, files, n_files);
 }
 
-static enum wb_status write_all(const struct wb_bench_results *results,
+static enum wb_status write_all(const struct wb_recordings_results *results,
                                 const struct wb_figures *figures, const char *folder, bool force)
 {
     const int n = wb_figures_list(figures, NULL);
@@ -37,8 +37,8 @@ static enum wb_status write_all(const struct wb_bench_results *results,
     return status;
 }
 
-enum wb_status wb_bench_report_write(const struct wb_bench_results *results, const char *folder,
-                                     bool force)
+enum wb_status wb_recordings_report_write(const struct wb_recordings_results *results,
+                                          const char *folder, bool force)
 {
     struct wb_figures figures;
     WB_TRY(wb_figures_create(&figures, results));
