@@ -56,4 +56,3 @@ enum wb_status wb_campaign_read_kind(enum wb_campaign_kind *kind, const char *pa
     wb_config_destroy(config);
     return status;
 }
-

@@ -59,13 +59,13 @@ static enum wb_status draw_json(struct outputs *outputs, const struct wb_files_c
 
 static enum wb_status draw(struct outputs *outputs, const struct wb_files_content *content)
 {
-    outputs->items = calloc(2 * (size_t)content->n_figures + 3, sizeof *outputs->items);
+    outputs->items = calloc(2 * (size_t)content->figures->n + 3, sizeof *outputs->items);
     if (!outputs->items)
         return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
     WB_TRY(wb_pdf_render(content->document, add_output(outputs, "", "report", "pdf")));
     WB_TRY(wb_html_render(content->document, add_output(outputs, "", "report", "html")));
-    for (int i = 0; i < content->n_figures; i++) {
-        const struct wb_figure *const figure = content->figures[i];
+    for (int i = 0; i < content->figures->n; i++) {
+        const struct wb_figure *const figure = content->figures->items[i].figure;
         const char *const name = wb_figure_name(figure);
         WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
         WB_TRY(wb_figure_png(figure, png_scale, add_output(outputs, "figures/", name, "png")));

@@ -6,16 +6,15 @@
 
 #include <stdbool.h>
 
-#include "analysis/plot/figure.h"
 #include "analysis/report/document.h"
+#include "analysis/report/figures.h"
 #include "base/json.h"
 #include "base/status.h"
 
 /* All borrowed. */
 struct wb_files_content {
     const struct wb_document *document;
-    int n_figures;
-    const struct wb_figure *const *figures; /* (n_figures) */
+    const struct wb_figures *figures;
     /* Makes the numbers, which list the report's files as `files`, relative to its folder. */
     struct wb_json *(*json)(const void *context, const char *const *files, int n_files);
     const void *context;

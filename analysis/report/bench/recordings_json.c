@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/report/figures.h"
+#include "analysis/report/bench/recordings_figures.h"
 #include "base/units.h"
 #include "base/version.h"
 
@@ -220,7 +220,7 @@ struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *res
     const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "title", campaign->title);
-    wb_json_set_text(root, "data", wb_figures_measured(results));
+    wb_json_set_text(root, "data", wb_recordings_figures_measured(results));
     wb_json_set_boolean(root, "virtual_rig", results->any_virtual);
     struct wb_json *const tool = wb_json_set_object(root, "tool");
     wb_json_set_text(tool, "name", "wirebench report");

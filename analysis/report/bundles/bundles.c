@@ -21,6 +21,14 @@ const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run)
     return has ? &model->published.beam : NULL;
 }
 
+const char *wb_bundles_loading(const struct wb_bundles_run *run)
+{
+    static const char *const texts[2][2] = {{"dead force", "dead force, weight"},
+                                            {"strand", "strand, weight"}};
+    const struct wb_bundle_loads *const loads = &run->model->loads;
+    return texts[loads->strand_length > 0.0][loads->weight];
+}
+
 /* --- datasets --- */
 
 const char *wb_bundles_as_told(const char *given)

@@ -147,6 +147,9 @@ void wb_bundles_release(struct wb_bundles *bundles); /* accepts a zeroed one */
 /* The homogenised beam that is published of a run's bundle, with its properties; NULL: none. */
 const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run);
 
+/* How a run is loaded, for readers: "dead force", "strand, weight". */
+const char *wb_bundles_loading(const struct wb_bundles_run *run);
+
 /* For the files that read a campaign. */
 struct wb_config_node;
 struct wb_bundles_reading {

@@ -7,6 +7,7 @@
 
 #include "analysis/properties.h"
 #include "analysis/report/draw/figures_surface.h"
+#include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
 #include "analysis/validate.h"
 #include "base/text.h"
@@ -27,26 +28,12 @@ static const struct wb_figure_style dynamic_style = {.colour = {0.114, 0.153, 0.
 static const struct wb_figure_style constant_style = {
     .colour = {0.835, 0.369, 0.0, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
 
-/* Values on the curve's grid, which begins at zero deflection. */
-static enum wb_status add_values(struct wb_panel *panel, const char *label,
-                                 const struct wb_curve *curve, const double *values,
-                                 const struct wb_figure_style *style)
-{
-    double *const x = malloc((size_t)curve->n * sizeof *x);
-    if (!x)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
-    for (int i = 0; i < curve->n; i++)
-        x[i] = curve->step * i / WB_MM;
-    wb_figure_add_line(panel, label, (size_t)curve->n, x, values, style);
-    free(x);
-    return WB_OK;
-}
-
 static enum wb_status add_run(struct wb_panel *panel, const char *label,
                               const struct wb_bundles_result *run,
                               const struct wb_figure_style *style)
 {
-    return run ? add_values(panel, label, &run->curve, run->curve.force, style) : WB_OK;
+    return run ? wb_figures_add_curve(panel, label, &run->curve, run->curve.force, 1.0, style)
+               : WB_OK;
 }
 
 static enum wb_status add_published(struct wb_panel *panel, const char *label,
@@ -54,30 +41,20 @@ static enum wb_status add_published(struct wb_panel *panel, const char *label,
 {
     if (!run || !run->published)
         return WB_OK;
-    return add_values(panel, label, &run->curve, run->published, &published_style);
-}
-
-static void set_title(struct wb_panel *panel, const char *plain)
-{
-    struct wb_text title = {0};
-    wb_text_append_escaped(&title, plain);
-    wb_figure_set_title(panel, wb_text_string(&title));
-    wb_text_release(&title);
+    return wb_figures_add_curve(panel, label, &run->curve, run->published, 1.0, &published_style);
 }
 
 static enum wb_status start(struct wb_figure **figure, const char *kind, int index, double height)
 {
     char name[64];
     snprintf(name, sizeof name, index >= 0 ? "%s-%d" : "%s", kind, index + 1);
-    WB_TRY(wb_figure_create(figure, name, WB_PDF_WIDTH, height));
-    wb_figure_set_footer(*figure, "simulation, no test");
-    return WB_OK;
+    return wb_figures_start_simulation(figure, name, height);
 }
 
 static struct wb_panel *add_force_panel(struct wb_figure *figure, const char *title, bool first)
 {
     struct wb_panel *const panel = wb_figure_add_panel(figure);
-    set_title(panel, title);
+    wb_figures_set_title(panel, title);
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", first ? "Force (N)" : "");
     wb_figure_set_y_range(panel, 0.0, (double)NAN);
     return panel;
@@ -85,9 +62,20 @@ static struct wb_panel *add_force_panel(struct wb_figure *figure, const char *ti
 
 /* --- sections --- */
 
-static enum wb_status draw_sections(struct wb_figure **figure,
-                                    const struct wb_bundles_results *results, int index)
+/* "7 wires, 12 wires and 19 wires", escaped. */
+static void append_labels(struct wb_text *text, const struct wb_bundles *campaign,
+                          const struct wb_bundles_group *group)
 {
+    for (int i = 0; i < group->n; i++) {
+        if (i > 0)
+            wb_text_append(text, i + 1 < group->n ? ", " : " and ");
+        wb_text_append_escaped(text, campaign->bundles[group->first + i].label);
+    }
+}
+
+static enum wb_status draw_sections(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_group *const group = &campaign->groups[index];
     const struct wb_bundle_model *models[WB_FIGURES_BUNDLE_MOST];
@@ -102,22 +90,18 @@ static enum wb_status draw_sections(struct wb_figure **figure,
     return wb_figures_bundle_draw(figure, name, group->n, models, mesh);
 }
 
+static void tell_sections(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    wb_text_append(text, "Sections%s of ",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_SECTION]));
+    append_labels(text, results->campaign, group);
+    wb_text_append(text, ", with the lines of the mesh and the homogenised cylinder.");
+}
+
 /* --- constant and decaying friction --- */
-
-static bool is_usable(const struct wb_bundles_results *results,
-                      const struct wb_bundles_bundle *bundle)
-{
-    return wb_bundles_results_usable(results, bundle->dynamic) ||
-           wb_bundles_results_usable(results, bundle->constant);
-}
-
-static bool any_usable(const struct wb_bundles_results *results, const struct wb_bundles_group *g)
-{
-    bool any = false;
-    for (int i = g->first; i < g->first + g->n; i++)
-        any |= is_usable(results, &results->campaign->bundles[i]);
-    return any;
-}
 
 static enum wb_status add_forces(struct wb_panel *panel, const struct wb_bundles_results *results,
                                  const struct wb_bundles_bundle *bundle)
@@ -137,19 +121,36 @@ static enum wb_status add_forces(struct wb_panel *panel, const struct wb_bundles
     return add_run(panel, "decaying", dynamic, &dynamic_style);
 }
 
-static enum wb_status draw_forces(struct wb_figure **figure,
-                                  const struct wb_bundles_results *results, int index)
+static enum wb_status draw_forces(struct wb_figure **figure, const void *context, int index)
 {
+    const struct wb_bundles_results *const results = context;
     const struct wb_bundles_group *const group = &results->campaign->groups[index];
-    if (!any_usable(results, group))
+    if (!wb_bundles_results_any(results, group))
         return WB_OK;
     WB_TRY(start(figure, "forces", index, panel_height));
     for (int i = group->first, n = 0; i < group->first + group->n; i++) {
         const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
-        if (is_usable(results, bundle))
+        if (wb_bundles_results_either(results, bundle))
             WB_TRY(add_forces(add_force_panel(*figure, bundle->label, n++ == 0), results, bundle));
     }
     return WB_OK;
+}
+
+static void tell_forces(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    const struct wb_bundles_run *const run =
+        &results->campaign->runs[results->campaign->bundles[group->first].dynamic];
+    wb_text_append(text,
+                   "Force over deflection%s, simulated with decaying and with constant friction "
+                   "(%s), and the published curve.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_FORCE]),
+                   wb_bundles_loading(run));
+    if (group->figures[WB_BUNDLES_FORCE][0])
+        wb_text_append(text, " The paper's figure has tests in the published curve's place; "
+                             "they are not at hand.");
 }
 
 /* --- errors --- */
@@ -164,21 +165,21 @@ static enum wb_status add_error(struct wb_panel *panel, const char *bundle, cons
     wb_text_append_escaped(&label, bundle);
     wb_text_append(&label, ", %s: RMS %.4f", friction, run->rms);
     const enum wb_status status =
-        add_values(panel, wb_text_string(&label), &run->curve, run->error, style);
+        wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, run->error, 1.0, style);
     wb_text_release(&label);
     return status;
 }
 
-static enum wb_status draw_errors(struct wb_figure **figure,
-                                  const struct wb_bundles_results *results, int index)
+static enum wb_status draw_errors(struct wb_figure **figure, const void *context, int index)
 {
+    const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_group *const group = &campaign->groups[index];
     bool any = false;
     for (int i = 0; i < group->n; i++)
         any |= wb_bundles_published(&campaign->runs[campaign->bundles[group->first + i].dynamic]) !=
                NULL;
-    if (!any || !any_usable(results, group))
+    if (!any || !wb_bundles_results_any(results, group))
         return WB_OK;
     WB_TRY(start(figure, "errors", index, 180.0));
     struct wb_panel *const panel = wb_figure_add_panel(*figure);
@@ -195,6 +196,17 @@ static enum wb_status draw_errors(struct wb_figure **figure,
                          wb_bundles_results_usable(results, bundle->constant), &dashed));
     }
     return WB_OK;
+}
+
+static void tell_errors(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    wb_text_append(text,
+                   "Distance of the simulated curves from the published ones%s, over the published "
+                   "curve's largest force <i>F</i><sub>max</sub>.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ERROR]));
 }
 
 /* --- energies --- */
@@ -252,9 +264,9 @@ static double largest_energy(const struct wb_bundles_result *run)
     return largest > 0.0 ? largest : millijoule;
 }
 
-static enum wb_status draw_energies(struct wb_figure **figure,
-                                    const struct wb_bundles_results *results, int index)
+static enum wb_status draw_energies(struct wb_figure **figure, const void *context, int index)
 {
+    const struct wb_bundles_results *const results = context;
     const struct wb_bundles_group *const group = &results->campaign->groups[index];
     bool any = false;
     for (int i = group->first; i < group->first + group->n; i++)
@@ -269,7 +281,7 @@ static enum wb_status draw_energies(struct wb_figure **figure,
         if (!run)
             continue;
         struct wb_panel *const panel = wb_figure_add_panel(*figure);
-        set_title(panel, bundle->label);
+        wb_figures_set_title(panel, bundle->label);
         wb_figure_set_axes(panel, "Time of the model (s)", n++ == 0 ? "Energy (mJ)" : "");
         /* Room above for the legend, so that the panels are alike. */
         wb_figure_set_y_range(panel, 0.0, 1.3 * largest_energy(run) / millijoule);
@@ -278,39 +290,67 @@ static enum wb_status draw_energies(struct wb_figure **figure,
     return WB_OK;
 }
 
+static void tell_energies(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    wb_text_append(text,
+                   "Energies%s over the model's own time, with decaying friction. Internal: stored "
+                   "and plastic, in wires, tape, contact and cohesion.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ENERGY]));
+}
+
 /* --- bent bundles --- */
 
 /* The bundles of a group have one scale. */
-static enum wb_status draw_shapes(struct wb_bundles_figures *figures,
-                                  const struct wb_bundles_results *results, int index)
+static double most_stress(const struct wb_bundles_results *results,
+                          const struct wb_bundles_group *group)
 {
-    const struct wb_bundles *const campaign = results->campaign;
-    const struct wb_bundles_group *const group = &campaign->groups[index];
-    const int end = group->first + group->n;
-    struct wb_figures_surface_style style = {.width = WB_PDF_WIDTH};
-    for (int i = group->first; i < end; i++) {
+    double most = 0.0;
+    for (int i = group->first; i < group->first + group->n; i++) {
         const struct wb_bundles_result *const run =
-            wb_bundles_results_usable(results, campaign->bundles[i].dynamic);
+            wb_bundles_results_usable(results, results->campaign->bundles[i].dynamic);
         if (run && run->surface.n > 0)
-            style.most_stress =
-                fmax(style.most_stress, wb_figures_surface_most_stress(&run->surface));
+            most = fmax(most, wb_figures_surface_most_stress(&run->surface));
     }
-    for (int i = group->first; i < end; i++) {
-        const struct wb_bundles_result *const run =
-            wb_bundles_results_usable(results, campaign->bundles[i].dynamic);
-        struct wb_text title = {0};
-        char name[64];
-        if (!run || run->surface.n == 0)
-            continue;
-        wb_text_append_escaped(&title, campaign->bundles[i].label);
-        snprintf(name, sizeof name, "shape-%d", i + 1);
-        style.title = wb_text_string(&title);
-        const enum wb_status status =
-            wb_figures_surface_draw(&figures->shapes[i], name, &run->surface, &style);
-        wb_text_release(&title);
-        WB_TRY(status);
-    }
-    return WB_OK;
+    return most;
+}
+
+static enum wb_status draw_shape(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    struct wb_text title = {0};
+    char name[64];
+    if (!run || run->surface.n == 0)
+        return WB_OK;
+    wb_text_append_escaped(&title, bundle->label);
+    snprintf(name, sizeof name, "shape-%d", index + 1);
+    const struct wb_figures_surface_style style = {
+        .width = WB_PDF_WIDTH,
+        .most_stress = most_stress(results, &campaign->groups[bundle->group]),
+        .title = wb_text_string(&title)};
+    const enum wb_status status = wb_figures_surface_draw(figure, name, &run->surface, &style);
+    wb_text_release(&title);
+    return status;
+}
+
+static void tell_shape(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
+    char place[48];
+    wb_text_append_escaped(text, bundle->label);
+    wb_text_append(
+        text,
+        " bent by %.0f mm%s: von Mises stress of the wires, with the tape drawn as "
+        "glass, from the side and its ends from nearby.",
+        wb_bundles_results_usable(results, bundle->dynamic)->curve.max_deflection / WB_MM,
+        wb_pages_paper_figure(place, campaign->groups[bundle->group].figures[WB_BUNDLES_SHAPE]));
 }
 
 /* --- studies --- */
@@ -341,9 +381,9 @@ static enum wb_status draw_study(struct wb_figure *figure, const struct wb_bundl
     return WB_OK;
 }
 
-static enum wb_status draw_studies(struct wb_figure **figure,
-                                   const struct wb_bundles_results *results, int index)
+static enum wb_status draw_studies(struct wb_figure **figure, const void *context, int index)
 {
+    const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
     bool any = false;
     for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++) {
@@ -356,6 +396,25 @@ static enum wb_status draw_studies(struct wb_figure **figure,
     for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++)
         WB_TRY(draw_study(*figure, results, &campaign->studies[k], k == 2 * index));
     return WB_OK;
+}
+
+static void tell_studies(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    wb_text_append(text, "Studies of ");
+    for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++) {
+        const struct wb_bundles_study *const study = &campaign->studies[k];
+        wb_text_append(text, "%s<i>", k > 2 * index ? " and " : "");
+        wb_text_append_escaped(text, study->title);
+        wb_text_append(text, "</i> (");
+        wb_text_append_escaped(text, campaign->runs[study->runs[0]].model->title);
+        wb_text_append(text, ")");
+    }
+    wb_text_append(text,
+                   "%s. Published: the 1D beam with the published properties, under "
+                   "the first run's loading.",
+                   index == 0 && campaign->printed_source[0] ? ", after the paper's Fig. 18" : "");
 }
 
 /* --- 3D and 1D --- */
@@ -446,13 +505,16 @@ static enum wb_status add_fit(struct wb_panel *panel, const struct wb_bundles_re
         return status;
     wb_text_append_escaped(&label, bundle->label);
     wb_text_append(&label, ", 1D: RMS %.4f", fit->result.rms);
-    status = add_values(panel, wb_text_string(&label), &run->curve, fit->force, &beam);
+    status =
+        wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, fit->force, 1.0, &beam);
     wb_text_release(&label);
     return status;
 }
 
-static enum wb_status draw_fit(struct wb_figure **figure, const struct wb_bundles_results *results)
+static enum wb_status draw_fit(struct wb_figure **figure, const void *context, int index)
 {
+    const struct wb_bundles_results *const results = context;
+    (void)index;
     const struct wb_bundles *const campaign = results->campaign;
     double largest = 0.0;
     bool some_rod = false; /* then variants without one would only crowd the figure */
@@ -482,72 +544,49 @@ static enum wb_status draw_fit(struct wb_figure **figure, const struct wb_bundle
         wb_bundles_results_fit(results, campaign->inset), &solid, &beam);
 }
 
-/* --- all of them --- */
-
-static enum wb_status draw_all(struct wb_bundles_figures *figures,
-                               const struct wb_bundles_results *results)
+static void tell_fit(struct wb_text *text, const void *context, int index)
 {
+    const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
-    for (int i = 0; i < campaign->n_groups; i++) {
-        struct wb_figure **const group = figures->groups[i];
-        WB_TRY(draw_sections(&group[WB_BUNDLES_SECTION], results, i));
-        WB_TRY(draw_forces(&group[WB_BUNDLES_FORCE], results, i));
-        WB_TRY(draw_errors(&group[WB_BUNDLES_ERROR], results, i));
-        WB_TRY(draw_shapes(figures, results, i));
-        WB_TRY(draw_energies(&group[WB_BUNDLES_ENERGY], results, i));
+    (void)index;
+    wb_text_append(text,
+                   "Simulated force over deflection in 3D (broad) and of the fitted 1D "
+                   "beam (dashed)%s.",
+                   campaign->printed_source[0] ? ", after the paper's Fig. 26" : "");
+    if (campaign->inset >= 0) {
+        wb_text_append(text, " Inset: bent axes of ");
+        wb_text_append_escaped(text, campaign->bundles[campaign->inset].label);
+        wb_text_append(text, " at a third, two thirds and all of the deflection.");
     }
-    for (int i = 0; 2 * i < campaign->n_studies; i++)
-        WB_TRY(draw_studies(&figures->studies[i], results, i));
-    return draw_fit(&figures->fit, results);
 }
 
-enum wb_status wb_bundles_figures_create(struct wb_bundles_figures *figures,
-                                         const struct wb_bundles_results *results)
+/* --- the table --- */
+
+static int count_groups(const void *context)
 {
-    memset(figures, 0, sizeof *figures);
-    const enum wb_status status = draw_all(figures, results);
-    if (status != WB_OK)
-        wb_bundles_figures_release(figures);
-    return status;
+    const struct wb_bundles_results *const results = context;
+    return results->campaign->n_groups;
 }
 
-/* Everything, also what is not there. */
-static int collect(const struct wb_bundles_figures *figures,
-                   struct wb_figure *all[WB_BUNDLES_FIGURES_MOST])
+static int count_bundles(const void *context)
 {
-    int n = 0;
-    for (int i = 0; i < WB_BUNDLES_GROUPS; i++)
-        all[n++] = figures->groups[i][WB_BUNDLES_SECTION];
-    for (int i = 0; i < (WB_BUNDLES_STUDIES + 1) / 2; i++)
-        all[n++] = figures->studies[i];
-    for (int i = 0; i < WB_BUNDLES_GROUPS; i++) {
-        for (int k = WB_BUNDLES_SECTION + 1; k < WB_BUNDLES_FIGURES; k++)
-            all[n++] = figures->groups[i][k];
-    }
-    for (int i = 0; i < WB_BUNDLES_BUNDLES; i++)
-        all[n++] = figures->shapes[i];
-    all[n++] = figures->fit;
-    return n;
+    const struct wb_bundles_results *const results = context;
+    return results->campaign->n_bundles;
 }
 
-int wb_bundles_figures_list(const struct wb_bundles_figures *figures,
-                            const struct wb_figure *list[WB_BUNDLES_FIGURES_MOST])
+/* Two studies stand beside each other. */
+static int count_studies(const void *context)
 {
-    struct wb_figure *all[WB_BUNDLES_FIGURES_MOST];
-    const int n_all = collect(figures, all);
-    int n = 0;
-    for (int i = 0; i < n_all; i++) {
-        if (all[i])
-            list[n++] = all[i];
-    }
-    return n;
+    const struct wb_bundles_results *const results = context;
+    return (results->campaign->n_studies + 1) / 2;
 }
 
-void wb_bundles_figures_release(struct wb_bundles_figures *figures)
-{
-    struct wb_figure *all[WB_BUNDLES_FIGURES_MOST];
-    const int n = collect(figures, all);
-    for (int i = 0; i < n; i++)
-        wb_figure_destroy(all[i]);
-    memset(figures, 0, sizeof *figures);
-}
+const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
+    {"sections", count_groups, draw_sections, tell_sections, false},
+    {"studies", count_studies, draw_studies, tell_studies, false},
+    {"curves", count_groups, draw_forces, tell_forces, false},
+    {"curves", count_groups, draw_errors, tell_errors, false},
+    {"energies", count_groups, draw_energies, tell_energies, false},
+    {"shapes", count_bundles, draw_shape, tell_shape, false},
+    {"fit", NULL, draw_fit, tell_fit, false},
+};

@@ -19,6 +19,22 @@ const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundle
     return run >= 0 && results->runs[run].state == WB_BUNDLES_USABLE ? &results->runs[run] : NULL;
 }
 
+bool wb_bundles_results_either(const struct wb_bundles_results *results,
+                               const struct wb_bundles_bundle *bundle)
+{
+    return wb_bundles_results_usable(results, bundle->dynamic) ||
+           wb_bundles_results_usable(results, bundle->constant);
+}
+
+bool wb_bundles_results_any(const struct wb_bundles_results *results,
+                            const struct wb_bundles_group *group)
+{
+    bool any = false;
+    for (int i = group->first; i < group->first + group->n; i++)
+        any |= wb_bundles_results_either(results, &results->campaign->bundles[i]);
+    return any;
+}
+
 const struct wb_bundles_fit *wb_bundles_results_fit(const struct wb_bundles_results *results,
                                                     int bundle)
 {

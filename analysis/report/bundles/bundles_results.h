@@ -44,6 +44,11 @@ void wb_bundles_results_release(struct wb_bundles_results *results); /* accepts 
 /* A run's result (index -1: none) that is usable, else NULL. */
 const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
                                                           int run);
+/* Whether one of a bundle's runs is usable, or one of any bundle of a group. */
+bool wb_bundles_results_either(const struct wb_bundles_results *results,
+                               const struct wb_bundles_bundle *bundle);
+bool wb_bundles_results_any(const struct wb_bundles_results *results,
+                            const struct wb_bundles_group *group);
 /* The fit of a bundle that is usable, else NULL. */
 const struct wb_bundles_fit *wb_bundles_results_fit(const struct wb_bundles_results *results,
                                                     int bundle);

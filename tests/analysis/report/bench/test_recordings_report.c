@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "analysis/align.h"
+#include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_report.h"
-#include "analysis/report/figures.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/json.h"
@@ -286,9 +286,15 @@ static int begun_lines(const struct wb_recordings_results *results)
 {
     struct wb_figures figures;
     struct wb_text svg = {0};
-    assert_int_equal(wb_figures_create(&figures, results), WB_OK);
-    assert_non_null(figures.wires[0].cycles);
-    assert_int_equal(wb_figure_svg(figures.wires[0].cycles, &svg), WB_OK);
+    assert_int_equal(
+        wb_figures_create(&figures, wb_recordings_figures, WB_RECORDINGS_FIGURES, results), WB_OK);
+    const struct wb_figure *cycles = NULL;
+    for (int i = 0; i < figures.n; i++) {
+        if (strstr(wb_figure_name(figures.items[i].figure), "-cycles"))
+            cycles = figures.items[i].figure;
+    }
+    assert_non_null(cycles);
+    assert_int_equal(wb_figure_svg(cycles, &svg), WB_OK);
     const int n = count_of(wb_text_string(&svg), "M ");
     wb_text_release(&svg);
     wb_figures_release(&figures);
