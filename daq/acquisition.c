@@ -301,8 +301,10 @@ static void judge_silence(struct wb_acquisition *a, int64_t heard_ns)
  * their silence. */
 static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
 {
-    if (stalled_ns >= STALL_NS)
-        wb_interlock_forgive(&a->interlock, stalled_ns);
+    if (stalled_ns < STALL_NS)
+        return;
+    a->deaf_ns += stalled_ns;
+    wb_interlock_forgive(&a->interlock, stalled_ns);
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -464,6 +466,11 @@ void wb_acquisition_close(struct wb_acquisition *a)
         free(line->state);
     }
     free(a);
+}
+
+int64_t wb_acquisition_heard_ns(const struct wb_acquisition *a)
+{
+    return a->woken_ns - a->deaf_ns;
 }
 
 const struct wb_acquisition_latest *wb_acquisition_latest(const struct wb_acquisition *a)

@@ -39,6 +39,7 @@ struct wb_acquisition {
     struct wb_acquisition_latest latest;
     int64_t next_tick_ns;
     int64_t woken_ns; /* end of the last wait for bytes */
+    int64_t deaf_ns;  /* of all time since the start: nobody listened */
     struct wb_outbox outbox;
     uint8_t buffer[WB_STREAM_READ_MAX];
 };
