@@ -2,12 +2,13 @@
 # Runs the tests of data acquisition and of the virtual rig beside processes that keep every core
 # busy, as often as told: none of them may depend on how busy the machine is. Says which failed, and
 # exits with 1 if any did.
-# Usage: busy.sh BUILD_FOLDER [RUNS (default 10) [SUITE|TEST...]]
+# Usage: busy.sh BUILD_FOLDER [RUNS [TEST...]]   (10 runs; the tests that talk to instruments)
 set -u
 
 build=${1:?usage: busy.sh BUILD_FOLDER [RUNS [TEST...]]}
 runs=${2:-10}
-[ $# -lt 2 ] && shift 1 || shift 2
+shift
+[ $# -eq 0 ] || shift
 [ -f "$build/build.ninja" ] || { echo "no build folder $build" >&2; exit 2; }
 ninja -C "$build" --quiet || exit 2
 
@@ -33,14 +34,16 @@ done
 failures=0
 for run in $(seq "$runs"); do
     began=$(date +%s)
+    code=0
     if [ $# -gt 0 ]; then
-        timeout $run_s meson test -C "$build" --no-rebuild -t 4 "$@" >"$folder/log" 2>&1
+        timeout $run_s meson test -C "$build" --no-rebuild -t 4 "$@" >"$folder/log" 2>&1 ||
+            code=$?
     else
         timeout $((run_s / 2)) meson test -C "$build" --no-rebuild -t 4 --suite daq >"$folder/log" 2>&1 &&
             timeout $((run_s / 2)) meson test -C "$build" --no-rebuild -t 4 --suite cli record rig \
-                >"$folder/log" 2>&1
+                >"$folder/log" 2>&1 || code=$?
     fi
-    if [ $? = 0 ]; then
+    if [ $code = 0 ]; then
         echo "run $run: ok, $(($(date +%s) - began)) s"
     else
         echo "run $run: FAILED, $(($(date +%s) - began)) s"
