@@ -25,34 +25,16 @@ struct reading {
 
 /* --- single parts --- */
 
+enum {
+    MOST_SETTINGS = 32 /* rows of wb_calibrate_table */
+};
+
 enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
                                          struct wb_calibrate_settings *settings)
 {
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("elastic_zone", &settings->elastic_zone, 1.0,
-                                  WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
-        WB_CONFIG_OPTIONAL_NUMBER("yield_point", &settings->yield_point, 1.0,
-                                  WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
-        WB_CONFIG_OPTIONAL_NUMBER("step_mm", &settings->step, WB_MM, 0.05, 10.0),
-        WB_CONFIG_OPTIONAL_BOOLEAN("straight", &settings->straight),
-        WB_CONFIG_OPTIONAL_BOOLEAN("bow_corrected", &settings->bow_corrected),
-        WB_CONFIG_OPTIONAL_BOOLEAN("restart", &settings->restart),
-        WB_CONFIG_OPTIONAL_INTEGER("max_iterations", &settings->max_iterations, 1, 100000),
-        WB_CONFIG_OPTIONAL_INTEGER("elements", &settings->n_elements, 2, 1000),
-        WB_CONFIG_OPTIONAL_INTEGER("fibres", &settings->n_fibres, 4, 1000),
-    };
-    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
-}
-
-static enum wb_status read_settings(const struct wb_config_node *node, struct wb_campaign *campaign)
-{
-    const struct wb_calibrate_settings *const settings = &campaign->calibrate;
-    WB_TRY(wb_campaign_read_settings(node, &campaign->calibrate));
-    campaign->validate.straight = settings->straight;
-    campaign->validate.step = settings->step;
-    campaign->validate.n_elements = settings->n_elements;
-    campaign->validate.n_fibres = settings->n_fibres;
-    return WB_OK;
+    struct wb_config_key keys[MOST_SETTINGS];
+    const size_t n = wb_setting_keys(&wb_calibrate_table, WB_CALIBRATE_CAMPAIGN, settings, keys);
+    return node ? wb_config_map(node, keys, n) : WB_OK;
 }
 
 static enum wb_status read_limits(const struct wb_config_node *node, struct wb_campaign *campaign)
@@ -324,7 +306,7 @@ static enum wb_status read_campaign(struct reading *reading, const struct wb_con
         WB_CONFIG_NODE("wires", &wires),
     };
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
-    WB_TRY(read_settings(settings, campaign));
+    WB_TRY(wb_campaign_read_settings(settings, &campaign->calibrate));
     WB_TRY(read_limits(limits, campaign));
     WB_TRY(read_merits(reference, campaign));
     WB_TRY(read_index(reading, index));
