@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/dataset_csv.h"
+#include "analysis/csv_table.h"
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -27,7 +27,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundl
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
-            .phase = wb_simulated_phase(row->phase),
+            .phase = row->phase,
             .deflection = row->deflection,
             .tension = row->tension,
             .force = row->force,
@@ -244,9 +244,9 @@ static void append_row(struct wb_text *text, double t, const struct wb_bundle_ro
                               wb_bundle_imbalance(e)};
 
     for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
-        char number[WB_DATASET_CSV_NUMBER] = "";
+        char number[WB_CSV_TABLE_NUMBER] = "";
         if (isfinite(columns[i]))
-            wb_dataset_csv_format_number(columns[i], i == 1 ? MM_SHIFT : 0, number);
+            wb_csv_table_format_number(columns[i], i == 1 ? MM_SHIFT : 0, number);
         wb_text_append(text, "%s%s", i == 0 ? "" : ",", number);
     }
     wb_text_append(text, "\n");

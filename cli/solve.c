@@ -149,7 +149,7 @@ void wb_solve_print_point(const struct wb_solve_point *point)
 {
     const double column[] = {point->deflection / WB_MM, point->tension, point->force,
                              point->tip_x / WB_MM, point->tip_angle};
-    printf("%d,%s", point->cycle, wb_history_phase_text(point->phase));
+    printf("%d,%s", point->cycle, wb_trial_phase_name(point->phase));
     for (size_t k = 0; k < sizeof column / sizeof column[0]; k++) {
         char text[WB_NUMBER_TEXT];
         printf(",%s", wb_number_format(column[k], text));
@@ -160,7 +160,7 @@ void wb_solve_print_point(const struct wb_solve_point *point)
 void wb_solve_set_point(struct wb_json *object, const struct wb_solve_point *point)
 {
     wb_json_set_integer(object, "cycle", point->cycle);
-    wb_json_set_text(object, "phase", wb_history_phase_text(point->phase));
+    wb_json_set_text(object, "phase", wb_trial_phase_name(point->phase));
     wb_json_set_number(object, "deflection_mm", point->deflection / WB_MM);
     wb_json_set_number(object, "tension_N", point->tension);
     wb_json_set_number(object, "force_N", point->force);

@@ -9,8 +9,8 @@
 #include "base/json.h"
 #include "base/setting.h"
 #include "cli/command.h"
+#include "fe/linear/trial.h"
 #include "fe/model/bundle_override.h"
-#include "fe/trial/history.h"
 
 /* Kinds, as bits of the settings that apply to them. */
 enum {
@@ -57,7 +57,7 @@ int wb_solve_bundle(const struct wb_solve_options *options);
 /* A row of any model, as it is printed. */
 struct wb_solve_point {
     int cycle;
-    enum wb_history_phase phase;
+    enum wb_phase phase;
     double deflection, tension, force, tip_x, tip_angle;
 };
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "analysis/computed.h"
-#include "analysis/dataset_csv.h"
+#include "analysis/csv_table.h"
 #include "analysis/errors.h"
 #include "analysis/report/reasons.h"
 #include "base/units.h"
@@ -197,7 +197,7 @@ static bool parse_energy(char *line, struct wb_bundles_energy *energy)
     double v[COLUMNS];
     for (int i = 0; i < COLUMNS; i++) {
         char *const text = strsep(&line, ",");
-        if (!text || !wb_dataset_csv_parse_number(text, i == 1 ? MM_SHIFT : 0, &v[i]))
+        if (!text || !wb_csv_table_parse_number(text, i == 1 ? MM_SHIFT : 0, &v[i]))
             return false;
     }
     *energy = (struct wb_bundles_energy){

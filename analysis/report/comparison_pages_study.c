@@ -225,11 +225,12 @@ void wb_comparison_pages_elastic(struct wb_document *document,
                    wb_wire_model_youngs_modulus(model) / (1e3 * WB_MPA),
                    wb_wire_model_poissons_ratio(model));
     if (contact && solid)
-        wb_text_append(&text,
-                       " Friction (<i>\xce\xbc</i> = %g) instead of a bond moves the axis by %.4f "
-                       "mm at most.",
-                       results->comparison->cases[WB_COMPARISON_CONTACT].model->interface.friction,
-                       wb_comparison_distance(solid, contact) / WB_MM);
+        wb_text_append(
+            &text,
+            " Friction (<i>\xce\xbc</i> = %g) instead of a bond moves the axis by %.4f "
+            "mm at most.",
+            results->comparison->cases[WB_COMPARISON_CONTACT].model->jacket_contact.friction,
+            wb_comparison_distance(solid, contact) / WB_MM);
     if (contact && isfinite(contact->slip))
         wb_text_append(&text, " Core and jacket slip by %.4f mm at most.", contact->slip / WB_MM);
     put_paragraph(document, &text);
