@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,11 +72,35 @@ struct wb_bend_test {
 static const char *const phase_names[] = {"connecting", "check", "tare",     "down",
                                           "up",         "rest",  "stopping", "end"};
 
+static const struct wb_setting rows[] = {
+    {.name = "cycles",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_bend_test_request, cycles),
+     .least = 1,
+     .largest = 10000,
+     .fallback = 1,
+     .option = "cycles",
+     .argument = "N",
+     .help = "Times down and back"},
+    {.name = "travel_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bend_test_request, travel),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 5000.0,
+     .fallback = 53.0,
+     .option = "travel-mm",
+     .argument = "D",
+     .help = "How far down from the start position"},
+};
+
+const struct wb_setting_table wb_bend_test_table = {.rows = rows, .n = WB_COUNT(rows)};
+
 void wb_bend_test_default_request(struct wb_bend_test_request *request)
 {
     memset(request, 0, sizeof *request);
-    request->cycles = 1;
-    request->travel = 53.0 * WB_MM;
+    wb_setting_fill(&wb_bend_test_table, request);
     request->connect_timeout = 6.0;
     request->check_time = 1.0;
     request->tare_time = 2.0;

@@ -158,7 +158,7 @@ static enum wb_status calibrate(const struct wb_recordings *campaign,
     WB_TRY(wb_calibrate_run(&wire->calibration, datasets, n, &settings));
     wb_properties_from_result(&wire->calibration, &wire->properties);
     const enum wb_status status =
-        wb_validate_run(&wire->fit, &wire->properties, datasets, n, &campaign->validate);
+        wb_validate_run(&wire->fit, &wire->properties, datasets, n, &campaign->calibrate);
     if (status != WB_OK)
         wb_calibrate_result_release(&wire->calibration);
     return status;
@@ -185,7 +185,7 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
     wb_reasons_begin(&reasons);
     const enum wb_status status = calibrates ? calibrate(campaign, wire, datasets, n)
                                              : wb_validate_run(&wire->validation, &wire->properties,
-                                                               datasets, n, &campaign->validate);
+                                                               datasets, n, &campaign->calibrate);
     wb_reasons_end();
     free(datasets);
     if (status == WB_OK) {

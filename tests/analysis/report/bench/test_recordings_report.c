@@ -132,10 +132,10 @@ static void make_good(struct good *good, double validation_factor)
         wb_calibrate_run(&wire->calibration, calibration, 2, &good->campaign.calibrate), WB_OK);
     wb_properties_from_result(&wire->calibration, &wire->properties);
     assert_int_equal(
-        wb_validate_run(&wire->fit, &wire->properties, calibration, 2, &good->campaign.validate),
+        wb_validate_run(&wire->fit, &wire->properties, calibration, 2, &good->campaign.calibrate),
         WB_OK);
     assert_int_equal(wb_validate_run(&wire->validation, &wire->properties, validation, 2,
-                                     &good->campaign.validate),
+                                     &good->campaign.calibrate),
                      WB_OK);
     wire->calibration_state = wire->validation_state = WB_RECORDINGS_DONE;
     wb_recordings_results_judge(&good->results);
