@@ -22,7 +22,6 @@ struct wb_beam_model {
     double (*natural_curvature)(void *context, double arc_length); /* 1/m; NULL: straight */
     void *curvature_context;
     double load_x, load_y; /* dead load per reference length, N/m */
-    bool reference_kernel; /* slow exact fibres, see fe/rod/fibres.h */
 };
 
 /* What an evaluation found. Moments count as forces over the beam's length. */

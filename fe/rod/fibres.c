@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fe/material/hardening.h"
+#include "fe/rod/fibres_private.h"
 
 #define WB_LOG_DOMAIN "fibres"
 
@@ -104,46 +105,6 @@ void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *mate
             wb_hardening_tabulate(&f->tables[b], m);
     }
     f->shear_stiffness = f->shear_ratio * shear_sum(f);
-}
-
-enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section *section)
-{
-    *out = NULL;
-    if (section->n_fibres < 1 || section->n_materials < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "a section without fibres cannot carry anything");
-
-    struct wb_fibres *f = calloc(1, sizeof *f);
-    if (!f)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
-
-    int n = 0;
-    for (int m = 0; m < section->n_materials; m++) {
-        for (int i = 0; i < section->n_fibres; i++)
-            n += section->fibres[i].material == m;
-        n = padded(n);
-    }
-    const size_t count = (size_t)n, materials = (size_t)section->n_materials;
-    f->n = n;
-    f->n_materials = section->n_materials;
-    f->y = calloc(count, sizeof *f->y);
-    f->area = calloc(count, sizeof *f->area);
-    f->virgin = calloc(HISTORY_ROWS * count, sizeof *f->virgin);
-    f->batches = calloc(materials, sizeof *f->batches);
-    f->materials = calloc(materials, sizeof *f->materials);
-    f->tables = calloc(materials, sizeof *f->tables);
-    if (!f->y || !f->area || !f->virgin || !f->batches || !f->materials || !f->tables) {
-        wb_fibres_destroy(f);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
-    }
-
-    sort_fibres(f, section);
-    wb_fibres_set_kernel(f, WB_FIBRES_FASTEST);
-    f->shear_ratio = 1.0;
-    wb_fibres_set_materials(f, section->materials);
-    f->shear_ratio = section->shear_stiffness / f->shear_stiffness;
-    f->shear_stiffness = section->shear_stiffness;
-    *out = f;
-    return WB_OK;
 }
 
 void wb_fibres_destroy(struct wb_fibres *f)
@@ -317,43 +278,11 @@ static ALWAYS_INLINE struct answer respond_kinematically(const struct wb_materia
     return answer;
 }
 
-/* The slow twin: the material law of fe/material/material.c, fibre by fibre. */
-static ALWAYS_INLINE struct answer respond_slow_twin(const struct wb_material *m, lanes strain,
-                                                     const struct rows *h)
-{
-    const bool isotropic = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
-    const bool kinematic = m->hardening == WB_HARDENING_KINEMATIC_LINEAR;
-    struct answer answer;
-
-    for (int i = 0; i < LANES; i++) {
-        const struct wb_material_state before = {
-            .plastic_strain = h->plastic[i],
-            .accumulated_plastic_strain = h->accumulated[i],
-            .back_stress = kinematic ? h->third[i] : 0.0,
-        };
-        struct wb_material_state after;
-        double stress, tangent;
-        wb_material_stress(m, strain[i], &before, &after, &stress, &tangent);
-        answer.stress[i] = stress;
-        answer.tangent[i] = tangent;
-        h->plastic_after[i] = after.plastic_strain;
-        h->accumulated_after[i] = after.accumulated_plastic_strain;
-        h->third_after[i] = after.back_stress;
-        if (isotropic) {
-            const bool moved = after.accumulated_plastic_strain > before.accumulated_plastic_strain;
-            h->third_after[i] = moved ? fabs(stress) : h->third[i];
-        }
-    }
-    return answer;
-}
-
-static ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int material, bool slow,
-                                              lanes strain, const struct rows *h)
+static ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int material, lanes strain,
+                                              const struct rows *h)
 {
     const struct wb_material *m = &f->materials[material];
 
-    if (slow)
-        return respond_slow_twin(m, strain, h);
     if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
         return respond_isotropically(m, &f->tables[material], strain, h);
     if (m->hardening == WB_HARDENING_KINEMATIC_LINEAR)
@@ -372,7 +301,7 @@ struct strains {
     double eps, kappa;
 };
 
-static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, struct strains strains,
+static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct strains strains,
                                        const double *rows, double *rows_after,
                                        struct wb_fibres_response *response)
 {
@@ -390,8 +319,7 @@ static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, str
                 .third_after = rows_after + 2 * f->n + i,
             };
             const lanes y = load(f->y + i), area = load(f->area + i);
-            const struct answer answer =
-                respond_of(f, f->batches[b].material, slow, eps - y * kappa, &h);
+            const struct answer answer = respond_of(f, f->batches[b].material, eps - y * kappa, &h);
             const lanes force = answer.stress * area;
             const lanes stiffness = answer.tangent * area;
             N += force;
@@ -410,17 +338,11 @@ static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, str
 
 /* The same function, compiled for what the processor has. No variant contracts a * b + c, so all
  * give the same bits. */
-static void respond_slowly(const struct wb_fibres *f, double eps, double kappa, const double *rows,
-                           double *rows_after, struct wb_fibres_response *response)
-{
-    respond_rows(f, true, (struct strains){eps, kappa}, rows, rows_after, response);
-}
-
 static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
                              const double *rows, double *rows_after,
                              struct wb_fibres_response *response)
 {
-    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
 #ifdef HAVE_X86_VARIANTS
@@ -429,29 +351,72 @@ __attribute__((target("avx2"))) static void respond_avx2(const struct wb_fibres 
                                                          double *rows_after,
                                                          struct wb_fibres_response *response)
 {
-    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
 __attribute__((target("avx2,avx512f,avx512dq,avx512vl"))) static void
 respond_avx512(const struct wb_fibres *f, double eps, double kappa, const double *rows,
                double *rows_after, struct wb_fibres_response *response)
 {
-    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 #endif
 
-void wb_fibres_set_kernel(struct wb_fibres *fibres, enum wb_fibres_kernel kernel)
+static void choose_fastest(struct wb_fibres *fibres)
 {
-    fibres->respond = kernel == WB_FIBRES_REFERENCE ? respond_slowly : respond_portably;
+    fibres->respond = respond_portably;
 #ifdef HAVE_X86_VARIANTS
-    if (kernel != WB_FIBRES_FASTEST)
-        return;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl"))
         fibres->respond = respond_avx512;
     else if (__builtin_cpu_supports("avx2"))
         fibres->respond = respond_avx2;
 #endif
+}
+
+enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section *section)
+{
+    *out = NULL;
+    if (section->n_fibres < 1 || section->n_materials < 1)
+        return wb_fail(WB_ERR_ARGUMENT, "a section without fibres cannot carry anything");
+
+    struct wb_fibres *f = calloc(1, sizeof *f);
+    if (!f)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
+
+    int n = 0;
+    for (int m = 0; m < section->n_materials; m++) {
+        for (int i = 0; i < section->n_fibres; i++)
+            n += section->fibres[i].material == m;
+        n = padded(n);
+    }
+    const size_t count = (size_t)n, materials = (size_t)section->n_materials;
+    f->n = n;
+    f->n_materials = section->n_materials;
+    f->y = calloc(count, sizeof *f->y);
+    f->area = calloc(count, sizeof *f->area);
+    f->virgin = calloc(HISTORY_ROWS * count, sizeof *f->virgin);
+    f->batches = calloc(materials, sizeof *f->batches);
+    f->materials = calloc(materials, sizeof *f->materials);
+    f->tables = calloc(materials, sizeof *f->tables);
+    if (!f->y || !f->area || !f->virgin || !f->batches || !f->materials || !f->tables) {
+        wb_fibres_destroy(f);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
+    }
+
+    sort_fibres(f, section);
+    choose_fastest(f);
+    f->shear_ratio = 1.0;
+    wb_fibres_set_materials(f, section->materials);
+    f->shear_ratio = section->shear_stiffness / f->shear_stiffness;
+    f->shear_stiffness = section->shear_stiffness;
+    *out = f;
+    return WB_OK;
+}
+
+void wb_fibres_set_portable(struct wb_fibres *fibres)
+{
+    fibres->respond = respond_portably;
 }
 
 static void respond_virgin(const struct wb_fibres *f, double eps, double kappa,

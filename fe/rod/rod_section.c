@@ -216,12 +216,6 @@ void wb_rod_section_destroy(struct wb_rod_section *section)
     free(section);
 }
 
-void wb_rod_section_set_slow(struct wb_rod_section *section, bool slow)
-{
-    for (int i = 0; i < section->n_parts; i++)
-        section->laws[i].table = slow ? NULL : &section->tables[i];
-}
-
 int wb_rod_section_fibres(const struct wb_rod_section *section)
 {
     return section->n;

@@ -58,9 +58,6 @@ WB_MUST_CHECK enum wb_status wb_rod_section_create(struct wb_rod_section **out, 
                                                    const struct wb_rod_section_layout *layout);
 void wb_rod_section_destroy(struct wb_rod_section *section); /* accepts NULL */
 
-/* Solves the power law in every fibre instead of taking it from its table (for tests). */
-void wb_rod_section_set_slow(struct wb_rod_section *section, bool slow);
-
 int wb_rod_section_fibres(const struct wb_rod_section *section);
 void wb_rod_section_fibre(const struct wb_rod_section *section, int i,
                           struct wb_rod_section_fibre *fibre);

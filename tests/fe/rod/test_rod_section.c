@@ -280,7 +280,6 @@ static void the_tangent_is_the_derivative(void **unused)
     for (int law = 0; law < 3; law++) {
         struct point p = make_circle(laws[law], 0, 0);
         uint64_t seed = 17;
-        wb_rod_section_set_slow(p.section, true);
         for (int i = 0; i < 40; i++) {
             double strain[N];
             for (int k = 0; k < N; k++)
