@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "fe/linear/banded.h"
+#include "fe/rod/beam_private.h"
 #include "fe/rod/fibres.h"
 
 #define WB_LOG_DOMAIN "beam"

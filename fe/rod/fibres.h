@@ -45,7 +45,4 @@ void wb_fibres_respond(const struct wb_fibres *fibres, double eps, double kappa,
                        const double *restrict before, double *restrict after,
                        struct wb_fibres_response *restrict response);
 
-/* The largest accumulated plastic strain of a point's fibres, 0 when it never yielded. */
-double wb_fibres_largest_plastic_strain(const struct wb_fibres *fibres, const double *history);
-
 #endif

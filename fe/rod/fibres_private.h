@@ -8,4 +8,7 @@
  * same source, to the same bits. A history goes on. */
 void wb_fibres_set_portable(struct wb_fibres *fibres);
 
+/* The largest accumulated plastic strain of a point's fibres, 0 when it never yielded. */
+double wb_fibres_largest_plastic_strain(const struct wb_fibres *fibres, const double *history);
+
 #endif

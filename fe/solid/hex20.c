@@ -35,7 +35,8 @@ static const struct rule four = {4,
                                  {0.34785484513745385737, 0.65214515486254614263,
                                   0.65214515486254614263, 0.34785484513745385737}};
 
-const double wb_hex20_node_place[NODES][3] = {
+/* Parent coordinates of the nodes. */
+static const double node_place[NODES][3] = {
     {-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
     {-1, 1, 1},   {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
     {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0},  {1, 1, 0},   {-1, 1, 0},
@@ -51,7 +52,7 @@ static const double large_share = 8.0;
 static void find_shapes(const double x[3], double shape[4][NODES])
 {
     for (int a = 0; a < NODES; a++) {
-        const double *p = wb_hex20_node_place[a];
+        const double *p = node_place[a];
         double f[3], d[3]; /* factors along each coordinate, and their slopes */
         int middle = -1;
         for (int i = 0; i < 3; i++) {
@@ -212,7 +213,7 @@ static bool find_affine_shares(const double position[NODES][3], double share[NOD
         const int a = k - CORNERS;
         double x[3], affine[3] = {0.0}, value[CORNERS];
         for (int i = 0; i < 3; i++)
-            x[i] = k < CORNERS ? two.place[k >> i & 1] : wb_hex20_node_place[a][i];
+            x[i] = k < CORNERS ? two.place[k >> i & 1] : node_place[a][i];
         find_place(x, position, at, unused);
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++)
@@ -242,7 +243,7 @@ static void find_parent_shares(double share[NODES][CORNERS])
             share[a][c] = 1.0;
             for (int i = 0; i < 3; i++) {
                 const double sign = c >> i & 1 ? 1.0 : -1.0;
-                share[a][c] *= 0.5 * (1.0 + sqrt(3.0) * sign * wb_hex20_node_place[a][i]);
+                share[a][c] *= 0.5 * (1.0 + sqrt(3.0) * sign * node_place[a][i]);
             }
         }
     }

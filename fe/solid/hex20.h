@@ -52,9 +52,6 @@ struct wb_hex20_result {
     int yielding;             /* points that yield in this step */
 };
 
-/* Parent coordinates of the nodes. */
-extern const double wb_hex20_node_place[WB_HEX20_NODES][3];
-
 /* States of an element: 27 or 8. */
 int wb_hex20_points(enum wb_integration integration);
 

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "fe/solid/hex20_kernel_private.h"
+
 /* Sums here may be contracted: the stiffness steers Newton's method, and the equilibrium that it
  * finds is decided by the forces, which are not. Held to a slow twin by
  * tests/fe/solid/test_hex20.c. */

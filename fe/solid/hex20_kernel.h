@@ -34,13 +34,4 @@ void wb_hex20_kernel_add(struct wb_hex20_kernel *kernel, double weight,
  * has. */
 void wb_hex20_kernel_multiply(const struct wb_hex20_kernel *kernel, double *restrict stiffness);
 
-/* By a given way; false where the processor does not have it. */
-enum wb_hex20_kernel_way {
-    WB_HEX20_KERNEL_PORTABLE,
-    WB_HEX20_KERNEL_AVX2,
-    WB_HEX20_KERNEL_AVX512
-};
-bool wb_hex20_kernel_multiply_by(enum wb_hex20_kernel_way way, const struct wb_hex20_kernel *kernel,
-                                 double *restrict stiffness);
-
 #endif

@@ -128,14 +128,11 @@ WB_MUST_CHECK enum wb_status wb_solid_move(struct wb_solid *solid, const struct 
                                            struct wb_solid_point *point);
 
 int wb_solid_unknowns(const struct wb_solid *solid);
-size_t wb_solid_memory(const struct wb_solid *solid); /* bytes */
 
 /* Of the last equilibrium. */
 const struct wb_solid_loads *wb_solid_loads(const struct wb_solid *solid);
 void wb_solid_tip(const struct wb_solid *solid, struct wb_solid_tip *tip);
-const double *wb_solid_displacement(const struct wb_solid *solid);   /* (3 n_nodes), m */
-const double *wb_solid_internal_force(const struct wb_solid *solid); /* (3 n_nodes), N: at supports
-                                                                        the reactions plus loads */
+const double *wb_solid_displacement(const struct wb_solid *solid); /* (3 n_nodes), m */
 void wb_solid_balance(const struct wb_solid *solid, struct wb_solid_balance *balance);
 
 /* Cauchy stress and equivalent plastic strain at the nodes of element e, from its own points. */

@@ -55,6 +55,4 @@ void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
 /* Committed histories = trial ones. */
 void wb_solid_body_commit(struct wb_solid_body *body);
 
-size_t wb_solid_body_memory(const struct wb_solid_body *body); /* bytes */
-
 #endif

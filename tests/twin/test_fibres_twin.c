@@ -1,6 +1,7 @@
 /* Fibres against their slow twin: one section on random strains, and a whole cantilever. */
 #include <stdlib.h>
 
+#include "fe/rod/fibres_private.h"
 #include "tests/fe/rod/wires.h"
 #include "tests/twin/fibres_swap.h"
 

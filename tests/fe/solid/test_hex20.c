@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid_mesh.h"
+#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
 #include "tests/fe/solid/hex20_cases.h"
 #include "tests/fe/solid/hex20_twin.h"
@@ -549,7 +550,7 @@ static void find_positions(int n, double position[20][3], double at[27][3])
             at[point][i] = 0.0;
         }
         for (int a = 0; a < 20; a++) {
-            const double *p = wb_hex20_node_place[a];
+            const double *p = test_node_place[a];
             const bool corner = p[0] * p[1] * p[2] != 0.0;
             double N = corner ? (p[0] * x[0] + p[1] * x[1] + p[2] * x[2] - 2.0) / 8.0 : 0.25;
             for (int i = 0; i < 3; i++)
@@ -571,7 +572,7 @@ static void linear_fields_reach_the_nodes_of_curved_elements(void **unused)
         struct wb_hex20_state state[27] = {{{0.0}}};
         double position[20][3], u[60] = {0.0}, stress[20][6], plastic[20];
         for (int a = 0; a < 20; a++) {
-            const double *p = wb_hex20_node_place[a];
+            const double *p = test_node_place[a];
             const double angle = 0.125 * M_PI * (1.0 + p[0]);
             const double in = 0.25 * (1.0 - p[1]), out = 0.5 * (1.0 + p[1]); /* chord and arc */
             position[a][0] = 1e-3 * (in * (1.0 - p[0]) / 2.0 + out * cos(angle));
