@@ -4,25 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/linear/processor.h"
 #include "fe/material/hardening.h"
 #include "fe/rod/fibres_private.h"
 
 #define WB_LOG_DOMAIN "fibres"
-
-/* Vectors wider than the target's are passed between inlined functions only. */
-#pragma GCC diagnostic ignored "-Wpsabi"
 
 enum {
     LANES = 4,        /* fibres of a material are padded to a multiple of this */
     HISTORY_HEAD = 8, /* the first double says whether the point ever yielded; rest is padding */
     HISTORY_ROWS = 3  /* plastic strain, accumulated plastic strain, yield or back stress */
 };
-
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define HAVE_X86_VARIANTS
-#endif
 
 /* See fe/material/material.c. */
 static const double on_surface = 1e-12;
@@ -148,32 +140,32 @@ typedef long long masks
 
 static const long long sign_bit = (long long)0x8000000000000000ULL;
 
-static ALWAYS_INLINE lanes load(const double *p)
+static WB_ALWAYS_INLINE lanes load(const double *p)
 {
     return *(const lanes *)p;
 }
 
-static ALWAYS_INLINE void store(double *p, lanes v)
+static WB_ALWAYS_INLINE void store(double *p, lanes v)
 {
     *(lanes *)p = v;
 }
 
-static ALWAYS_INLINE lanes select_lanes(masks mask, lanes yes, lanes no)
+static WB_ALWAYS_INLINE lanes select_lanes(masks mask, lanes yes, lanes no)
 {
     return (lanes)((mask & (masks)yes) | (~mask & (masks)no));
 }
 
-static ALWAYS_INLINE lanes absolute(lanes v)
+static WB_ALWAYS_INLINE lanes absolute(lanes v)
 {
     return (lanes)((masks)v & ~sign_bit);
 }
 
-static ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
+static WB_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
 {
     return (lanes)(((masks)size & ~sign_bit) | ((masks)sign & sign_bit));
 }
 
-static ALWAYS_INLINE bool any(masks mask)
+static WB_ALWAYS_INLINE bool any(masks mask)
 {
     long long all = 0;
     for (int i = 0; i < LANES; i++)
@@ -191,7 +183,7 @@ struct answer {
     lanes stress, tangent;
 };
 
-static ALWAYS_INLINE struct answer respond_elastically(const struct wb_material *m, lanes strain)
+static WB_ALWAYS_INLINE struct answer respond_elastically(const struct wb_material *m, lanes strain)
 {
     const struct answer answer = {m->youngs_modulus * strain, m->youngs_modulus + 0.0 * strain};
     return answer;
@@ -199,9 +191,9 @@ static ALWAYS_INLINE struct answer respond_elastically(const struct wb_material 
 
 /* r(c) lane by lane: a table row is one cache line, and gathering rows is dearer than their
  * polynomials. */
-static ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
-                                         const struct wb_hardening_table *table, masks yields,
-                                         lanes c)
+static WB_ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
+                                            const struct wb_hardening_table *table, masks yields,
+                                            lanes c)
 {
     const lanes scaled = c * (1.0 / m->yield_stress);
     lanes r;
@@ -216,9 +208,9 @@ static ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
 
 /* sigma = sigma_Y + (1 - r) c with r(c) from the table; see fe/material/hardening.h. The third row
  * is the yield stress reached so far. */
-static ALWAYS_INLINE struct answer respond_isotropically(const struct wb_material *m,
-                                                         const struct wb_hardening_table *table,
-                                                         lanes strain, const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_isotropically(const struct wb_material *m,
+                                                            const struct wb_hardening_table *table,
+                                                            lanes strain, const struct rows *h)
 {
     const double E = m->youngs_modulus;
     const double sigma_Y = m->yield_stress;
@@ -253,8 +245,8 @@ static ALWAYS_INLINE struct answer respond_isotropically(const struct wb_materia
 }
 
 /* The third row is the back stress. */
-static ALWAYS_INLINE struct answer respond_kinematically(const struct wb_material *m, lanes strain,
-                                                         const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_kinematically(const struct wb_material *m,
+                                                            lanes strain, const struct rows *h)
 {
     const double E = m->youngs_modulus;
     const double H = m->strength_coefficient;
@@ -278,8 +270,8 @@ static ALWAYS_INLINE struct answer respond_kinematically(const struct wb_materia
     return answer;
 }
 
-static ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int material, lanes strain,
-                                              const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int material,
+                                                 lanes strain, const struct rows *h)
 {
     const struct wb_material *m = &f->materials[material];
 
@@ -291,7 +283,7 @@ static ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int mat
 }
 
 /* Adds the lanes in a fixed order. */
-static ALWAYS_INLINE double add_lanes(lanes v)
+static WB_ALWAYS_INLINE double add_lanes(lanes v)
 {
     return (v[0] + v[2]) + (v[1] + v[3]);
 }
@@ -301,9 +293,9 @@ struct strains {
     double eps, kappa;
 };
 
-static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct strains strains,
-                                       const double *rows, double *rows_after,
-                                       struct wb_fibres_response *response)
+static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct strains strains,
+                                          const double *rows, double *rows_after,
+                                          struct wb_fibres_response *response)
 {
     const double eps = strains.eps, kappa = strains.kappa;
     lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
@@ -345,18 +337,17 @@ static void respond_portably(const struct wb_fibres *f, double eps, double kappa
     respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
-#ifdef HAVE_X86_VARIANTS
-__attribute__((target("avx2"))) static void respond_avx2(const struct wb_fibres *f, double eps,
-                                                         double kappa, const double *rows,
-                                                         double *rows_after,
-                                                         struct wb_fibres_response *response)
+#ifdef WB_HAS_X86_VARIANTS
+WB_AVX2 static void respond_avx2(const struct wb_fibres *f, double eps, double kappa,
+                                 const double *rows, double *rows_after,
+                                 struct wb_fibres_response *response)
 {
     respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
-__attribute__((target("avx2,avx512f,avx512dq,avx512vl"))) static void
-respond_avx512(const struct wb_fibres *f, double eps, double kappa, const double *rows,
-               double *rows_after, struct wb_fibres_response *response)
+WB_AVX512 static void respond_avx512(const struct wb_fibres *f, double eps, double kappa,
+                                     const double *rows, double *rows_after,
+                                     struct wb_fibres_response *response)
 {
     respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
@@ -365,11 +356,10 @@ respond_avx512(const struct wb_fibres *f, double eps, double kappa, const double
 static void choose_fastest(struct wb_fibres *fibres)
 {
     fibres->respond = respond_portably;
-#ifdef HAVE_X86_VARIANTS
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
+#ifdef WB_HAS_X86_VARIANTS
+    if (wb_processor_has_avx512())
         fibres->respond = respond_avx512;
-    else if (__builtin_cpu_supports("avx2"))
+    else if (wb_processor_has_avx2())
         fibres->respond = respond_avx2;
 #endif
 }
