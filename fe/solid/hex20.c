@@ -4,8 +4,6 @@
 #include <string.h>
 
 #include "fe/solid/hex20_kernel.h"
-#include "fe/solid/hex20_points.h"
-#include "fe/solid/solid_point.h"
 
 enum {
     NODES = WB_HEX20_NODES,
@@ -402,8 +400,9 @@ static void take_response(struct points *points, int p, double weight, bool tang
 
 /* Stresses, histories and tangents at all points. */
 static void respond(struct points *points, const struct wb_hex20_geometry *geometry,
-                    const struct wb_material *material, const struct wb_hex20_state *before,
-                    struct wb_hex20_state *after, bool tangent, struct wb_hex20_result *result)
+                    const struct wb_material *material, const struct wb_solid_point_state *before,
+                    struct wb_solid_point_state *after, bool tangent,
+                    struct wb_hex20_result *result)
 {
     struct wb_solid_point_law law;
     struct wb_solid_point_response response;
@@ -437,9 +436,9 @@ static bool all_finite(const double *x, int n)
 
 bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
                        const struct wb_material *material, const double *restrict u,
-                       const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                       double *restrict force, double *restrict stiffness,
-                       struct wb_hex20_result *result)
+                       const struct wb_solid_point_state *before,
+                       struct wb_solid_point_state *after, double *restrict force,
+                       double *restrict stiffness, struct wb_hex20_result *result)
 {
     struct points points;
     double rows[3][NODES] = {{0.0}}, accumulated = 0.0;
@@ -486,7 +485,7 @@ static double point_share(int points, int p, int c)
 
 /* Cauchy stress and equivalent plastic strain at the corner points. */
 static void find_corner_values(const struct points *points, const struct wb_material *material,
-                               const struct wb_hex20_state *state, double value[CORNERS][7])
+                               const struct wb_solid_point_state *state, double value[CORNERS][7])
 {
     struct wb_solid_point_law law;
     const int n = points->n_deviatoric;
@@ -503,7 +502,7 @@ static void find_corner_values(const struct points *points, const struct wb_mate
     for (int p = 0; p < n; p++) {
         const struct wb_solid_point_motion *motion = &points->motion[p];
         struct wb_solid_point_response response;
-        struct wb_hex20_state after;
+        struct wb_solid_point_state after;
         wb_solid_point_deviatoric(&law, motion, &state[p], &after, false, &response);
         for (int c = 0; c < CORNERS; c++) {
             const double share = point_share(n, p, c);
@@ -516,7 +515,7 @@ static void find_corner_values(const struct points *points, const struct wb_mate
 
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
                            enum wb_integration integration, const struct wb_material *material,
-                           const double *restrict u, const struct wb_hex20_state *state,
+                           const double *restrict u, const struct wb_solid_point_state *state,
                            double stress[WB_HEX20_NODES][6], double plastic[WB_HEX20_NODES])
 {
     struct points points;

@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-#include "fe/solid/hex20.h"
+#include "fe/solid/hex20_points.h"
 #include "fe/solid/solid_point.h"
 
 enum {

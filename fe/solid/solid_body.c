@@ -358,7 +358,7 @@ void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
 void wb_solid_body_commit(struct wb_solid_body *body)
 {
     const struct wb_solid_mesh *mesh = body->mesh;
-    struct wb_hex20_state *states = body->committed;
+    struct wb_solid_point_state *states = body->committed;
 
     body->committed = body->trial;
     body->trial = states;
