@@ -358,25 +358,11 @@ void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
 void wb_solid_body_commit(struct wb_solid_body *body)
 {
     const struct wb_solid_mesh *mesh = body->mesh;
-    struct wb_hex20_state *states = body->committed;
+    struct wb_solid_point_state *states = body->committed;
 
     body->committed = body->trial;
     body->trial = states;
     if (body->has_contact)
         memcpy(body->committed_pairs, body->trial_pairs,
                (size_t)mesh->n_pairs * WB_JACKET_CONTACT_POINTS * sizeof *body->committed_pairs);
-}
-
-size_t wb_solid_body_memory(const struct wb_solid_body *body)
-{
-    const size_t elements = (size_t)body->mesh->n_elements;
-    const size_t n = 3 * (size_t)body->mesh->n_nodes;
-    size_t bytes = elements * sizeof *body->geometry;
-
-    bytes += 2 * elements * (size_t)body->n_points * sizeof *body->committed;
-    bytes += n * (sizeof *body->equation + sizeof *body->weight + sizeof *body->force);
-    if (body->has_contact)
-        bytes += 2 * (size_t)body->mesh->n_pairs * WB_JACKET_CONTACT_POINTS *
-                 sizeof *body->committed_pairs;
-    return bytes + wb_layered_memory(body->tangent);
 }
