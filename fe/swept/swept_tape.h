@@ -61,7 +61,8 @@ struct wb_swept_tape;       /* opaque: constants; not changed after creation */
 struct wb_swept_tape_state; /* opaque: plastic histories, workspace */
 
 /* WB_ERR_UNSUPPORTED when the processor does not have the instructions, or for laws that
- * fe/swept/swept_hardening.h refuses; WB_ERR_ARGUMENT also for elements that are not convex. */
+ * fe/material/hardening.h cannot tabulate; WB_ERR_ARGUMENT also for elements that are not convex.
+ */
 WB_MUST_CHECK enum wb_status wb_swept_tape_create(struct wb_swept_tape **out,
                                                   const struct wb_swept_tape_model *model);
 void wb_swept_tape_destroy(struct wb_swept_tape *tape);
