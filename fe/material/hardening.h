@@ -175,7 +175,7 @@ enum {
  * and the plastic strain after the step is p = r x.
  *
  * All zero when the surface does not grow. WB_ERR_UNSUPPORTED when the stress is not as good as
- * 1e-5: small exponents, below about 0.15 with 7 terms and 0.4 with 6. */
+ * 1e-5: small exponents, below about 0.15 with 7 terms and 0.5 with 6. */
 WB_MUST_CHECK enum wb_status wb_hardening_tabulate_octaves(const struct wb_material *radial,
                                                            int terms, double *table);
 
