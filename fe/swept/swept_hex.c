@@ -7,6 +7,7 @@
 
 #include "fe/material/hardening.h"
 #include "fe/swept/swept_hex_kernel.h"
+#include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
 
@@ -397,9 +398,12 @@ static double varying_moment(const struct wb_swept_section *section, int e,
     return (xi * xi + eta * eta) / 3.0 + both * both / 9.0;
 }
 
-double wb_swept_hex_second_moment(const struct wb_swept_section *section,
-                                  enum wb_swept_hex_formulation formulation,
-                                  const struct wb_material *material)
+/* The second moment of area, m4, with which elements of this section bend elastically about the z
+ * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
+ * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
+static double second_moment(const struct wb_swept_section *section,
+                            enum wb_swept_hex_formulation formulation,
+                            const struct wb_material *material)
 {
     const double factor = formulation == WB_SWEPT_HEX_FOUR_POINTS
                               ? 3.0 * shear_modulus(material) / material->youngs_modulus
@@ -424,6 +428,6 @@ void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
 {
     const double wanted = M_PI * pow(diameter, 4) / 64.0;
 
-    wb_swept_section_scale(
-        section, pow(wanted / wb_swept_hex_second_moment(section, formulation, material), 0.25));
+    wb_swept_section_scale(section,
+                           pow(wanted / second_moment(section, formulation, material), 0.25));
 }

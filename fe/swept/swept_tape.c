@@ -7,6 +7,7 @@
 
 #include "base/vec3.h"
 #include "fe/material/hardening.h"
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape_kernel.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -410,11 +411,6 @@ const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_
     return &tape->model;
 }
 
-struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape)
-{
-    return tape->model.layout;
-}
-
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape)
 {
     return tape->model.layout.stride / LANES;
@@ -484,12 +480,6 @@ void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state)
     free(state->history);
     free(state->carry);
     free(state);
-}
-
-void wb_swept_tape_state_reset(struct wb_swept_tape_state *state)
-{
-    memset(state->history, 0,
-           state->history_size * wb_swept_kernel_real_size(state->tape->model.double_precision));
 }
 
 void *wb_swept_tape_state_data(struct wb_swept_tape_state *state, size_t *bytes)
