@@ -23,6 +23,8 @@ static const double on_surface = 1e-12;
 struct batch {
     int material;
     int begin, end; /* padded indices */
+    /* Of the material's hardening law, at hand for the inner loop. */
+    bool grows, moves, has_constant_exponent;
 };
 
 struct wb_fibres {
@@ -83,17 +85,20 @@ void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *mate
     f->EA = f->ES = f->EI = 0.0;
     for (int b = 0; b < f->n_materials; b++) {
         const struct wb_material *m = &f->materials[b];
+        const struct wb_hardening_law *law = wb_hardening_law(m);
+        f->batches[b].grows = law->growth;
+        f->batches[b].moves = law->moves;
+        f->batches[b].has_constant_exponent = !law->exponent;
         for (int i = f->batches[b].begin; i < f->batches[b].end; i++) {
             const double EA = m->youngs_modulus * f->area[i];
             f->EA += EA;
             f->ES -= EA * f->y[i];
             f->EI += EA * f->y[i] * f->y[i];
-            f->virgin[2 * f->n + i] =
-                m->hardening == WB_HARDENING_ISOTROPIC_POWER ? m->yield_stress : 0.0;
+            f->virgin[2 * f->n + i] = law->growth ? m->yield_stress : 0.0;
         }
-        if (m->hardening != WB_HARDENING_NONE_ELASTIC)
+        if (law->yields)
             f->yield_strain = fmin(f->yield_strain, m->yield_stress / m->youngs_modulus);
-        if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
+        if (law->growth)
             wb_hardening_tabulate(&f->tables[b], m);
     }
     f->shear_stiffness = f->shear_ratio * shear_sum(f);
@@ -206,11 +211,32 @@ static WB_ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
     return r;
 }
 
+/* The exponents at LANES plastic strains of a law where they differ: in no inner loop, so that it
+ * leaves the loop of power laws alone. */
+static __attribute__((noinline, cold)) void find_exponents(const struct wb_material *m,
+                                                           const double *p, double *n)
+{
+    for (int i = 0; i < LANES; i++)
+        n[i] = wb_hardening_exponent(m, p[i]);
+}
+
+static WB_ALWAYS_INLINE lanes exponents(const struct wb_material *m, bool is_constant, lanes p)
+{
+    double at[LANES], n[LANES];
+
+    if (is_constant)
+        return m->hardening_exponent - (lanes){0};
+    store(at, p);
+    find_exponents(m, at, n);
+    return load(n);
+}
+
 /* sigma = sigma_Y + (1 - r) c with r(c) from the table; see fe/material/hardening.h. The third row
  * is the yield stress reached so far. */
-static WB_ALWAYS_INLINE struct answer respond_isotropically(const struct wb_material *m,
-                                                            const struct wb_hardening_table *table,
-                                                            lanes strain, const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_growing(const struct wb_material *m,
+                                                      bool has_constant_exponent,
+                                                      const struct wb_hardening_table *table,
+                                                      lanes strain, const struct rows *h)
 {
     const double E = m->youngs_modulus;
     const double sigma_Y = m->yield_stress;
@@ -233,7 +259,7 @@ static WB_ALWAYS_INLINE struct answer respond_isotropically(const struct wb_mate
     const lanes c = size - sigma_Y + E * p0;
     const lanes r = plastic_ratio(m, table, yields, c);
     const lanes p = r * c * (1.0 / E);
-    const lanes power_part = m->hardening_exponent * (1.0 - r);
+    const lanes power_part = exponents(m, has_constant_exponent, p) * (1.0 - r);
     const lanes reached = sigma_Y + (1.0 - r) * c;
 
     answer.stress = select_lanes(yields, with_sign(reached, trial), trial);
@@ -245,11 +271,11 @@ static WB_ALWAYS_INLINE struct answer respond_isotropically(const struct wb_mate
 }
 
 /* The third row is the back stress. */
-static WB_ALWAYS_INLINE struct answer respond_kinematically(const struct wb_material *m,
-                                                            lanes strain, const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_moving(const struct wb_material *m, lanes strain,
+                                                     const struct rows *h)
 {
     const double E = m->youngs_modulus;
-    const double H = m->strength_coefficient;
+    const double H = wb_hardening_back_modulus(m);
     const lanes plastic = load(h->plastic);
     const lanes back = load(h->third);
     const lanes trial = E * (strain - plastic);
@@ -270,15 +296,16 @@ static WB_ALWAYS_INLINE struct answer respond_kinematically(const struct wb_mate
     return answer;
 }
 
-static WB_ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int material,
-                                                 lanes strain, const struct rows *h)
+static WB_ALWAYS_INLINE struct answer
+respond_of(const struct wb_fibres *f, const struct batch *batch, lanes strain, const struct rows *h)
 {
-    const struct wb_material *m = &f->materials[material];
+    const struct wb_material *m = &f->materials[batch->material];
 
-    if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
-        return respond_isotropically(m, &f->tables[material], strain, h);
-    if (m->hardening == WB_HARDENING_KINEMATIC_LINEAR)
-        return respond_kinematically(m, strain, h);
+    if (batch->grows)
+        return respond_growing(m, batch->has_constant_exponent, &f->tables[batch->material], strain,
+                               h);
+    if (batch->moves)
+        return respond_moving(m, strain, h);
     return respond_elastically(m, strain);
 }
 
@@ -311,7 +338,7 @@ static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct stra
                 .third_after = rows_after + 2 * f->n + i,
             };
             const lanes y = load(f->y + i), area = load(f->area + i);
-            const struct answer answer = respond_of(f, f->batches[b].material, eps - y * kappa, &h);
+            const struct answer answer = respond_of(f, &f->batches[b], eps - y * kappa, &h);
             const lanes force = answer.stress * area;
             const lanes stiffness = answer.tangent * area;
             N += force;

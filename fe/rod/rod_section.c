@@ -122,7 +122,7 @@ static void add_stiffness(struct wb_rod_section *section, int part)
     section->total.EI += own->EI;
     section->total.GJ += own->GJ;
     section->shear_stiffness += wb_section_shear_modulus(&law->material) * area;
-    if (law->material.hardening == WB_HARDENING_ISOTROPIC_POWER)
+    if (law->hardening->growth)
         wb_hardening_tabulate(&section->tables[part], &law->material);
 }
 
@@ -440,8 +440,7 @@ static void respond_part(const struct wb_rod_section *section, int part, const d
     const struct wb_rod_fibre_law *law = &section->laws[part];
     const struct stiffness *own = &section->stiffness[part];
 
-    if (law->material.hardening == WB_HARDENING_NONE_ELASTIC ||
-        (before[part] == 0.0 && stays_elastic(section, part, strain))) {
+    if (!law->hardening->yields || (before[part] == 0.0 && stays_elastic(section, part, strain))) {
         after[part] = 0.0;
         add_elastic(own, strain, response);
         return;
