@@ -7,6 +7,7 @@
 #include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "analysis/first_guess.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 struct wb_bow_samples {
@@ -20,10 +21,11 @@ struct wb_bow_samples {
 /* Eqs. 10 and 11 on the mean of the curves computed with `material` for the samples, each with its
  * own natural shape. Their modulus over the material's is what the bows
  * make of E, and so for the yield stress. WB_ERR_CONVERGENCE when a beam does not reach the end of
- * the grid; *evaluations is increased by the beam runs made. */
+ * the grid; *evaluations is increased by the beam runs made. `why` receives why it failed; NULL:
+ * that is logged. */
 WB_MUST_CHECK enum wb_status wb_bow_correction_guess(struct wb_first_guess *guess,
                                                      const struct wb_bow_samples *samples,
                                                      const struct wb_material *material,
-                                                     int *evaluations);
+                                                     int *evaluations, struct wb_reason *why);
 
 #endif

@@ -16,6 +16,7 @@
 #include <stdbool.h>
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/material/material.h"
 
@@ -101,10 +102,12 @@ int wb_calibrate_remarks(const struct wb_calibrate_result *result,
                          const char *remarks[WB_CALIBRATE_MOST_REMARKS]);
 
 /* Calibrates on the average curve of `n` datasets. Unusable data (yield not reached, too few
- * points, reversed sign, ...) is WB_ERR_DATA with the reason. */
+ * points, reversed sign, ...) is WB_ERR_DATA. `why` receives why it failed; NULL: that is logged.
+ */
 WB_MUST_CHECK enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
                                               const struct wb_dataset *const *datasets, int n,
-                                              const struct wb_calibrate_settings *settings);
+                                              const struct wb_calibrate_settings *settings,
+                                              struct wb_reason *why);
 void wb_calibrate_result_release(struct wb_calibrate_result *result);
 
 #endif

@@ -13,15 +13,17 @@
 #include <stdbool.h>
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/material/material.h"
 
 struct wb_computed; /* opaque */
 
 struct wb_computed_settings {
-    bool straight;  /* ignore the natural shape */
-    int n_elements; /* 0: 50 */
-    int n_fibres;   /* 0: 20 */
+    bool straight;         /* ignore the natural shape */
+    int n_elements;        /* 0: 50 */
+    int n_fibres;          /* 0: 20 */
+    struct wb_reason *why; /* why a run failed is written here; NULL (default): logged */
 };
 
 /* For one test; `material` gives the shear stiffness (E and nu) and may be exchanged by each run.
@@ -30,6 +32,8 @@ WB_MUST_CHECK enum wb_status wb_computed_create(struct wb_computed **out,
                                                 const struct wb_test_info *info,
                                                 const struct wb_material *material,
                                                 const struct wb_computed_settings *settings);
+/* Where it writes why a run failed; NULL: it logs that. */
+struct wb_reason *wb_computed_reason(const struct wb_computed *computed);
 void wb_computed_destroy(struct wb_computed *computed); /* accepts NULL */
 
 /* Starts a run with a material: virgin wire, tip brought to zero deflection, zero taken; of a

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 
 enum {
@@ -24,6 +25,7 @@ struct wb_csv_table {
     /* Checks what was taken, after the last line. NULL: nothing is to be checked. */
     enum wb_status (*finish)(void *context, const struct wb_csv_table *table);
     void *context;
+    struct wb_reason *why; /* why reading failed is written here; NULL: it is logged */
 };
 
 /* For take(): refuses a field, or reads a whole number from 0 to `most`. */

@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 /* The first loading, at 0, h, 2h, ... of deflection, or of the force of a follower test. */
@@ -44,10 +45,12 @@ struct wb_curve_grid {
  * otherwise). Each sample's rows within a bin are averaged by a local straight-line fit, so that
  * noise is reduced and a slope makes no bias. Rows marked slack and gaps are left out, and rows of
  * a follower test after its largest force; a bin without rows is interpolated if the rows around it
- * are within 4 steps, else the dataset is refused. `grid` NULL: defaults. */
+ * are within 4 steps, else the dataset is refused, and `why` receives why; NULL: that is logged.
+ * `grid` NULL: defaults. */
 WB_MUST_CHECK enum wb_status wb_curve_average_on(struct wb_curve *curve,
                                                  const struct wb_dataset *const *datasets, int n,
-                                                 const struct wb_curve_grid *grid);
+                                                 const struct wb_curve_grid *grid,
+                                                 struct wb_reason *why);
 /* The same with a deflection step only. */
 WB_MUST_CHECK enum wb_status wb_curve_average(struct wb_curve *curve,
                                               const struct wb_dataset *const *datasets, int n,
@@ -56,7 +59,7 @@ WB_MUST_CHECK enum wb_status wb_curve_average(struct wb_curve *curve,
  * where the force is set to zero. It is straight between the grid's points and before the first.
  * WB_ERR_DATA where the deflection does not rise. */
 WB_MUST_CHECK enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *curve,
-                                           double step);
+                                           double step, struct wb_reason *why);
 void wb_curve_release(struct wb_curve *curve);
 
 /* What errors are divided by: max_force, or max_deflection of a follower test. */

@@ -19,6 +19,7 @@
 #include <stdint.h>
 
 #include "base/json.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 enum wb_phase {
@@ -113,7 +114,7 @@ WB_MUST_CHECK enum wb_status wb_dataset_add_shape_row(struct wb_dataset *dataset
 
 /* Reads or writes a folder. Writing makes it (refused when not empty unless `force`) and writes
  * each file atomically, dataset.json last: a folder that has it is whole. Reading errors name file,
- * line and column. */
+ * line and column; `why` receives them, NULL: they are logged. */
 WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder,
                                               bool force);
 /* The same in two steps, for those who add tables of their own between them: the first makes the
@@ -121,7 +122,8 @@ WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, 
 WB_MUST_CHECK enum wb_status wb_dataset_begin(const char *folder, bool force);
 WB_MUST_CHECK enum wb_status wb_dataset_finish(const struct wb_dataset *dataset,
                                                const char *folder);
-WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder);
+WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder,
+                                             struct wb_reason *why);
 
 /* Rows farther apart than this, s, have a gap between them, which a drawn line leaves open: several
  * times their mean interval; infinite with fewer than two rows. */

@@ -148,7 +148,8 @@ enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
     double *const values = calloc(4 * points, sizeof *values);
     *settled = false;
     if (!values)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu points", points);
+        return wb_fail_to(wb_computed_reason(computed), WB_ERR_MEMORY, "no memory for %zu points",
+                          points);
     struct refit refit = {
         .computed = computed,
         .curve = curve,

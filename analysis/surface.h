@@ -13,6 +13,7 @@
 
 #include <stdbool.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/output/bundle_fields.h"
 
@@ -49,8 +50,10 @@ void wb_surface_release(struct wb_surface *surface); /* accepts a zeroed one */
 /* surface.csv in a dataset's folder, written whole or not at all; without a body the file is
  * removed. Writing refuses what is not finite. Reading refuses places farther than 100 m, stresses
  * beyond 1e15 Pa, and bodies whose first or last station lies at one place; errors name file, line
- * and column. A folder without surface.csv reads as no bodies. */
+ * and column. A folder without surface.csv reads as no bodies. `why` receives why reading
+ * failed; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder);
-WB_MUST_CHECK enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder);
+WB_MUST_CHECK enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder,
+                                             struct wb_reason *why);
 
 #endif

@@ -6,6 +6,7 @@
 #include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "analysis/properties.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 /* A computed loading curve on the grid of a measured one, and shapes of the same model. */
@@ -57,11 +58,12 @@ struct wb_validate_settings {
 /* Predicts the average first loading of n datasets of one kind. `settings` NULL: defaults.
  * WB_ERR_DATA when the properties are another wire's or the datasets cannot serve,
  * WB_ERR_CONVERGENCE when the beam does not get anywhere; stopping on the way is a result, see
- * n_reached. */
+ * n_reached. `why` receives why it failed; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
                                              const struct wb_properties *properties,
                                              const struct wb_dataset *const *datasets, int n,
-                                             const struct wb_validate_settings *settings);
+                                             const struct wb_validate_settings *settings,
+                                             struct wb_reason *why);
 /* Measured and computed forces and errors on the grid, as CSV:
  * deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,elastoplastic_error,elastic_N,
  * elastic_error; of a follower test force_N first and deflections in mm. Written atomically over an

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 
 /* Longest path this program makes, with the NUL. */
@@ -13,6 +14,9 @@
 /* Reads a whole file into an allocated, NUL-terminated buffer (caller frees); *size excludes the
  * NUL and may be NULL. */
 WB_MUST_CHECK enum wb_status wb_file_read(const char *path, char **bytes, size_t *size);
+/* The same; `why` receives why it failed. NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_file_read_with_reason(const char *path, char **bytes, size_t *size,
+                                                      struct wb_reason *why);
 
 /* Writes a whole file: into a temporary file beside it, synchronised, then renamed, so that a
  * reader sees the old or the new file and nothing half-written stays behind. */
