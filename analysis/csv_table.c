@@ -154,13 +154,19 @@ enum wb_status wb_csv_table_read(struct wb_csv_table *table, const char *folder,
     return status;
 }
 
-enum wb_status wb_csv_table_write(const char *folder, const char *name, const char *text,
-                                  size_t size)
+void wb_csv_table_append_header(struct wb_text *text, const char *const *columns, int n)
+{
+    for (int i = 0; i < n; i++)
+        wb_text_append(text, "%s%s", i == 0 ? "" : ",", columns[i]);
+    wb_text_append(text, "\n");
+}
+
+enum wb_status wb_csv_table_write(const char *folder, const char *name, const struct wb_text *text)
 {
     char path[WB_PATH];
     WB_TRY(wb_file_join(path, folder, name));
     if (text)
-        return wb_file_write(path, text, size);
+        return wb_file_write_text(path, text);
     if (unlink(path) != 0 && errno != ENOENT)
         return wb_fail(WB_ERR_IO, "cannot remove '%s': %s", path, strerror(errno));
     return WB_OK;

@@ -584,14 +584,6 @@ static enum wb_status format_document(const struct wb_dataset *dataset, char **t
     return status;
 }
 
-static enum wb_status write_file(const char *folder, const char *name, const char *bytes,
-                                 size_t size)
-{
-    char path[WB_PATH];
-    WB_TRY(wb_file_join(path, folder, name));
-    return wb_file_write(path, bytes, size);
-}
-
 enum wb_status wb_dataset_begin(const char *folder, bool force)
 {
     /* The first says that the others are there. */
@@ -600,7 +592,7 @@ enum wb_status wb_dataset_begin(const char *folder, bool force)
 
     WB_TRY(wb_file_prepare_output(folder, force));
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        WB_TRY(wb_csv_table_write(folder, names[i], NULL, 0));
+        WB_TRY(wb_csv_table_write(folder, names[i], NULL));
     return WB_OK;
 }
 
@@ -627,10 +619,11 @@ static enum wb_status format_texts(const struct wb_dataset *dataset, struct text
 
 static enum wb_status write_texts(const struct texts *texts, const char *folder)
 {
-    WB_TRY(write_file(folder, "force_deflection.csv", wb_text_string(&texts->rows),
-                      texts->rows.length));
-    WB_TRY(write_file(folder, "shape.csv", wb_text_string(&texts->shapes), texts->shapes.length));
-    return write_file(folder, "dataset.json", texts->document, strlen(texts->document));
+    char path[WB_PATH];
+    WB_TRY(wb_csv_table_write(folder, "force_deflection.csv", &texts->rows));
+    WB_TRY(wb_csv_table_write(folder, "shape.csv", &texts->shapes));
+    WB_TRY(wb_file_join(path, folder, "dataset.json"));
+    return wb_file_write(path, texts->document, strlen(texts->document));
 }
 
 enum wb_status wb_dataset_finish(const struct wb_dataset *dataset, const char *folder)

@@ -145,13 +145,9 @@ static enum wb_status append_field(struct wb_text *text, const struct wb_field *
 
 static enum wb_status format(const struct wb_fields *fields, struct wb_text *text)
 {
-    for (int i = 0; i < COLUMNS; i++)
-        wb_text_append(text, "%s%s", i == 0 ? "" : ",", column_names[i]);
-    wb_text_append_bytes(text, "\n", 1);
+    wb_csv_table_append_header(text, column_names, COLUMNS);
     for (int i = 0; i < fields->n; i++)
         WB_TRY(append_field(text, &fields->items[i]));
-    if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing %d fields", fields->n);
     return WB_OK;
 }
 
@@ -159,10 +155,10 @@ enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folde
 {
     struct wb_text text = {0};
     if (fields->n == 0)
-        return wb_csv_table_write(folder, file_name, NULL, 0);
+        return wb_csv_table_write(folder, file_name, NULL);
     enum wb_status status = format(fields, &text);
     if (status == WB_OK)
-        status = wb_csv_table_write(folder, file_name, wb_text_string(&text), text.length);
+        status = wb_csv_table_write(folder, file_name, &text);
     wb_text_release(&text);
     return status;
 }

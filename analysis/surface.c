@@ -124,9 +124,7 @@ static enum wb_status append_node(struct wb_text *text, const struct wb_surface_
 
 static enum wb_status format(const struct wb_surface *surface, struct wb_text *text)
 {
-    for (int i = 0; i < COLUMNS; i++)
-        wb_text_append(text, "%s%s", i == 0 ? "" : ",", column_names[i]);
-    wb_text_append(text, "\n");
+    wb_csv_table_append_header(text, column_names, COLUMNS);
     for (int b = 0; b < surface->n; b++) {
         const struct wb_surface_body *body = &surface->bodies[b];
         for (int i = 0; i < body->n_along * body->n_around; i++) {
@@ -135,8 +133,7 @@ static enum wb_status format(const struct wb_surface *surface, struct wb_text *t
             WB_TRY(append_node(text, &body->nodes[i]));
         }
     }
-    return text->failed ? wb_fail(WB_ERR_MEMORY, "out of memory writing a bundle's surface")
-                        : WB_OK;
+    return WB_OK;
 }
 
 enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder)
@@ -144,10 +141,10 @@ enum wb_status wb_surface_write(const struct wb_surface *surface, const char *fo
     struct wb_text text = {0};
 
     if (surface->n == 0)
-        return wb_csv_table_write(folder, file_name, NULL, 0);
+        return wb_csv_table_write(folder, file_name, NULL);
     enum wb_status status = format(surface, &text);
     if (status == WB_OK)
-        status = wb_csv_table_write(folder, file_name, wb_text_string(&text), text.length);
+        status = wb_csv_table_write(folder, file_name, &text);
     wb_text_release(&text);
     return status;
 }

@@ -244,11 +244,7 @@ enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, co
                    curve->n_samples == 1 ? "sample" : "samples", wb_version(),
                    wb_version_revision());
     put_rows(&text, result);
-    enum wb_status status;
-    if (text.failed)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
-    else
-        status = wb_file_write(path, wb_text_string(&text), text.length);
+    const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);
     return status;
 }

@@ -127,6 +127,13 @@ enum wb_status wb_file_write(const char *path, const void *bytes, size_t size)
     return status;
 }
 
+enum wb_status wb_file_write_text(const char *path, const struct wb_text *text)
+{
+    if (text->failed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
+    return wb_file_write(path, wb_text_string(text), text->length);
+}
+
 bool wb_file_exists(const char *path)
 {
     return access(path, F_OK) == 0;
