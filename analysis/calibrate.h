@@ -3,12 +3,13 @@
  * E from eq. 10, sigma_Y from eq. 11 (elastic zone and yield point are settings), n0 and K0 from
  * eqs. 12-16, then Nelder-Mead (GSL nmsimplex2) over K and n from the paper's simplex on E_L2 of
  * eq. 17, with the beam under the test's real loading and the samples' mean natural shape. E and
- * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size test
- * sees both.
+ * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size of
+ * the simplex counts both alike.
  *
- * Of a follower test deflections are compared at equal forces, over the whole of the loading:
- * forces at equal deflections would end short of the largest deflection and tell nothing of the
- * curling beyond. Errors are then over the largest deflection.
+ * In a follower test, whose force stays normal to the wire's tip, deflections are compared at equal
+ * forces over the whole of the loading: forces at equal deflections would end short of the largest
+ * deflection and leave out how the wire curls up beyond it. Errors are then divided by the largest
+ * deflection.
  */
 #ifndef WB_ANALYSIS_CALIBRATE_H
 #define WB_ANALYSIS_CALIBRATE_H

@@ -2,8 +2,8 @@
  *
  * A test that raises the tip by strand or vertical force is a force over equally spaced
  * deflections. A follower test is a deflection over equally spaced forces: under a growing follower
- * force the wire curls up and the deflection has a maximum, near which it says little of the force
- * and beyond which it does not say which of two forces it is.
+ * force, which stays normal to the tip, the wire curls up and the deflection has a maximum. Near it
+ * the force hardly follows from the deflection, and beyond it two forces have the same one.
  */
 #ifndef WB_ANALYSIS_CURVE_H
 #define WB_ANALYSIS_CURVE_H

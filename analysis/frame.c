@@ -11,9 +11,9 @@
 
 #define WB_LOG_DOMAIN "frame"
 
-/* A clamp that moved less than this tells no direction. */
+/* From a clamp that moved less than this no direction is taken. */
 #define LEAST_MOTION (5.0 * WB_MM)
-/* Markers that leave the vertical, or their own line, by less than this tell no plane. */
+/* Markers that leave the vertical, or their own line, by less than this span no plane. */
 #define LEAST_SPREAD (5.0 * WB_MM)
 /* A position of the clamp's path is not taken when its variance is above this part of one frame's,
  * or, where there are too few frames for a line, when their mean lies so far away, s. */
@@ -222,7 +222,7 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
     if (flat.n < 3)
         return wb_fail(WB_ERR_DATA, "too few markers are seen together with the clamp's");
     double directions[3][3], spread[3];
-    /* With one marker beside the clamp's there is no spread: its mean tells the direction. */
+    /* With one marker beside the clamp's there is no spread: its mean gives the direction. */
     if (tracks->n_markers > 2)
         principal(&flat, directions, spread);
     else

@@ -22,8 +22,8 @@ struct wb_jackknife_refit {
     void *context;
 };
 
-/* deviation: of E, sigma_Y, ln K, n in SI; NaN where it cannot be told: with one sample, or when
- * leaving one out made the data unusable, or (K and n) a refit did not settle. `optimum` is the
+/* deviation: of E, sigma_Y, ln K, n in SI; NaN where it is not known: with one sample, or when
+ * the others without one are unusable, or (K and n) when a refit did not settle. `optimum` is the
  * calibrated law of all. `why` receives why it failed; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_jackknife_run(double deviation[4],
                                               const struct wb_dataset *const *datasets, int n,

@@ -254,7 +254,7 @@ static enum wb_status append_to_body(struct reader *reader, struct wb_surface_bo
     return WB_OK;
 }
 
-/* Rows follow each other; the first station's tell how many nodes there are around. */
+/* Rows follow each other; the first station's give the number of nodes around. */
 static enum wb_status take_row(struct reader *reader, const struct row *row)
 {
     struct wb_surface *surface = reader->surface;

@@ -19,7 +19,7 @@
 
 enum {
     WB_SURFACE_ALONG = 41,        /* stations and nodes at most that wb_surface_take() keeps */
-    WB_SURFACE_ALONG_STRIP = 241, /* it winds */
+    WB_SURFACE_ALONG_STRIP = 241, /* more, because a strip winds around the bundle */
     WB_SURFACE_AROUND_WIRE = 24,
     WB_SURFACE_AROUND_TAPE = 48
 };
@@ -31,7 +31,7 @@ struct wb_surface_node {
 
 struct wb_surface_body {
     bool is_tape;
-    bool closed; /* always, but for a strip */
+    bool closed; /* the nodes go all round; false of a strip */
     int n_around, n_along;
     struct wb_surface_node *nodes; /* (n_along x n_around), station by station; owned */
 };

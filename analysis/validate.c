@@ -72,7 +72,7 @@ static enum wb_status predict(struct wb_prediction *prediction, struct wb_comput
                              &prediction->n_reached));
     wb_errors_curve(curve->n, curve->value, prediction->value, wb_curve_scale(curve),
                     prediction->error);
-    /* Cut short, the errors are of the part that was reached; n_reached tells. */
+    /* Cut short, the errors are of the part that was reached; n_reached is their number. */
     const int n = prediction->n_reached;
     const int first = beyond_zero(curve);
     prediction->rms = n >= 2 ? wb_errors_rms(n, prediction->error) : (double)NAN;

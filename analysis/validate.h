@@ -1,5 +1,5 @@
 /* Validation of calibrated properties on other datasets: eqs. 18 and 19, the linear elastic
- * prediction for contrast, and the distance of shapes. */
+ * prediction beside it, and the distance of the markers from the computed shapes. */
 #ifndef WB_ANALYSIS_VALIDATE_H
 #define WB_ANALYSIS_VALIDATE_H
 
@@ -35,7 +35,7 @@ struct wb_validate_result {
     double shape_max; /* m */
     int n_shape_points;
     double scatter_rms, residual_scatter_rms; /* as in calibrate */
-    /* RMS error that the scatter between samples alone lets expect, at most: standard errors of
+    /* RMS error to be expected from the scatter between samples alone, at most: standard errors of
      * this average and of the one calibrated on (as far as known), from the smaller of their
      * scatter and their residual scatter, added in squares. An upper bound: the residual scatter
      * holds the model's own error with the samples' bows too. */
