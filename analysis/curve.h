@@ -51,10 +51,6 @@ WB_MUST_CHECK enum wb_status wb_curve_average_on(struct wb_curve *curve,
                                                  const struct wb_dataset *const *datasets, int n,
                                                  const struct wb_curve_grid *grid,
                                                  struct wb_reason *why);
-/* The same with a deflection step only. */
-WB_MUST_CHECK enum wb_status wb_curve_average(struct wb_curve *curve,
-                                              const struct wb_dataset *const *datasets, int n,
-                                              double step);
 /* A follower's curve turned into force over deflection: its rising part, from zero deflection on,
  * where the force is set to zero. It is straight between the grid's points and before the first.
  * WB_ERR_DATA where the deflection does not rise. */
