@@ -219,7 +219,7 @@ struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *res
 {
     const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", campaign->title);
+    wb_json_set_text(root, "title", campaign->head.title);
     wb_json_set_text(root, "data", wb_recordings_figures_measured(results));
     wb_json_set_boolean(root, "virtual_rig", results->any_virtual);
     struct wb_json *const tool = wb_json_set_object(root, "tool");
@@ -227,11 +227,11 @@ struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *res
     wb_json_set_text(tool, "version", wb_version());
     wb_json_set_text(tool, "revision", wb_version_revision());
     struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", campaign->name);
-    wb_json_set_text(file, "sha256", campaign->sha256);
+    wb_json_set_text(file, "file", campaign->head.name);
+    wb_json_set_text(file, "sha256", campaign->head.sha256);
     put_settings(root, campaign);
-    wb_json_set_boolean(root, "complete", results->is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", results->exceeds_limit);
+    wb_json_set_boolean(root, "complete", results->outcome.is_complete);
+    wb_json_set_boolean(root, "limit_exceeded", results->outcome.exceeds_limit);
     struct wb_json *const recordings = wb_json_set_array(root, "recordings");
     struct wb_json *const wires = wb_json_set_array(root, "wires");
     for (int i = 0; i < results->n_wires; i++) {

@@ -1,9 +1,8 @@
-/* Numbers of a report of bundles: wb_bundles_json_build() of
- * analysis/report/bundles/bundles_report.h. */
+#include "analysis/report/bundles/bundles_json.h"
+
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/report/bundles/bundles_report.h"
 #include "base/units.h"
 #include "base/version.h"
 
@@ -21,20 +20,20 @@ static void put_values(struct wb_json *object, const char *key, const double *va
 
 /* --- datasets --- */
 
-static void put_state(struct wb_json *entry, const struct wb_bundles_dataset *wanted,
+static void put_state(struct wb_json *entry, const struct wb_simulation *wanted,
                       const struct wb_bundles_result *result)
 {
     static const char *const states[] = {"not wanted", "missing", "outdated", "refused", "used"};
     wb_json_set_text(entry, "dataset", wanted->name);
-    wb_json_set_text(entry, "state", states[result->state]);
+    wb_json_set_text(entry, "state", states[result->simulation.state]);
     wb_json_set_text(entry, "command", wanted->command);
-    if (result->state != WB_BUNDLES_USABLE) {
-        wb_json_set_text(entry, "problem", wb_text_string(&result->problem));
+    if (result->simulation.state != WB_SIMULATION_USABLE) {
+        wb_json_set_text(entry, "problem", wb_text_string(&result->simulation.problem));
         return;
     }
-    wb_json_set_text(entry, "sha256", result->sha256);
-    wb_json_set_text(entry, "tool_revision", result->revision);
-    wb_json_set_number(entry, "cpu_s", result->numbers.cpu_s);
+    wb_json_set_text(entry, "sha256", result->simulation.sha256);
+    wb_json_set_text(entry, "tool_revision", result->simulation.revision);
+    wb_json_set_number(entry, "cpu_s", result->simulation.cpu_s);
 }
 
 static void put_numbers(struct wb_json *entry, const struct wb_bundles_result *run)
@@ -91,7 +90,7 @@ static void put_run(struct wb_json *list, const struct wb_bundles_results *resul
     wb_json_set_number(entry, "mass_scaling", m->run.mass_scaling);
     wb_json_set_number(entry, "selective_mass_scaling", m->run.selective);
     put_state(entry, &wanted->dataset, run);
-    if (run->state != WB_BUNDLES_USABLE)
+    if (run->simulation.state != WB_SIMULATION_USABLE)
         return;
     put_numbers(entry, run);
     put_curves(entry, run);
@@ -116,12 +115,12 @@ static void put_fit(struct wb_json *entry, const struct wb_bundles_results *resu
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_fit *const fit = &results->fits[index];
-    if (fit->state != WB_BUNDLES_USABLE) {
+    if (fit->state != WB_SIMULATION_USABLE) {
         wb_json_set_text(entry, "fit_problem", wb_text_string(&fit->problem));
         return;
     }
     const struct wb_bundles_result *const run = &results->runs[bundle->dynamic];
-    put_beam(entry, "fitted", &fit->result.material, run->dataset.info.outer_diameter);
+    put_beam(entry, "fitted", &fit->result.material, run->simulation.dataset.info.outer_diameter);
     wb_json_set_number(entry, "fit_rms", fit->result.rms);
     wb_json_set_number(entry, "fit_largest_error", fit->result.max_error);
     wb_json_set_text(entry, "fit_stopped_because", wb_calibrate_end_text(fit->result.end));
@@ -177,17 +176,17 @@ struct wb_json *wb_bundles_json_build(const struct wb_bundles_results *results,
 {
     const struct wb_bundles *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", campaign->title);
+    wb_json_set_text(root, "title", campaign->head.title);
     wb_json_set_text(root, "data", "simulation");
     struct wb_json *const tool = wb_json_set_object(root, "tool");
     wb_json_set_text(tool, "name", "wirebench report");
     wb_json_set_text(tool, "version", wb_version());
     wb_json_set_text(tool, "revision", wb_version_revision());
     struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", campaign->name);
-    wb_json_set_text(file, "sha256", campaign->sha256);
-    wb_json_set_boolean(root, "complete", results->is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", results->exceeds_limit);
+    wb_json_set_text(file, "file", campaign->head.name);
+    wb_json_set_text(file, "sha256", campaign->head.sha256);
+    wb_json_set_boolean(root, "complete", results->outcome.is_complete);
+    wb_json_set_boolean(root, "limit_exceeded", results->outcome.exceeds_limit);
     put_verdicts(root, results);
     struct wb_json *const bundles = wb_json_set_array(root, "bundles");
     for (int i = 0; i < campaign->n_bundles; i++)
