@@ -10,10 +10,12 @@
 #include <gsl/gsl_multimin.h>
 
 #include "analysis/bow_correction.h"
+#include "analysis/calibrate_private.h"
 #include "analysis/computed.h"
 #include "analysis/errors.h"
 #include "analysis/first_guess.h"
 #include "analysis/jackknife.h"
+#include "analysis/refit.h"
 #include "analysis/scatter.h"
 #include "base/progress.h"
 #include "base/units.h"
@@ -84,7 +86,8 @@ static void silence_gsl(void)
     gsl_set_error_handler_off();
 }
 
-struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *settings)
+/* The grid on which these settings compare. */
+static struct wb_curve_grid grid_of(const struct wb_calibrate_settings *settings)
 {
     return (struct wb_curve_grid){.step = settings->step,
                                   .force_step = settings->force_step,
@@ -94,6 +97,12 @@ struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *setti
 static double yield_point(const struct wb_calibrate_settings *settings)
 {
     return settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
+}
+
+static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings)
+{
+    return (struct wb_computed_settings){settings->straight, settings->n_elements,
+                                         settings->n_fibres};
 }
 
 static enum wb_status check_settings(const struct wb_calibrate_settings *settings)
@@ -349,6 +358,17 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
     return WB_OK;
 }
 
+/* Multiplies E and sigma_Y, where they are not given, by the ratio of two closed forms. */
+static void scale_closed_forms(struct wb_material *material, const struct wb_first_guess *measured,
+                               const struct wb_first_guess *computed,
+                               const struct wb_calibrate_settings *settings)
+{
+    if (settings->youngs_modulus <= 0.0)
+        material->youngs_modulus *= measured->youngs_modulus / computed->youngs_modulus;
+    if (settings->yield_stress <= 0.0)
+        material->yield_stress *= measured->yield_stress / computed->yield_stress;
+}
+
 /* Takes what the bows make of eqs. 10 and 11 out of E and sigma_Y, by the ratio of measured to
  * computed, and seeks K and n again from where they are. */
 static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
@@ -360,14 +380,10 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
     for (int pass = 0; pass < BOW_PASSES && result->end != WB_CALIBRATE_STOPPED; pass++) {
         struct wb_first_guess computed;
         double at[2] = {1.0, 1.0};
-        WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material, settings,
+        WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material,
                                        &objective->evaluations));
         objective->material = result->material;
-        if (settings->youngs_modulus <= 0.0)
-            objective->material.youngs_modulus *=
-                measured->youngs_modulus / computed.youngs_modulus;
-        if (settings->yield_stress <= 0.0)
-            objective->material.yield_stress *= measured->yield_stress / computed.yield_stress;
+        scale_closed_forms(&objective->material, measured, &computed, settings);
         objective->first_strength = result->material.strength_coefficient;
         objective->first_exponent = result->material.hardening_exponent;
         WB_TRY(minimise(result, objective, at, settings));
@@ -433,6 +449,65 @@ int wb_calibrate_remarks(const struct wb_calibrate_result *result,
     return n;
 }
 
+/* --- uncertainties --- */
+
+struct leaving_out {
+    const struct wb_calibrate_settings *settings;
+    int *evaluations;
+};
+
+/* E and sigma_Y from eqs. 10 and 11 of the samples' own curve as ever; K and n from those of
+ * `material` on. */
+static enum wb_status refit_curve(const struct leaving_out *how,
+                                  const struct wb_bow_samples *samples,
+                                  struct wb_material *material, bool *settled)
+{
+    const struct wb_calibrate_settings *const settings = how->settings;
+    struct wb_computed *computed;
+    struct wb_test_info info;
+    struct wb_first_guess guess;
+    wb_curve_mean_info(samples->datasets, samples->n, &info);
+    WB_TRY(wb_first_guess_run(&guess, samples->curve, &info, samples->elastic_zone,
+                              samples->yield_point));
+    struct wb_first_guess before = {.youngs_modulus = material->youngs_modulus,
+                                    .yield_stress = material->yield_stress};
+    if (settings->bow_corrected && !settings->straight)
+        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations));
+    scale_closed_forms(material, &guess, &before, settings);
+    WB_TRY(wb_computed_create(&computed, &info, material, samples->how));
+    const enum wb_status status =
+        wb_refit_run(material, settled, computed, samples->curve, how->evaluations);
+    wb_computed_destroy(computed);
+    return status;
+}
+
+static enum wb_status refit_samples(void *context, const struct wb_dataset *const *datasets, int n,
+                                    struct wb_material *material, bool *settled)
+{
+    const struct leaving_out *const how = context;
+    const struct wb_curve_grid grid = grid_of(how->settings);
+    const struct wb_computed_settings computed = computed_settings(how->settings);
+    struct wb_curve curve;
+    *settled = false;
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
+    const struct wb_bow_samples samples = {
+        datasets, n, &curve, how->settings->elastic_zone, yield_point(how->settings), &computed};
+    const enum wb_status status = refit_curve(how, &samples, material, settled);
+    wb_curve_release(&curve);
+    return status;
+}
+
+enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
+                                       const struct wb_dataset *const *datasets, int n,
+                                       const struct wb_calibrate_settings *settings)
+{
+    struct leaving_out how = {settings, &result->evaluations};
+    const struct wb_jackknife_refit refit = {refit_samples, &how};
+    return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit);
+}
+
+/* --- all --- */
+
 static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                                       const struct wb_curve *curve,
                                       const struct wb_dataset *const *datasets, int n,
@@ -461,8 +536,7 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
         objective.material.youngs_modulus = settings->youngs_modulus;
     if (settings->yield_stress > 0.0)
         objective.material.yield_stress = settings->yield_stress;
-    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                             settings->n_fibres};
+    const struct wb_computed_settings how = computed_settings(settings);
     objective.value = malloc((size_t)curve->n * sizeof *objective.value);
     if (!objective.value)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d points", curve->n);
@@ -473,7 +547,8 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     if (status == WB_OK)
         status = optimise(result, &objective, settings);
     if (status == WB_OK && settings->bow_corrected && !settings->straight) {
-        const struct wb_bow_samples samples = {datasets, n, curve};
+        const struct wb_bow_samples samples = {
+            datasets, n, curve, settings->elastic_zone, yield_point(settings), &how};
         status = correct_for_bows(result, &objective, &samples, &guess, settings);
     }
     if (status == WB_OK)
@@ -484,8 +559,7 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     wb_computed_destroy(objective.computed);
     free(objective.value);
     if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
-        status = wb_jackknife_run(result->deviation, datasets, n, settings, &result->material,
-                                  &result->evaluations);
+        status = wb_calibrate_deviations(result, datasets, n, settings);
     return status;
 }
 
@@ -502,7 +576,7 @@ enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
     struct wb_curve curve;
     for (int k = 0; k < 4; k++)
         made.deviation[k] = (double)NAN;
-    const struct wb_curve_grid grid = wb_calibrate_grid(settings);
+    const struct wb_curve_grid grid = grid_of(settings);
     WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
     const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings);
     wb_curve_release(&curve);

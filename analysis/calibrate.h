@@ -15,7 +15,6 @@
 
 #include <stdbool.h>
 
-#include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "base/status.h"
 #include "fe/material/material.h"
@@ -51,9 +50,6 @@ struct wb_calibrate_settings {
 /* Fills in the defaults above; no progress. */
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings);
 
-/* The grid on which these settings compare. */
-struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *settings);
-
 enum wb_calibrate_end {
     WB_CALIBRATE_SIZE,       /* the simplex became small */
     WB_CALIBRATE_ERROR,      /* the error became small */
@@ -77,9 +73,8 @@ struct wb_calibrate_result {
     double max_force, max_deflection;                            /* N, m, of the averaged curve */
     double bow_spread; /* m: standard deviation of the samples' bows, as far as known; 0 with one */
     bool bow_corrected;
-    /* Standard uncertainties of E, sigma_Y, ln K, n from the scatter between samples (jackknife
-     * over the samples, each recalibrated from the optimum); NaN with one sample. K is within a
-     * factor of exp(deviation[2]). */
+    /* Standard uncertainties of E, sigma_Y, ln K, n from the scatter between samples (see
+     * analysis/jackknife.h); NaN with one sample. K is within a factor of exp(deviation[2]). */
     double deviation[4];
     enum wb_calibrate_end end;
     bool restarted;                      /* the restart was made */

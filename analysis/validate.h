@@ -79,18 +79,4 @@ WB_MUST_CHECK enum wb_status wb_validate_shape(const struct wb_properties *prope
                                                const struct wb_test_info *info, double deflection,
                                                int n, double *x, double *y);
 
-/* Points at equal arc length from the clamp to the tip, to be filled in. */
-struct wb_validate_points {
-    int n;
-    double *x, *y; /* (n) m */
-    double *angle; /* (n) rad; may be NULL */
-};
-
-/* The same of a follower test under a force (N), whether curled up beyond the largest deflection or
- * not. */
-WB_MUST_CHECK enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
-                                                        const struct wb_test_info *info,
-                                                        double force,
-                                                        const struct wb_validate_points *points);
-
 #endif

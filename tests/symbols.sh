@@ -14,7 +14,6 @@ for archive in "$@"; do
     foreign=$(echo "$names" | awk '
         BEGIN {
             # Files that own another noun as well: its symbols are the noun or begin with it.
-            others["dataset"] = "phase"
             others["driver"] = "drivers n_drivers outbox role"
             others["grbl_decode"] = "grbl"
             others["interlock"] = "stop"

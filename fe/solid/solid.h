@@ -16,9 +16,9 @@
 #include <stddef.h>
 
 #include "base/status.h"
-#include "fe/model/wire_model.h"
+#include "fe/linear/trial.h"
 #include "fe/solid/hex20.h"
-#include "fe/solid/interface.h"
+#include "fe/solid/jacket_contact.h"
 #include "fe/solid/solid_mesh.h"
 
 struct wb_solid_part {
@@ -35,14 +35,14 @@ struct wb_solid_support {
 struct wb_solid_model {
     const struct wb_solid_mesh *mesh;  /* borrowed; must outlive the solid */
     const struct wb_solid_part *parts; /* (mesh->n_parts), copied */
-    enum wb_hex20_integration integration;
+    enum wb_integration integration;
     double gravity[3]; /* m/s2 */
     int n_supports;
     const struct wb_solid_support *supports; /* copied */
     const double (*nodal_force)[3];          /* (n_nodes) N at nodal factor 1, copied; NULL: none */
-    const struct wb_interface_law *interface; /* of the mesh' pairs, copied; NULL: none */
-    double strand_length;                     /* m; 0: a deflection is made by a vertical force */
-    double strand_x;                          /* m: x of the strand's upper end */
+    const struct wb_jacket_contact_law *jacket_contact; /* of the mesh' pairs, copied; NULL: none */
+    double strand_length; /* m; 0: a deflection is made by a vertical force */
+    double strand_x;      /* m: x of the strand's upper end */
 };
 
 struct wb_solid_settings {
@@ -112,7 +112,7 @@ struct wb_solid_balance {
     double elastic;    /* J stored, in the interface's springs too */
     double dissipated; /* J plastic */
     double friction;   /* J */
-    struct wb_interface_result interface; /* of the last equilibrium */
+    struct wb_jacket_contact_result jacket_contact; /* of the last equilibrium */
 };
 
 struct wb_solid; /* opaque */

@@ -1,7 +1,7 @@
 /* Ranks of a build without MPI: there is one. */
 #include <stdlib.h>
 
-#include "fe/team/team_private.h"
+#include "fe/team/team_ranks.h"
 
 #define WB_LOG_DOMAIN "team"
 

@@ -3,7 +3,7 @@
 #include <mpi.h>
 #include <stdlib.h>
 
-#include "fe/team/team_private.h"
+#include "fe/team/team_ranks.h"
 
 #define WB_LOG_DOMAIN "team"
 

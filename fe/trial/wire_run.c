@@ -80,9 +80,9 @@ void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
     struct wb_wire_row *const out = &run->rows[run->n_rows];
     *out = *row;
     out->cycle = cycle_of(run, model, row->step);
-    out->phase = slack                            ? WB_HISTORY_SLACK
-                 : model->step[row->step].unloads ? WB_HISTORY_UNLOAD
-                                                  : WB_HISTORY_LOAD;
+    out->phase = slack                            ? WB_PHASE_SLACK
+                 : model->step[row->step].unloads ? WB_PHASE_UNLOAD
+                                                  : WB_PHASE_LOAD;
     wb_wire_run_turn(run, row->tangent);
     out->tip_angle = run->tip_angle;
     /* A deflection as the first step begins at zero, with the weight on. */

@@ -1,5 +1,5 @@
 /* What computing a wire model gives, by the 3D solid (fe/trial/wire3d.h) and by the 1D rod
- * (fe/trial/wire1d.h) alike: rows along its history, the axis' shapes, and how it ended.
+ * (fe/trial/wire1d.h) alike: rows along its loading steps, the axis' shapes, and how it ended.
  */
 #ifndef WB_FE_TRIAL_WIRE_RUN_H
 #define WB_FE_TRIAL_WIRE_RUN_H
@@ -7,25 +7,25 @@
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "fe/linear/trial.h"
 #include "fe/model/wire_model.h"
-#include "fe/trial/history.h"
 
 struct wb_wire_row {
-    int step;                    /* index into the model's steps */
-    double fraction;             /* of the step, (0, 1]; the first row of all is at 0 */
-    int cycle;                   /* from 1; a new one begins with each loading after an unloading */
-    enum wb_history_phase phase; /* slack: the strand carries nothing */
-    struct wb_tip_loads loads;   /* that act */
-    double tip[3];               /* m, of the axis' end */
-    double tangent[3];           /* unit vector along the wire at the tip */
-    double tip_angle;            /* rad, atan2 of the tangent's y and x, continued over the rows so
-                                    that a wire that curls past pi goes on */
-    double tension;              /* N: strand's tension or vertical force that makes the deflection;
-                                    without either the vertical part of all tip forces */
-    double vertical_force;       /* N: vertical part of the tension */
-    double force; /* N: as the dataset's `force`: vertical force less its value at zero
-                     deflection on the first loading, which is the first row when the first step
-                     is a deflection (0 otherwise); of a follower test the follower force itself */
+    int step;                  /* index into the model's steps */
+    double fraction;           /* of the step, (0, 1]; the first row of all is at 0 */
+    int cycle;                 /* from 1; a new one begins with each loading after an unloading */
+    enum wb_phase phase;       /* slack: the strand carries nothing */
+    struct wb_tip_loads loads; /* that act */
+    double tip[3];             /* m, of the axis' end */
+    double tangent[3];         /* unit vector along the wire at the tip */
+    double tip_angle;          /* rad, atan2 of the tangent's y and x, continued over the rows so
+                                  that a wire that curls past pi goes on */
+    double tension;            /* N: strand's tension or vertical force that makes the deflection;
+                                  without either the vertical part of all tip forces */
+    double vertical_force;     /* N: vertical part of the tension */
+    double force;              /* N: as the dataset's `force`: vertical force less its value at zero
+                                  deflection on the first loading, which is the first row when the first step
+                                  is a deflection (0 otherwise); of a follower test the follower force itself */
     int increments, iterations; /* spent since the row before */
 };
 
@@ -35,7 +35,7 @@ struct wb_wire_run {
     int n_shape;
     double *shape_s;                      /* (n_shape) m, reference arc lengths, owned */
     double (*shape)[3];                   /* (n_rows x n_shape), m, owned */
-    bool converged;                       /* false: the history ends early */
+    bool converged;                       /* false: they end early */
     bool stopped;                         /* by the observer */
     char problem[320];                    /* where and why it did not converge; "" otherwise */
     int increments, iterations, cutbacks; /* in all */
@@ -47,7 +47,7 @@ struct wb_wire_run {
 /* Told during a run; each may be NULL. */
 struct wb_wire_observer {
     /* After every converged increment: step, share of it done, iterations of the increment, share
-     * of the whole history done (for the time left). False stops the run. */
+     * of all steps done (for the time left). False stops the run. */
     bool (*increment)(void *context, const struct wb_wire_run *run, int step, double fraction,
                       int iterations, double done);
     /* After every row; `last` in its step. The solver stands at that state. */

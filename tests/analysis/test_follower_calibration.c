@@ -5,9 +5,10 @@
 #include <unistd.h>
 
 #include "analysis/calibrate.h"
+#include "analysis/curve_private.h"
 #include "analysis/first_guess.h"
 #include "analysis/properties.h"
-#include "analysis/validate.h"
+#include "analysis/validate_private.h"
 #include "base/file.h"
 
 static const double mm = WB_MM;

@@ -29,7 +29,7 @@ static double cpu_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static bool make_element(struct element *e, enum wb_hex20_integration integration)
+static bool make_element(struct element *e, enum wb_integration integration)
 {
     struct wb_hex20_state virgin[27] = {{{0.0}}};
     struct wb_hex20_result result;
@@ -53,7 +53,7 @@ enum what {
 };
 
 /* Least microseconds an element of all repeats; from the state after (no yielding) or before. */
-static double time_elements(struct element *elements, enum wb_hex20_integration integration,
+static double time_elements(struct element *elements, enum wb_integration integration,
                             bool yielding, enum what what)
 {
     static double K[3600];
@@ -93,8 +93,8 @@ int main(void)
     printf("one evaluation of a 20-node hexahedron, CPU microseconds on one core\n\n"
            "                          forces   and stiffness   slow twin   ratio to the twin\n");
     for (int k = 0; good && k < 2; k++) {
-        const enum wb_hex20_integration integration =
-            k == 0 ? WB_HEX20_SELECTIVE : WB_HEX20_REDUCED;
+        const enum wb_integration integration =
+            k == 0 ? WB_INTEGRATION_SELECTIVE : WB_INTEGRATION_REDUCED;
         srand(1);
         for (int i = 0; good && i < ELEMENTS; i++)
             good = make_element(&elements[i], integration);

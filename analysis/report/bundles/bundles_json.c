@@ -6,9 +6,7 @@
 #include "base/units.h"
 #include "base/version.h"
 
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-static const double s_per_m = 1e3;  /* of one s/mm */
-static const double n_mm2 = 1e-6;   /* N m2 of one N mm2 */
+static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
 
 static void put_values(struct wb_json *object, const char *key, const double *values, int n,
                        double unit)
@@ -75,20 +73,18 @@ static void put_run(struct wb_json *list, const struct wb_bundles_results *resul
     const struct wb_bundles_run *const wanted = &results->campaign->runs[index];
     const struct wb_bundles_result *const run = &results->runs[index];
     const struct wb_bundle_model *const m = wanted->model;
+    const struct wb_setting *const rows = wb_bundle_model_run_settings;
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_text(entry, "name", wanted->name);
     wb_json_set_text(entry, "bundle", wanted->model_name);
     wb_json_set_text(entry, "bundle_sha256", m->sha256);
     wb_json_set_text(entry, "mesh", wanted->mesh->name);
-    struct wb_json *const friction = wb_json_set_object(entry, "friction");
-    wb_json_set_number(friction, "static", m->interface.friction_static);
-    wb_json_set_number(friction, "kinetic", m->interface.friction_kinetic);
-    wb_json_set_number(friction, "decay_s_mm", m->interface.friction_decay / s_per_m);
-    wb_json_set_number(entry, "cohesive_stiffness_N_mm3", m->interface.normal_stiffness / pa_per_m);
+    wb_setting_set_json(wb_bundle_model_friction_setting, &m->interface, entry);
+    wb_setting_set_json(wb_bundle_model_cohesion_setting, &m->interface, entry);
     wb_json_set_number(entry, "strand_mm", m->loads.strand_length / WB_MM);
     wb_json_set_boolean(entry, "weight", m->loads.weight);
-    wb_json_set_number(entry, "mass_scaling", m->run.mass_scaling);
-    wb_json_set_number(entry, "selective_mass_scaling", m->run.selective);
+    wb_setting_set_json(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, entry);
+    wb_setting_set_json(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, entry);
     put_state(entry, &wanted->dataset, run);
     if (run->simulation.state != WB_SIMULATION_USABLE)
         return;

@@ -10,32 +10,14 @@
 
 #define WB_LOG_DOMAIN "campaign"
 
-static const double s_per_m = 1e3;  /* of one s/mm */
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-
 /* What a run has in place of its bundle's, as the command's options say it; has_... tells what else
  * was given. */
 struct settings {
     struct wb_bundle_override override;
-    char mesh[32]; /* "": the bundle's */
     bool has_load, has_weight, dead_force, weight;
 };
 
 /* --- reading --- */
-
-static enum wb_status read_friction(struct wb_bundle_override *o, const struct wb_config_node *node)
-{
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_NUMBER("static", &o->friction_static, 1.0, 0.0, 10.0),
-        WB_CONFIG_NUMBER("kinetic", &o->friction_kinetic, 1.0, 0.0, 10.0),
-        WB_CONFIG_NUMBER("decay_s_mm", &o->friction_decay, s_per_m, 1e-9, 1e9),
-    };
-    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-    if (o->friction_kinetic > o->friction_static)
-        return wb_config_refuse(node, "kinetic", "%g is more than the static %g",
-                                o->friction_kinetic, o->friction_static);
-    return WB_OK;
-}
 
 enum {
     MOST_KEYS = 16
@@ -46,39 +28,31 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
                                     struct wb_config_key keys[MOST_KEYS], size_t n_own)
 {
     struct wb_bundle_override *const o = &s->override;
-    const struct wb_config_node *friction = wb_config_find(node, "friction");
-    const bool is_constant = friction && wb_config_scalar(friction);
-    bool has_friction = false, has_load = false, has_weight = false;
-    const struct wb_config_key shared[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("cohesive_stiffness_N_mm3", &o->cohesive_stiffness, pa_per_m,
-                                  1e-6, 1e9),
-        WB_CONFIG_OPTIONAL_TEXT("mesh", s->mesh),
-        WB_CONFIG_OPTIONAL_NUMBER("mass_scaling", &o->mass_scaling, 1.0, 1.0, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("selective_mass_scaling", &o->selective, 1.0, 1.0, 1e6),
-        WB_CONFIG_OPTIONAL_NUMBER("duration_s", &o->duration, 1.0, 1e-6, 1e6),
+    const struct wb_config_node *friction;
+    bool has_load = false, has_weight = false;
+    const struct wb_config_key loads[] = {
         WB_CONFIG_OPTIONAL_BOOLEAN("dead_force", &s->dead_force),
         WB_CONFIG_OPTIONAL_BOOLEAN("weight", &s->weight),
+        WB_CONFIG_OPTIONAL_NODE("friction", &friction),
     };
     size_t n = n_own;
-    for (size_t i = 0; i < WB_COUNT(shared); i++)
-        keys[n++] = shared[i];
-    keys[n - 2].present = &has_load;
-    keys[n - 1].present = &has_weight;
-    keys[n] = is_constant ? (struct wb_config_key)WB_CONFIG_OPTIONAL_NUMBER(
-                                "friction", &o->friction_static, 1.0, 0.0, 10.0)
-                          : (struct wb_config_key)WB_CONFIG_OPTIONAL_NODE("friction", &friction);
-    keys[n++].present = &has_friction;
+    for (int i = 0; i < WB_BUNDLE_OVERRIDE_TABLES; i++) {
+        const struct wb_setting_table *const table = &wb_bundle_override_tables[i];
+        if (i != WB_BUNDLE_OVERRIDE_LOADS)
+            n += wb_setting_keys(table, 0, (char *)o + table->offset, keys + n);
+    }
+    for (size_t i = n_own; i < n; i++)
+        keys[i].optional = true;
+    for (size_t i = 0; i < WB_COUNT(loads); i++)
+        keys[n++] = loads[i];
+    keys[n - 3].present = &has_load;
+    keys[n - 2].present = &has_weight;
     WB_TRY(wb_config_map(node, keys, n));
     s->has_load |= has_load;
     s->has_weight |= has_weight;
-    if (!has_friction)
-        return WB_OK;
-    o->has_friction = true;
-    if (!is_constant)
-        return read_friction(o, friction);
-    o->friction_kinetic = o->friction_static;
-    o->friction_decay = 0.0;
-    return WB_OK;
+    return friction
+               ? wb_setting_read_list(wb_bundle_model_friction_setting, friction, &o->interface)
+               : WB_OK;
 }
 
 /* --- the model as the run has it --- */
@@ -109,7 +83,6 @@ static enum wb_status apply(struct settings *s, const struct wb_config_node *nod
         return wb_config_refuse(node, "dead_force", "'%s' has no strand", m->name);
     if (s->has_weight && s->weight && !m->loads.weight)
         return wb_config_refuse(node, "weight", "'%s' has no weight", m->name);
-    s->override.mesh = s->mesh[0] ? s->mesh : NULL;
     s->override.dead_force = s->dead_force;
     s->override.no_weight = s->has_weight && !s->weight;
     if (wb_bundle_override_apply(&s->override, m) != WB_OK)
@@ -120,33 +93,23 @@ static enum wb_status apply(struct settings *s, const struct wb_config_node *nod
 
 /* --- its command --- */
 
-static enum wb_status argue_number(struct wb_simulation *dataset, const char *option, double value)
+/* A setting as its option, if it was given. */
+static enum wb_status argue_setting(struct wb_simulation *dataset, const struct wb_setting *row,
+                                    const void *settings)
 {
-    char text[48];
-    if (!(value > 0.0))
+    char option[64], value[WB_SETTING_VALUE];
+    if (!wb_setting_is_given(row, settings))
         return WB_OK;
-    snprintf(text, sizeof text, "%.10g", value);
+    snprintf(option, sizeof option, "--%s", row->option);
+    wb_setting_format(row, settings, value);
     WB_TRY(wb_simulation_argue(dataset, option, NULL));
-    return wb_simulation_argue(dataset, text, NULL);
-}
-
-static enum wb_status argue_friction(struct wb_simulation *dataset,
-                                     const struct wb_bundle_override *o)
-{
-    char text[120];
-    if (!o->has_friction)
-        return WB_OK;
-    snprintf(text, sizeof text, "%.10g", o->friction_static);
-    if (o->friction_decay > 0.0)
-        snprintf(text, sizeof text, "%.10g,%.10g,%.10g", o->friction_static, o->friction_kinetic,
-                 o->friction_decay / s_per_m);
-    WB_TRY(wb_simulation_argue(dataset, "--friction", NULL));
-    return wb_simulation_argue(dataset, text, NULL);
+    return wb_simulation_argue(dataset, value, NULL);
 }
 
 static enum wb_status argue(struct wb_bundles_run *run, const struct wb_bundle_override *o,
                             const char *path)
 {
+    const struct wb_setting *const run_rows = wb_bundle_model_run_settings;
     struct wb_simulation *const d = &run->dataset;
     WB_TRY(wb_simulation_argue(d, "solve", NULL));
     WB_TRY(wb_simulation_argue(d, "bundle", NULL));
@@ -155,15 +118,12 @@ static enum wb_status argue(struct wb_bundles_run *run, const struct wb_bundle_o
         WB_TRY(wb_simulation_argue(d, "--dead-force", NULL));
     if (o->no_weight)
         WB_TRY(wb_simulation_argue(d, "--no-weight", NULL));
-    WB_TRY(argue_friction(d, o));
-    WB_TRY(argue_number(d, "--cohesive-stiffness", o->cohesive_stiffness / pa_per_m));
-    if (o->mesh) {
-        WB_TRY(wb_simulation_argue(d, "--mesh", NULL));
-        WB_TRY(wb_simulation_argue(d, o->mesh, NULL));
-    }
-    WB_TRY(argue_number(d, "--mass-scaling", o->mass_scaling));
-    WB_TRY(argue_number(d, "--selective", o->selective));
-    WB_TRY(argue_number(d, "--duration-s", o->duration));
+    WB_TRY(argue_setting(d, wb_bundle_model_friction_setting, &o->interface));
+    WB_TRY(argue_setting(d, wb_bundle_model_cohesion_setting, &o->interface));
+    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_MESH], &o->run));
+    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_MASS_SCALING], &o->run));
+    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_SELECTIVE], &o->run));
+    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_DURATION], &o->run));
     wb_simulation_end(d);
     return WB_OK;
 }

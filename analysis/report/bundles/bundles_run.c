@@ -6,14 +6,11 @@
 #include <string.h>
 
 #include "analysis/computed.h"
-#include "analysis/dataset_csv.h"
+#include "analysis/csv_table.h"
 #include "analysis/errors.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
-
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-static const double s_per_m = 1e3;  /* of one s/mm */
 
 double wb_bundles_run_cost(const struct wb_bundles_run *run)
 {
@@ -73,6 +70,16 @@ static enum wb_status check_settings(const struct setting *settings, size_t n)
     return WB_OK;
 }
 
+/* The same of a setting that dataset.json names as the bundle's file does. */
+static enum wb_status check_row(const struct wb_setting *row, const void *settings,
+                                const struct wb_json *simulation)
+{
+    char problem[WB_SETTING_PROBLEM];
+    if (wb_setting_is_same(row, settings, simulation, problem))
+        return WB_OK;
+    return wb_fail(WB_ERR_DATA, "%s", problem);
+}
+
 static double largest_deflection(const struct wb_dataset *dataset)
 {
     double largest = 0.0;
@@ -85,11 +92,11 @@ static double largest_deflection(const struct wb_dataset *dataset)
 static enum wb_status check_run(const struct wb_bundles_result *result,
                                 const struct wb_bundles_run *run)
 {
+    const struct wb_setting *const rows = wb_bundle_model_run_settings;
     const struct wb_bundle_model *const m = run->model;
     const struct wb_bundle_interface *const interface = &m->interface;
     const struct wb_test_info *const info = &result->simulation.dataset.info;
     const struct wb_json *const simulation = wb_simulation_of(&result->simulation);
-    const struct wb_json *const friction = wb_json_get(simulation, "friction");
     const struct wb_json *const cohesion = wb_json_get(simulation, "cohesion");
     const char *sha256 = "", *mesh = "", *problem = "";
     (void)wb_json_get_text(simulation, "sha256", &sha256);
@@ -99,29 +106,21 @@ static enum wb_status check_run(const struct wb_bundles_result *result,
         return wb_fail(WB_ERR_DATA, "the bundle, its wires or its materials have changed since");
     if (strcmp(mesh, m->run.mesh) != 0)
         return wb_fail(WB_ERR_DATA, "its mesh is '%s', and '%s' is wanted", mesh, m->run.mesh);
-    const struct setting settings[] = {
-        {"the static friction", wb_simulation_number(friction, "static"),
-         interface->friction_static},
-        {"the kinetic friction", wb_simulation_number(friction, "kinetic"),
-         interface->friction_kinetic},
-        {"the decay of friction (s/mm)", wb_simulation_number(friction, "decay_s_mm"),
-         interface->friction_decay / s_per_m},
+    const struct setting loads[] = {
         {"the strand's length (mm)", info->strand_length / WB_MM, m->loads.strand_length / WB_MM},
         {"gravity (m/s2)", info->gravity, m->loads.weight ? WB_STANDARD_GRAVITY : 0.0},
-        {"the mass scaling", wb_simulation_number(simulation, "mass_scaling"), m->run.mass_scaling},
-        {"the selective mass scaling", wb_simulation_number(simulation, "selective_mass_scaling"),
-         m->run.selective},
     };
-    WB_TRY(check_settings(settings, sizeof settings / sizeof settings[0]));
+    WB_TRY(check_row(wb_bundle_model_friction_setting, interface, simulation));
+    WB_TRY(check_settings(loads, sizeof loads / sizeof loads[0]));
+    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, simulation));
+    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, simulation));
     const struct setting normal = {"the cohesive stiffness (N/mm3)",
                                    wb_simulation_number(cohesion, "normal_stiffness_N_mm3"),
-                                   interface->normal_stiffness / pa_per_m};
-    const struct setting duration = {
-        "the duration (s)", wb_simulation_number(simulation, "duration_s"), m->run.duration};
+                                   interface->normal_stiffness / WB_N_PER_MM3};
     if (m->has_tape)
         WB_TRY(check_settings(&normal, 1));
     if (m->run.duration > 0.0)
-        WB_TRY(check_settings(&duration, 1));
+        WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_DURATION], &m->run, simulation));
     else if (!result->kinetic_choice)
         return wb_fail(WB_ERR_DATA, "its duration was given, and one that keeps kinetic energy "
                                     "small is wanted");
@@ -174,7 +173,7 @@ static bool parse_energy(char *line, struct wb_bundles_energy *energy)
     double v[COLUMNS];
     for (int i = 0; i < COLUMNS; i++) {
         char *const text = strsep(&line, ",");
-        if (!text || !wb_dataset_csv_parse_number(text, i == 1 ? MM_SHIFT : 0, &v[i]))
+        if (!text || !wb_csv_table_parse_number(text, i == 1 ? MM_SHIFT : 0, &v[i]))
             return false;
     }
     *energy = (struct wb_bundles_energy){

@@ -351,7 +351,7 @@ static void put_elastic(struct wb_document *document, const struct wb_wires_resu
         wb_text_append(&text,
                        " Friction (<i>\xce\xbc</i> = %g) instead of a bond moves the axis by %.4f "
                        "mm at most.",
-                       results->comparison->cases[WB_WIRES_CONTACT].model->interface.friction,
+                       results->comparison->cases[WB_WIRES_CONTACT].model->jacket_contact.friction,
                        wb_wires_distance(solid, contact) / WB_MM);
     if (contact && isfinite(contact->slip))
         wb_text_append(&text, " Core and jacket slip by %.4f mm at most.", contact->slip / WB_MM);

@@ -606,7 +606,7 @@ static void wrong_interfaces_are_refused(void **state)
            ":18: fracture_energy_N_mm: 0.066 N/mm is not more than the 0.0666667 N/mm");
     refuse(full, "shear_strength_MPa: 1, fracture_energy_N_mm: 0.3",
            "shear_strength_MPa: 5, fracture_energy_N_mm: 0.3", ":18: fracture_energy_N_mm: ");
-    refuse(full, "kinetic: 0.1", "kinetic: 0.5", ":19: kinetic: 0.5 is more than static, 0.4");
+    refuse(full, "kinetic: 0.1", "kinetic: 0.5", ":19: kinetic: 0.5 is more than the static one, 0.4");
     refuse(full, "decay_s_mm: 2", "decay: 2", ":19: decay: ");
     refuse(full, "static: 0.4, ", "", ":19: static: this key is missing");
     refuse(full, "{static: 0.4, kinetic: 0.1, decay_s_mm: 2}", "-0.1", ":19: friction: ");

@@ -53,7 +53,7 @@ static inline void make_displacement(double position[20][3], double angle, doubl
 }
 
 static inline bool make_geometry(struct wb_hex20_geometry *geometry,
-                                 enum wb_hex20_integration integration, double position[20][3])
+                                 enum wb_integration integration, double position[20][3])
 {
     return wb_hex20_geometry_init(geometry, integration, (const double(*)[3])position);
 }

@@ -13,7 +13,8 @@ static const struct wb_material power = {
 static const struct wb_material prager = {
     WB_HARDENING_KINEMATIC_LINEAR, 70e9, 0.34, 100e6, 9e9, 0.0};
 static const struct wb_material *const materials[] = {&elastic, &power, &prager};
-static const enum wb_hex20_integration integrations[] = {WB_HEX20_SELECTIVE, WB_HEX20_REDUCED};
+static const enum wb_integration integrations[] = {WB_INTEGRATION_SELECTIVE,
+                                                   WB_INTEGRATION_REDUCED};
 enum {
     N_MATERIALS = 3
 };
@@ -29,9 +30,9 @@ static double largest(const double *x, int n)
 /* --- Against the slow twin and differences --- */
 
 /* A history that belongs to the element, with all points yielding at some time. */
-static bool make_history(const struct wb_hex20_geometry *geometry,
-                         enum wb_hex20_integration integration, const struct wb_material *material,
-                         double position[20][3], double strain, struct wb_hex20_state *state)
+static bool make_history(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
+                         const struct wb_material *material, double position[20][3], double strain,
+                         struct wb_hex20_state *state)
 {
     struct wb_hex20_state virgin[27] = {{{0.0}}};
     struct wb_hex20_result result;
@@ -85,9 +86,9 @@ static void element_agrees_with_its_slow_twin(void **unused)
 }
 
 static double largest_tangent_error(const struct wb_hex20_geometry *geometry,
-                                    enum wb_hex20_integration integration,
-                                    const struct wb_material *m, const double *u0,
-                                    const struct wb_hex20_state *before, double step)
+                                    enum wb_integration integration, const struct wb_material *m,
+                                    const double *u0, const struct wb_hex20_state *before,
+                                    double step)
 {
     static const int at[4] = {-2, -1, 1, 2};
     static double K[3600];
@@ -240,8 +241,8 @@ static void forces_of_a_yielding_element_rotate_with_it(void **unused)
     struct wb_hex20_result result, turned;
     double position[20][3], u[60], u_turned[60], force[60], force_turned[60];
     make_nodes(0.1, position);
-    assert_true(make_geometry(&geometry, WB_HEX20_SELECTIVE, position));
-    assert_true(make_history(&geometry, WB_HEX20_SELECTIVE, &power, position, 0.01, before));
+    assert_true(make_geometry(&geometry, WB_INTEGRATION_SELECTIVE, position));
+    assert_true(make_history(&geometry, WB_INTEGRATION_SELECTIVE, &power, position, 0.01, before));
     make_displacement(position, 0.0, 0.05, 1e-5, u);
     for (int a = 0; a < 20; a++) { /* (x, y, z) -> (-y, x, z) */
         const double x = position[a][0] + u[3 * a], y = position[a][1] + u[3 * a + 1];
@@ -249,9 +250,9 @@ static void forces_of_a_yielding_element_rotate_with_it(void **unused)
         u_turned[3 * a + 1] = x - position[a][1];
         u_turned[3 * a + 2] = u[3 * a + 2];
     }
-    assert_true(wb_hex20_evaluate(&geometry, WB_HEX20_SELECTIVE, &power, u, before, after, force,
-                                  NULL, &result));
-    assert_true(wb_hex20_evaluate(&geometry, WB_HEX20_SELECTIVE, &power, u_turned, before,
+    assert_true(wb_hex20_evaluate(&geometry, WB_INTEGRATION_SELECTIVE, &power, u, before, after,
+                                  force, NULL, &result));
+    assert_true(wb_hex20_evaluate(&geometry, WB_INTEGRATION_SELECTIVE, &power, u_turned, before,
                                   after_turned, force_turned, NULL, &turned));
     assert_int_equal(result.yielding, 27);
     assert_int_equal(turned.yielding, 27);
@@ -271,8 +272,7 @@ static void forces_of_a_yielding_element_rotate_with_it(void **unused)
 /* --- Energy --- */
 
 /* |work - elastic - dissipated| / work on a curved path in so many steps. */
-static double energy_error(const struct wb_material *m, enum wb_hex20_integration integration,
-                           int steps)
+static double energy_error(const struct wb_material *m, enum wb_integration integration, int steps)
 {
     struct wb_hex20_geometry geometry;
     struct wb_hex20_state state[27] = {{{0.0}}};
@@ -352,7 +352,7 @@ static void eigenvalues(int n, double *A, double *value)
         value[i] = A[n * i + i];
 }
 
-static int zero_modes(enum wb_hex20_integration integration)
+static int zero_modes(enum wb_integration integration)
 {
     static double K[3600];
     struct wb_hex20_geometry geometry;
@@ -380,8 +380,8 @@ static void only_rigid_modes_are_free_unless_reduced(void **unused)
 {
     (void)unused;
     srand(7);
-    assert_int_equal(zero_modes(WB_HEX20_SELECTIVE), 6);
-    assert_int_equal(zero_modes(WB_HEX20_REDUCED), 12);
+    assert_int_equal(zero_modes(WB_INTEGRATION_SELECTIVE), 6);
+    assert_int_equal(zero_modes(WB_INTEGRATION_REDUCED), 12);
 }
 
 /* --- Locking --- */
@@ -432,11 +432,11 @@ static double bending_compliance(double nu, bool full)
         double position[20][3], u[60] = {0.0}, force[60];
         for (int a = 0; a < 20; a++)
             memcpy(position[a], mesh.node[mesh.element[e][a]], sizeof position[a]);
-        assert_true(make_geometry(&geometry, WB_HEX20_SELECTIVE, position));
+        assert_true(make_geometry(&geometry, WB_INTEGRATION_SELECTIVE, position));
         if (full)
             assert_true(twin_evaluate(&geometry, 27, true, &m, u, virgin, after, force, K));
         else
-            assert_true(wb_hex20_evaluate(&geometry, WB_HEX20_SELECTIVE, &m, u, virgin, after,
+            assert_true(wb_hex20_evaluate(&geometry, WB_INTEGRATION_SELECTIVE, &m, u, virgin, after,
                                           force, K, &result));
         for (int i = 0; i < 60; i++) {
             for (int j = 0; j < 60; j++) {
@@ -601,10 +601,10 @@ static void plastic_strain_at_nodes_is_not_negative(void **unused)
     struct wb_hex20_state state[27] = {{{0.0}}};
     double position[20][3], u[60] = {0.0}, stress[20][6], plastic[20];
     make_nodes(0.0, position);
-    assert_true(make_geometry(&geometry, WB_HEX20_REDUCED, position));
+    assert_true(make_geometry(&geometry, WB_INTEGRATION_REDUCED, position));
     for (int p = 4; p < 8; p++)
         state[p].accumulated = 1e-3;
-    wb_hex20_nodal_stress(&geometry, WB_HEX20_REDUCED, &elastic, u, state, stress, plastic);
+    wb_hex20_nodal_stress(&geometry, WB_INTEGRATION_REDUCED, &elastic, u, state, stress, plastic);
     assert_true(plastic[0] == 0.0);
     assert_close(plastic[4], 0.5e-3 * (1.0 + sqrt(3.0)), 1e-15);
 }
@@ -624,7 +624,7 @@ static void inverted_elements_and_nonsense_are_refused(void **unused)
         double u[60] = {0.0};
         make_nodes(0.0, position);
         assert_true(make_geometry(&geometry, integrations[k], position));
-        const enum wb_hex20_integration way = integrations[k];
+        const enum wb_integration way = integrations[k];
 
         for (int a = 4; a < 8; a++)
             u[3 * a + 2] = -2.5e-3; /* the top below the bottom */

@@ -1,7 +1,8 @@
 #include "tests/check.h"
 #include "tests/fe/solid/hex20_cases.h"
 
-static const enum wb_hex20_integration integrations[] = {WB_HEX20_SELECTIVE, WB_HEX20_REDUCED};
+static const enum wb_integration integrations[] = {WB_INTEGRATION_SELECTIVE,
+                                                   WB_INTEGRATION_REDUCED};
 
 /* The shape functions span 20 monomials: the derivatives of each come out exactly. */
 static void gradients_are_those_of_the_serendipity_functions(void **unused)
@@ -64,7 +65,7 @@ static void volumes_of_curved_elements_are_exact(void **unused)
     const double b = 0.3;
 
     make_vault(b, position);
-    assert_true(make_geometry(&geometry, WB_HEX20_SELECTIVE, position));
+    assert_true(make_geometry(&geometry, WB_INTEGRATION_SELECTIVE, position));
     const double volume = 3.0 * (2.0 + 4.0 / 3.0 * b);
     assert_close(geometry.volume, volume, 1e-13);
     wb_hex20_volume_weights((const double(*)[3])position, weight);
@@ -141,7 +142,7 @@ static void both_rules_integrate_gradients_alike_between_straight_edges(void **u
             for (int i = 0; i < 3; i++)
                 position[8 + e][i] = 0.5 * (position[edge[e][0]][i] + position[edge[e][1]][i]);
         }
-        assert_true(make_geometry(&geometry, WB_HEX20_SELECTIVE, position));
+        assert_true(make_geometry(&geometry, WB_INTEGRATION_SELECTIVE, position));
         for (int a = 0; a < 20; a++) {
             for (int j = 0; j < 3; j++) {
                 double sum = 0.0, corner_sum = 0.0;

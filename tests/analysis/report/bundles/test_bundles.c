@@ -255,12 +255,12 @@ static void make_rod(int index, double cpu)
                                                .source = beam->source,
                                                .material = &beam->material,
                                                .cpu = cpu};
-    struct wb_history_row rows[2] = {{.cycle = 1}, {.cycle = 1}};
+    struct wb_loading_steps_row rows[2] = {{.cycle = 1}, {.cycle = 1}};
     rows[1].point.deflection = run->model->run.deflection;
-    const struct wb_history history = {.n_rows = 2, .rows = rows, .converged = true};
+    const struct wb_loading_steps loading = {.n_rows = 2, .rows = rows, .converged = true};
     struct wb_dataset dataset;
     assert_int_equal(wb_dataset_init(&dataset), WB_OK);
-    assert_int_equal(wb_simulated_fill(&dataset, &info, &history, NULL, &origin), WB_OK);
+    assert_int_equal(wb_simulated_fill(&dataset, &info, &loading, NULL, &origin), WB_OK);
     assert_int_equal(wb_dataset_write(&dataset, bundle->rod.path, true), WB_OK);
     wb_dataset_release(&dataset);
 }

@@ -1,0 +1,37 @@
+/* Why something failed, as a text that travels with the result instead of going to the log.
+ *
+ * A caller who expects that a call may fail, and who reports that as part of its own result, owns
+ * a zeroed wb_reason and passes it down. The function that fails writes the reason with
+ * wb_fail_to() and returns the status as after wb_fail(). Where the caller passes NULL, the message
+ * is logged as an error, so that one function serves both kinds of callers.
+ */
+#ifndef WB_BASE_REASON_H
+#define WB_BASE_REASON_H
+
+#include "base/status.h"
+
+/* All zero: there is none. A text that does not fit is cut at the end of a UTF-8 character and ends
+ * in "...". */
+struct wb_reason {
+    char text[400];
+};
+
+/* Replaces the text. It may be made of the present one. */
+void wb_reason_set(struct wb_reason *reason, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Adds to the text, behind "; " where there is one already. */
+void wb_reason_append(struct wb_reason *reason, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Replaces the text of `reason`; logs an error of that domain where it is NULL. Called by
+ * wb_fail_to(). */
+void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Writes the message to `reason`, or logs it as wb_fail() does where that is NULL, and evaluates to
+ * `status`. A macro, so that the compiler sees that the caller returns an error. */
+#define wb_fail_to(reason, status, ...)                                                            \
+    (wb_reason_tell((reason), WB_LOG_DOMAIN, __VA_ARGS__), (status))
+
+#endif

@@ -1,0 +1,116 @@
+/* Reasons: texts that travel with a result, and the log where nobody asks for them. */
+#include "tests/check.h"
+
+#include <string.h>
+
+#include "base/reason.h"
+
+#define WB_LOG_DOMAIN "test"
+
+struct seen {
+    int messages;
+    enum wb_log_level level;
+    char domain[32], message[256];
+};
+
+static void remember(void *context, enum wb_log_level level, const char *domain,
+                     const char *message)
+{
+    struct seen *seen = context;
+    seen->messages++;
+    seen->level = level;
+    snprintf(seen->domain, sizeof seen->domain, "%s", domain);
+    snprintf(seen->message, sizeof seen->message, "%s", message);
+}
+
+static enum wb_status refuse(struct wb_reason *reason, int number)
+{
+    return wb_fail_to(reason, WB_ERR_DATA, "number %d refused", number);
+}
+
+static void a_failure_goes_to_the_reason_and_not_to_the_log(void **state)
+{
+    (void)state;
+    struct seen seen = {0};
+    struct wb_reason reason = {.text = "of before"};
+    wb_log_set_sink(remember, &seen);
+    assert_int_equal(refuse(&reason, 7), WB_ERR_DATA);
+    wb_log_set_sink(NULL, NULL);
+    assert_string_equal(reason.text, "number 7 refused");
+    assert_int_equal(seen.messages, 0);
+}
+
+static void a_failure_without_a_reason_is_logged(void **state)
+{
+    (void)state;
+    struct seen seen = {0};
+    wb_log_set_sink(remember, &seen);
+    assert_int_equal(refuse(NULL, 8), WB_ERR_DATA);
+    wb_log_set_sink(NULL, NULL);
+    assert_int_equal(seen.messages, 1);
+    assert_int_equal(seen.level, WB_LOG_ERROR);
+    assert_string_equal(seen.domain, "test");
+    assert_string_equal(seen.message, "number 8 refused");
+}
+
+static void texts_are_replaced_or_joined(void **state)
+{
+    (void)state;
+    struct wb_reason reason = {0};
+    wb_reason_append(&reason, "wire %d", 1);
+    assert_string_equal(reason.text, "wire 1");
+    wb_reason_append(&reason, "wire %d", 2);
+    assert_string_equal(reason.text, "wire 1; wire 2");
+    wb_reason_set(&reason, "of all: %s", reason.text);
+    assert_string_equal(reason.text, "of all: wire 1; wire 2");
+    wb_reason_set(&reason, "none");
+    assert_string_equal(reason.text, "none");
+}
+
+/* 396 bytes and "..." fit; a character of two bytes would lie across that place. */
+static void a_long_text_is_cut_at_the_end_of_a_character(void **state)
+{
+    (void)state;
+    const size_t most = sizeof(struct wb_reason) - 1;
+    struct wb_reason reason = {0};
+    char text[2 * sizeof reason];
+
+    memset(text, 'x', sizeof text);
+    text[most] = '\0';
+    wb_reason_set(&reason, "%s", text);
+    assert_string_equal(reason.text, text);
+    text[most] = 'x';
+    text[most + 1] = '\0';
+    wb_reason_set(&reason, "%s", text);
+    assert_int_equal(strlen(reason.text), most);
+    assert_string_equal(reason.text + most - 4, "x...");
+
+    memcpy(text + most - 4, "\xc3\xa9", 2);
+    wb_reason_set(&reason, "%s", text);
+    assert_int_equal(strlen(reason.text), most - 1);
+    assert_string_equal(reason.text + most - 5, "x...");
+}
+
+static void a_full_text_takes_no_more(void **state)
+{
+    (void)state;
+    const size_t most = sizeof(struct wb_reason) - 1;
+    struct wb_reason reason = {0};
+
+    for (size_t i = 0; i < sizeof reason; i++)
+        wb_reason_append(&reason, "%s", i % 3 == 0 ? "\xe2\x82\xac" : "b");
+    assert_true(strlen(reason.text) <= most && strlen(reason.text) > most - 4);
+    assert_string_equal(reason.text + strlen(reason.text) - 3, "...");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_failure_goes_to_the_reason_and_not_to_the_log),
+        cmocka_unit_test(a_failure_without_a_reason_is_logged),
+        cmocka_unit_test(texts_are_replaced_or_joined),
+        cmocka_unit_test(a_long_text_is_cut_at_the_end_of_a_character),
+        cmocka_unit_test(a_full_text_takes_no_more),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
