@@ -204,7 +204,7 @@ static void a_campaign_that_makes_no_sense_is_refused_with_its_line(void **state
          "c.yaml:6: name: another run is called 'a'"},
         {HEAD "runs: [{name: a, bundle: 7-type3, friction: {static: 0.1, kinetic: 0.2, "
               "decay_s_mm: 2}}]\ngroups: []\n",
-         "c.yaml:6: kinetic: 0.2 is more than the static 0.1"},
+         "c.yaml:6: kinetic: 0.2 is more than the static one, 0.1"},
         {HEAD "runs: [{name: a, bundle: 7-type3, friction: -1}]\ngroups: []\n", "c.yaml:6: "},
         {RUN "groups: [{label: x, bundles: [{label: y, dynamic: none}]}]\n",
          "c.yaml:7: dynamic: there is no run 'none'"},
