@@ -3,18 +3,10 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "analysis/report/numbers.h"
 #include "base/units.h"
-#include "base/version.h"
 
 static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
-
-static void put_values(struct wb_json *object, const char *key, const double *values, int n,
-                       double unit)
-{
-    struct wb_json *const list = wb_json_set_array(object, key);
-    for (int i = 0; i < n; i++)
-        wb_json_append_number(list, values[i] / unit);
-}
 
 /* --- datasets --- */
 
@@ -58,11 +50,12 @@ static void put_curves(struct wb_json *entry, const struct wb_bundles_result *ru
     for (int i = 0; i < curve->n; i++)
         wb_json_append_number(deflections, curve->step * i / WB_MM);
     wb_json_set_number(entry, "F_max_N", curve->max_force);
-    put_values(entry, "force_N", curve->force, curve->n, 1.0);
+    wb_numbers_put_list(entry, "force_N", curve->force, curve->n, 1.0);
     if (!run->published)
         return;
-    put_values(entry, "published_force_N", run->published, curve->n, 1.0);
-    put_values(entry, "error", run->error, run->n_published < curve->n ? 0 : curve->n, 1.0);
+    wb_numbers_put_list(entry, "published_force_N", run->published, curve->n, 1.0);
+    wb_numbers_put_list(entry, "error", run->error, run->n_published < curve->n ? 0 : curve->n,
+                        1.0);
     wb_json_set_number(entry, "published_F_max_N", run->published_max);
     wb_json_set_number(entry, "rms", run->rms);
     wb_json_set_number(entry, "largest_error", run->max_error);
@@ -99,10 +92,7 @@ static void put_beam(struct wb_json *object, const char *key, const struct wb_ma
 {
     struct wb_json *const entry = wb_json_set_object(object, key);
     wb_json_set_number(entry, "outer_diameter_mm", diameter / WB_MM);
-    wb_json_set_number(entry, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
-    wb_json_set_number(entry, "yield_stress_MPa", material->yield_stress / WB_MPA);
-    wb_json_set_number(entry, "strength_coefficient_MPa", material->strength_coefficient / WB_MPA);
-    wb_json_set_number(entry, "hardening_exponent", material->hardening_exponent);
+    wb_numbers_put_properties(entry, material);
     wb_json_set_number(entry, "EI_N_mm2",
                        wb_bundles_results_rigidity(material->youngs_modulus, diameter) / n_mm2);
 }
@@ -121,7 +111,7 @@ static void put_fit(struct wb_json *entry, const struct wb_bundles_results *resu
     wb_json_set_number(entry, "fit_largest_error", fit->result.max_error);
     wb_json_set_text(entry, "fit_stopped_because", wb_calibrate_end_text(fit->result.end));
     wb_json_set_integer(entry, "fit_beam_runs", fit->result.evaluations);
-    put_values(entry, "fitted_force_N", fit->force, run->curve.n, 1.0);
+    wb_numbers_put_list(entry, "fitted_force_N", fit->force, run->curve.n, 1.0);
 }
 
 static void put_bundle(struct wb_json *list, const struct wb_bundles_results *results, int index)
@@ -172,17 +162,10 @@ struct wb_json *wb_bundles_json_build(const struct wb_bundles_results *results,
 {
     const struct wb_bundles *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", campaign->head.title);
-    wb_json_set_text(root, "data", "simulation");
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench report");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
-    struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", campaign->head.name);
-    wb_json_set_text(file, "sha256", campaign->head.sha256);
-    wb_json_set_boolean(root, "complete", results->outcome.is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", results->outcome.exceeds_limit);
+    wb_numbers_put_title(root, campaign->head.title, "simulation");
+    wb_numbers_put_program(root);
+    wb_numbers_put_campaign(root, &campaign->head);
+    wb_numbers_put_outcome(root, &results->outcome);
     put_verdicts(root, results);
     struct wb_json *const bundles = wb_json_set_array(root, "bundles");
     for (int i = 0; i < campaign->n_bundles; i++)
@@ -190,8 +173,6 @@ struct wb_json *wb_bundles_json_build(const struct wb_bundles_results *results,
     struct wb_json *const runs = wb_json_set_array(root, "runs");
     for (int i = 0; i < campaign->n_runs; i++)
         put_run(runs, results, i);
-    struct wb_json *const list = wb_json_set_array(root, "files");
-    for (int i = 0; i < n_files; i++)
-        wb_json_append_text(list, files[i]);
+    wb_numbers_put_files(root, files, n_files);
     return root;
 }

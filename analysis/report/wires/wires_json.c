@@ -3,17 +3,9 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "analysis/report/numbers.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "base/version.h"
-
-static void put_vector(struct wb_json *object, const char *key, const double *values, int n,
-                       double unit)
-{
-    struct wb_json *const list = wb_json_set_array(object, key);
-    for (int i = 0; i < n; i++)
-        wb_json_append_number(list, values[i] / unit);
-}
 
 static void put_peak(struct wb_json *object, const char *key, const struct wb_wires_peak *peak)
 {
@@ -21,7 +13,7 @@ static void put_peak(struct wb_json *object, const char *key, const struct wb_wi
         return;
     struct wb_json *const entry = wb_json_set_object(object, key);
     wb_json_set_number(entry, "von_mises_MPa", peak->stress / WB_MPA);
-    put_vector(entry, "at_mm", peak->reference, 3, WB_MM);
+    wb_numbers_put_list(entry, "at_mm", peak->reference, 3, WB_MM);
 }
 
 /* The largest stresses on every section that the dataset keeps. */
@@ -47,7 +39,7 @@ static void put_usable(struct wb_json *entry, const struct wb_wires_results *res
     const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
     wb_json_set_text(entry, "sha256", run->simulation.sha256);
     wb_json_set_number(entry, "follower_force_N", run->force);
-    put_vector(entry, "tip_mm", run->tip, 3, WB_MM);
+    wb_numbers_put_list(entry, "tip_mm", run->tip, 3, WB_MM);
     wb_json_set_number(entry, "tip_angle_degrees", run->tip_angle / WB_DEGREE);
     if (solid && solid != run)
         wb_json_set_number(entry, "largest_distance_from_solid_mm",
@@ -112,23 +104,20 @@ static void put_rod(struct wb_json *root, const char *key, const struct wb_wires
     if (solid && rod->reached)
         wb_json_set_number(entry, "largest_distance_from_solid_mm",
                            wb_wires_rod_distance(solid, rod) / WB_MM);
-    put_vector(entry, "x_mm", rod->x, WB_WIRES_POINTS, WB_MM);
-    put_vector(entry, "y_mm", rod->y, WB_WIRES_POINTS, WB_MM);
+    wb_numbers_put_list(entry, "x_mm", rod->x, WB_WIRES_POINTS, WB_MM);
+    wb_numbers_put_list(entry, "y_mm", rod->y, WB_WIRES_POINTS, WB_MM);
     if (rod->n_curve < 2)
         return;
-    put_vector(entry, "force_N", rod->force, rod->n_curve, 1.0);
-    put_vector(entry, "deflection_mm", rod->deflection, rod->n_curve, WB_MM);
-    put_vector(entry, "angle_degrees", rod->angle, rod->n_curve, WB_DEGREE);
+    wb_numbers_put_list(entry, "force_N", rod->force, rod->n_curve, 1.0);
+    wb_numbers_put_list(entry, "deflection_mm", rod->deflection, rod->n_curve, WB_MM);
+    wb_numbers_put_list(entry, "angle_degrees", rod->angle, rod->n_curve, WB_DEGREE);
 }
 
 static void put_material(struct wb_json *object, const char *key,
                          const struct wb_material *material)
 {
     struct wb_json *const entry = wb_json_set_object(object, key);
-    wb_json_set_number(entry, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
-    wb_json_set_number(entry, "yield_stress_MPa", material->yield_stress / WB_MPA);
-    wb_json_set_number(entry, "strength_coefficient_MPa", material->strength_coefficient / WB_MPA);
-    wb_json_set_number(entry, "hardening_exponent", material->hardening_exponent);
+    wb_numbers_put_properties(entry, material);
 }
 
 static void put_fit(struct wb_json *root, const struct wb_wires_results *results)
@@ -193,17 +182,10 @@ struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
     const struct wb_wires_run *const plastic =
         wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", comparison->head.title);
-    wb_json_set_text(root, "data", "simulation");
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench report");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
-    struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", comparison->head.name);
-    wb_json_set_text(file, "sha256", comparison->head.sha256);
-    wb_json_set_boolean(root, "complete", results->outcome.is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", results->outcome.exceeds_limit);
+    wb_numbers_put_title(root, comparison->head.title, "simulation");
+    wb_numbers_put_program(root);
+    wb_numbers_put_campaign(root, &comparison->head);
+    wb_numbers_put_outcome(root, &results->outcome);
     wb_json_set_number(root, "jacket_modulus_per_percent_of_core_MPa",
                        wb_wires_split(comparison->cases[WB_WIRES_ELASTOPLASTIC].model, 0.01) /
                            WB_MPA);
@@ -214,8 +196,6 @@ struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
     put_rod(root, "printed_rod", &results->printed, plastic);
     if (results->printed.done)
         wb_json_set_number(root, "printed_collapse_force_N", results->collapse_force);
-    struct wb_json *const list = wb_json_set_array(root, "files");
-    for (int i = 0; i < n_files; i++)
-        wb_json_append_text(list, files[i]);
+    wb_numbers_put_files(root, files, n_files);
     return root;
 }
