@@ -147,6 +147,22 @@ void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_out
         put_missing_dataset(document, &entry);
 }
 
+void wb_pages_put_verdicts(struct wb_document *document, const struct wb_verdict *verdicts, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const struct wb_verdict *const v = &verdicts[i];
+        char text[600], label[300] = "", value[40] = "not known";
+        if (v->label)
+            wb_pages_escape(label, sizeof label, v->label);
+        if (isfinite(v->value))
+            snprintf(value, sizeof value, "%.3g %%", v->value / WB_PERCENT);
+        snprintf(text, sizeof text, "<b>%s</b> %s%s%s: %s, limit %.3g %%.",
+                 v->kept ? "Limit kept." : "Limit exceeded.", v->what, v->label ? ", " : "", label,
+                 value, v->limit / WB_PERCENT);
+        wb_document_item(document, v->kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
+    }
+}
+
 void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *list,
                            const void *results)
 {

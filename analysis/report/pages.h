@@ -8,6 +8,7 @@
 #include "analysis/report/document.h"
 #include "analysis/report/kind.h"
 #include "analysis/report/simulation.h"
+#include "analysis/report/verdict.h"
 #include "fe/material/material.h"
 
 #define WB_PAGES_CELL 360
@@ -40,6 +41,9 @@ void wb_pages_start_simulations(struct wb_document *document, const char *title,
  * them; nothing where all is complete. */
 void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
                           wb_simulation_list *list, const void *results);
+
+/* An item for each limit, kept or exceeded. */
+void wb_pages_put_verdicts(struct wb_document *document, const struct wb_verdict *verdicts, int n);
 
 /* A table of all datasets with their checksums, under a heading. */
 void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *list,

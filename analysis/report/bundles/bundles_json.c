@@ -144,7 +144,7 @@ static void put_bundle(struct wb_json *list, const struct wb_bundles_results *re
 
 static void put_verdicts(struct wb_json *root, const struct wb_bundles_results *results)
 {
-    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
     const int n = wb_bundles_results_judge(results, verdicts);
     struct wb_json *const list = wb_json_set_array(root, "limits");
     for (int i = 0; i < n; i++) {

@@ -35,7 +35,7 @@ static void print(FILE *out, const void *context)
 {
     const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
-    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
     fprintf(out, "%s (simulations): %d of %d datasets used\n", campaign->head.title,
             results->outcome.n_usable, results->outcome.n_wanted);
     wb_simulation_print_missing(out, wb_bundles_results_list, results);

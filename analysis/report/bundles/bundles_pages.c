@@ -28,18 +28,8 @@ static void put_unfitted(struct wb_document *document, const struct wb_bundles_r
 
 static void put_limits(struct wb_document *document, const struct wb_bundles_results *results)
 {
-    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
-    const int n = wb_bundles_results_judge(results, verdicts);
-    for (int i = 0; i < n; i++) {
-        const struct wb_bundles_verdict *const v = &verdicts[i];
-        char text[600], label[300], value[40] = "not known";
-        if (isfinite(v->value))
-            snprintf(value, sizeof value, "%.3g %%", v->value / WB_PERCENT);
-        snprintf(text, sizeof text, "<b>%s</b> %s, %s: %s, limit %.3g %%.",
-                 v->kept ? "Limit kept." : "Limit exceeded.", v->what,
-                 wb_pages_escape(label, sizeof label, v->label), value, v->limit / WB_PERCENT);
-        wb_document_item(document, v->kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
-    }
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
+    wb_pages_put_verdicts(document, verdicts, wb_bundles_results_judge(results, verdicts));
 }
 
 /* --- what came out --- */

@@ -61,16 +61,6 @@ double wb_bundles_results_cost(const struct wb_bundles_results *results, int bun
 
 /* --- limits --- */
 
-static void judge_one(struct wb_bundles_verdict *verdicts, int *n,
-                      const struct wb_bundles_verdict *verdict)
-{
-    if (!(verdict->limit > 0.0))
-        return;
-    verdicts[*n] = *verdict;
-    /* So that a NaN is not kept. */
-    verdicts[(*n)++].kept = verdict->value <= verdict->limit;
-}
-
 enum ratio {
     KINETIC,
     ARTIFICIAL,
@@ -85,11 +75,11 @@ static double ratio_of(const struct wb_bundles_numbers *numbers, enum ratio rati
 }
 
 /* The worst of all usable runs that are judged; a NaN is worse than any. */
-static void judge_energy(const struct wb_bundles_results *results,
-                         struct wb_bundles_verdict *verdicts, int *n, enum ratio ratio)
+static void judge_energy(const struct wb_bundles_results *results, struct wb_verdict *verdicts,
+                         int *n, enum ratio ratio)
 {
     const struct wb_bundles_limits *const limits = &results->campaign->limits;
-    const struct wb_bundles_verdict cases[] = {
+    const struct wb_verdict cases[] = {
         [KINETIC] = {.what = "Kinetic over internal energy",
                      .key = "kinetic_max",
                      .limit = limits->kinetic},
@@ -100,7 +90,7 @@ static void judge_energy(const struct wb_bundles_results *results,
                        .key = "imbalance_max",
                        .limit = limits->imbalance},
     };
-    struct wb_bundles_verdict verdict = cases[ratio];
+    struct wb_verdict verdict = cases[ratio];
     for (int i = 0; i < results->campaign->n_runs; i++) {
         const struct wb_bundles_result *const run = wb_bundles_results_usable(results, i);
         const double value = run ? ratio_of(&run->numbers, ratio) : (double)NAN;
@@ -112,11 +102,11 @@ static void judge_energy(const struct wb_bundles_results *results,
             break;
     }
     if (verdict.label)
-        judge_one(verdicts, n, &verdict);
+        wb_verdict_add(verdicts, n, &verdict);
 }
 
 int wb_bundles_results_judge(const struct wb_bundles_results *results,
-                             struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS])
+                             struct wb_verdict verdicts[WB_BUNDLES_VERDICTS])
 {
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_limits *const limits = &campaign->limits;
@@ -125,30 +115,29 @@ int wb_bundles_results_judge(const struct wb_bundles_results *results,
         const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
         const struct wb_bundles_result *const run =
             wb_bundles_results_usable(results, bundle->dynamic);
-        const struct wb_bundles_verdict rms = {
-            "RMS from the published curve, over its largest force",
-            "rms_max",
-            bundle->label,
-            run ? run->rms : (double)NAN,
-            limits->rms,
-            false};
+        const struct wb_verdict rms = {"RMS from the published curve, over its largest force",
+                                       "rms_max",
+                                       bundle->label,
+                                       run ? run->rms : (double)NAN,
+                                       limits->rms,
+                                       false};
         if (run && run->published && isfinite(run->rms))
-            judge_one(verdicts, &n, &rms);
+            wb_verdict_add(verdicts, &n, &rms);
     }
     judge_energy(results, verdicts, &n, KINETIC);
     judge_energy(results, verdicts, &n, ARTIFICIAL);
     judge_energy(results, verdicts, &n, IMBALANCE);
     for (int i = 0; i < campaign->n_bundles; i++) {
         const double value = wb_bundles_results_cost(results, i);
-        const struct wb_bundles_verdict cost = {"CPU seconds of the 1D beam over those of the "
-                                                "bundle",
-                                                "cost_max",
-                                                campaign->bundles[i].label,
-                                                value,
-                                                limits->cost,
-                                                false};
+        const struct wb_verdict cost = {"CPU seconds of the 1D beam over those of the "
+                                        "bundle",
+                                        "cost_max",
+                                        campaign->bundles[i].label,
+                                        value,
+                                        limits->cost,
+                                        false};
         if (!isnan(value))
-            judge_one(verdicts, &n, &cost);
+            wb_verdict_add(verdicts, &n, &cost);
     }
     return n;
 }
@@ -157,7 +146,7 @@ static void judge(struct wb_bundles_results *results)
 {
     const struct wb_bundles *const campaign = results->campaign;
     struct wb_kind_outcome *const outcome = &results->outcome;
-    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
     wb_simulation_count(wb_bundles_results_list, results, &outcome->n_wanted, &outcome->n_usable);
     outcome->is_complete = outcome->n_usable == outcome->n_wanted;
     for (int i = 0; i < campaign->n_runs; i++) {
@@ -168,8 +157,7 @@ static void judge(struct wb_bundles_results *results)
     for (int i = 0; i < campaign->n_bundles; i++)
         outcome->is_complete &= results->fits[i].state == WB_SIMULATION_USABLE;
     const int n = wb_bundles_results_judge(results, verdicts);
-    for (int i = 0; i < n; i++)
-        outcome->exceeds_limit |= !verdicts[i].kept;
+    outcome->exceeds_limit = !wb_verdict_all_kept(verdicts, n);
 }
 
 /* --- the fit --- */

@@ -10,6 +10,7 @@
 #include "analysis/report/bundles/bundles.h"
 #include "analysis/report/bundles/bundles_run.h"
 #include "analysis/report/kind.h"
+#include "analysis/report/verdict.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -58,22 +59,13 @@ double wb_bundles_results_cost(const struct wb_bundles_results *results, int bun
 /* E I of a beam, N m2. */
 double wb_bundles_results_rigidity(double youngs_modulus, double diameter);
 
-/* What a limit of the campaign says of what is usable. */
-struct wb_bundles_verdict {
-    const char *what;    /* markup */
-    const char *key;     /* of the limit: "rms_max" */
-    const char *label;   /* of the bundle, or the run it is about */
-    double value, limit; /* 1 */
-    bool kept;
-};
-
 enum {
     WB_BUNDLES_VERDICTS = 2 * WB_BUNDLES_BUNDLES + 3
 };
 
-/* Returns how many there are: of every bundle its RMS and its cost, and of the energies the worst
- * of all runs. */
+/* What the limits of the campaign say of what is usable. Returns how many there are: of every
+ * bundle its RMS and its cost, and of the energies the worst of all runs. */
 int wb_bundles_results_judge(const struct wb_bundles_results *results,
-                             struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS]);
+                             struct wb_verdict verdicts[WB_BUNDLES_VERDICTS]);
 
 #endif

@@ -23,39 +23,10 @@ static void put_unfitted(struct wb_document *document, const struct wb_wires_res
     wb_document_item(document, WB_TONE_WARNING, text);
 }
 
-/* One sentence for each limit; `value` NaN: not known. */
-static void put_limit(struct wb_document *document, const char *what, double value, double limit)
-{
-    char text[400];
-    if (!(limit > 0.0) || isnan(value))
-        return;
-    const bool kept = value <= limit;
-    snprintf(text, sizeof text, "<b>%s</b> %s: %.3g %%, limit %.3g %%.",
-             kept ? "Limit kept." : "Limit exceeded.", what, value / WB_PERCENT,
-             limit / WB_PERCENT);
-    wb_document_item(document, kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
-}
-
 static void put_limits(struct wb_document *document, const struct wb_wires_results *results)
 {
-    static const char *const names[] = {
-        "Tip of the elastic solid from the exact one, over its displacement",
-        "Tip of the elastic rod from the exact one, over its displacement"};
-    const struct wb_wires *const comparison = results->comparison;
-    for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-        const struct wb_wires_run *const run =
-            wb_wires_usable(results, WB_WIRES_ELASTIC, (enum wb_wires_solver)k);
-        put_limit(document, names[k], run ? wb_wires_tip_error(results, run) : (double)NAN,
-                  comparison->tip_limit);
-    }
-    double largest = (double)NAN;
-    for (int i = 0; i < results->n_stresses; i++)
-        largest =
-            fmax(largest, fabs(results->stresses[i].core.stress / results->stresses[i].beam - 1.0));
-    put_limit(document, "Elastic stress of the core's outer fibre from <i>E\xce\xba</i><i>r</i>",
-              largest, comparison->stress_limit);
-    put_limit(document, "CPU seconds of the elastic rod over those of the solid",
-              wb_wires_cost(results, WB_WIRES_ELASTIC), comparison->cost_limit);
+    struct wb_verdict verdicts[WB_WIRES_VERDICTS];
+    wb_pages_put_verdicts(document, verdicts, wb_wires_results_judge(results, verdicts));
 }
 
 /* --- what came out --- */

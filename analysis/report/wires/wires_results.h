@@ -8,6 +8,7 @@
 
 #include "analysis/calibrate.h"
 #include "analysis/report/kind.h"
+#include "analysis/report/verdict.h"
 #include "analysis/report/wires/wires.h"
 #include "analysis/report/wires/wires_rod.h"
 #include "analysis/report/wires/wires_run.h"
@@ -66,6 +67,17 @@ void wb_wires_results_release(struct wb_wires_results *results); /* accepts a ze
 /* A run that is usable, else NULL. */
 const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *results, int index,
                                            enum wb_wires_solver solver);
+
+enum {
+    WB_WIRES_VERDICTS = 4
+};
+
+/* What the limits of the campaign say of what is usable. Returns how many there are: of the tips of
+ * the elastic solid and rod, of the elastic stress that differs most, and of the elastic rod's
+ * cost.
+ */
+int wb_wires_results_judge(const struct wb_wires_results *results,
+                           struct wb_verdict verdicts[WB_WIRES_VERDICTS]);
 
 /* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_wires_cost(const struct wb_wires_results *results, int index);

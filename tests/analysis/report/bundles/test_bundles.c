@@ -541,13 +541,13 @@ static void limits_that_are_exceeded_are_told(void **state)
     assert_true(results.outcome.is_complete);
     assert_true(results.outcome.exceeds_limit);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+        struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
         campaign.limits = cases[i].limits;
         assert_int_equal(wb_bundles_results_judge(&results, verdicts), 1);
         assert_string_equal(verdicts[0].key, cases[i].key);
         assert_int_equal(verdicts[0].kept, cases[i].kept);
     }
-    struct wb_bundles_verdict none[WB_BUNDLES_VERDICTS];
+    struct wb_verdict none[WB_BUNDLES_VERDICTS];
     campaign.limits = (struct wb_bundles_limits){.kinetic = 0.02};
     campaign.runs[0].judged = false;
     assert_int_equal(wb_bundles_results_judge(&results, none), 0);
