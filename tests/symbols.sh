@@ -44,7 +44,7 @@ for archive in "$@"; do
             sub(/\.c\.o$/, "", stem)
             inner = stem
             # Meson writes the folder before the name.
-            sub(/^(plot|report|draw|bench)_/, "", inner)
+            sub(/^plot_/, "", inner)
             if (!belongs(stem, $2) && !(inner != stem && belongs(inner, $2)))
                 print $1 " " $2
         }' | sort -u)

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/interrupt.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "campaign"
@@ -20,7 +21,7 @@ enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
 }
 
 /* No path of this machine may reach the report: shipped campaigns are named from fixtures/ on. */
-void wb_campaign_set_name(char *name, size_t size, const char *path)
+static void set_name(char *name, size_t size, const char *path)
 {
     static const char place[] = "fixtures/campaigns/";
     const char *const file = wb_file_name(path);
@@ -29,23 +30,53 @@ void wb_campaign_set_name(char *name, size_t size, const char *path)
     snprintf(name, size, "%s%.200s", shipped ? place : "", file);
 }
 
-enum wb_status wb_campaign_read_kind(enum wb_campaign_kind *kind, const char *path)
+enum wb_status wb_campaign_open(struct wb_campaign *campaign, struct wb_config **config,
+                                const char *path)
 {
-    static const char *const kinds[] = {"recordings", "comparison", "bundles"};
+    WB_TRY(wb_hash_file(path, campaign->sha256));
+    set_name(campaign->name, sizeof campaign->name, path);
+    wb_file_folder(campaign->folder, path);
+    return wb_config_read(config, path);
+}
+
+/* "recordings, comparison or bundles". */
+static void list_names(char *text, size_t size, const char *const *names, size_t n)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t i = 0; i < n && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s",
+                                 i == 0       ? ""
+                                 : i + 1 == n ? " or "
+                                              : ", ",
+                                 names[i]);
+}
+
+enum wb_status wb_campaign_read_kind(int *kind, const char *path, const char *const *names,
+                                     size_t n_names)
+{
+    char expected[200];
     struct wb_config *config;
     WB_TRY(wb_config_read(&config, path));
     const struct wb_config_node *const root = wb_config_root(config);
     const struct wb_config_node *const node = wb_config_find(root, "kind");
-    const char *const text = node ? wb_config_scalar(node) : kinds[0];
-    enum wb_status status = WB_OK;
-    if (text && strcmp(text, kinds[0]) == 0)
-        *kind = WB_CAMPAIGN_RECORDINGS;
-    else if (text && strcmp(text, kinds[1]) == 0)
-        *kind = WB_CAMPAIGN_COMPARISON;
-    else if (text && strcmp(text, kinds[2]) == 0)
-        *kind = WB_CAMPAIGN_BUNDLES;
-    else
-        status = wb_config_refuse(root, "kind", "expected recordings, comparison or bundles");
+    const char *const text = node ? wb_config_scalar(node) : names[0];
+    enum wb_status status = WB_ERR_NOT_FOUND;
+    for (size_t i = 0; i < n_names && text && status != WB_OK; i++) {
+        if (strcmp(text, names[i]) != 0)
+            continue;
+        *kind = (int)i;
+        status = WB_OK;
+    }
+    list_names(expected, sizeof expected, names, n_names);
+    if (status != WB_OK)
+        status = wb_config_refuse(root, "kind", "expected %s", expected);
     wb_config_destroy(config);
     return status;
+}
+
+bool wb_campaign_go_on(void *context, int evaluation, double error, double size)
+{
+    (void)context, (void)evaluation, (void)error, (void)size;
+    return !wb_interrupted();
 }

@@ -102,8 +102,95 @@ void wb_pages_put_row(struct wb_document *document, struct wb_document_table *ta
     row->n = 0;
 }
 
-void wb_pages_put_origin(struct wb_document *document, const char *campaign, const char *sha256,
-                         const char *notes, const char *same)
+void wb_pages_start_simulations(struct wb_document *document, const char *title,
+                                const struct wb_kind_outcome *outcome)
+{
+    char subtitle[300], footer[300];
+    snprintf(footer, sizeof footer, "wirebench %s, revision %s \xc2\xb7 simulations, no tests",
+             wb_version(), wb_version_revision());
+    snprintf(subtitle, sizeof subtitle, "%d of %d simulations \xc2\xb7 wirebench %s, revision %s",
+             outcome->n_usable, outcome->n_wanted, wb_version(), wb_version_revision());
+    wb_document_init(document, "Simulation report", title, subtitle, footer, "");
+}
+
+static void put_missing_dataset(struct wb_document *document,
+                                const struct wb_simulation_entry *entry)
+{
+    char text[1700], name[600], problem[900];
+    if (!entry->wanted->wanted || entry->result->state == WB_SIMULATION_USABLE)
+        return;
+    snprintf(text, sizeof text,
+             "<b>%s</b>: %s. To make it:", wb_pages_escape(name, sizeof name, entry->wanted->name),
+             wb_pages_escape(problem, sizeof problem, wb_text_string(&entry->result->problem)));
+    wb_document_item(document, WB_TONE_WARNING, text);
+    wb_document_code(document, entry->wanted->command);
+}
+
+void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
+                          wb_simulation_list *list, const void *results)
+{
+    struct wb_simulation_entry entry;
+    char text[400];
+    const int n = outcome->n_wanted - outcome->n_usable;
+    if (outcome->is_complete)
+        return;
+    if (n > 0)
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> %d of %d datasets %s missing or cannot be used. The report "
+                 "shows what the others give. <tt>wirebench report --solve</tt> makes them.",
+                 n, outcome->n_wanted, wb_pages_plural(n, "is", "are"));
+    else
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> All datasets are there, but not every step could be done.");
+    wb_document_notice(document, WB_TONE_WARNING, text);
+    for (int i = 0; list(results, i, &entry); i++)
+        put_missing_dataset(document, &entry);
+}
+
+void wb_pages_put_verdicts(struct wb_document *document, const struct wb_verdict *verdicts, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const struct wb_verdict *const v = &verdicts[i];
+        char text[600], label[300] = "", value[40] = "not known";
+        if (v->label)
+            wb_pages_escape(label, sizeof label, v->label);
+        if (isfinite(v->value))
+            snprintf(value, sizeof value, "%.3g %%", v->value / WB_PERCENT);
+        snprintf(text, sizeof text, "<b>%s</b> %s%s%s: %s, limit %.3g %%.",
+                 v->kept ? "Limit kept." : "Limit exceeded.", v->what, v->label ? ", " : "", label,
+                 value, v->limit / WB_PERCENT);
+        wb_document_item(document, v->kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
+    }
+}
+
+void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *list,
+                           const void *results)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "Dataset", .wraps = true},
+        {"Revision"},
+        {.heading = "SHA-256 of force_deflection.csv", .monospace = true},
+    };
+    struct wb_simulation_entry entry;
+    wb_document_heading(document, 2, "datasets", "Datasets");
+    struct wb_document_table *const table =
+        wb_document_table(document, "Revision: of the program that made it.", 3, columns);
+    for (int i = 0; list(results, i, &entry); i++) {
+        struct wb_pages_row row = {.n = 0};
+        if (!entry.wanted->wanted)
+            continue;
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, entry.wanted->name);
+        if (entry.result->state == WB_SIMULATION_USABLE)
+            wb_pages_cell_plain(&row, WB_TONE_PLAIN, entry.result->revision);
+        else
+            wb_pages_cell(&row, WB_TONE_WARNING, "not used");
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, entry.result->sha256);
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+void wb_pages_put_origin(struct wb_document *document, const struct wb_campaign *campaign,
+                         const char *same)
 {
     char text[2600], name[600], escaped[2200], command[400];
     wb_document_new_page(document);
@@ -111,11 +198,11 @@ void wb_pages_put_origin(struct wb_document *document, const char *campaign, con
     snprintf(text, sizeof text,
              "Campaign <tt>%s</tt>, SHA-256 <tt>%s</tt>. Written by wirebench %s, revision "
              "<tt>%s</tt>. The same %s and the same revision give the same bytes:",
-             wb_pages_escape(name, sizeof name, campaign), sha256, wb_version(),
+             wb_pages_escape(name, sizeof name, campaign->name), campaign->sha256, wb_version(),
              wb_version_revision(), same);
     wb_document_paragraph(document, text);
-    snprintf(command, sizeof command, "wirebench report %s -o DIR", campaign);
+    snprintf(command, sizeof command, "wirebench report %s -o DIR", campaign->name);
     wb_document_code(document, command);
-    if (notes[0])
-        wb_document_paragraph(document, wb_pages_escape(escaped, sizeof escaped, notes));
+    if (campaign->notes[0])
+        wb_document_paragraph(document, wb_pages_escape(escaped, sizeof escaped, campaign->notes));
 }

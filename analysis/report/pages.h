@@ -4,7 +4,11 @@
 #ifndef WB_ANALYSIS_REPORT_PAGES_H
 #define WB_ANALYSIS_REPORT_PAGES_H
 
+#include "analysis/report/campaign.h"
 #include "analysis/report/document.h"
+#include "analysis/report/kind.h"
+#include "analysis/report/simulation.h"
+#include "analysis/report/verdict.h"
 #include "fe/material/material.h"
 
 #define WB_PAGES_CELL 360
@@ -29,10 +33,26 @@ void wb_pages_put_row(struct wb_document *document, struct wb_document_table *ta
 /* Escapes into a buffer, cut where it ends (never within an entity). Returns the buffer. */
 char *wb_pages_escape(char *buffer, size_t size, const char *raw);
 
+/* Starts the document of a report of simulations. */
+void wb_pages_start_simulations(struct wb_document *document, const char *title,
+                                const struct wb_kind_outcome *outcome);
+
+/* A notice that something is missing, then which datasets cannot be used, why, and how to make
+ * them; nothing where all is complete. */
+void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
+                          wb_simulation_list *list, const void *results);
+
+/* An item for each limit, kept or exceeded. */
+void wb_pages_put_verdicts(struct wb_document *document, const struct wb_verdict *verdicts, int n);
+
+/* A table of all datasets with their checksums, under a heading. */
+void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *list,
+                           const void *results);
+
 /* The heading of a report's last chapter: campaign, checksum, program, the command that makes it
  * again, notes. `same` is what it was made from, "recordings". */
-void wb_pages_put_origin(struct wb_document *document, const char *campaign, const char *sha256,
-                         const char *notes, const char *same);
+void wb_pages_put_origin(struct wb_document *document, const struct wb_campaign *campaign,
+                         const char *same);
 
 /* " (the paper's Fig. N)", or "" without a number. */
 const char *wb_pages_paper_figure(char text[48], const char *number);

@@ -6,7 +6,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "analysis/report/bench/recordings_report.h"
+#include "analysis/report/bench/recordings_kind.h"
+#include "analysis/report/report.h"
 #include "base/log.h"
 
 static double seconds(clockid_t clock)
@@ -33,12 +34,12 @@ static bool time_report(const char *path, int n_threads, const char *folder, str
         return false;
     }
     const double computed = seconds(CLOCK_MONOTONIC);
-    const bool good = wb_recordings_report_write(&results, folder, true) == WB_OK;
+    const bool good = wb_report_write(&wb_recordings_kind, &results, folder, true) == WB_OK;
     timing->compute = computed - start;
     timing->draw = seconds(CLOCK_MONOTONIC) - computed;
     timing->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-    timing->n_tests = results.n_tests;
-    timing->n_usable = results.n_usable;
+    timing->n_tests = results.outcome.n_wanted;
+    timing->n_usable = results.outcome.n_usable;
     wb_recordings_results_release(&results);
     wb_recordings_release(&campaign);
     return good;

@@ -95,9 +95,4 @@ grep -q 'limit kinetic_max exceeded by one' out || fail 'the exceeded limit is n
 sed -i '/name: lost/d' c.yaml
 run 4 c.yaml -o r --force
 
-# Of bundles only.
-sed 's/^kind: .*/kind: comparison/' c.yaml >other.yaml
-run 1 other.yaml -o other --solve
-grep -q 'kind bundles' err || fail 'it is not told which campaigns can be solved'
-
 finish 'report of bundles'

@@ -58,4 +58,46 @@ grep -q 'have changed since' "$folder/out" || fail 'the changed model is not tol
 grep -q 'have changed since' "$folder/r/report.html" || fail 'the report hides the changed model'
 grep -q 'no fitted rod' "$folder/out" || fail 'the missing fit is not told'
 
+# --solve makes what is missing: solids and rods of a coarse wire under a small force.
+for model in follower-8awg-elastic follower-8awg; do
+    sed -E 's/elements_along: .*/elements_along: 10/; s/section_density: .*/section_density: 1/
+        s/rows: .*/rows: 12/; s/24, 0\]/16, 0]/' \
+        "$WIREBENCH_SOURCE_ROOT/fixtures/models/$model.yaml" >"$folder/$model.yaml"
+done
+cat >"$folder/own.yaml" <<'YAML'
+kind: comparison
+title: Solid and rod, made here
+simulations: own
+elastic: {model: ./follower-8awg-elastic.yaml}
+elastoplastic: {model: ./follower-8awg.yaml}
+fit: {elements: 10, fibres: 12}
+YAML
+run 3 "$folder/own.yaml" -o "$folder/without"
+grep -q '<tt>wirebench report --solve</tt> makes them' "$folder/without/report.html" ||
+    fail 'the report does not say that --solve makes its datasets'
+
+# An array that is only written, and no report.
+run 0 "$folder/own.yaml" -o "$folder/dry" --slurm-dry-run --cores-per-run 2
+[ -e "$folder/dry" ] && fail 'a dry run wrote a report'
+grep -rq 'solve wire3d' "$folder/dry.jobs" || fail 'no list of runs was written'
+grep -rq -e '--checkpoint\|--threads' "$folder/dry.jobs" && fail 'a wire has options of bundles'
+
+run 0 "$folder/own.yaml" -o "$folder/made" --solve --workers 2
+grep -q '4 of 4 datasets used' "$folder/out" || fail '--solve did not make all datasets'
+grep -q '^wirebench solve wire3d' "$folder/made.jobs/follower-8awg-3d.log" || fail 'there is no log'
+before=$(sha256sum "$folder"/own/*/dataset.json)
+run 0 "$folder/own.yaml" -o "$folder/remade" --solve
+[ "$before" = "$(sha256sum "$folder"/own/*/dataset.json)" ] ||
+    fail 'datasets that are there were made again'
+diff -r "$folder/made" "$folder/remade" >/dev/null || fail 'the same datasets gave other bytes'
+
+# A changed model: its datasets are outdated, and replaced; the others stay.
+echo '# changed' >>"$folder/follower-8awg-elastic.yaml"
+run 3 "$folder/own.yaml" -o "$folder/made" --force
+grep -q '2 of 4 datasets used' "$folder/out" || fail 'datasets of a changed model are used'
+run 0 "$folder/own.yaml" -o "$folder/made" --force --solve
+grep -q '4 of 4 datasets used' "$folder/out" || fail '--solve did not replace outdated datasets'
+[ "$(echo "$before" | grep '8awg-3d')" = "$(sha256sum "$folder"/own/follower-8awg-3d/dataset.json)" ] ||
+    fail 'a dataset that fits was made again'
+
 finish 'report of a comparison'

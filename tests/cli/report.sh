@@ -43,6 +43,13 @@ run 3 "$folder/empty.yaml" -o "$folder/r" --force --json
 cmp -s "$folder/before.json" "$folder/r/report.json" || fail 'the same campaign gave other bytes'
 cmp -s "$folder/out" "$folder/r/report.json" || fail '--json does not print report.json'
 
+# What was to be measured is not computed: that is told, and the report is written.
+run 3 "$folder/empty.yaml" -o "$folder/solved" --solve
+grep -q 'recordings cannot be computed' "$folder/err" || fail 'it is not told what --solve leaves out'
+[ "$(grep -c 'cannot be computed' "$folder/err")" -eq 1 ] || fail 'it is told more than once'
+cmp -s "$folder/before.json" "$folder/solved/report.json" || fail '--solve changed a report of recordings'
+[ -e "$folder/solved.jobs" ] && fail 'a campaign of recordings has runs'
+
 # No place to write.
 echo text >"$folder/file"
 run 1 "$folder/empty.yaml" -o "$folder/file/r"

@@ -17,7 +17,6 @@ static const char default_index[] = "recordings/index.yaml";
 /* What reading needs besides the campaign itself. */
 struct reading {
     struct wb_recordings *campaign;
-    char folder[WB_PATH]; /* of the campaign file */
     struct wb_index index;
     bool has_index;
     char index_problem[320];
@@ -167,7 +166,7 @@ static enum wb_status take_named(const struct reading *reading, const char *name
         WB_TRY(wb_file_join(path, reading->index.folder, entry->file));
         return add_file(tests, path, entry);
     }
-    WB_TRY(wb_file_join(path, reading->folder, name));
+    WB_TRY(wb_file_join(path, reading->campaign->head.folder, name));
     glob_t found = {0};
     enum wb_status status = WB_OK;
     /* glob() sorts, so the order is the same in every run (of one locale, which we never set). */
@@ -215,7 +214,7 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
     char path[WB_PATH], named_in[WB_PATH + 32];
     snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
              wb_config_line(wb_config_find(node, "wire")));
-    WB_TRY(wb_file_find_named(path, "wires", name, reading->folder, named_in));
+    WB_TRY(wb_file_find_named(path, "wires", name, reading->campaign->head.folder, named_in));
     WB_TRY(wb_wire_read(path, &wire->product));
     if (!wire->label[0])
         snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);
@@ -260,7 +259,7 @@ static enum wb_status read_index(struct reading *reading, const char *given)
     char path[WB_PATH];
     bool found;
     if (given[0]) {
-        WB_TRY(wb_file_join(path, reading->folder, given));
+        WB_TRY(wb_file_join(path, reading->campaign->head.folder, given));
         found = wb_file_exists(path);
     } else {
         found = wb_file_find_data(path, default_index) == WB_OK;
@@ -283,8 +282,8 @@ static enum wb_status read_campaign(struct reading *reading, const struct wb_con
     campaign->samples = 1;
     const struct wb_config_key keys[] = {
         WB_CONFIG_IGNORED("kind"),
-        WB_CONFIG_TEXT("title", campaign->title),
-        WB_CONFIG_OPTIONAL_TEXT("notes", campaign->notes),
+        WB_CONFIG_TEXT("title", campaign->head.title),
+        WB_CONFIG_OPTIONAL_TEXT("notes", campaign->head.notes),
         WB_CONFIG_OPTIONAL_TEXT("index", index),
         WB_CONFIG_NUMBER("calibration_length_mm", &campaign->calibration_length, WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_NUMBER("validation_length_mm", &campaign->validation_length, WB_MM, 1.0,
@@ -307,12 +306,9 @@ enum wb_status wb_recordings_read(struct wb_recordings *campaign, const char *pa
 {
     memset(campaign, 0, sizeof *campaign);
     wb_calibrate_default_settings(&campaign->calibrate);
-    WB_TRY(wb_hash_file(path, campaign->sha256));
-    wb_campaign_set_name(campaign->name, sizeof campaign->name, path);
     struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_campaign_open(&campaign->head, &config, path));
     struct reading reading = {.campaign = campaign};
-    wb_file_folder(reading.folder, path);
     const enum wb_status status = read_campaign(&reading, wb_config_root(config));
     wb_index_release(&reading.index);
     wb_config_destroy(config);

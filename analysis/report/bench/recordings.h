@@ -77,12 +77,9 @@ struct wb_recordings_wire {
 };
 
 struct wb_recordings {
-    char title[200];
-    char notes[2000];
-    char name[256];              /* of the file, from fixtures/ on when it is a shipped one */
-    char sha256[WB_SHA256_TEXT]; /* of the file */
-    double calibration_length;   /* m */
-    double validation_length;    /* m; 0: no validation */
+    struct wb_campaign head;
+    double calibration_length; /* m */
+    double validation_length;  /* m; 0: no validation */
     int samples;
     struct wb_calibrate_settings calibrate;
     double calibration_limit, validation_limit; /* of the RMS over F_max; 0: none */

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "analysis/report/bench/recordings_figures.h"
+#include "analysis/report/numbers.h"
 #include "base/units.h"
-#include "base/version.h"
 
 static const char *state_text(enum wb_recordings_results_state state)
 {
@@ -66,14 +66,6 @@ static void put_tests(struct wb_json *list, const struct wb_recordings_results_w
     }
 }
 
-static void put_array(struct wb_json *object, const char *key, const double *values, int n,
-                      double unit)
-{
-    struct wb_json *const list = wb_json_set_array(object, key);
-    for (int i = 0; i < n; i++)
-        wb_json_append_number(list, values[i] / unit);
-}
-
 static void put_prediction(struct wb_json *object, const char *key,
                            const struct wb_prediction *prediction)
 {
@@ -82,8 +74,8 @@ static void put_prediction(struct wb_json *object, const char *key,
     wb_json_set_number(entry, "rms_from_5mm_over_F_max", prediction->rms_from_5mm);
     wb_json_set_number(entry, "largest_error_over_F_max", prediction->max_error);
     wb_json_set_integer(entry, "points_reached", prediction->n_reached);
-    put_array(entry, "force_mN", prediction->force, prediction->n, WB_MN);
-    put_array(entry, "error_over_F_max", prediction->error, prediction->n, 1.0);
+    wb_numbers_put_list(entry, "force_mN", prediction->force, prediction->n, WB_MN);
+    wb_numbers_put_list(entry, "error_over_F_max", prediction->error, prediction->n, 1.0);
 }
 
 static void put_comparison(struct wb_json *object, const struct wb_validate_result *result,
@@ -106,10 +98,10 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
     struct wb_json *const deflection = wb_json_set_array(measured, "deflection_mm");
     for (int i = 0; i < curve->n; i++)
         wb_json_append_number(deflection, i * curve->step / WB_MM);
-    put_array(measured, "force_mN", curve->force, curve->n, WB_MN);
-    put_array(measured, "lowest_mN", curve->low, curve->n, WB_MN);
-    put_array(measured, "highest_mN", curve->high, curve->n, WB_MN);
-    put_array(measured, "standard_deviation_mN", curve->deviation, curve->n, WB_MN);
+    wb_numbers_put_list(measured, "force_mN", curve->force, curve->n, WB_MN);
+    wb_numbers_put_list(measured, "lowest_mN", curve->low, curve->n, WB_MN);
+    wb_numbers_put_list(measured, "highest_mN", curve->high, curve->n, WB_MN);
+    wb_numbers_put_list(measured, "standard_deviation_mN", curve->deviation, curve->n, WB_MN);
     put_prediction(object, "elastoplastic", &result->elastoplastic);
     put_prediction(object, "linear_elastic", &result->elastic);
 }
@@ -213,19 +205,12 @@ struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *res
 {
     const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", campaign->title);
-    wb_json_set_text(root, "data", wb_recordings_figures_measured(results));
+    wb_numbers_put_title(root, campaign->head.title, wb_recordings_figures_measured(results));
     wb_json_set_boolean(root, "virtual_rig", results->any_virtual);
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench report");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
-    struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", campaign->name);
-    wb_json_set_text(file, "sha256", campaign->sha256);
+    wb_numbers_put_program(root);
+    wb_numbers_put_campaign(root, &campaign->head);
     put_settings(root, campaign);
-    wb_json_set_boolean(root, "complete", results->is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", results->exceeds_limit);
+    wb_numbers_put_outcome(root, &results->outcome);
     struct wb_json *const recordings = wb_json_set_array(root, "recordings");
     struct wb_json *const wires = wb_json_set_array(root, "wires");
     for (int i = 0; i < results->n_wires; i++) {
@@ -234,8 +219,6 @@ struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *res
         put_tests(recordings, wire, &wire->validation_tests, "validation");
         put_wire(wires, wire);
     }
-    struct wb_json *const list = wb_json_set_array(root, "files");
-    for (int i = 0; i < n_files; i++)
-        wb_json_append_text(list, files[i]);
+    wb_numbers_put_files(root, files, n_files);
     return root;
 }

@@ -101,10 +101,10 @@ static void put_limits(struct wb_document *document, const struct wb_recordings_
                          campaign->validation_limit, &wire->validation);
         }
     }
-    if (judged == 0 || results->exceeds_limit)
+    if (judged == 0 || results->outcome.exceeds_limit)
         return;
     struct wb_text text = {0};
-    wb_text_append(&text, results->is_complete
+    wb_text_append(&text, results->outcome.is_complete
                               ? "<b>All limits of the campaign are kept:</b>"
                               : "<b>What could be computed keeps the campaign's limits:</b>");
     if (campaign->calibration_limit > 0.0)
@@ -132,15 +132,15 @@ static void put_step_problem(struct wb_document *document, const char *label, co
 
 static void put_missing(struct wb_document *document, const struct wb_recordings_results *results)
 {
-    if (results->is_complete)
+    if (results->outcome.is_complete)
         return;
     char text[300];
-    const int n = results->n_tests - results->n_usable;
+    const int n = results->outcome.n_wanted - results->outcome.n_usable;
     if (n > 0)
         snprintf(text, sizeof text,
                  "<b>Incomplete.</b> %d of %d recordings %s missing or could not be used. The "
                  "report shows what the others give.",
-                 n, results->n_tests, wb_pages_plural(n, "is", "are"));
+                 n, results->outcome.n_wanted, wb_pages_plural(n, "is", "are"));
     else
         snprintf(text, sizeof text,
                  "<b>Incomplete.</b> All recordings are there, but not every "
@@ -332,7 +332,7 @@ static int put_gaps(struct wb_document *document, const struct wb_recordings_res
     snprintf(item, sizeof item,
              "%d of %d recordings %s gaps in the rows, the longest of %.2f s; the pages of the "
              "wires name them.",
-             n, results->n_usable, wb_pages_plural(n, "has", "have"), longest);
+             n, results->outcome.n_usable, wb_pages_plural(n, "has", "have"), longest);
     wb_document_item(document, WB_TONE_PLAIN, item);
     return 1;
 }
@@ -1084,7 +1084,7 @@ static void put_provenance(struct wb_document *document,
                            const struct wb_recordings_results *results)
 {
     const struct wb_recordings *const campaign = results->campaign;
-    wb_pages_put_origin(document, campaign->name, campaign->sha256, campaign->notes, "recordings");
+    wb_pages_put_origin(document, &campaign->head, "recordings");
     put_settings(document, results);
     put_recordings(document, results);
 }
@@ -1100,16 +1100,16 @@ void wb_recordings_pages_build(struct wb_document *document,
              wb_version_revision(), results->any_virtual ? " \xc2\xb7 virtual rig" : "");
     snprintf(subtitle, sizeof subtitle,
              "%d of %d recordings, the latest of %.10s \xc2\xb7 wirebench %s, revision %s",
-             results->n_usable, results->n_tests,
+             results->outcome.n_usable, results->outcome.n_wanted,
              results->latest_utc[0] ? results->latest_utc : "an unknown date", wb_version(),
              wb_version_revision());
-    if (results->n_usable == 0)
+    if (results->outcome.n_usable == 0)
         snprintf(subtitle, sizeof subtitle,
                  "none of %d recordings \xc2\xb7 wirebench %s, revision "
                  "%s",
-                 results->n_tests, wb_version(), wb_version_revision());
-    wb_document_init(document, "Calibration report", results->campaign->title, subtitle, footer,
-                     results->latest_utc);
+                 results->outcome.n_wanted, wb_version(), wb_version_revision());
+    wb_document_init(document, "Calibration report", results->campaign->head.title, subtitle,
+                     footer, results->latest_utc);
     put_summary(document, results);
     put_bench(document, results, figures);
     put_overview(document, figures);

@@ -40,7 +40,7 @@ struct schedule {
     struct wb_recordings_results *results;
     int n, n_finished;
     struct job *jobs; /* in order of preference: calibrations, alignments, validations */
-    wb_recordings_results_progress *progress;
+    wb_kind_progress *progress;
     void *context;
 };
 
@@ -140,22 +140,13 @@ static int usable_datasets(const struct wb_recordings_results_tests *tests,
     return n;
 }
 
-static bool go_on(void *context, int evaluation, double error, double size)
-{
-    (void)context;
-    (void)evaluation;
-    (void)error;
-    (void)size;
-    return !wb_interrupted();
-}
-
 static enum wb_status calibrate(const struct wb_recordings *campaign,
                                 struct wb_recordings_results_wire *wire,
                                 const struct wb_dataset *const *datasets, int n,
                                 struct wb_reason *why)
 {
     struct wb_calibrate_settings settings = campaign->calibrate;
-    settings.progress = go_on;
+    settings.progress = wb_campaign_go_on;
     WB_TRY(wb_calibrate_run(&wire->calibration, datasets, n, &settings, why));
     wb_properties_from_result(&wire->calibration, &wire->properties);
     const enum wb_status status =
@@ -346,7 +337,7 @@ enum wb_status wb_recordings_results_init(struct wb_recordings_results *results,
             campaign->validation_length > 0.0 ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
         WB_TRY(prepare_tests(&wire->calibration_tests, &wire->wanted->calibration));
         WB_TRY(prepare_tests(&wire->validation_tests, &wire->wanted->validation));
-        results->n_tests += wire->calibration_tests.n + wire->validation_tests.n;
+        results->outcome.n_wanted += wire->calibration_tests.n + wire->validation_tests.n;
     }
     return WB_OK;
 }
@@ -359,7 +350,7 @@ static void count_tests(struct wb_recordings_results *results,
         if (!test->usable)
             continue;
         tests->n_usable++;
-        results->n_usable++;
+        results->outcome.n_usable++;
         results->any_virtual |= test->is_virtual;
         results->all_virtual &= test->is_virtual;
         if (strcmp(test->start_utc, results->latest_utc) > 0)
@@ -371,31 +362,30 @@ void wb_recordings_results_judge(struct wb_recordings_results *results)
 {
     const struct wb_recordings *const campaign = results->campaign;
     results->all_virtual = true;
-    results->is_complete = true;
+    results->outcome.is_complete = true;
     for (int i = 0; i < results->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &results->wires[i];
         count_tests(results, &wire->calibration_tests);
         count_tests(results, &wire->validation_tests);
         const bool calibrated = wire->calibration_state == WB_RECORDINGS_DONE;
         const bool validated = wire->validation_state == WB_RECORDINGS_DONE;
-        results->is_complete &=
+        results->outcome.is_complete &=
             calibrated && (validated || wire->validation_state == WB_RECORDINGS_NOT_WANTED);
         /* Compared so that a NaN exceeds. */
         if (calibrated && campaign->calibration_limit > 0.0 &&
             !(wire->calibration.rms <= campaign->calibration_limit))
-            results->exceeds_limit = true;
+            results->outcome.exceeds_limit = true;
         if (validated && campaign->validation_limit > 0.0 &&
             !(wire->validation.elastoplastic.rms <= campaign->validation_limit))
-            results->exceeds_limit = true;
+            results->outcome.exceeds_limit = true;
     }
-    results->is_complete &= results->n_usable == results->n_tests;
-    results->all_virtual &= results->n_usable > 0;
+    results->outcome.is_complete &= results->outcome.n_usable == results->outcome.n_wanted;
+    results->all_virtual &= results->outcome.n_usable > 0;
 }
 
 enum wb_status wb_recordings_results_compute(struct wb_recordings_results *results,
                                              const struct wb_recordings *campaign, int n_threads,
-                                             wb_recordings_results_progress *progress,
-                                             void *context)
+                                             wb_kind_progress *progress, void *context)
 {
     enum wb_status status = wb_recordings_results_init(results, campaign);
     struct schedule schedule = {.lock = PTHREAD_MUTEX_INITIALIZER,
@@ -404,7 +394,7 @@ enum wb_status wb_recordings_results_compute(struct wb_recordings_results *resul
                                 .progress = progress,
                                 .context = context};
     if (status == WB_OK) {
-        const size_t n = (size_t)results->n_tests + 2 * (size_t)results->n_wires;
+        const size_t n = (size_t)results->outcome.n_wanted + 2 * (size_t)results->n_wires;
         schedule.jobs = calloc(n, sizeof *schedule.jobs);
         if (!schedule.jobs)
             status = wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
@@ -420,7 +410,7 @@ enum wb_status wb_recordings_results_compute(struct wb_recordings_results *resul
     }
     run_threads(&schedule, n_threads);
     free(schedule.jobs);
-    results->interrupted = wb_interrupted();
+    results->outcome.interrupted = wb_interrupted();
     wb_recordings_results_judge(results);
     return WB_OK;
 }

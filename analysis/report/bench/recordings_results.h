@@ -10,6 +10,7 @@
 #include "analysis/calibrate.h"
 #include "analysis/dataset.h"
 #include "analysis/report/bench/recordings.h"
+#include "analysis/report/kind.h"
 #include "analysis/validate.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -58,27 +59,20 @@ struct wb_recordings_results_wire {
 };
 
 struct wb_recordings_results {
+    struct wb_kind_outcome outcome;
     const struct wb_recordings *campaign; /* borrowed; must outlive the results */
     int n_wires;
     struct wb_recordings_results_wire *wires; /* (n_wires), owned */
-    int n_tests, n_usable;                    /* recordings wanted and used */
     bool any_virtual, all_virtual;            /* of the recordings that were used */
     char latest_utc[40];                      /* start of the latest recording; "" without any */
-    bool is_complete;                         /* nothing is missing, refused or failed */
-    bool exceeds_limit;                       /* of the campaign */
-    bool interrupted;                         /* by Ctrl-C; the results are not to be reported */
 };
-
-/* Told after each finished job from the calling thread's side, under a lock: how many of how many,
- * and what is being done. May be NULL. */
-typedef void wb_recordings_results_progress(void *context, int done, int total, const char *what);
 
 /* Computes everything, on `n_threads` threads (0: as many as cores, 4 at most). WB_OK also when
  * recordings are missing or steps failed: the results say so. */
 WB_MUST_CHECK enum wb_status wb_recordings_results_compute(struct wb_recordings_results *results,
                                                            const struct wb_recordings *campaign,
                                                            int n_threads,
-                                                           wb_recordings_results_progress *progress,
+                                                           wb_kind_progress *progress,
                                                            void *context);
 void wb_recordings_results_release(
     struct wb_recordings_results *results); /* accepts a zeroed one */

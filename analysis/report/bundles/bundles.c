@@ -11,8 +11,6 @@
 
 #define WB_LOG_DOMAIN "campaign"
 
-static const char shipped[] = "simulations";
-
 const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run)
 {
     const struct wb_bundle_model *const model = run->model;
@@ -29,84 +27,15 @@ const char *wb_bundles_loading(const struct wb_bundles_run *run)
     return texts[loads->strand_length > 0.0][loads->weight];
 }
 
-/* --- datasets --- */
-
-const char *wb_bundles_as_told(const char *given)
-{
-    if (given[0] == '/' || strstr(given, ".."))
-        given = wb_file_name(given);
-    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
-}
-
-/* A name lies among the simulations; whatever holds a '/' is a path from the campaign file. */
-enum wb_status wb_bundles_dataset_find(const struct wb_bundles_reading *reading, const char *given,
-                                       struct wb_bundles_dataset *dataset)
-{
-    char folder[WB_PATH], name[WB_PATH];
-    snprintf(dataset->log, sizeof dataset->log, "%.120s", wb_file_name(given));
-    if (strchr(given, '/')) {
-        snprintf(dataset->name, sizeof dataset->name, "%.250s", wb_bundles_as_told(given));
-        return wb_file_join(dataset->path, reading->folder, given);
-    }
-    const char *const told = wb_bundles_as_told(reading->simulations);
-    const bool has_name = told[0] && strcmp(told, ".") != 0;
-    snprintf(dataset->name, sizeof dataset->name, "%.120s/%.120s", has_name ? told : shipped,
-             given);
-    if (reading->simulations[0]) {
-        WB_TRY(wb_file_join(folder, reading->folder, reading->simulations));
-        return wb_file_join(dataset->path, folder, given);
-    }
-    if (wb_file_find_data(folder, shipped) != WB_OK)
-        snprintf(folder, sizeof folder, "%s", shipped);
-    WB_TRY(wb_file_join(name, folder, given));
-    snprintf(dataset->path, sizeof dataset->path, "%s", name);
-    return WB_OK;
-}
-
-static void tell(struct wb_bundles_dataset *dataset, const char *text)
-{
-    const size_t used = strlen(dataset->command);
-    const char *const quote = strpbrk(text, " \t'\"$") ? "'" : "";
-    snprintf(dataset->command + used, sizeof dataset->command - used, "%s%s%s%s", used ? " " : "",
-             quote, text, quote);
-}
-
-enum wb_status wb_bundles_dataset_argue(struct wb_bundles_dataset *dataset, const char *argument,
-                                        const char *told)
-{
-    int n = 0;
-    while (n < WB_BUNDLES_ARGUMENTS - 1 && dataset->arguments[n])
-        n++;
-    dataset->arguments[n] = n < WB_BUNDLES_ARGUMENTS - 1 ? strdup(argument) : NULL;
-    if (!dataset->arguments[n])
-        return wb_fail(WB_ERR_MEMORY, "no room for the arguments of %s", dataset->name);
-    if (n == 0)
-        tell(dataset, "wirebench");
-    tell(dataset, told ? told : argument);
-    return WB_OK;
-}
-
-void wb_bundles_dataset_end(struct wb_bundles_dataset *dataset)
-{
-    tell(dataset, "-o");
-    tell(dataset, dataset->name);
-}
-
-void wb_bundles_dataset_release(struct wb_bundles_dataset *dataset)
-{
-    for (int i = 0; i < WB_BUNDLES_ARGUMENTS; i++)
-        free((char *)dataset->arguments[i]);
-}
-
 /* --- rods --- */
 
-static enum wb_status argue_rod(const struct wb_bundles_run *run, struct wb_bundles_dataset *rod)
+static enum wb_status argue_rod(const struct wb_bundles_run *run, struct wb_simulation *rod)
 {
     const struct wb_bundle_model *const model = run->model;
     const struct wb_wire *const beam = wb_bundles_published(run);
     const char *fixed[] = {"solve", "cantilever", "--wire", beam->name};
     for (size_t i = 0; i < WB_COUNT(fixed); i++)
-        WB_TRY(wb_bundles_dataset_argue(rod, fixed[i], NULL));
+        WB_TRY(wb_simulation_argue(rod, fixed[i], NULL));
     const struct {
         const char *option;
         double value;
@@ -118,12 +47,12 @@ static enum wb_status argue_rod(const struct wb_bundles_run *run, struct wb_bund
         snprintf(text, sizeof text, "%.10g", lengths[i].value / WB_MM);
         if (lengths[i].value == 0.0)
             continue;
-        WB_TRY(wb_bundles_dataset_argue(rod, lengths[i].option, NULL));
-        WB_TRY(wb_bundles_dataset_argue(rod, text, NULL));
+        WB_TRY(wb_simulation_argue(rod, lengths[i].option, NULL));
+        WB_TRY(wb_simulation_argue(rod, text, NULL));
     }
     if (model->loads.weight)
-        WB_TRY(wb_bundles_dataset_argue(rod, "--weight", NULL));
-    wb_bundles_dataset_end(rod);
+        WB_TRY(wb_simulation_argue(rod, "--weight", NULL));
+    wb_simulation_end(rod);
     return WB_OK;
 }
 
@@ -141,11 +70,9 @@ static enum wb_status find_run(const struct wb_bundles *bundles, const struct wb
     return wb_config_refuse(node, key, "there is no run '%s'", name);
 }
 
-static enum wb_status read_bundle(const struct wb_bundles_reading *reading,
-                                  const struct wb_config_node *node,
+static enum wb_status read_bundle(struct wb_bundles *all, const struct wb_config_node *node,
                                   struct wb_bundles_bundle *bundle)
 {
-    struct wb_bundles *const all = reading->bundles;
     char dynamic[128], constant[128] = "", rod[256] = "";
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("label", bundle->label),
@@ -173,7 +100,7 @@ static enum wb_status read_bundle(const struct wb_bundles_reading *reading,
     if (wb_file_find_fixture(path, "wires", beam->name, NULL) != WB_OK)
         return wb_config_refuse(node, "rod", "the published beam '%s' is not in fixtures/wires",
                                 beam->name);
-    WB_TRY(wb_bundles_dataset_find(reading, rod, &bundle->rod));
+    WB_TRY(wb_simulation_find(&bundle->rod, &all->head, rod));
     return argue_rod(run, &bundle->rod);
 }
 
@@ -190,10 +117,9 @@ static enum wb_status read_figures(const struct wb_config_node *node,
     return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
 }
 
-static enum wb_status read_group(const struct wb_bundles_reading *reading,
-                                 const struct wb_config_node *node, int index)
+static enum wb_status read_group(struct wb_bundles *all, const struct wb_config_node *node,
+                                 int index)
 {
-    struct wb_bundles *const all = reading->bundles;
     struct wb_bundles_group *const group = &all->groups[index];
     const struct wb_config_node *figures, *list;
     const struct wb_config_key keys[] = {
@@ -211,22 +137,20 @@ static enum wb_status read_group(const struct wb_bundles_reading *reading,
     for (int i = 0; i < group->n; i++) {
         struct wb_bundles_bundle *const bundle = &all->bundles[all->n_bundles++];
         bundle->group = index;
-        WB_TRY(read_bundle(reading, wb_config_item(list, i), bundle));
+        WB_TRY(read_bundle(all, wb_config_item(list, i), bundle));
     }
     return WB_OK;
 }
 
-static enum wb_status read_groups(const struct wb_bundles_reading *reading,
-                                  const struct wb_config_node *root,
+static enum wb_status read_groups(struct wb_bundles *all, const struct wb_config_node *root,
                                   const struct wb_config_node *list)
 {
-    struct wb_bundles *const all = reading->bundles;
     all->n_groups = wb_config_length(list);
     if (all->n_groups < 1 || all->n_groups > WB_BUNDLES_GROUPS)
         return wb_config_refuse(root, "groups", "expected a list of 1 to %d groups",
                                 WB_BUNDLES_GROUPS);
     for (int i = 0; i < all->n_groups; i++)
-        WB_TRY(read_group(reading, wb_config_item(list, i), i));
+        WB_TRY(read_group(all, wb_config_item(list, i), i));
     return WB_OK;
 }
 
@@ -326,17 +250,15 @@ static enum wb_status find_inset(struct wb_bundles *all, const struct wb_config_
     return WB_OK;
 }
 
-static enum wb_status read_root(struct wb_bundles_reading *reading,
-                                const struct wb_config_node *root)
+static enum wb_status read_root(struct wb_bundles *all, const struct wb_config_node *root)
 {
-    struct wb_bundles *const all = reading->bundles;
     const struct wb_config_node *defaults, *runs, *groups, *studies, *fit, *limits, *printed;
     char inset[64] = "";
     const struct wb_config_key keys[] = {
         WB_CONFIG_IGNORED("kind"),
-        WB_CONFIG_TEXT("title", all->title),
-        WB_CONFIG_OPTIONAL_TEXT("notes", all->notes),
-        WB_CONFIG_OPTIONAL_TEXT("simulations", reading->simulations),
+        WB_CONFIG_TEXT("title", all->head.title),
+        WB_CONFIG_OPTIONAL_TEXT("notes", all->head.notes),
+        WB_CONFIG_OPTIONAL_TEXT("simulations", all->head.simulations),
         WB_CONFIG_OPTIONAL_NODE("defaults", &defaults),
         WB_CONFIG_NODE("runs", &runs),
         WB_CONFIG_NODE("groups", &groups),
@@ -347,8 +269,8 @@ static enum wb_status read_root(struct wb_bundles_reading *reading,
         WB_CONFIG_OPTIONAL_NODE("printed", &printed),
     };
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
-    WB_TRY(wb_bundles_run_read(reading, runs, defaults));
-    WB_TRY(read_groups(reading, root, groups));
+    WB_TRY(wb_bundles_run_read(all, runs, defaults));
+    WB_TRY(read_groups(all, root, groups));
     WB_TRY(read_studies(all, root, studies));
     WB_TRY(find_inset(all, root, inset));
     WB_TRY(wb_campaign_read_settings(fit, &all->fit));
@@ -360,13 +282,9 @@ enum wb_status wb_bundles_read(struct wb_bundles *bundles, const char *path)
 {
     memset(bundles, 0, sizeof *bundles);
     wb_calibrate_default_settings(&bundles->fit);
-    WB_TRY(wb_hash_file(path, bundles->sha256));
-    wb_campaign_set_name(bundles->name, sizeof bundles->name, path);
     struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path));
-    struct wb_bundles_reading reading = {.bundles = bundles};
-    wb_file_folder(reading.folder, path);
-    const enum wb_status status = read_root(&reading, wb_config_root(config));
+    WB_TRY(wb_campaign_open(&bundles->head, &config, path));
+    const enum wb_status status = read_root(bundles, wb_config_root(config));
     wb_config_destroy(config);
     if (status != WB_OK)
         wb_bundles_release(bundles);
@@ -377,9 +295,9 @@ void wb_bundles_release(struct wb_bundles *bundles)
 {
     for (int i = 0; i < WB_BUNDLES_RUNS; i++) {
         free(bundles->runs[i].model);
-        wb_bundles_dataset_release(&bundles->runs[i].dataset);
+        wb_simulation_release(&bundles->runs[i].dataset);
     }
     for (int i = 0; i < WB_BUNDLES_BUNDLES; i++)
-        wb_bundles_dataset_release(&bundles->bundles[i].rod);
+        wb_simulation_release(&bundles->bundles[i].rod);
     memset(bundles, 0, sizeof *bundles);
 }

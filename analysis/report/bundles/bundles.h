@@ -52,7 +52,9 @@
 #include <stdbool.h>
 
 #include "analysis/calibrate.h"
+#include "analysis/report/campaign.h"
 #include "analysis/report/draw/figures_bundle.h"
+#include "analysis/report/simulation.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
@@ -63,18 +65,7 @@ enum {
     WB_BUNDLES_GROUPS = 8,
     WB_BUNDLES_BUNDLES = WB_BUNDLES_GROUPS * WB_FIGURES_BUNDLE_MOST,
     WB_BUNDLES_STUDIES = 8,
-    WB_BUNDLES_STUDY_RUNS = 8,
-    WB_BUNDLES_ARGUMENTS = 28
-};
-
-/* A dataset that the campaign wants, and how this program makes it. */
-struct wb_bundles_dataset {
-    char name[256];     /* as it is told: no path of this machine */
-    char path[WB_PATH]; /* of its folder, which may not be there */
-    char log[128];      /* a name for a log */
-    /* NULL-terminated, without the program and without -o; owned */
-    const char *arguments[WB_BUNDLES_ARGUMENTS];
-    char command[1200]; /* the whole of it for people, without paths of this machine */
+    WB_BUNDLES_STUDY_RUNS = 8
 };
 
 /* A bundle as one run computes it. */
@@ -83,7 +74,7 @@ struct wb_bundles_run {
     char model_name[300];          /* as it is told, for commands */
     struct wb_bundle_model *model; /* with the run's own settings; owned */
     const struct wb_bundle_mesh *mesh;
-    struct wb_bundles_dataset dataset;
+    struct wb_simulation dataset;
     bool judged; /* the limits of energies are meant for it */
 };
 
@@ -93,7 +84,7 @@ struct wb_bundles_bundle {
     int group;
     int dynamic, constant;
     bool has_rod;
-    struct wb_bundles_dataset rod;
+    struct wb_simulation rod;
 };
 
 enum wb_bundles_figure {
@@ -124,9 +115,7 @@ struct wb_bundles_limits {
 };
 
 struct wb_bundles {
-    char title[200], notes[2000];
-    char name[256];              /* of the file, from fixtures/ on when it is a shipped one */
-    char sha256[WB_SHA256_TEXT]; /* of the file */
+    struct wb_campaign head;
     int n_runs, n_groups, n_bundles, n_studies;
     struct wb_bundles_run runs[WB_BUNDLES_RUNS];
     struct wb_bundles_group groups[WB_BUNDLES_GROUPS];
@@ -150,27 +139,10 @@ const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run);
 /* How a run is loaded, for readers: "dead force", "strand, weight". */
 const char *wb_bundles_loading(const struct wb_bundles_run *run);
 
-/* For the files that read a campaign. */
+/* A part of wb_bundles_read(): the list of runs. */
 struct wb_config_node;
-struct wb_bundles_reading {
-    struct wb_bundles *bundles;
-    char folder[WB_PATH];      /* of the campaign file */
-    char simulations[WB_PATH]; /* as the file gives it; "": the shipped ones */
-};
-WB_MUST_CHECK enum wb_status wb_bundles_run_read(const struct wb_bundles_reading *reading,
+WB_MUST_CHECK enum wb_status wb_bundles_run_read(struct wb_bundles *all,
                                                  const struct wb_config_node *list,
                                                  const struct wb_config_node *defaults);
-/* Path and name of a dataset; then its command, argument by argument: told as `told` (NULL: as it
- * is), and at last the end. */
-WB_MUST_CHECK enum wb_status wb_bundles_dataset_find(const struct wb_bundles_reading *reading,
-                                                     const char *given,
-                                                     struct wb_bundles_dataset *dataset);
-WB_MUST_CHECK enum wb_status wb_bundles_dataset_argue(struct wb_bundles_dataset *dataset,
-                                                      const char *argument, const char *told);
-void wb_bundles_dataset_end(struct wb_bundles_dataset *dataset);
-void wb_bundles_dataset_release(struct wb_bundles_dataset *dataset);
-/* How a path from the campaign file is told: as it is given, or its last part where it says where
- * on this machine it is. */
-const char *wb_bundles_as_told(const char *given);
 
 #endif

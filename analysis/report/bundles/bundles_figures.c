@@ -459,12 +459,12 @@ static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_bundles
     for (int i = 1; i <= SHAPES; i++) {
         double x[MOST_MARKERS], y[MOST_MARKERS], line_x[SHAPE_POINTS], line_y[SHAPE_POINTS];
         double deflection = run->curve.max_deflection * i / SHAPES;
-        const size_t n = take_axis(&run->dataset, &deflection, x, y);
+        const size_t n = take_axis(&run->simulation.dataset, &deflection, x, y);
         if (n == 0)
             continue;
         wb_figure_add_line(inset, NULL, n, x, y, solid);
-        const enum wb_status status = wb_validate_shape(&properties, &run->dataset.info, deflection,
-                                                        SHAPE_POINTS, line_x, line_y);
+        const enum wb_status status = wb_validate_shape(&properties, &run->simulation.dataset.info,
+                                                        deflection, SHAPE_POINTS, line_x, line_y);
         if (status == WB_ERR_CONVERGENCE)
             continue;
         WB_TRY(status);

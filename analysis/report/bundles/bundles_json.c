@@ -1,38 +1,29 @@
-/* Numbers of a report of bundles: wb_bundles_json_build() of
- * analysis/report/bundles/bundles_report.h. */
+#include "analysis/report/bundles/bundles_json.h"
+
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/report/bundles/bundles_report.h"
+#include "analysis/report/numbers.h"
 #include "base/units.h"
-#include "base/version.h"
 
 static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
 
-static void put_values(struct wb_json *object, const char *key, const double *values, int n,
-                       double unit)
-{
-    struct wb_json *const list = wb_json_set_array(object, key);
-    for (int i = 0; i < n; i++)
-        wb_json_append_number(list, values[i] / unit);
-}
-
 /* --- datasets --- */
 
-static void put_state(struct wb_json *entry, const struct wb_bundles_dataset *wanted,
+static void put_state(struct wb_json *entry, const struct wb_simulation *wanted,
                       const struct wb_bundles_result *result)
 {
     static const char *const states[] = {"not wanted", "missing", "outdated", "refused", "used"};
     wb_json_set_text(entry, "dataset", wanted->name);
-    wb_json_set_text(entry, "state", states[result->state]);
+    wb_json_set_text(entry, "state", states[result->simulation.state]);
     wb_json_set_text(entry, "command", wanted->command);
-    if (result->state != WB_BUNDLES_USABLE) {
-        wb_json_set_text(entry, "problem", wb_text_string(&result->problem));
+    if (result->simulation.state != WB_SIMULATION_USABLE) {
+        wb_json_set_text(entry, "problem", wb_text_string(&result->simulation.problem));
         return;
     }
-    wb_json_set_text(entry, "sha256", result->sha256);
-    wb_json_set_text(entry, "tool_revision", result->revision);
-    wb_json_set_number(entry, "cpu_s", result->numbers.cpu_s);
+    wb_json_set_text(entry, "sha256", result->simulation.sha256);
+    wb_json_set_text(entry, "tool_revision", result->simulation.revision);
+    wb_json_set_number(entry, "cpu_s", result->simulation.cpu_s);
 }
 
 static void put_numbers(struct wb_json *entry, const struct wb_bundles_result *run)
@@ -59,11 +50,12 @@ static void put_curves(struct wb_json *entry, const struct wb_bundles_result *ru
     for (int i = 0; i < curve->n; i++)
         wb_json_append_number(deflections, curve->step * i / WB_MM);
     wb_json_set_number(entry, "F_max_N", curve->max_force);
-    put_values(entry, "force_N", curve->force, curve->n, 1.0);
+    wb_numbers_put_list(entry, "force_N", curve->force, curve->n, 1.0);
     if (!run->published)
         return;
-    put_values(entry, "published_force_N", run->published, curve->n, 1.0);
-    put_values(entry, "error", run->error, run->n_published < curve->n ? 0 : curve->n, 1.0);
+    wb_numbers_put_list(entry, "published_force_N", run->published, curve->n, 1.0);
+    wb_numbers_put_list(entry, "error", run->error, run->n_published < curve->n ? 0 : curve->n,
+                        1.0);
     wb_json_set_number(entry, "published_F_max_N", run->published_max);
     wb_json_set_number(entry, "rms", run->rms);
     wb_json_set_number(entry, "largest_error", run->max_error);
@@ -87,7 +79,7 @@ static void put_run(struct wb_json *list, const struct wb_bundles_results *resul
     wb_setting_set_json(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, entry);
     wb_setting_set_json(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, entry);
     put_state(entry, &wanted->dataset, run);
-    if (run->state != WB_BUNDLES_USABLE)
+    if (run->simulation.state != WB_SIMULATION_USABLE)
         return;
     put_numbers(entry, run);
     put_curves(entry, run);
@@ -100,10 +92,7 @@ static void put_beam(struct wb_json *object, const char *key, const struct wb_ma
 {
     struct wb_json *const entry = wb_json_set_object(object, key);
     wb_json_set_number(entry, "outer_diameter_mm", diameter / WB_MM);
-    wb_json_set_number(entry, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
-    wb_json_set_number(entry, "yield_stress_MPa", material->yield_stress / WB_MPA);
-    wb_json_set_number(entry, "strength_coefficient_MPa", material->strength_coefficient / WB_MPA);
-    wb_json_set_number(entry, "hardening_exponent", material->hardening_exponent);
+    wb_numbers_put_properties(entry, material);
     wb_json_set_number(entry, "EI_N_mm2",
                        wb_bundles_results_rigidity(material->youngs_modulus, diameter) / n_mm2);
 }
@@ -112,17 +101,17 @@ static void put_fit(struct wb_json *entry, const struct wb_bundles_results *resu
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_fit *const fit = &results->fits[index];
-    if (fit->state != WB_BUNDLES_USABLE) {
+    if (fit->state != WB_SIMULATION_USABLE) {
         wb_json_set_text(entry, "fit_problem", wb_text_string(&fit->problem));
         return;
     }
     const struct wb_bundles_result *const run = &results->runs[bundle->dynamic];
-    put_beam(entry, "fitted", &fit->result.material, run->dataset.info.outer_diameter);
+    put_beam(entry, "fitted", &fit->result.material, run->simulation.dataset.info.outer_diameter);
     wb_json_set_number(entry, "fit_rms", fit->result.rms);
     wb_json_set_number(entry, "fit_largest_error", fit->result.max_error);
     wb_json_set_text(entry, "fit_stopped_because", wb_calibrate_end_text(fit->result.end));
     wb_json_set_integer(entry, "fit_beam_runs", fit->result.evaluations);
-    put_values(entry, "fitted_force_N", fit->force, run->curve.n, 1.0);
+    wb_numbers_put_list(entry, "fitted_force_N", fit->force, run->curve.n, 1.0);
 }
 
 static void put_bundle(struct wb_json *list, const struct wb_bundles_results *results, int index)
@@ -155,7 +144,7 @@ static void put_bundle(struct wb_json *list, const struct wb_bundles_results *re
 
 static void put_verdicts(struct wb_json *root, const struct wb_bundles_results *results)
 {
-    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
     const int n = wb_bundles_results_judge(results, verdicts);
     struct wb_json *const list = wb_json_set_array(root, "limits");
     for (int i = 0; i < n; i++) {
@@ -173,17 +162,10 @@ struct wb_json *wb_bundles_json_build(const struct wb_bundles_results *results,
 {
     const struct wb_bundles *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", campaign->title);
-    wb_json_set_text(root, "data", "simulation");
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench report");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
-    struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", campaign->name);
-    wb_json_set_text(file, "sha256", campaign->sha256);
-    wb_json_set_boolean(root, "complete", results->is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", results->exceeds_limit);
+    wb_numbers_put_title(root, campaign->head.title, "simulation");
+    wb_numbers_put_program(root);
+    wb_numbers_put_campaign(root, &campaign->head);
+    wb_numbers_put_outcome(root, &results->outcome);
     put_verdicts(root, results);
     struct wb_json *const bundles = wb_json_set_array(root, "bundles");
     for (int i = 0; i < campaign->n_bundles; i++)
@@ -191,8 +173,6 @@ struct wb_json *wb_bundles_json_build(const struct wb_bundles_results *results,
     struct wb_json *const runs = wb_json_set_array(root, "runs");
     for (int i = 0; i < campaign->n_runs; i++)
         put_run(runs, results, i);
-    struct wb_json *const list = wb_json_set_array(root, "files");
-    for (int i = 0; i < n_files; i++)
-        wb_json_append_text(list, files[i]);
+    wb_numbers_put_files(root, files, n_files);
     return root;
 }

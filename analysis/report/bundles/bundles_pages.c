@@ -9,30 +9,15 @@
 #include "analysis/report/pages.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "base/version.h"
 
 /* --- what is missing, what is exceeded --- */
-
-static void put_missing_dataset(struct wb_document *document,
-                                const struct wb_bundles_dataset *dataset,
-                                const struct wb_bundles_result *result)
-{
-    char text[1700], name[600], problem[900];
-    if (result->state == WB_BUNDLES_USABLE || result->state == WB_BUNDLES_NOT_WANTED)
-        return;
-    snprintf(text, sizeof text,
-             "<b>%s</b>: %s. To make it:", wb_pages_escape(name, sizeof name, dataset->name),
-             wb_pages_escape(problem, sizeof problem, wb_text_string(&result->problem)));
-    wb_document_item(document, WB_TONE_WARNING, text);
-    wb_document_code(document, dataset->command);
-}
 
 static void put_unfitted(struct wb_document *document, const struct wb_bundles_results *results)
 {
     char text[1700], name[600], problem[900];
     for (int i = 0; i < results->campaign->n_bundles; i++) {
         const struct wb_bundles_fit *const fit = &results->fits[i];
-        if (fit->state != WB_BUNDLES_REFUSED)
+        if (fit->state != WB_SIMULATION_REFUSED)
             continue;
         snprintf(text, sizeof text, "<b>%s</b>, no fitted beam: %s",
                  wb_pages_escape(name, sizeof name, results->campaign->bundles[i].label),
@@ -41,43 +26,10 @@ static void put_unfitted(struct wb_document *document, const struct wb_bundles_r
     }
 }
 
-static void put_missing(struct wb_document *document, const struct wb_bundles_results *results)
-{
-    const struct wb_bundles *const campaign = results->campaign;
-    char text[400];
-    const int n = results->n_wanted - results->n_usable;
-    if (results->is_complete)
-        return;
-    if (n > 0)
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> %d of %d datasets %s missing or cannot be used. The report "
-                 "shows what the others give. <tt>wirebench report --solve</tt> makes them.",
-                 n, results->n_wanted, wb_pages_plural(n, "is", "are"));
-    else
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> All datasets are there, but not every step could be done.");
-    wb_document_notice(document, WB_TONE_WARNING, text);
-    for (int i = 0; i < campaign->n_runs; i++)
-        put_missing_dataset(document, &campaign->runs[i].dataset, &results->runs[i]);
-    for (int i = 0; i < campaign->n_bundles; i++)
-        put_missing_dataset(document, &campaign->bundles[i].rod, &results->rods[i]);
-    put_unfitted(document, results);
-}
-
 static void put_limits(struct wb_document *document, const struct wb_bundles_results *results)
 {
-    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
-    const int n = wb_bundles_results_judge(results, verdicts);
-    for (int i = 0; i < n; i++) {
-        const struct wb_bundles_verdict *const v = &verdicts[i];
-        char text[600], label[300], value[40] = "not known";
-        if (isfinite(v->value))
-            snprintf(value, sizeof value, "%.3g %%", v->value / WB_PERCENT);
-        snprintf(text, sizeof text, "<b>%s</b> %s, %s: %s, limit %.3g %%.",
-                 v->kept ? "Limit kept." : "Limit exceeded.", v->what,
-                 wb_pages_escape(label, sizeof label, v->label), value, v->limit / WB_PERCENT);
-        wb_document_item(document, v->kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
-    }
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
+    wb_pages_put_verdicts(document, verdicts, wb_bundles_results_judge(results, verdicts));
 }
 
 /* --- what came out --- */
@@ -140,7 +92,8 @@ static void put_summary(struct wb_document *document, const struct wb_bundles_re
         "<b>Simulations.</b> Everything in this report is computed: bundles of wires "
         "with contact, friction and tape in explicit 3D, and 1D beams. No bundle was "
         "tested.");
-    put_missing(document, results);
+    wb_pages_put_missing(document, &results->outcome, wb_bundles_results_list, results);
+    put_unfitted(document, results);
     put_limits(document, results);
     put_facts(document, results);
 }
@@ -346,7 +299,7 @@ static void put_bundle(struct wb_document *document, struct wb_document_table *t
     const struct wb_wire *const published = wb_bundles_published(run);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
     put_properties(document, table, bundle->label, "here", fit ? &fit->result.material : NULL,
-                   result ? result->dataset.info.outer_diameter : (double)NAN);
+                   result ? result->simulation.dataset.info.outer_diameter : (double)NAN);
     if (published)
         put_properties(document, table, "", "paper", &published->material,
                        published->outer_diameter);
@@ -448,14 +401,15 @@ static void put_cost_of(struct wb_document *document, struct wb_document_table *
     const struct wb_bundles_result *const rod = &results->rods[index];
     const double none = (double)NAN, cost = wb_bundles_results_cost(results, index);
     const double limit = results->campaign->limits.cost;
-    const double rod_cpu = rod->state == WB_BUNDLES_USABLE ? rod->numbers.cpu_s : none;
+    const double rod_cpu =
+        rod->simulation.state == WB_SIMULATION_USABLE ? rod->simulation.cpu_s : none;
     struct wb_pages_row row = {.n = 0};
     wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
     wb_pages_cell_number(&row, run ? run->numbers.elements : none, 0);
     wb_pages_cell_number(&row, run ? run->numbers.shells : none, 0);
     wb_pages_cell_number(&row, run ? run->numbers.steps / 1e3 : none, 0);
     wb_pages_cell_number(&row, run ? run->numbers.ns : none, 1);
-    wb_pages_cell_number(&row, run ? run->numbers.cpu_s : none, 1);
+    wb_pages_cell_number(&row, run ? run->simulation.cpu_s : none, 1);
     wb_pages_cell_number(&row, rod_cpu, 3);
     if (limit > 0.0 && isfinite(cost))
         wb_pages_cell(&row, cost <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.3f",
@@ -522,39 +476,6 @@ static void put_all_runs(struct wb_document *document, const struct wb_bundles_r
 
 /* --- provenance --- */
 
-static void put_dataset(struct wb_document *document, struct wb_document_table *table,
-                        const struct wb_bundles_dataset *wanted,
-                        const struct wb_bundles_result *result)
-{
-    struct wb_pages_row row = {.n = 0};
-    if (result->state == WB_BUNDLES_NOT_WANTED)
-        return;
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, wanted->name);
-    if (result->state == WB_BUNDLES_USABLE)
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, result->revision);
-    else
-        wb_pages_cell(&row, WB_TONE_WARNING, "not used");
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, result->sha256);
-    wb_pages_put_row(document, table, false, &row);
-}
-
-static void put_datasets(struct wb_document *document, const struct wb_bundles_results *results)
-{
-    static const struct wb_document_column columns[] = {
-        {.heading = "Dataset", .wraps = true},
-        {"Revision"},
-        {.heading = "SHA-256 of force_deflection.csv", .monospace = true},
-    };
-    const struct wb_bundles *const campaign = results->campaign;
-    wb_document_heading(document, 2, "datasets", "Datasets");
-    struct wb_document_table *const table =
-        wb_document_table(document, "Revision: of the program that made it.", 3, columns);
-    for (int i = 0; i < campaign->n_runs; i++)
-        put_dataset(document, table, &campaign->runs[i].dataset, &results->runs[i]);
-    for (int i = 0; i < campaign->n_bundles; i++)
-        put_dataset(document, table, &campaign->bundles[i].rod, &results->rods[i]);
-}
-
 static void put_models(struct wb_document *document, const struct wb_bundles *campaign)
 {
     static const struct wb_document_column columns[] = {
@@ -577,9 +498,9 @@ static void put_models(struct wb_document *document, const struct wb_bundles *ca
 static void put_provenance(struct wb_document *document, const struct wb_bundles_results *results)
 {
     const struct wb_bundles *const campaign = results->campaign;
-    wb_pages_put_origin(document, campaign->name, campaign->sha256, campaign->notes, "datasets");
+    wb_pages_put_origin(document, &campaign->head, "datasets");
     put_models(document, campaign);
-    put_datasets(document, results);
+    wb_pages_put_datasets(document, wb_bundles_results_list, results);
 }
 
 /* --- all of it --- */
@@ -587,12 +508,7 @@ static void put_provenance(struct wb_document *document, const struct wb_bundles
 void wb_bundles_pages_build(struct wb_document *document, const struct wb_bundles_results *results,
                             const struct wb_figures *figures)
 {
-    char subtitle[300], footer[300];
-    snprintf(footer, sizeof footer, "wirebench %s, revision %s \xc2\xb7 simulations, no tests",
-             wb_version(), wb_version_revision());
-    snprintf(subtitle, sizeof subtitle, "%d of %d simulations \xc2\xb7 wirebench %s, revision %s",
-             results->n_usable, results->n_wanted, wb_version(), wb_version_revision());
-    wb_document_init(document, "Simulation report", results->campaign->title, subtitle, footer, "");
+    wb_pages_start_simulations(document, results->campaign->head.title, &results->outcome);
     put_summary(document, results);
     put_sections(document, results, figures);
     put_studies(document, results, figures);

@@ -57,18 +57,17 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
 
 /* --- the model as the run has it --- */
 
-static enum wb_status read_model(const struct wb_bundles_reading *reading,
-                                 const struct wb_config_node *node, const char *name,
-                                 struct wb_bundles_run *run, char path[WB_PATH])
+static enum wb_status read_model(const struct wb_bundles *all, const struct wb_config_node *node,
+                                 const char *name, struct wb_bundles_run *run, char path[WB_PATH])
 {
     char named_in[WB_PATH + 32];
     snprintf(named_in, sizeof named_in, "%s:%d: bundle", wb_config_origin(node),
              wb_config_line(wb_config_find(node, "bundle")));
-    WB_TRY(wb_file_find_named(path, "bundles", name, reading->folder, named_in));
+    WB_TRY(wb_file_find_named(path, "bundles", name, all->head.folder, named_in));
     const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
     snprintf(run->model_name, sizeof run->model_name,
              is_shipped ? "fixtures/bundles/%s.yaml" : "%s",
-             is_shipped ? name : wb_bundles_as_told(name));
+             is_shipped ? name : wb_simulation_as_shown(name));
     run->model = calloc(1, sizeof *run->model);
     if (!run->model)
         return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
@@ -95,37 +94,37 @@ static enum wb_status apply(struct settings *s, const struct wb_config_node *nod
 /* --- its command --- */
 
 /* A setting as its option, if it was given. */
-static enum wb_status argue_setting(struct wb_bundles_dataset *dataset,
-                                    const struct wb_setting *row, const void *settings)
+static enum wb_status argue_setting(struct wb_simulation *dataset, const struct wb_setting *row,
+                                    const void *settings)
 {
     char option[64], value[WB_SETTING_VALUE];
     if (!wb_setting_is_given(row, settings))
         return WB_OK;
     snprintf(option, sizeof option, "--%s", row->option);
     wb_setting_format(row, settings, value);
-    WB_TRY(wb_bundles_dataset_argue(dataset, option, NULL));
-    return wb_bundles_dataset_argue(dataset, value, NULL);
+    WB_TRY(wb_simulation_argue(dataset, option, NULL));
+    return wb_simulation_argue(dataset, value, NULL);
 }
 
 static enum wb_status argue(struct wb_bundles_run *run, const struct wb_bundle_override *o,
                             const char *path)
 {
     const struct wb_setting *const run_rows = wb_bundle_model_run_settings;
-    struct wb_bundles_dataset *const d = &run->dataset;
-    WB_TRY(wb_bundles_dataset_argue(d, "solve", NULL));
-    WB_TRY(wb_bundles_dataset_argue(d, "bundle", NULL));
-    WB_TRY(wb_bundles_dataset_argue(d, path, run->model_name));
+    struct wb_simulation *const d = &run->dataset;
+    WB_TRY(wb_simulation_argue(d, "solve", NULL));
+    WB_TRY(wb_simulation_argue(d, "bundle", NULL));
+    WB_TRY(wb_simulation_argue(d, path, run->model_name));
     if (o->dead_force)
-        WB_TRY(wb_bundles_dataset_argue(d, "--dead-force", NULL));
+        WB_TRY(wb_simulation_argue(d, "--dead-force", NULL));
     if (o->no_weight)
-        WB_TRY(wb_bundles_dataset_argue(d, "--no-weight", NULL));
+        WB_TRY(wb_simulation_argue(d, "--no-weight", NULL));
     WB_TRY(argue_setting(d, wb_bundle_model_friction_setting, &o->interface));
     WB_TRY(argue_setting(d, wb_bundle_model_cohesion_setting, &o->interface));
     WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_MESH], &o->run));
     WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_MASS_SCALING], &o->run));
     WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_SELECTIVE], &o->run));
     WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_DURATION], &o->run));
-    wb_bundles_dataset_end(d);
+    wb_simulation_end(d);
     return WB_OK;
 }
 
@@ -146,9 +145,8 @@ static void set_label(struct wb_bundles_run *run)
              loads->strand_length > 0.0 ? ", strand" : "", loads->weight ? ", weight" : "");
 }
 
-static enum wb_status read_run(const struct wb_bundles_reading *reading,
-                               const struct wb_config_node *node, const struct settings *defaults,
-                               struct wb_bundles_run *run)
+static enum wb_status read_run(const struct wb_bundles *all, const struct wb_config_node *node,
+                               const struct settings *defaults, struct wb_bundles_run *run)
 {
     struct settings settings = *defaults, *const s = &settings;
     struct wb_config_key keys[MOST_KEYS] = {{0}};
@@ -159,18 +157,16 @@ static enum wb_status read_run(const struct wb_bundles_reading *reading,
     run->judged = true;
     keys[3] = (struct wb_config_key)WB_CONFIG_OPTIONAL_BOOLEAN("judged", &run->judged);
     WB_TRY(read_settings(s, node, keys, 4));
-    WB_TRY(read_model(reading, node, bundle, run, path));
+    WB_TRY(read_model(all, node, bundle, run, path));
     WB_TRY(apply(s, node, run));
     set_label(run);
-    WB_TRY(wb_bundles_dataset_find(reading, run->name, &run->dataset));
+    WB_TRY(wb_simulation_find(&run->dataset, &all->head, run->name));
     return argue(run, &s->override, path);
 }
 
-enum wb_status wb_bundles_run_read(const struct wb_bundles_reading *reading,
-                                   const struct wb_config_node *list,
+enum wb_status wb_bundles_run_read(struct wb_bundles *all, const struct wb_config_node *list,
                                    const struct wb_config_node *defaults)
 {
-    struct wb_bundles *const all = reading->bundles;
     struct wb_config_key keys[MOST_KEYS] = {{0}};
     struct settings settings = {0};
     if (defaults)
@@ -182,7 +178,7 @@ enum wb_status wb_bundles_run_read(const struct wb_bundles_reading *reading,
     for (int i = 0; i < n; i++) {
         const struct wb_config_node *const node = wb_config_item(list, i);
         struct wb_bundles_run *const run = &all->runs[i];
-        WB_TRY(read_run(reading, node, &settings, run));
+        WB_TRY(read_run(all, node, &settings, run));
         for (int k = 0; k < i; k++) {
             if (strcmp(all->runs[k].dataset.path, run->dataset.path) == 0)
                 return wb_config_refuse(node, "name", "another run is called '%s', too", run->name);

@@ -16,7 +16,9 @@ static const double pi = 3.14159265358979323846;
 const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
                                                           int run)
 {
-    return run >= 0 && results->runs[run].state == WB_BUNDLES_USABLE ? &results->runs[run] : NULL;
+    return run >= 0 && results->runs[run].simulation.state == WB_SIMULATION_USABLE
+               ? &results->runs[run]
+               : NULL;
 }
 
 bool wb_bundles_results_either(const struct wb_bundles_results *results,
@@ -39,7 +41,7 @@ const struct wb_bundles_fit *wb_bundles_results_fit(const struct wb_bundles_resu
                                                     int bundle)
 {
     const struct wb_bundles_fit *const fit = &results->fits[bundle];
-    return fit->state == WB_BUNDLES_USABLE ? fit : NULL;
+    return fit->state == WB_SIMULATION_USABLE ? fit : NULL;
 }
 
 double wb_bundles_results_rigidity(double youngs_modulus, double diameter)
@@ -52,21 +54,12 @@ double wb_bundles_results_cost(const struct wb_bundles_results *results, int bun
     const struct wb_bundles_result *const rod = &results->rods[bundle];
     const struct wb_bundles_result *const run =
         wb_bundles_results_usable(results, results->campaign->bundles[bundle].dynamic);
-    return run && rod->state == WB_BUNDLES_USABLE ? rod->numbers.cpu_s / run->numbers.cpu_s
-                                                  : (double)NAN;
+    return run && rod->simulation.state == WB_SIMULATION_USABLE
+               ? rod->simulation.cpu_s / run->simulation.cpu_s
+               : (double)NAN;
 }
 
 /* --- limits --- */
-
-static void judge_one(struct wb_bundles_verdict *verdicts, int *n,
-                      const struct wb_bundles_verdict *verdict)
-{
-    if (!(verdict->limit > 0.0))
-        return;
-    verdicts[*n] = *verdict;
-    /* So that a NaN is not kept. */
-    verdicts[(*n)++].kept = verdict->value <= verdict->limit;
-}
 
 enum ratio {
     KINETIC,
@@ -82,11 +75,11 @@ static double ratio_of(const struct wb_bundles_numbers *numbers, enum ratio rati
 }
 
 /* The worst of all usable runs that are judged; a NaN is worse than any. */
-static void judge_energy(const struct wb_bundles_results *results,
-                         struct wb_bundles_verdict *verdicts, int *n, enum ratio ratio)
+static void judge_energy(const struct wb_bundles_results *results, struct wb_verdict *verdicts,
+                         int *n, enum ratio ratio)
 {
     const struct wb_bundles_limits *const limits = &results->campaign->limits;
-    const struct wb_bundles_verdict cases[] = {
+    const struct wb_verdict cases[] = {
         [KINETIC] = {.what = "Kinetic over internal energy",
                      .key = "kinetic_max",
                      .limit = limits->kinetic},
@@ -97,7 +90,7 @@ static void judge_energy(const struct wb_bundles_results *results,
                        .key = "imbalance_max",
                        .limit = limits->imbalance},
     };
-    struct wb_bundles_verdict verdict = cases[ratio];
+    struct wb_verdict verdict = cases[ratio];
     for (int i = 0; i < results->campaign->n_runs; i++) {
         const struct wb_bundles_result *const run = wb_bundles_results_usable(results, i);
         const double value = run ? ratio_of(&run->numbers, ratio) : (double)NAN;
@@ -109,11 +102,11 @@ static void judge_energy(const struct wb_bundles_results *results,
             break;
     }
     if (verdict.label)
-        judge_one(verdicts, n, &verdict);
+        wb_verdict_add(verdicts, n, &verdict);
 }
 
 int wb_bundles_results_judge(const struct wb_bundles_results *results,
-                             struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS])
+                             struct wb_verdict verdicts[WB_BUNDLES_VERDICTS])
 {
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_limits *const limits = &campaign->limits;
@@ -122,30 +115,29 @@ int wb_bundles_results_judge(const struct wb_bundles_results *results,
         const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
         const struct wb_bundles_result *const run =
             wb_bundles_results_usable(results, bundle->dynamic);
-        const struct wb_bundles_verdict rms = {
-            "RMS from the published curve, over its largest force",
-            "rms_max",
-            bundle->label,
-            run ? run->rms : (double)NAN,
-            limits->rms,
-            false};
+        const struct wb_verdict rms = {"RMS from the published curve, over its largest force",
+                                       "rms_max",
+                                       bundle->label,
+                                       run ? run->rms : (double)NAN,
+                                       limits->rms,
+                                       false};
         if (run && run->published && isfinite(run->rms))
-            judge_one(verdicts, &n, &rms);
+            wb_verdict_add(verdicts, &n, &rms);
     }
     judge_energy(results, verdicts, &n, KINETIC);
     judge_energy(results, verdicts, &n, ARTIFICIAL);
     judge_energy(results, verdicts, &n, IMBALANCE);
     for (int i = 0; i < campaign->n_bundles; i++) {
         const double value = wb_bundles_results_cost(results, i);
-        const struct wb_bundles_verdict cost = {"CPU seconds of the 1D beam over those of the "
-                                                "bundle",
-                                                "cost_max",
-                                                campaign->bundles[i].label,
-                                                value,
-                                                limits->cost,
-                                                false};
+        const struct wb_verdict cost = {"CPU seconds of the 1D beam over those of the "
+                                        "bundle",
+                                        "cost_max",
+                                        campaign->bundles[i].label,
+                                        value,
+                                        limits->cost,
+                                        false};
         if (!isnan(value))
-            judge_one(verdicts, &n, &cost);
+            wb_verdict_add(verdicts, &n, &cost);
     }
     return n;
 }
@@ -153,33 +145,22 @@ int wb_bundles_results_judge(const struct wb_bundles_results *results,
 static void judge(struct wb_bundles_results *results)
 {
     const struct wb_bundles *const campaign = results->campaign;
-    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
-    results->n_wanted = campaign->n_runs;
-    results->is_complete = true;
+    struct wb_kind_outcome *const outcome = &results->outcome;
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
+    wb_simulation_count(wb_bundles_results_list, results, &outcome->n_wanted, &outcome->n_usable);
+    outcome->is_complete = outcome->n_usable == outcome->n_wanted;
     for (int i = 0; i < campaign->n_runs; i++) {
-        const struct wb_bundles_result *const run = &results->runs[i];
-        results->n_usable += run->state == WB_BUNDLES_USABLE;
-        if (run->state == WB_BUNDLES_USABLE && run->published && run->n_published < run->curve.n)
-            results->is_complete = false;
+        const struct wb_bundles_result *const run = wb_bundles_results_usable(results, i);
+        if (run && run->published && run->n_published < run->curve.n)
+            outcome->is_complete = false;
     }
-    for (int i = 0; i < campaign->n_bundles; i++) {
-        results->n_wanted += campaign->bundles[i].has_rod;
-        results->n_usable += results->rods[i].state == WB_BUNDLES_USABLE;
-        results->is_complete &= results->fits[i].state == WB_BUNDLES_USABLE;
-    }
-    results->is_complete &= results->n_usable == results->n_wanted;
+    for (int i = 0; i < campaign->n_bundles; i++)
+        outcome->is_complete &= results->fits[i].state == WB_SIMULATION_USABLE;
     const int n = wb_bundles_results_judge(results, verdicts);
-    for (int i = 0; i < n; i++)
-        results->exceeds_limit |= !verdicts[i].kept;
+    outcome->exceeds_limit = !wb_verdict_all_kept(verdicts, n);
 }
 
 /* --- the fit --- */
-
-static bool go_on(void *context, int evaluation, double error, double size)
-{
-    (void)context, (void)evaluation, (void)error, (void)size;
-    return !wb_interrupted();
-}
 
 /* The fitted beam's forces on the grid of the run's curve. */
 static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
@@ -194,7 +175,8 @@ static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
     fit->force = malloc((size_t)run->curve.n * sizeof *fit->force);
     if (!fit->force)
         return wb_fail_to(why, WB_ERR_MEMORY, "out of memory fitting a bundle");
-    WB_TRY(wb_computed_create(&computed, &run->dataset.info, &fit->result.material, &how));
+    WB_TRY(
+        wb_computed_create(&computed, &run->simulation.dataset.info, &fit->result.material, &how));
     const enum wb_status status = wb_computed_curve(computed, &fit->result.material, run->curve.n,
                                                     run->curve.step, fit->force, &n_reached);
     wb_computed_destroy(computed);
@@ -204,9 +186,9 @@ static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
 static enum wb_status calibrate(struct wb_bundles_fit *fit, const struct wb_bundles_result *run,
                                 const struct wb_calibrate_settings *settings, struct wb_reason *why)
 {
-    const struct wb_dataset *const dataset = &run->dataset;
+    const struct wb_dataset *const dataset = &run->simulation.dataset;
     struct wb_calibrate_settings own = *settings;
-    own.progress = go_on;
+    own.progress = wb_campaign_go_on;
     WB_TRY(wb_calibrate_run(&fit->result, &dataset, 1, &own, why));
     fit->rigidity = wb_bundles_results_rigidity(fit->result.material.youngs_modulus,
                                                 dataset->info.outer_diameter);
@@ -222,7 +204,7 @@ static void fit_bundle(struct wb_bundles_results *results, int index)
     struct wb_bundles_fit *const fit = &results->fits[index];
     const struct wb_bundles_result *const run =
         wb_bundles_results_usable(results, campaign->bundles[index].dynamic);
-    fit->state = WB_BUNDLES_MISSING;
+    fit->state = WB_SIMULATION_MISSING;
     if (!run) {
         wb_text_append(&fit->problem, "the bundle's dataset that it builds on is missing");
         return;
@@ -230,7 +212,7 @@ static void fit_bundle(struct wb_bundles_results *results, int index)
     const struct wb_reasons reasons = {&fit->problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
     const enum wb_status status = calibrate(fit, run, &campaign->fit, &why);
-    fit->state = status == WB_OK ? WB_BUNDLES_USABLE : WB_BUNDLES_REFUSED;
+    fit->state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         wb_reasons_fail(&reasons, status, &why);
 }
@@ -239,16 +221,37 @@ static void fit_bundle(struct wb_bundles_results *results, int index)
 static void compare_run(struct wb_bundles_result *result, const struct wb_bundles_run *run,
                         const struct wb_calibrate_settings *fit)
 {
-    const struct wb_reasons reasons = {&result->problem, run->dataset.path, run->dataset.name};
+    const struct wb_reasons reasons = {&result->simulation.problem, run->dataset.path,
+                                       run->dataset.name};
     struct wb_reason why = {.text = ""};
     const enum wb_status status = wb_bundles_run_compare(result, run, fit, &why);
     if (status == WB_OK)
         return;
-    result->state = WB_BUNDLES_REFUSED;
+    result->simulation.state = WB_SIMULATION_REFUSED;
     wb_reasons_fail(&reasons, status, &why);
 }
 
 /* --- all of it --- */
+
+bool wb_bundles_results_list(const void *context, int index, struct wb_simulation_entry *entry)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    const int beam = index - campaign->n_runs;
+    if (beam >= campaign->n_bundles)
+        return false;
+    if (beam >= 0) {
+        *entry = (struct wb_simulation_entry){.wanted = &campaign->bundles[beam].rod,
+                                              .result = &results->rods[beam].simulation};
+        return true;
+    }
+    const struct wb_bundles_run *const run = &campaign->runs[index];
+    *entry = (struct wb_simulation_entry){.wanted = &run->dataset,
+                                          .result = &results->runs[index].simulation,
+                                          .cost = wb_bundles_run_cost(run),
+                                          .resumable = run->model->sha256};
+    return true;
+}
 
 void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign)
 {
@@ -261,12 +264,12 @@ void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb
     }
 }
 
-void wb_bundles_results_compute(struct wb_bundles_results *results, wb_bundles_progress *progress,
+void wb_bundles_results_compute(struct wb_bundles_results *results, wb_kind_progress *progress,
                                 void *context)
 {
     const struct wb_bundles *const campaign = results->campaign;
     for (int i = 0; i < campaign->n_runs && !wb_interrupted(); i++) {
-        if (results->runs[i].state == WB_BUNDLES_USABLE)
+        if (results->runs[i].simulation.state == WB_SIMULATION_USABLE)
             compare_run(&results->runs[i], &campaign->runs[i], &campaign->fit);
     }
     for (int i = 0; i < campaign->n_bundles && !wb_interrupted(); i++) {
@@ -274,7 +277,7 @@ void wb_bundles_results_compute(struct wb_bundles_results *results, wb_bundles_p
         if (progress)
             progress(context, i + 1, campaign->n_bundles, campaign->bundles[i].label);
     }
-    results->interrupted = wb_interrupted();
+    results->outcome.interrupted = wb_interrupted();
     judge(results);
 }
 
@@ -286,7 +289,7 @@ void wb_bundles_results_release(struct wb_bundles_results *results)
         struct wb_bundles_fit *const fit = &results->fits[i];
         wb_bundles_run_release(&results->rods[i]);
         wb_text_release(&fit->problem);
-        if (fit->state == WB_BUNDLES_USABLE)
+        if (fit->state == WB_SIMULATION_USABLE)
             wb_calibrate_result_release(&fit->result);
         free(fit->force);
     }

@@ -9,12 +9,14 @@
 #include "analysis/calibrate.h"
 #include "analysis/report/bundles/bundles.h"
 #include "analysis/report/bundles/bundles_run.h"
+#include "analysis/report/kind.h"
+#include "analysis/report/verdict.h"
 #include "base/status.h"
 #include "base/text.h"
 
 /* The homogenised beam fitted to a bundle's run with decaying friction. */
 struct wb_bundles_fit {
-    enum wb_bundles_state state; /* missing: its dataset is */
+    enum wb_simulation_state state; /* missing: its dataset is */
     struct wb_text problem;
     struct wb_calibrate_result result; /* of a usable one, as all that follows */
     double *force;                     /* N, (curve.n) of the run's curve; owned */
@@ -22,24 +24,22 @@ struct wb_bundles_fit {
 };
 
 struct wb_bundles_results {
+    struct wb_kind_outcome outcome;
     const struct wb_bundles *campaign; /* borrowed */
     struct wb_bundles_result runs[WB_BUNDLES_RUNS];
     struct wb_bundles_result rods[WB_BUNDLES_BUNDLES];
     struct wb_bundles_fit fits[WB_BUNDLES_BUNDLES];
-    int n_wanted, n_usable; /* datasets */
-    bool is_complete;
-    bool exceeds_limit;
-    bool interrupted;
 };
-
-typedef void wb_bundles_progress(void *context, int done, int total, const char *what);
 
 /* Reads and checks the datasets into zeroed results. Nothing fails. */
 void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign);
 /* Then compares and fits what is there, and tells of each bundle. Nothing fails. */
-void wb_bundles_results_compute(struct wb_bundles_results *results, wb_bundles_progress *progress,
+void wb_bundles_results_compute(struct wb_bundles_results *results, wb_kind_progress *progress,
                                 void *context);
 void wb_bundles_results_release(struct wb_bundles_results *results); /* accepts a zeroed one */
+
+/* Every run, then every bundle's 1D beam; of struct wb_bundles_results. */
+wb_simulation_list wb_bundles_results_list;
 
 /* A run's result (index -1: none) that is usable, else NULL. */
 const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
@@ -59,22 +59,13 @@ double wb_bundles_results_cost(const struct wb_bundles_results *results, int bun
 /* E I of a beam, N m2. */
 double wb_bundles_results_rigidity(double youngs_modulus, double diameter);
 
-/* What a limit of the campaign says of what is usable. */
-struct wb_bundles_verdict {
-    const char *what;    /* markup */
-    const char *key;     /* of the limit: "rms_max" */
-    const char *label;   /* of the bundle, or the run it is about */
-    double value, limit; /* 1 */
-    bool kept;
-};
-
 enum {
     WB_BUNDLES_VERDICTS = 2 * WB_BUNDLES_BUNDLES + 3
 };
 
-/* Returns how many there are: of every bundle its RMS and its cost, and of the energies the worst
- * of all runs. */
+/* What the limits of the campaign say of what is usable. Returns how many there are: of every
+ * bundle its RMS and its cost, and of the energies the worst of all runs. */
 int wb_bundles_results_judge(const struct wb_bundles_results *results,
-                             struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS]);
+                             struct wb_verdict verdicts[WB_BUNDLES_VERDICTS]);
 
 #endif

@@ -8,15 +8,9 @@
 #include "analysis/computed.h"
 #include "analysis/csv_table.h"
 #include "analysis/errors.h"
-#include "analysis/report/reasons.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
-
-bool wb_bundles_run_is_missing(const struct wb_bundles_result *result)
-{
-    return result->state == WB_BUNDLES_MISSING || result->state == WB_BUNDLES_STALE;
-}
 
 double wb_bundles_run_cost(const struct wb_bundles_run *run)
 {
@@ -26,51 +20,32 @@ double wb_bundles_run_cost(const struct wb_bundles_run *run)
 
 /* --- dataset.json --- */
 
-static double number_of(const struct wb_json *object, const char *key)
-{
-    double value;
-    return wb_json_get_number(object, key, &value) ? value : (double)NAN;
-}
-
 static void read_numbers(struct wb_bundles_result *result)
 {
-    const struct wb_json *const simulation = wb_json_get(result->dataset.document, "simulation");
+    const struct wb_json *const simulation = wb_simulation_of(&result->simulation);
     const struct wb_json *const largest = wb_json_get(simulation, "largest");
     struct wb_bundles_numbers *const n = &result->numbers;
-    const char *revision = "";
-    n->elements = number_of(simulation, "elements");
-    n->shells = number_of(simulation, "shells");
-    n->steps = number_of(simulation, "steps");
-    n->time_step = number_of(simulation, "time_step_s");
-    n->duration = number_of(simulation, "duration_s");
-    n->cpu_s = number_of(simulation, "cpu_s");
-    n->wall_s = number_of(simulation, "wall_s");
-    n->ns = number_of(simulation, "ns_per_element_step");
-    n->kinetic = number_of(largest, "kinetic_over_internal");
-    n->artificial = number_of(largest, "artificial_over_internal");
-    n->imbalance = number_of(largest, "imbalance_over_external");
-    n->strain = number_of(largest, "strain");
-    n->penetration = number_of(largest, "penetration_mm") * WB_MM;
+    n->elements = wb_simulation_number(simulation, "elements");
+    n->shells = wb_simulation_number(simulation, "shells");
+    n->steps = wb_simulation_number(simulation, "steps");
+    n->time_step = wb_simulation_number(simulation, "time_step_s");
+    n->duration = wb_simulation_number(simulation, "duration_s");
+    n->wall_s = wb_simulation_number(simulation, "wall_s");
+    n->ns = wb_simulation_number(simulation, "ns_per_element_step");
+    n->kinetic = wb_simulation_number(largest, "kinetic_over_internal");
+    n->artificial = wb_simulation_number(largest, "artificial_over_internal");
+    n->imbalance = wb_simulation_number(largest, "imbalance_over_external");
+    n->strain = wb_simulation_number(largest, "strain");
+    n->penetration = wb_simulation_number(largest, "penetration_mm") * WB_MM;
     (void)wb_json_get_boolean(largest, "beyond_strain_limit", &result->beyond);
     (void)wb_json_get_boolean(simulation, "duration_chosen", &result->kinetic_choice);
-    (void)wb_json_get_text(wb_json_get(result->dataset.document, "tool"), "revision", &revision);
-    snprintf(result->revision, sizeof result->revision, "%s", revision);
 }
 
 static void clear_numbers(struct wb_bundles_numbers *n)
 {
     const double none = (double)NAN;
-    *n = (struct wb_bundles_numbers){none, none, none, none, none, none, none,
+    *n = (struct wb_bundles_numbers){none, none, none, none, none, none,
                                      none, none, none, none, none, none};
-}
-
-static bool is_solved_by(const struct wb_bundles_result *result, const char *solver)
-{
-    const char *made_by = "";
-    return result->dataset.info.is_simulation &&
-           wb_json_get_text(wb_json_get(result->dataset.document, "simulation"), "model",
-                            &made_by) &&
-           strcmp(made_by, solver) == 0;
 }
 
 /* --- does it fit the campaign? --- */
@@ -121,8 +96,8 @@ static enum wb_status check_run(const struct wb_bundles_result *result,
     const struct wb_setting *const rows = wb_bundle_model_run_settings;
     const struct wb_bundle_model *const m = run->model;
     const struct wb_bundle_interface *const interface = &m->interface;
-    const struct wb_test_info *const info = &result->dataset.info;
-    const struct wb_json *const simulation = wb_json_get(result->dataset.document, "simulation");
+    const struct wb_test_info *const info = &result->simulation.dataset.info;
+    const struct wb_json *const simulation = wb_simulation_of(&result->simulation);
     const struct wb_json *const cohesion = wb_json_get(simulation, "cohesion");
     const char *sha256 = "", *mesh = "", *problem = "";
     (void)wb_json_get_text(simulation, "sha256", &sha256);
@@ -143,7 +118,7 @@ static enum wb_status check_run(const struct wb_bundles_result *result,
     WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, simulation, why));
     WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, simulation, why));
     const struct setting normal = {"the cohesive stiffness (N/mm3)",
-                                   number_of(cohesion, "normal_stiffness_N_mm3"),
+                                   wb_simulation_number(cohesion, "normal_stiffness_N_mm3"),
                                    interface->normal_stiffness / WB_N_PER_MM3};
     if (m->has_tape)
         WB_TRY(check_settings(&normal, 1, why));
@@ -153,7 +128,7 @@ static enum wb_status check_run(const struct wb_bundles_result *result,
         return wb_fail_to(why, WB_ERR_DATA,
                           "its duration was given, and one that keeps kinetic energy "
                           "small is wanted");
-    if (!wb_dataset_is_complete(&result->dataset))
+    if (!wb_dataset_is_complete(&result->simulation.dataset))
         return wb_fail_to(why, WB_ERR_DATA, "it did not come to its end%s%s",
                           problem[0] ? ": " : "", problem);
     return WB_OK;
@@ -164,22 +139,23 @@ static enum wb_status check_rod(const struct wb_bundles_result *result,
 {
     const struct wb_bundle_model *const m = run->model;
     const struct wb_wire *const beam = wb_bundles_published(run);
-    const struct wb_test_info *const info = &result->dataset.info;
-    const struct wb_json *const simulation = wb_json_get(result->dataset.document, "simulation");
+    const struct wb_test_info *const info = &result->simulation.dataset.info;
+    const struct wb_json *const simulation = wb_simulation_of(&result->simulation);
     const struct setting settings[] = {
         {"the diameter (mm)", info->outer_diameter / WB_MM, beam->outer_diameter / WB_MM},
         {"the length (mm)", info->length / WB_MM, m->length / WB_MM},
-        {"the largest deflection (mm)", largest_deflection(&result->dataset) / WB_MM,
+        {"the largest deflection (mm)", largest_deflection(&result->simulation.dataset) / WB_MM,
          m->run.deflection / WB_MM},
         {"the strand's length (mm)", info->strand_length / WB_MM, m->loads.strand_length / WB_MM},
         {"gravity (m/s2)", info->gravity, m->loads.weight ? WB_STANDARD_GRAVITY : 0.0},
-        {"Young's modulus (MPa)", number_of(simulation, "youngs_modulus_MPa"),
+        {"Young's modulus (MPa)", wb_simulation_number(simulation, "youngs_modulus_MPa"),
          beam->material.youngs_modulus / WB_MPA},
-        {"the yield stress (MPa)", number_of(simulation, "yield_stress_MPa"),
+        {"the yield stress (MPa)", wb_simulation_number(simulation, "yield_stress_MPa"),
          beam->material.yield_stress / WB_MPA},
-        {"the strength coefficient (MPa)", number_of(simulation, "strength_coefficient_MPa"),
+        {"the strength coefficient (MPa)",
+         wb_simulation_number(simulation, "strength_coefficient_MPa"),
          beam->material.strength_coefficient / WB_MPA},
-        {"the hardening exponent", number_of(simulation, "hardening_exponent"),
+        {"the hardening exponent", wb_simulation_number(simulation, "hardening_exponent"),
          beam->material.hardening_exponent},
     };
     return check_settings(settings, sizeof settings / sizeof settings[0], why);
@@ -221,7 +197,7 @@ static enum wb_status parse_energies(struct wb_bundles_result *result, char *tex
                                      struct wb_reason *why)
 {
     char *line = strsep(&text, "\n");
-    result->energies = calloc(result->dataset.n_rows + 1, sizeof *result->energies);
+    result->energies = calloc(result->simulation.dataset.n_rows + 1, sizeof *result->energies);
     if (!result->energies)
         return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading '%s'", path);
     if (strcmp(line, energies_header) != 0)
@@ -229,7 +205,7 @@ static enum wb_status parse_energies(struct wb_bundles_result *result, char *tex
                           energies_header);
     while (text && (line = strsep(&text, "\n")) && line[0]) {
         const int n = result->n_energies;
-        if (n == (int)result->dataset.n_rows)
+        if (n == (int)result->simulation.dataset.n_rows)
             return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: more rows than force_deflection.csv",
                               path, n + 2);
         if (!parse_energy(line, &result->energies[n]))
@@ -237,9 +213,9 @@ static enum wb_status parse_energies(struct wb_bundles_result *result, char *tex
                               COLUMNS);
         result->n_energies++;
     }
-    if (result->n_energies != (int)result->dataset.n_rows)
+    if (result->n_energies != (int)result->simulation.dataset.n_rows)
         return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: expected a row: force_deflection.csv has %zu",
-                          path, result->n_energies + 2, result->dataset.n_rows);
+                          path, result->n_energies + 2, result->simulation.dataset.n_rows);
     return WB_OK;
 }
 
@@ -256,80 +232,63 @@ static enum wb_status read_energies(struct wb_bundles_result *result, const char
 
 /* --- loading --- */
 
-/* `stale` says whether a failure is one that making the dataset again mends. */
-static enum wb_status read_run(struct wb_bundles_result *result, const struct wb_bundles_run *run,
-                               bool *stale, struct wb_reason *why)
+/* A dataset while it is read. */
+struct loading {
+    struct wb_bundles_result *result;
+    const struct wb_bundles_run *run; /* for a 1D beam, the run whose published beam it is of */
+    const char *folder;
+};
+
+static enum wb_status check_bundle(void *context, bool *stale, struct wb_reason *why)
 {
-    char rows[WB_PATH];
-    WB_TRY(wb_dataset_read(&result->dataset, run->dataset.path, why));
-    if (!is_solved_by(result, "bundle"))
+    const struct loading *const loading = context;
+    if (!wb_simulation_is_solved_by(&loading->result->simulation, "bundle"))
         return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve bundle'");
-    read_numbers(result);
-    *stale = true;
-    WB_TRY(check_run(result, run, why));
-    *stale = false;
-    WB_TRY(wb_file_join(rows, run->dataset.path, "force_deflection.csv"));
-    WB_TRY(wb_hash_file(rows, result->sha256));
-    WB_TRY(read_energies(result, run->dataset.path, why));
-    return wb_surface_read(&result->surface, run->dataset.path, why);
+    read_numbers(loading->result);
+    const enum wb_status status = check_run(loading->result, loading->run, why);
+    *stale = status != WB_OK;
+    return status;
 }
 
-static enum wb_status read_rod(struct wb_bundles_result *result,
-                               const struct wb_bundles_dataset *rod,
-                               const struct wb_bundles_run *run, bool *stale, struct wb_reason *why)
+static enum wb_status take_bundle(void *context, struct wb_reason *why)
 {
-    char rows[WB_PATH];
-    WB_TRY(wb_dataset_read(&result->dataset, rod->path, why));
-    if (!is_solved_by(result, "cantilever"))
+    const struct loading *const loading = context;
+    WB_TRY(read_energies(loading->result, loading->folder, why));
+    return wb_surface_read(&loading->result->surface, loading->folder, why);
+}
+
+static enum wb_status check_beam(void *context, bool *stale, struct wb_reason *why)
+{
+    const struct loading *const loading = context;
+    if (!wb_simulation_is_solved_by(&loading->result->simulation, "cantilever"))
         return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve cantilever'");
-    read_numbers(result);
-    *stale = true;
-    WB_TRY(check_rod(result, run, why));
-    *stale = false;
-    WB_TRY(wb_file_join(rows, rod->path, "force_deflection.csv"));
-    return wb_hash_file(rows, result->sha256);
-}
-
-static void load(struct wb_bundles_result *result, const struct wb_bundles_dataset *wanted,
-                 const struct wb_bundles_run *run, bool is_rod)
-{
-    char file[WB_PATH];
-    bool stale = false;
-    clear_numbers(&result->numbers);
-    result->state = WB_BUNDLES_MISSING;
-    if (wb_file_join(file, wanted->path, "dataset.json") != WB_OK || !wb_file_exists(file)) {
-        wb_text_append(&result->problem, "there is no such dataset");
-        return;
-    }
-    const struct wb_reasons reasons = {&result->problem, wanted->path, wanted->name};
-    struct wb_reason why = {.text = ""};
-    const enum wb_status status =
-        is_rod ? read_rod(result, wanted, run, &stale, &why) : read_run(result, run, &stale, &why);
-    result->state = status == WB_OK ? WB_BUNDLES_USABLE
-                    : stale         ? WB_BUNDLES_STALE
-                                    : WB_BUNDLES_REFUSED;
-    if (status != WB_OK)
-        wb_reasons_warn(&reasons, status, &why);
+    read_numbers(loading->result);
+    const enum wb_status status = check_rod(loading->result, loading->run, why);
+    *stale = status != WB_OK;
+    return status;
 }
 
 void wb_bundles_run_load(struct wb_bundles_result *result, const struct wb_bundles_run *run)
 {
-    load(result, &run->dataset, run, false);
+    struct loading loading = {result, run, run->dataset.path};
+    const struct wb_simulation_reader reader = {check_bundle, take_bundle, &loading};
+    clear_numbers(&result->numbers);
+    wb_simulation_load(&result->simulation, &run->dataset, &reader);
 }
 
 void wb_bundles_run_load_rod(struct wb_bundles_result *result,
                              const struct wb_bundles_bundle *bundle,
                              const struct wb_bundles_run *run)
 {
+    struct loading loading = {result, run, bundle->rod.path};
+    const struct wb_simulation_reader reader = {check_beam, NULL, &loading};
     clear_numbers(&result->numbers);
-    if (bundle->has_rod)
-        load(result, &bundle->rod, run, true);
+    wb_simulation_load(&result->simulation, &bundle->rod, &reader);
 }
 
 void wb_bundles_run_release(struct wb_bundles_result *result)
 {
-    wb_text_release(&result->problem);
-    wb_dataset_release(&result->dataset);
+    wb_simulation_result_release(&result->simulation);
     wb_surface_release(&result->surface);
     wb_curve_release(&result->curve);
     free(result->energies);
@@ -348,7 +307,7 @@ static enum wb_status compute_published(struct wb_bundles_result *result,
     const struct wb_curve *const curve = &result->curve;
     const struct wb_computed_settings how = {
         .n_elements = fit->n_elements, .n_fibres = fit->n_fibres, .why = why};
-    struct wb_test_info info = result->dataset.info;
+    struct wb_test_info info = result->simulation.dataset.info;
     struct wb_computed *computed;
     info.outer_diameter = beam->outer_diameter;
     info.mass_per_length = wb_wire_mass_per_length(beam);
@@ -364,7 +323,7 @@ enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
                                       const struct wb_calibrate_settings *fit,
                                       struct wb_reason *why)
 {
-    const struct wb_dataset *const dataset = &result->dataset;
+    const struct wb_dataset *const dataset = &result->simulation.dataset;
     const struct wb_wire *const beam = wb_bundles_published(run);
     const struct wb_curve_grid grid = {.step = fit->step};
     WB_TRY(wb_curve_average_on(&result->curve, &dataset, 1, &grid, why));

@@ -13,15 +13,6 @@
 #include "base/reason.h"
 #include "base/text.h"
 
-enum wb_bundles_state {
-    WB_BUNDLES_NOT_WANTED,
-    WB_BUNDLES_MISSING, /* there is no such dataset */
-    WB_BUNDLES_STALE,   /* of a bundle or of settings that have changed, or cut short: to be made
-                           again */
-    WB_BUNDLES_REFUSED, /* it is something else, damaged, ... */
-    WB_BUNDLES_USABLE
-};
-
 /* A row of energies.csv, J. */
 struct wb_bundles_energy {
     double deflection, time; /* m; s, of the model */
@@ -30,21 +21,17 @@ struct wb_bundles_energy {
 
 /* What a dataset says of its computation; NaN where it does not. */
 struct wb_bundles_numbers {
-    double elements, shells, steps, time_step, duration, cpu_s, wall_s, ns; /* s, ns */
+    double elements, shells, steps, time_step, duration, wall_s, ns; /* s, ns */
     double kinetic, artificial, imbalance, strain; /* largest ratios, see fe/bundle/bundle_run.h */
     double penetration;                            /* m */
 };
 
 struct wb_bundles_result {
-    enum wb_bundles_state state;
-    struct wb_text problem; /* why it cannot be used */
-    char revision[64];      /* of the program that made it */
-    char sha256[WB_SHA256_TEXT];
+    struct wb_simulation_result simulation;
     struct wb_bundles_numbers numbers;
     bool beyond;         /* strains beyond what the elements' logarithm is made for */
     bool kinetic_choice; /* the duration was chosen by the limit of kinetic energy */
     /* Of a usable one: */
-    struct wb_dataset dataset;
     int n_energies;
     struct wb_bundles_energy *energies; /* (n_energies), owned; none without energies.csv */
     struct wb_surface surface;          /* bent; no bodies without surface.csv */
@@ -71,9 +58,6 @@ WB_MUST_CHECK enum wb_status wb_bundles_run_compare(struct wb_bundles_result *re
                                                     const struct wb_bundles_run *run,
                                                     const struct wb_calibrate_settings *fit,
                                                     struct wb_reason *why);
-
-/* Whether it is to be made (again) by --solve. */
-bool wb_bundles_run_is_missing(const struct wb_bundles_result *result);
 
 /* What a run costs, beside others: its elements, and twice as much where the duration is to be
  * found first. */

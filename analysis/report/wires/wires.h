@@ -39,6 +39,8 @@
 #include <stdbool.h>
 
 #include "analysis/calibrate.h"
+#include "analysis/report/campaign.h"
+#include "analysis/report/simulation.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
@@ -55,19 +57,12 @@ enum wb_wires_solver {
 };
 const char *wb_wires_command(enum wb_wires_solver solver); /* "wire3d", "wire1d" */
 
-/* A dataset that the campaign wants. */
-struct wb_wires_dataset {
-    bool wanted;
-    char name[256];     /* as it is told: no path of this machine */
-    char path[WB_PATH]; /* of its folder, which may not be there */
-};
-
 /* A model with its datasets. */
 struct wb_wires_case {
     char label[64];
     char model_name[300];        /* as it is told, for commands */
     struct wb_wire_model *model; /* owned */
-    struct wb_wires_dataset datasets[WB_WIRES_SOLVERS];
+    struct wb_simulation datasets[WB_WIRES_SOLVERS];
 };
 
 /* Indices of the cases; those of residual stresses follow. */
@@ -80,10 +75,7 @@ enum {
 };
 
 struct wb_wires {
-    char title[200];
-    char notes[2000];
-    char name[256];              /* of the file, from fixtures/ on when it is a shipped one */
-    char sha256[WB_SHA256_TEXT]; /* of the file */
+    struct wb_campaign head;
     int n_cases, n_residual;
     struct wb_wires_case cases[WB_WIRES_CASES];
     double section;                            /* m */

@@ -172,7 +172,7 @@ static enum wb_status draw_shapes(struct wb_figure **figure, const void *context
         wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
     const struct wb_wires_run *const elastic =
         wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const bool fitted = results->fit_state == WB_WIRES_USABLE;
+    const bool fitted = results->fit_state == WB_SIMULATION_USABLE;
     if (!solid && !rod)
         return WB_OK;
     WB_TRY(wb_figures_start_simulation(figure, "shapes-elastoplastic", 170.0));
@@ -211,10 +211,10 @@ static void add_rows(struct wb_panel *panels[2], const char *label, const struct
     size_t n = 0;
     if (!run)
         return;
-    for (size_t i = 0; i < run->dataset.n_rows && n < MOST_POINTS; i++, n++) {
-        force[n] = run->dataset.rows[i].force;
-        deflection[n] = run->dataset.rows[i].deflection / WB_MM;
-        angle[n] = run->dataset.rows[i].tip_angle * degrees;
+    for (size_t i = 0; i < run->simulation.dataset.n_rows && n < MOST_POINTS; i++, n++) {
+        force[n] = run->simulation.dataset.rows[i].force;
+        deflection[n] = run->simulation.dataset.rows[i].deflection / WB_MM;
+        angle[n] = run->simulation.dataset.rows[i].tip_angle * degrees;
     }
     wb_figure_add_line(panels[0], label, n, deflection, force, style);
     wb_figure_add_line(panels[1], label, n, angle, force, style);
@@ -252,7 +252,7 @@ static enum wb_status draw_loading(struct wb_figure **figure, const void *contex
     wb_figure_set_axes(panels[1], "Angle of the tip (degrees)", "Follower force (N)");
     add_rows(panels, "3D", solid, &solid_style);
     add_rows(panels, "1D fibres", rod, &rod_style);
-    if (results->fit_state == WB_WIRES_USABLE)
+    if (results->fit_state == WB_SIMULATION_USABLE)
         add_rod_rows(panels, "1D fitted", &results->fitted, &fitted_style);
     add_rod_rows(panels, "1D as printed", &results->printed, &printed_style);
     return WB_OK;

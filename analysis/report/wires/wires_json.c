@@ -1,19 +1,11 @@
-/* Numbers of a comparison: wb_wires_json_build() of analysis/report/wires/wires_report.h. */
+#include "analysis/report/wires/wires_json.h"
+
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/report/wires/wires_report.h"
+#include "analysis/report/numbers.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "base/version.h"
-
-static void put_vector(struct wb_json *object, const char *key, const double *values, int n,
-                       double unit)
-{
-    struct wb_json *const list = wb_json_set_array(object, key);
-    for (int i = 0; i < n; i++)
-        wb_json_append_number(list, values[i] / unit);
-}
 
 static void put_peak(struct wb_json *object, const char *key, const struct wb_wires_peak *peak)
 {
@@ -21,7 +13,7 @@ static void put_peak(struct wb_json *object, const char *key, const struct wb_wi
         return;
     struct wb_json *const entry = wb_json_set_object(object, key);
     wb_json_set_number(entry, "von_mises_MPa", peak->stress / WB_MPA);
-    put_vector(entry, "at_mm", peak->reference, 3, WB_MM);
+    wb_numbers_put_list(entry, "at_mm", peak->reference, 3, WB_MM);
 }
 
 /* The largest stresses on every section that the dataset keeps. */
@@ -45,9 +37,9 @@ static void put_usable(struct wb_json *entry, const struct wb_wires_results *res
                        const struct wb_wires_run *run, int index)
 {
     const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
-    wb_json_set_text(entry, "sha256", run->sha256);
+    wb_json_set_text(entry, "sha256", run->simulation.sha256);
     wb_json_set_number(entry, "follower_force_N", run->force);
-    put_vector(entry, "tip_mm", run->tip, 3, WB_MM);
+    wb_numbers_put_list(entry, "tip_mm", run->tip, 3, WB_MM);
     wb_json_set_number(entry, "tip_angle_degrees", run->tip_angle / WB_DEGREE);
     if (solid && solid != run)
         wb_json_set_number(entry, "largest_distance_from_solid_mm",
@@ -68,30 +60,31 @@ static void put_effect(struct wb_json *entry, const struct wb_wires_results *res
 static void put_run(struct wb_json *object, const struct wb_wires_results *results, int index,
                     int solver)
 {
-    static const char *const states[] = {"not wanted", "missing", "refused", "used"};
+    /* Outdated ones are refused, too. */
+    static const char *const states[] = {"not wanted", "missing", "refused", "refused", "used"};
     const struct wb_wires_case *const item = &results->comparison->cases[index];
     const struct wb_wires_run *const run = &results->runs[index][solver];
-    if (run->state == WB_WIRES_NOT_WANTED)
+    if (run->simulation.state == WB_SIMULATION_NOT_WANTED)
         return;
     struct wb_json *const entry =
         wb_json_set_object(object, wb_wires_command((enum wb_wires_solver)solver));
     wb_json_set_text(entry, "dataset", item->datasets[solver].name);
-    wb_json_set_text(entry, "state", states[run->state]);
-    if (run->state != WB_WIRES_USABLE) {
-        wb_json_set_text(entry, "problem", wb_text_string(&run->problem));
-        wb_json_set_text(entry, "command", run->command);
+    wb_json_set_text(entry, "state", states[run->simulation.state]);
+    if (run->simulation.state != WB_SIMULATION_USABLE) {
+        wb_json_set_text(entry, "problem", wb_text_string(&run->simulation.problem));
+        wb_json_set_text(entry, "command", item->datasets[solver].command);
     }
     wb_json_set_number(entry, "elements", run->elements);
     wb_json_set_number(entry, "degrees_of_freedom", run->unknowns);
     wb_json_set_number(entry, "iterations", run->iterations);
-    wb_json_set_number(entry, "cpu_s", run->cpu_s);
+    wb_json_set_number(entry, "cpu_s", run->simulation.cpu_s);
     wb_json_set_number(entry, "peak_memory_MB", run->memory_MB);
     if (isfinite(run->slip)) {
         wb_json_set_number(entry, "slip_mm", run->slip / WB_MM);
         wb_json_set_number(entry, "slip_limit_mm", run->slip_limit / WB_MM);
         wb_json_set_number(entry, "opening_mm", run->opening / WB_MM);
     }
-    if (run->state != WB_WIRES_USABLE)
+    if (run->simulation.state != WB_SIMULATION_USABLE)
         return;
     put_usable(entry, results, run, index);
     put_effect(entry, results, run, index, solver);
@@ -111,23 +104,20 @@ static void put_rod(struct wb_json *root, const char *key, const struct wb_wires
     if (solid && rod->reached)
         wb_json_set_number(entry, "largest_distance_from_solid_mm",
                            wb_wires_rod_distance(solid, rod) / WB_MM);
-    put_vector(entry, "x_mm", rod->x, WB_WIRES_POINTS, WB_MM);
-    put_vector(entry, "y_mm", rod->y, WB_WIRES_POINTS, WB_MM);
+    wb_numbers_put_list(entry, "x_mm", rod->x, WB_WIRES_POINTS, WB_MM);
+    wb_numbers_put_list(entry, "y_mm", rod->y, WB_WIRES_POINTS, WB_MM);
     if (rod->n_curve < 2)
         return;
-    put_vector(entry, "force_N", rod->force, rod->n_curve, 1.0);
-    put_vector(entry, "deflection_mm", rod->deflection, rod->n_curve, WB_MM);
-    put_vector(entry, "angle_degrees", rod->angle, rod->n_curve, WB_DEGREE);
+    wb_numbers_put_list(entry, "force_N", rod->force, rod->n_curve, 1.0);
+    wb_numbers_put_list(entry, "deflection_mm", rod->deflection, rod->n_curve, WB_MM);
+    wb_numbers_put_list(entry, "angle_degrees", rod->angle, rod->n_curve, WB_DEGREE);
 }
 
 static void put_material(struct wb_json *object, const char *key,
                          const struct wb_material *material)
 {
     struct wb_json *const entry = wb_json_set_object(object, key);
-    wb_json_set_number(entry, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
-    wb_json_set_number(entry, "yield_stress_MPa", material->yield_stress / WB_MPA);
-    wb_json_set_number(entry, "strength_coefficient_MPa", material->strength_coefficient / WB_MPA);
-    wb_json_set_number(entry, "hardening_exponent", material->hardening_exponent);
+    wb_numbers_put_properties(entry, material);
 }
 
 static void put_fit(struct wb_json *root, const struct wb_wires_results *results)
@@ -137,7 +127,7 @@ static void put_fit(struct wb_json *root, const struct wb_wires_results *results
     struct wb_json *const entry = wb_json_set_object(root, "fit");
     if (results->comparison->has_printed_wire)
         put_material(entry, "printed", &results->comparison->printed_wire.material);
-    if (results->fit_state != WB_WIRES_USABLE) {
+    if (results->fit_state != WB_SIMULATION_USABLE) {
         wb_json_set_text(entry, "problem", wb_text_string(&results->fit_problem));
         return;
     }
@@ -192,17 +182,10 @@ struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
     const struct wb_wires_run *const plastic =
         wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "title", comparison->title);
-    wb_json_set_text(root, "data", "simulation");
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench report");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
-    struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", comparison->name);
-    wb_json_set_text(file, "sha256", comparison->sha256);
-    wb_json_set_boolean(root, "complete", results->is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", results->exceeds_limit);
+    wb_numbers_put_title(root, comparison->head.title, "simulation");
+    wb_numbers_put_program(root);
+    wb_numbers_put_campaign(root, &comparison->head);
+    wb_numbers_put_outcome(root, &results->outcome);
     wb_json_set_number(root, "jacket_modulus_per_percent_of_core_MPa",
                        wb_wires_split(comparison->cases[WB_WIRES_ELASTOPLASTIC].model, 0.01) /
                            WB_MPA);
@@ -213,8 +196,6 @@ struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
     put_rod(root, "printed_rod", &results->printed, plastic);
     if (results->printed.done)
         wb_json_set_number(root, "printed_collapse_force_N", results->collapse_force);
-    struct wb_json *const list = wb_json_set_array(root, "files");
-    for (int i = 0; i < n_files; i++)
-        wb_json_append_text(list, files[i]);
+    wb_numbers_put_files(root, files, n_files);
     return root;
 }

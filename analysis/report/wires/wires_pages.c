@@ -10,78 +10,23 @@
 #include "analysis/report/wires/wires_figures.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "base/version.h"
 
 /* --- what is missing, what is exceeded --- */
 
-static void put_missing(struct wb_document *document, const struct wb_wires_results *results)
+static void put_unfitted(struct wb_document *document, const struct wb_wires_results *results)
 {
-    const struct wb_wires *const comparison = results->comparison;
-    if (results->is_complete)
+    char text[1700], problem[900];
+    if (results->fit_state == WB_SIMULATION_USABLE)
         return;
-    char text[1700], name[600], problem[900];
-    const int n = results->n_wanted - results->n_usable;
-    if (n > 0)
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> %d of %d datasets %s missing or cannot be used. The report "
-                 "shows what the others give.",
-                 n, results->n_wanted, wb_pages_plural(n, "is", "are"));
-    else
-        snprintf(text, sizeof text,
-                 "<b>Incomplete.</b> All datasets are there, but not every step could be done.");
-    wb_document_notice(document, WB_TONE_WARNING, text);
-    for (int i = 0; i < comparison->n_cases; i++) {
-        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-            const struct wb_wires_run *const run = &results->runs[i][k];
-            if (run->state == WB_WIRES_NOT_WANTED || run->state == WB_WIRES_USABLE)
-                continue;
-            snprintf(text, sizeof text, "<b>%s</b>: %s. To make it:",
-                     wb_pages_escape(name, sizeof name, comparison->cases[i].datasets[k].name),
-                     wb_pages_escape(problem, sizeof problem, wb_text_string(&run->problem)));
-            wb_document_item(document, WB_TONE_WARNING, text);
-            wb_document_code(document, run->command);
-        }
-    }
-    if (results->fit_state != WB_WIRES_USABLE) {
-        snprintf(text, sizeof text, "<b>No fitted rod</b>: %s",
-                 wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
-        wb_document_item(document, WB_TONE_WARNING, text);
-    }
-}
-
-/* One sentence for each limit; `value` NaN: not known. */
-static void put_limit(struct wb_document *document, const char *what, double value, double limit)
-{
-    char text[400];
-    if (!(limit > 0.0) || isnan(value))
-        return;
-    const bool kept = value <= limit;
-    snprintf(text, sizeof text, "<b>%s</b> %s: %.3g %%, limit %.3g %%.",
-             kept ? "Limit kept." : "Limit exceeded.", what, value / WB_PERCENT,
-             limit / WB_PERCENT);
-    wb_document_item(document, kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
+    snprintf(text, sizeof text, "<b>No fitted rod</b>: %s",
+             wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
+    wb_document_item(document, WB_TONE_WARNING, text);
 }
 
 static void put_limits(struct wb_document *document, const struct wb_wires_results *results)
 {
-    static const char *const names[] = {
-        "Tip of the elastic solid from the exact one, over its displacement",
-        "Tip of the elastic rod from the exact one, over its displacement"};
-    const struct wb_wires *const comparison = results->comparison;
-    for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-        const struct wb_wires_run *const run =
-            wb_wires_usable(results, WB_WIRES_ELASTIC, (enum wb_wires_solver)k);
-        put_limit(document, names[k], run ? wb_wires_tip_error(results, run) : (double)NAN,
-                  comparison->tip_limit);
-    }
-    double largest = (double)NAN;
-    for (int i = 0; i < results->n_stresses; i++)
-        largest =
-            fmax(largest, fabs(results->stresses[i].core.stress / results->stresses[i].beam - 1.0));
-    put_limit(document, "Elastic stress of the core's outer fibre from <i>E\xce\xba</i><i>r</i>",
-              largest, comparison->stress_limit);
-    put_limit(document, "CPU seconds of the elastic rod over those of the solid",
-              wb_wires_cost(results, WB_WIRES_ELASTIC), comparison->cost_limit);
+    struct wb_verdict verdicts[WB_WIRES_VERDICTS];
+    wb_pages_put_verdicts(document, verdicts, wb_wires_results_judge(results, verdicts));
 }
 
 /* --- what came out --- */
@@ -141,7 +86,7 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
     }
     const struct wb_wires_run *const elastic = runs[WB_WIRES_ELASTIC][0];
     const struct wb_wires_run *const plastic = runs[WB_WIRES_ELASTOPLASTIC][0];
-    const bool fitted = results->fit_state == WB_WIRES_USABLE && results->fitted.reached;
+    const bool fitted = results->fit_state == WB_SIMULATION_USABLE && results->fitted.reached;
     const double none = (double)NAN;
     char stress[40] = "", cost[40] = "";
     if (comparison->printed_stress > 0.0)
@@ -190,7 +135,8 @@ static void put_summary(struct wb_document *document, const struct wb_wires_resu
               "shown is how solid and rod compare."
             : "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and "
               "as a 1D rod. No wire was tested.");
-    put_missing(document, results);
+    wb_pages_put_missing(document, &results->outcome, wb_wires_results_list, results);
+    put_unfitted(document, results);
     put_limits(document, results);
     put_facts(document, results);
 }
@@ -449,7 +395,7 @@ static void put_property(struct wb_document *document, struct wb_document_table 
 {
     const struct wb_pages_property *const property = &wb_pages_properties[i];
     const int decimals = i == 2 ? 1 : property->decimals; /* K is small here */
-    const bool fitted = results->fit_state == WB_WIRES_USABLE;
+    const bool fitted = results->fit_state == WB_SIMULATION_USABLE;
     const bool printed = results->comparison->has_printed_wire;
     struct wb_pages_row row = {.n = 0};
     wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
@@ -477,7 +423,7 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
     const struct wb_wires *const comparison = results->comparison;
     char source[400], caption[900];
     wb_document_heading(document, 2, "fit", "Properties of the rod, fitted to the solid");
-    if (results->fit_state != WB_WIRES_USABLE) {
+    if (results->fit_state != WB_SIMULATION_USABLE) {
         char problem[900], item[1000];
         snprintf(item, sizeof item, "<b>No fit</b>: %s",
                  wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
@@ -494,7 +440,7 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
     struct wb_document_table *const table = wb_document_table(document, caption, 4, columns);
     for (int i = 0; i < 4; i++)
         put_property(document, table, results, i);
-    if (results->fit_state != WB_WIRES_USABLE)
+    if (results->fit_state != WB_SIMULATION_USABLE)
         return;
     struct wb_text text = {0};
     wb_text_append(&text,
@@ -552,7 +498,7 @@ static void put_elastoplastic(struct wb_document *document, const struct wb_wire
     struct wb_document_table *const table = start_tips(document, NULL);
     put_tip_of(document, table, "3D", solid, solid);
     put_tip_of(document, table, "1D fibres", rod, solid);
-    if (results->fit_state == WB_WIRES_USABLE)
+    if (results->fit_state == WB_SIMULATION_USABLE)
         put_rod(document, table, "1D fitted", &results->fitted, solid);
     put_rod(document, table, "1D as printed", &results->printed, solid);
     put_fit(document, results, solid);
@@ -747,16 +693,19 @@ static void put_simulation(struct wb_document *document, struct wb_document_tabl
     wb_pages_cell_number(&row, run->elements, 0);
     wb_pages_cell_number(&row, run->unknowns, 0);
     wb_pages_cell_number(&row, run->iterations, 0);
-    wb_pages_cell_number(&row, run->cpu_s, run->cpu_s < 0.1 ? 3 : run->cpu_s < 10.0 ? 2 : 0);
+    wb_pages_cell_number(&row, run->simulation.cpu_s,
+                         run->simulation.cpu_s < 0.1    ? 3
+                         : run->simulation.cpu_s < 10.0 ? 2
+                                                        : 0);
     wb_pages_cell_number(&row, run->memory_MB, 0);
-    if (run->state == WB_WIRES_USABLE)
+    if (run->simulation.state == WB_SIMULATION_USABLE)
         wb_pages_cell(&row, WB_TONE_GOOD, "converged");
     else
         wb_pages_cell(&row, WB_TONE_WARNING, "%s",
-                      run->is_stale                    ? "model changed"
-                      : run->is_cut_short              ? "cut short"
-                      : run->state == WB_WIRES_MISSING ? "missing"
-                                                       : "not used");
+                      run->is_stale                                    ? "model changed"
+                      : run->is_cut_short                              ? "cut short"
+                      : run->simulation.state == WB_SIMULATION_MISSING ? "missing"
+                                                                       : "not used");
     wb_pages_cell_number(
         &row, k == WB_WIRES_ROD ? wb_wires_cost(results, i) / WB_PERCENT : (double)NAN, 2);
     wb_pages_put_row(document, table, k == WB_WIRES_SOLID, &row);
@@ -790,7 +739,7 @@ static void put_cost(struct wb_document *document, const struct wb_wires_results
     wb_text_release(&caption);
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-            if (results->runs[i][k].state != WB_WIRES_NOT_WANTED)
+            if (results->runs[i][k].simulation.state != WB_SIMULATION_NOT_WANTED)
                 put_simulation(document, table, results, i, k);
         }
     }
@@ -865,42 +814,13 @@ static void put_models(struct wb_document *document, const struct wb_wires *comp
     }
 }
 
-static void put_datasets(struct wb_document *document, const struct wb_wires_results *results)
-{
-    static const struct wb_document_column columns[] = {
-        {.heading = "Dataset", .wraps = true},
-        {"Revision"},
-        {.heading = "SHA-256 of force_deflection.csv", .monospace = true},
-    };
-    const struct wb_wires *const comparison = results->comparison;
-    wb_document_heading(document, 2, "datasets", "Datasets");
-    struct wb_document_table *const table =
-        wb_document_table(document, "Revision: of the program that made it.", 3, columns);
-    for (int i = 0; i < comparison->n_cases; i++) {
-        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-            const struct wb_wires_run *const run = &results->runs[i][k];
-            struct wb_pages_row row = {.n = 0};
-            if (run->state == WB_WIRES_NOT_WANTED)
-                continue;
-            wb_pages_cell_plain(&row, WB_TONE_PLAIN, comparison->cases[i].datasets[k].name);
-            if (run->state == WB_WIRES_USABLE)
-                wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->revision);
-            else
-                wb_pages_cell(&row, WB_TONE_WARNING, "not used");
-            wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->sha256);
-            wb_pages_put_row(document, table, false, &row);
-        }
-    }
-}
-
 static void put_provenance(struct wb_document *document, const struct wb_wires_results *results)
 {
     const struct wb_wires *const comparison = results->comparison;
-    wb_pages_put_origin(document, comparison->name, comparison->sha256, comparison->notes,
-                        "datasets");
+    wb_pages_put_origin(document, &comparison->head, "datasets");
     put_materials(document, comparison);
     put_models(document, comparison);
-    put_datasets(document, results);
+    wb_pages_put_datasets(document, wb_wires_results_list, results);
 }
 
 /* --- all of it --- */
@@ -908,13 +828,7 @@ static void put_provenance(struct wb_document *document, const struct wb_wires_r
 void wb_wires_pages_build(struct wb_document *document, const struct wb_wires_results *results,
                           const struct wb_figures *figures)
 {
-    char subtitle[300], footer[300];
-    snprintf(footer, sizeof footer, "wirebench %s, revision %s \xc2\xb7 simulations, no tests",
-             wb_version(), wb_version_revision());
-    snprintf(subtitle, sizeof subtitle, "%d of %d simulations \xc2\xb7 wirebench %s, revision %s",
-             results->n_usable, results->n_wanted, wb_version(), wb_version_revision());
-    wb_document_init(document, "Simulation report", results->comparison->title, subtitle, footer,
-                     "");
+    wb_pages_start_simulations(document, results->comparison->head.title, &results->outcome);
     put_summary(document, results);
     put_elastic(document, results, figures);
     put_elastoplastic(document, results, figures);

@@ -15,7 +15,7 @@ const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *result
                                            enum wb_wires_solver solver)
 {
     const struct wb_wires_run *const run = &results->runs[index][solver];
-    return run->state == WB_WIRES_USABLE ? run : NULL;
+    return run->simulation.state == WB_SIMULATION_USABLE ? run : NULL;
 }
 
 /* --- stresses --- */
@@ -92,20 +92,14 @@ static enum wb_status compute_printed(struct wb_wires_results *results)
     return wb_wires_rod_compute(&results->tenfold, &wire);
 }
 
-static bool go_on(void *context, int evaluation, double error, double size)
-{
-    (void)context, (void)evaluation, (void)error, (void)size;
-    return !wb_interrupted();
-}
-
 static enum wb_status calibrate(struct wb_wires_results *results, const struct wb_wires_run *run,
                                 struct wb_reason *why)
 {
     const struct wb_wires *const comparison = results->comparison;
     struct wb_wires_wire wire = wire_of(comparison, WB_WIRES_ELASTOPLASTIC);
     struct wb_calibrate_settings settings = comparison->fit;
-    const struct wb_dataset *const dataset = &run->dataset;
-    settings.progress = go_on;
+    const struct wb_dataset *const dataset = &run->simulation.dataset;
+    settings.progress = wb_campaign_go_on;
     if (comparison->mixture)
         settings.youngs_modulus = wire.material.youngs_modulus;
     WB_TRY(wb_calibrate_run(&results->fit, &dataset, 1, &settings, why));
@@ -120,7 +114,7 @@ static void fit(struct wb_wires_results *results)
 {
     const struct wb_wires_run *const run =
         wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    results->fit_state = WB_WIRES_MISSING;
+    results->fit_state = WB_SIMULATION_MISSING;
     if (!run) {
         wb_text_append(&results->fit_problem, "the solid's dataset that it builds on is missing");
         return;
@@ -128,7 +122,7 @@ static void fit(struct wb_wires_results *results)
     const struct wb_reasons reasons = {&results->fit_problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
     const enum wb_status status = calibrate(results, run, &why);
-    results->fit_state = status == WB_OK ? WB_WIRES_USABLE : WB_WIRES_REFUSED;
+    results->fit_state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         wb_reasons_fail(&reasons, status, &why);
 }
@@ -147,7 +141,7 @@ double wb_wires_cost(const struct wb_wires_results *results, int index)
 {
     const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
     const struct wb_wires_run *const rod = wb_wires_usable(results, index, WB_WIRES_ROD);
-    return solid && rod ? rod->cpu_s / solid->cpu_s : (double)NAN;
+    return solid && rod ? rod->simulation.cpu_s / solid->simulation.cpu_s : (double)NAN;
 }
 
 double wb_wires_tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run)
@@ -161,95 +155,117 @@ double wb_wires_tip_error(const struct wb_wires_results *results, const struct w
 
 /* --- all of it --- */
 
-static void judge(struct wb_wires_results *results)
+/* How far an elastic stress is from beam theory at most; NaN where one is not known. */
+static double largest_difference(const struct wb_wires_results *results)
 {
-    const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod = wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_ROD);
-    const struct wb_wires_run *const both[] = {solid, rod};
-    for (int i = 0; i < comparison->n_cases; i++) {
-        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-            results->n_wanted += results->runs[i][k].state != WB_WIRES_NOT_WANTED;
-            results->n_usable += results->runs[i][k].state == WB_WIRES_USABLE;
-        }
-    }
-    results->is_complete = results->n_usable == results->n_wanted &&
-                           results->fit_state == WB_WIRES_USABLE && results->fitted.reached &&
-                           (!comparison->has_printed_wire || results->printed.reached);
-    /* Compared so that a NaN exceeds. */
-    for (int i = 0; i < 2 && comparison->tip_limit > 0.0; i++) {
-        if (both[i] && !(wb_wires_tip_error(results, both[i]) <= comparison->tip_limit))
-            results->exceeds_limit = true;
-    }
-    for (int i = 0; i < results->n_stresses && comparison->stress_limit > 0.0; i++) {
+    double largest = 0.0;
+    for (int i = 0; i < results->n_stresses; i++) {
         const struct wb_wires_stress *const stress = &results->stresses[i];
-        if (!(fabs(stress->core.stress / stress->beam - 1.0) <= comparison->stress_limit))
-            results->exceeds_limit = true;
+        const double difference = fabs(stress->core.stress / stress->beam - 1.0);
+        if (!(difference <= largest))
+            largest = difference;
+        if (isnan(largest))
+            break;
     }
-    if (comparison->cost_limit > 0.0 && solid && rod &&
-        !(wb_wires_cost(results, WB_WIRES_ELASTIC) <= comparison->cost_limit))
-        results->exceeds_limit = true;
+    return largest;
 }
 
-int wb_wires_count(const struct wb_wires *comparison)
+int wb_wires_results_judge(const struct wb_wires_results *results,
+                           struct wb_verdict verdicts[WB_WIRES_VERDICTS])
 {
-    int n = 2;
-    for (int i = 0; i < comparison->n_cases; i++) {
-        for (int k = 0; k < WB_WIRES_SOLVERS; k++)
-            n += comparison->cases[i].datasets[k].wanted;
+    static const char *const tips[WB_WIRES_SOLVERS] = {
+        "Tip of the elastic solid from the exact one, over its displacement",
+        "Tip of the elastic rod from the exact one, over its displacement"};
+    const struct wb_wires *const comparison = results->comparison;
+    int n = 0, n_usable = 0;
+    for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
+        const struct wb_wires_run *const run =
+            wb_wires_usable(results, WB_WIRES_ELASTIC, (enum wb_wires_solver)k);
+        if (!run)
+            continue;
+        n_usable++;
+        wb_verdict_add(verdicts, &n,
+                       &(struct wb_verdict){.what = tips[k],
+                                            .key = "tip_max",
+                                            .value = wb_wires_tip_error(results, run),
+                                            .limit = comparison->tip_limit});
     }
+    if (results->n_stresses > 0)
+        wb_verdict_add(
+            verdicts, &n,
+            &(struct wb_verdict){
+                .what = "Elastic stress of the core's outer fibre from <i>E\xce\xba</i><i>r</i>",
+                .key = "stress_max",
+                .value = largest_difference(results),
+                .limit = comparison->stress_limit});
+    if (n_usable == WB_WIRES_SOLVERS)
+        wb_verdict_add(
+            verdicts, &n,
+            &(struct wb_verdict){.what = "CPU seconds of the elastic rod over those of the solid",
+                                 .key = "cost_max",
+                                 .value = wb_wires_cost(results, WB_WIRES_ELASTIC),
+                                 .limit = comparison->cost_limit});
     return n;
 }
 
-struct teller {
-    wb_wires_progress *progress;
-    void *context;
-    int done, total;
-};
-
-static void tell(struct teller *teller, const char *what, const char *name)
+static void judge(struct wb_wires_results *results)
 {
-    char text[320];
-    snprintf(text, sizeof text, "%s %s", what, name);
-    teller->done++;
-    if (teller->progress)
-        teller->progress(teller->context, teller->done, teller->total, text);
+    struct wb_kind_outcome *const outcome = &results->outcome;
+    struct wb_verdict verdicts[WB_WIRES_VERDICTS];
+    wb_simulation_count(wb_wires_results_list, results, &outcome->n_wanted, &outcome->n_usable);
+    outcome->is_complete = outcome->n_usable == outcome->n_wanted &&
+                           results->fit_state == WB_SIMULATION_USABLE && results->fitted.reached &&
+                           (!results->comparison->has_printed_wire || results->printed.reached);
+    outcome->exceeds_limit =
+        !wb_verdict_all_kept(verdicts, wb_wires_results_judge(results, verdicts));
 }
 
-static enum wb_status compute(struct wb_wires_results *results, struct teller *teller)
+/* A solid costs its elements along the wire times the rows of all steps; a rod costs next to
+ * nothing. */
+static double cost_of(const struct wb_wire_model *model, enum wb_wires_solver solver)
 {
-    const struct wb_wires *const comparison = results->comparison;
+    double rows = 0.0;
+    for (int i = 0; i < model->n_steps; i++)
+        rows += model->step[i].rows;
+    return solver == WB_WIRES_SOLID ? rows * model->elements_along : 0.0;
+}
+
+bool wb_wires_results_list(const void *context, int index, struct wb_simulation_entry *entry)
+{
+    const struct wb_wires_results *const results = context;
+    const int i = index / WB_WIRES_SOLVERS;
+    const enum wb_wires_solver solver = (enum wb_wires_solver)(index % WB_WIRES_SOLVERS);
+    if (i >= results->comparison->n_cases)
+        return false;
+    const struct wb_wires_case *const item = &results->comparison->cases[i];
+    *entry = (struct wb_simulation_entry){.wanted = &item->datasets[solver],
+                                          .result = &results->runs[i][solver].simulation,
+                                          .cost = item->model ? cost_of(item->model, solver) : 0.0};
+    return true;
+}
+
+void wb_wires_results_load(struct wb_wires_results *results, const struct wb_wires *comparison)
+{
+    results->comparison = comparison;
     for (int i = 0; i < comparison->n_cases; i++) {
-        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-            const struct wb_wires_case *const item = &comparison->cases[i];
-            wb_wires_run_load(&results->runs[i][k], item, (enum wb_wires_solver)k);
-            if (item->datasets[k].wanted)
-                tell(teller, "read", item->datasets[k].name);
-        }
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++)
+            wb_wires_run_load(&results->runs[i][k], &comparison->cases[i], (enum wb_wires_solver)k);
     }
-    const struct wb_wires_wire elastic = wire_of(comparison, WB_WIRES_ELASTIC);
+}
+
+enum wb_status wb_wires_results_compute(struct wb_wires_results *results,
+                                        wb_kind_progress *progress, void *context)
+{
+    const struct wb_wires_wire elastic = wire_of(results->comparison, WB_WIRES_ELASTIC);
     wb_wires_rod_exact(&results->exact, &elastic);
     find_stresses(results);
     WB_TRY(compute_printed(results));
-    tell(teller, "computed", "the printed properties");
+    if (progress)
+        progress(context, 1, WB_WIRES_COMPUTE_STEPS, "computed the printed properties");
     fit(results);
-    tell(teller, "fitted", "the rod");
-    return WB_OK;
-}
-
-enum wb_status wb_wires_compute(struct wb_wires_results *results, const struct wb_wires *comparison,
-                                wb_wires_progress *progress, void *context)
-{
-    memset(results, 0, sizeof *results);
-    results->comparison = comparison;
-    struct teller teller = {progress, context, 0, wb_wires_count(comparison)};
-    const enum wb_status status = compute(results, &teller);
-    if (status != WB_OK) {
-        wb_wires_results_release(results);
-        return status;
-    }
-    results->interrupted = wb_interrupted();
+    if (progress)
+        progress(context, 2, WB_WIRES_COMPUTE_STEPS, "fitted the rod");
+    results->outcome.interrupted = wb_interrupted();
     judge(results);
     return WB_OK;
 }
@@ -261,7 +277,7 @@ void wb_wires_results_release(struct wb_wires_results *results)
             wb_wires_run_release(&results->runs[i][k]);
     }
     wb_text_release(&results->fit_problem);
-    if (results->fit_state == WB_WIRES_USABLE)
+    if (results->fit_state == WB_SIMULATION_USABLE)
         wb_calibrate_result_release(&results->fit);
     memset(results, 0, sizeof *results);
 }

@@ -7,6 +7,8 @@
 #include <stdbool.h>
 
 #include "analysis/calibrate.h"
+#include "analysis/report/kind.h"
+#include "analysis/report/verdict.h"
 #include "analysis/report/wires/wires.h"
 #include "analysis/report/wires/wires_rod.h"
 #include "analysis/report/wires/wires_run.h"
@@ -31,6 +33,7 @@ struct wb_wires_stress {
 #define WB_WIRES_STRESSES 8
 
 struct wb_wires_results {
+    struct wb_kind_outcome outcome;
     const struct wb_wires *comparison; /* borrowed */
     struct wb_wires_run runs[WB_WIRES_CASES][WB_WIRES_SOLVERS];
     struct wb_wires_rod exact; /* elastic */
@@ -38,34 +41,43 @@ struct wb_wires_results {
     int n_stresses;
     struct wb_wires_stress stresses[WB_WIRES_STRESSES];
 
-    enum wb_wires_state fit_state; /* refused: the calibration failed */
+    enum wb_simulation_state fit_state; /* refused: the calibration failed */
     struct wb_text fit_problem;
     struct wb_calibrate_result fit;
     struct wb_wires_rod fitted;  /* the rod with the fitted properties */
     struct wb_wires_rod printed; /* with the printed ones; not done: none are */
     struct wb_wires_rod tenfold; /* with ten times the printed strength coefficient */
     double collapse_force;       /* N: of the printed yield stress, without hardening */
-
-    int n_wanted, n_usable; /* datasets */
-    bool is_complete;
-    bool exceeds_limit;
-    bool interrupted;
 };
 
-typedef void wb_wires_progress(void *context, int done, int total, const char *what);
+/* Every case's solid, then its rod; of struct wb_wires_results. */
+wb_simulation_list wb_wires_results_list;
 
-/* How many steps wb_wires_compute() tells of. */
-int wb_wires_count(const struct wb_wires *comparison);
+enum {
+    WB_WIRES_COMPUTE_STEPS = 2 /* of wb_wires_results_compute() */
+};
 
-/* Computes everything; WB_OK also when datasets are missing. */
-WB_MUST_CHECK enum wb_status wb_wires_compute(struct wb_wires_results *results,
-                                              const struct wb_wires *comparison,
-                                              wb_wires_progress *progress, void *context);
+/* Reads and checks the datasets into zeroed results. Nothing fails. */
+void wb_wires_results_load(struct wb_wires_results *results, const struct wb_wires *comparison);
+/* Then computes what stands beside them; WB_OK also when datasets are missing. */
+WB_MUST_CHECK enum wb_status wb_wires_results_compute(struct wb_wires_results *results,
+                                                      wb_kind_progress *progress, void *context);
 void wb_wires_results_release(struct wb_wires_results *results); /* accepts a zeroed one */
 
 /* A run that is usable, else NULL. */
 const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *results, int index,
                                            enum wb_wires_solver solver);
+
+enum {
+    WB_WIRES_VERDICTS = 4
+};
+
+/* What the limits of the campaign say of what is usable. Returns how many there are: of the tips of
+ * the elastic solid and rod, of the elastic stress that differs most, and of the elastic rod's
+ * cost.
+ */
+int wb_wires_results_judge(const struct wb_wires_results *results,
+                           struct wb_verdict verdicts[WB_WIRES_VERDICTS]);
 
 /* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_wires_cost(const struct wb_wires_results *results, int index);

@@ -6,43 +6,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/report/reasons.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
 
 /* --- one dataset --- */
 
-static double number_of(const struct wb_json *object, const char *key)
-{
-    double value;
-    return wb_json_get_number(object, key, &value) ? value : (double)NAN;
-}
-
 static void read_simulation(struct wb_wires_run *run)
 {
-    const struct wb_json *const document = run->dataset.document;
-    const struct wb_json *const simulation = wb_json_get(document, "simulation");
-    const char *revision = "";
-    run->elements = number_of(simulation, "elements");
-    run->unknowns = number_of(simulation, "degrees_of_freedom");
-    run->iterations = number_of(simulation, "iterations");
-    run->cpu_s = number_of(simulation, "cpu_s");
-    run->memory_MB = number_of(simulation, "peak_memory_MB");
+    const struct wb_json *const simulation = wb_simulation_of(&run->simulation);
+    run->elements = wb_simulation_number(simulation, "elements");
+    run->unknowns = wb_simulation_number(simulation, "degrees_of_freedom");
+    run->iterations = wb_simulation_number(simulation, "iterations");
+    run->memory_MB = wb_simulation_number(simulation, "peak_memory_MB");
     const struct wb_json *const interface = wb_json_get(simulation, "interface");
-    run->slip = number_of(interface, "slip_mm") * WB_MM;
-    run->slip_limit = number_of(interface, "slip_limit_mm") * WB_MM;
-    run->opening = number_of(interface, "opening_mm") * WB_MM;
-    (void)wb_json_get_text(wb_json_get(document, "tool"), "revision", &revision);
-    snprintf(run->revision, sizeof run->revision, "%s", revision);
+    run->slip = wb_simulation_number(interface, "slip_mm") * WB_MM;
+    run->slip_limit = wb_simulation_number(interface, "slip_limit_mm") * WB_MM;
+    run->opening = wb_simulation_number(interface, "opening_mm") * WB_MM;
 }
 
 /* Whether the dataset is of this model as it is now, and whole. */
 static enum wb_status check_simulation(struct wb_wires_run *run, const struct wb_wires_case *item,
                                        enum wb_wires_solver solver, struct wb_reason *why)
 {
-    const struct wb_json *const simulation = wb_json_get(run->dataset.document, "simulation");
-    const struct wb_test_info *const info = &run->dataset.info;
+    const struct wb_json *const simulation = wb_simulation_of(&run->simulation);
+    const struct wb_test_info *const info = &run->simulation.dataset.info;
     const char *sha256 = "", *made_by = "", *problem = "";
     if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "model", &made_by) ||
         !wb_json_get_text(simulation, "sha256", &sha256))
@@ -55,7 +43,7 @@ static enum wb_status check_simulation(struct wb_wires_run *run, const struct wb
         return wb_fail_to(why, WB_ERR_DATA,
                           "the model, its wire or its materials have changed since");
     (void)wb_json_get_text(simulation, "problem", &problem);
-    run->is_cut_short = !wb_dataset_is_complete(&run->dataset);
+    run->is_cut_short = !wb_dataset_is_complete(&run->simulation.dataset);
     if (run->is_cut_short)
         return wb_fail_to(why, WB_ERR_DATA, "it did not converge to its end%s%s",
                           problem[0] ? ": " : "", problem);
@@ -66,7 +54,7 @@ static enum wb_status check_simulation(struct wb_wires_run *run, const struct wb
 static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model,
                                struct wb_reason *why)
 {
-    const struct wb_dataset *const dataset = &run->dataset;
+    const struct wb_dataset *const dataset = &run->simulation.dataset;
     const double force = model->step[model->n_steps - 1].loads.follower[1];
     if (dataset->n_rows == 0 || dataset->n_shape_rows < 2)
         return wb_fail_to(why, WB_ERR_DATA, "it has no rows or no shapes");
@@ -100,12 +88,11 @@ static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_mo
 /* The row with which the step before the last one ended; -1 when the dataset does not say. */
 static int row_before_loading(const struct wb_wires_run *run)
 {
-    const struct wb_json *const steps =
-        wb_json_get(wb_json_get(run->dataset.document, "simulation"), "steps");
+    const struct wb_json *const steps = wb_json_get(wb_simulation_of(&run->simulation), "steps");
     const size_t n = wb_json_length(steps);
     int64_t row = 1;
     if (n == 0 || (n > 1 && !wb_json_get_integer(wb_json_item(steps, n - 2), "last_row", &row)) ||
-        row < 1 || row >= (int64_t)run->dataset.n_rows)
+        row < 1 || row >= (int64_t)run->simulation.dataset.n_rows)
         return -1;
     return (int)row - 1;
 }
@@ -115,7 +102,7 @@ static int row_before_loading(const struct wb_wires_run *run)
 static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wire_model *model,
                                    struct wb_reason *why)
 {
-    const struct wb_dataset *const dataset = &run->dataset;
+    const struct wb_dataset *const dataset = &run->simulation.dataset;
     const int first = row_before_loading(run), rows = model->step[model->n_steps - 1].rows;
     if (first < 0 || first + 1 + rows != (int)dataset->n_rows)
         return WB_OK;
@@ -156,51 +143,48 @@ static void keep_to_law(struct wb_fields *fields, const struct wb_wire_model *mo
         }
 }
 
-static enum wb_status read_run(struct wb_wires_run *run, const struct wb_wires_case *item,
-                               enum wb_wires_solver solver, struct wb_reason *why)
+/* A dataset while it is read. */
+struct loading {
+    struct wb_wires_run *run;
+    const struct wb_wires_case *item;
+    enum wb_wires_solver solver;
+};
+
+static enum wb_status check(void *context, bool *stale, struct wb_reason *why)
 {
-    const char *const path = item->datasets[solver].path;
-    char rows[WB_PATH];
-    WB_TRY(wb_dataset_read(&run->dataset, path, why));
-    read_simulation(run);
-    WB_TRY(check_simulation(run, item, solver, why));
-    WB_TRY(take_end(run, item->model, why));
-    WB_TRY(take_loading(run, item->model, why));
-    WB_TRY(wb_file_join(rows, path, "force_deflection.csv"));
-    WB_TRY(wb_hash_file(rows, run->sha256));
-    WB_TRY(wb_fields_read(&run->fields, path, why));
-    keep_to_law(&run->fields, item->model);
+    const struct loading *const loading = context;
+    read_simulation(loading->run);
+    const enum wb_status status =
+        check_simulation(loading->run, loading->item, loading->solver, why);
+    *stale = loading->run->is_stale || loading->run->is_cut_short;
+    return status;
+}
+
+static enum wb_status take(void *context, struct wb_reason *why)
+{
+    const struct loading *const loading = context;
+    const struct wb_wire_model *const model = loading->item->model;
+    struct wb_wires_run *const run = loading->run;
+    WB_TRY(take_end(run, model, why));
+    WB_TRY(take_loading(run, model, why));
+    WB_TRY(wb_fields_read(&run->fields, loading->item->datasets[loading->solver].path, why));
+    keep_to_law(&run->fields, model);
     return WB_OK;
 }
 
 void wb_wires_run_load(struct wb_wires_run *run, const struct wb_wires_case *item,
                        enum wb_wires_solver solver)
 {
-    const struct wb_wires_dataset *const wanted = &item->datasets[solver];
-    char folder[WB_PATH];
+    struct loading loading = {run, item, solver};
+    const struct wb_simulation_reader reader = {check, take, &loading};
     run->elements = run->unknowns = run->iterations = (double)NAN;
-    run->cpu_s = run->memory_MB = run->slip = run->slip_limit = run->opening = (double)NAN;
-    if (!wanted->wanted)
-        return;
-    snprintf(run->command, sizeof run->command, "wirebench solve %s %s -o %s",
-             wb_wires_command(solver), item->model_name, wanted->name);
-    run->state = WB_WIRES_MISSING;
-    if (wb_file_join(folder, wanted->path, "dataset.json") != WB_OK || !wb_file_exists(folder)) {
-        wb_text_append(&run->problem, "there is no such dataset");
-        return;
-    }
-    const struct wb_reasons reasons = {&run->problem, wanted->path, wanted->name};
-    struct wb_reason why = {.text = ""};
-    const enum wb_status status = read_run(run, item, solver, &why);
-    run->state = status == WB_OK ? WB_WIRES_USABLE : WB_WIRES_REFUSED;
-    if (status != WB_OK)
-        wb_reasons_warn(&reasons, status, &why);
+    run->memory_MB = run->slip = run->slip_limit = run->opening = (double)NAN;
+    wb_simulation_load(&run->simulation, &item->datasets[solver], &reader);
 }
 
 void wb_wires_run_release(struct wb_wires_run *run)
 {
-    wb_text_release(&run->problem);
-    wb_dataset_release(&run->dataset);
+    wb_simulation_result_release(&run->simulation);
     wb_fields_release(&run->fields);
     free(run->s);
     free(run->shape);

@@ -12,28 +12,16 @@
 #include "analysis/report/wires/wires_rod.h"
 #include "base/text.h"
 
-enum wb_wires_state {
-    WB_WIRES_NOT_WANTED,
-    WB_WIRES_MISSING, /* there is no such dataset */
-    WB_WIRES_REFUSED, /* of a model that has changed, not converged, damaged, ... */
-    WB_WIRES_USABLE
-};
-
 /* A dataset, and what it says of its simulation; numbers are NaN where it does not. */
 struct wb_wires_run {
-    enum wb_wires_state state;
-    struct wb_text problem; /* why it cannot be used */
-    char command[800];      /* that makes it */
-    bool is_stale;          /* the model has changed since */
-    bool is_cut_short;      /* it did not converge, or was stopped */
-    double elements, unknowns, iterations, cpu_s, memory_MB;
+    struct wb_simulation_result simulation;
+    bool is_stale;     /* the model has changed since */
+    bool is_cut_short; /* it did not converge, or was stopped */
+    double elements, unknowns, iterations, memory_MB;
     double slip, slip_limit, opening; /* m, of an interface with friction */
-    char revision[64];                /* of the program that made it */
-    char sha256[WB_SHA256_TEXT];      /* of its force_deflection.csv */
-    struct wb_dataset dataset;        /* of a usable one, as all that follows */
-    struct wb_fields fields;
-    double force, tip_angle; /* N, rad: at its end */
-    double tip[3];           /* m */
+    struct wb_fields fields;          /* of a usable one, as all that follows */
+    double force, tip_angle;          /* N, rad: at its end */
+    double tip[3];                    /* m */
     int n_shape;
     double *s;           /* (n_shape) m, owned */
     double (*shape)[3];  /* (n_shape) m, owned */

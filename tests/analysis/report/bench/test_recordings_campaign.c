@@ -238,7 +238,7 @@ the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/single-wires.yaml"), WB_OK);
     struct wb_recordings campaign;
     assert_int_equal(wb_recordings_read(&campaign, path), WB_OK);
-    assert_string_equal(campaign.name, "fixtures/campaigns/single-wires.yaml");
+    assert_string_equal(campaign.head.name, "fixtures/campaigns/single-wires.yaml");
     assert_int_equal(campaign.n_wires, 3);
     assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
     for (int i = 0; i < 3; i++) {

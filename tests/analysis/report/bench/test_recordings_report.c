@@ -8,7 +8,8 @@
 
 #include "analysis/align.h"
 #include "analysis/report/bench/recordings_figures.h"
-#include "analysis/report/bench/recordings_report.h"
+#include "analysis/report/bench/recordings_kind.h"
+#include "analysis/report/report.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/json.h"
@@ -181,11 +182,13 @@ static int count_files(const char *name)
 static void the_same_results_give_the_same_bytes_in_all_files(void **state)
 {
     const struct good *const good = *state;
-    assert_true(good->results.is_complete);
-    assert_false(good->results.exceeds_limit);
-    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), false), WB_OK);
-    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("twice/deep"), false),
+    assert_true(good->results.outcome.is_complete);
+    assert_false(good->results.outcome.exceeds_limit);
+    assert_int_equal(wb_report_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
                      WB_OK);
+    assert_int_equal(
+        wb_report_write(&wb_recordings_kind, &good->results, in_folder("twice/deep"), false),
+        WB_OK);
     for (size_t i = 0; i < sizeof good_files / sizeof good_files[0]; i++) {
         char a[128], b[128];
         size_t n, m;
@@ -373,14 +376,15 @@ static void a_full_folder_is_refused_and_force_replaces_only_the_reports_own_fil
 {
     const struct good *const good = *state;
     last_message_install();
-    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), false),
+    assert_int_equal(wb_report_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
                      WB_ERR_EXISTS);
     assert_said("--force");
     write_text("once/mine.txt", "mine");
     write_text("once/figures/mine.svg", "mine");
     write_text("once/figures/stale.svg", "an old figure");
     write_text("once/report.json", "{\"files\": [\"figures/stale.svg\", \"../good.yaml\"]}");
-    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), true), WB_OK);
+    assert_int_equal(wb_report_write(&wb_recordings_kind, &good->results, in_folder("once"), true),
+                     WB_OK);
     assert_true(says("once/mine.txt", "mine"));
     assert_true(says("once/figures/mine.svg", "mine"));
     assert_false(wb_file_exists(in_folder("once/figures/stale.svg")));
@@ -392,10 +396,10 @@ static void a_folder_that_cannot_be_written_leaves_nothing(void **state)
 {
     const struct good *const good = *state;
     write_text("file", "a file");
-    assert_int_not_equal(wb_recordings_report_write(&good->results, in_folder("file"), false),
-                         WB_OK);
-    assert_int_not_equal(wb_recordings_report_write(&good->results, in_folder("file/below"), true),
-                         WB_OK);
+    assert_int_not_equal(
+        wb_report_write(&wb_recordings_kind, &good->results, in_folder("file"), false), WB_OK);
+    assert_int_not_equal(
+        wb_report_write(&wb_recordings_kind, &good->results, in_folder("file/below"), true), WB_OK);
     assert_true(says("file", "a file"));
 }
 
@@ -404,8 +408,8 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
     (void)state;
     struct good bad;
     make_good(&bad, 1.12);
-    assert_true(bad.results.exceeds_limit);
-    assert_true(bad.results.is_complete);
+    assert_true(bad.results.outcome.exceeds_limit);
+    assert_true(bad.results.outcome.is_complete);
     const struct wb_recordings_results_wire *const wire = &bad.results.wires[0];
     const double share = wb_recordings_results_validation_share(wire);
     const double r_v = fmin(wire->validation.scatter_rms, wire->validation.residual_scatter_rms);
@@ -413,7 +417,8 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
     const double rms = wire->validation.elastoplastic.rms;
     assert_close(share, fmin(1.0, (r_v * r_v + r_c * r_c) / 2.0 / (rms * rms)), 1e-12);
     assert_true(share > 0.01 && share < 0.9);
-    assert_int_equal(wb_recordings_report_write(&bad.results, in_folder("bad"), false), WB_OK);
+    assert_int_equal(wb_report_write(&wb_recordings_kind, &bad.results, in_folder("bad"), false),
+                     WB_OK);
     char text[80];
     snprintf(text, sizeof text, "explains at most %.0f %% of the mean square error", 100.0 * share);
     assert_true(says("bad/report.html", "Limit exceeded."));
@@ -438,11 +443,12 @@ static void a_campaign_without_any_recording_still_reports(void **state)
     struct wb_recordings campaign;
     struct wb_recordings_results results;
     compute("empty.yaml", good_campaign, 2, &campaign, &results);
-    assert_false(results.is_complete);
+    assert_false(results.outcome.is_complete);
     assert_false(results.any_virtual);
-    assert_int_equal(results.n_tests, 4);
-    assert_int_equal(results.n_usable, 0);
-    assert_int_equal(wb_recordings_report_write(&results, in_folder("empty"), false), WB_OK);
+    assert_int_equal(results.outcome.n_wanted, 4);
+    assert_int_equal(results.outcome.n_usable, 0);
+    assert_int_equal(wb_report_write(&wb_recordings_kind, &results, in_folder("empty"), false),
+                     WB_OK);
     assert_true(says("empty/report.html", "4 of 4 recordings are missing"));
     assert_true(says("empty/report.html", "there is no index of recordings"));
     assert_true(says("empty/report.json", "\"complete\": false"));
@@ -484,9 +490,9 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
         struct wb_recordings campaign;
         struct wb_recordings_results results;
         compute("campaign.yaml", made_up_campaign, threads, &campaign, &results);
-        assert_int_equal(results.n_usable, 1);
+        assert_int_equal(results.outcome.n_usable, 1);
         assert_true(results.all_virtual);
-        assert_false(results.is_complete);
+        assert_false(results.outcome.is_complete);
         const struct wb_recordings_results_wire *const wire = &results.wires[0];
         const struct wb_recordings_results_test *const tests = wire->calibration_tests.items;
         assert_true(tests[0].usable);
@@ -497,8 +503,9 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
         assert_int_equal(wire->calibration_state, WB_RECORDINGS_FAILED);
         assert_true(wire->calibration_problem.length > 10);
         assert_int_equal(wire->validation_state, WB_RECORDINGS_NOT_WANTED);
-        assert_int_equal(wb_recordings_report_write(&results, in_folder("made-up"), threads > 1),
-                         WB_OK);
+        assert_int_equal(
+            wb_report_write(&wb_recordings_kind, &results, in_folder("made-up"), threads > 1),
+            WB_OK);
         texts[threads - 1] = read_text("made-up/report.json", NULL);
         if (threads == 2) {
             assert_true(says("made-up/report.html", "2 of 3 recordings are missing"));
@@ -523,7 +530,7 @@ static void an_interrupt_ends_the_computation(void **state)
     wb_interrupt_set(true);
     compute("campaign.yaml", made_up_campaign, 2, &campaign, &results);
     wb_interrupt_set(false);
-    assert_true(results.interrupted);
+    assert_true(results.outcome.interrupted);
     wb_recordings_results_release(&results);
     wb_recordings_release(&campaign);
 }

@@ -6,7 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/report/bundles/bundles_report.h"
+#include "analysis/report/bundles/bundles_kind.h"
+#include "analysis/report/report.h"
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/json.h"
@@ -170,7 +171,7 @@ static void the_shipped_campaign_can_be_read(void **state)
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/bundles.yaml"), WB_OK);
     assert_int_equal(wb_bundles_read(&campaign, path), WB_OK);
-    assert_string_equal(campaign.name, "fixtures/campaigns/bundles.yaml");
+    assert_string_equal(campaign.head.name, "fixtures/campaigns/bundles.yaml");
     /* Then those with the tape on a circle. */
     assert_int_equal(campaign.n_bundles, 10);
     for (int i = 0; i < campaign.n_bundles; i++) {
@@ -203,7 +204,7 @@ static void a_campaign_that_makes_no_sense_is_refused_with_its_line(void **state
          "c.yaml:6: name: another run is called 'a'"},
         {HEAD "runs: [{name: a, bundle: 7-type3, friction: {static: 0.1, kinetic: 0.2, "
               "decay_s_mm: 2}}]\ngroups: []\n",
-         "c.yaml:6: kinetic: 0.2 is more than the static 0.1"},
+         "c.yaml:6: kinetic: 0.2 is more than the static one, 0.1"},
         {HEAD "runs: [{name: a, bundle: 7-type3, friction: -1}]\ngroups: []\n", "c.yaml:6: "},
         {RUN "groups: [{label: x, bundles: [{label: y, dynamic: none}]}]\n",
          "c.yaml:7: dynamic: there is no run 'none'"},
@@ -365,11 +366,11 @@ static void a_missing_dataset_is_told_with_the_command_that_makes_it(void **stat
 {
     (void)state;
     const struct wb_bundles_results *const all = whole_report();
-    assert_int_equal(all->runs[3].state, WB_BUNDLES_MISSING);
-    assert_true(wb_bundles_run_is_missing(&all->runs[3]));
-    assert_int_equal(all->n_wanted, 7);
-    assert_int_equal(all->n_usable, 6);
-    assert_false(all->is_complete);
+    assert_int_equal(all->runs[3].simulation.state, WB_SIMULATION_MISSING);
+    assert_true(wb_simulation_is_missing(&all->runs[3].simulation));
+    assert_int_equal(all->outcome.n_wanted, 7);
+    assert_int_equal(all->outcome.n_usable, 6);
+    assert_false(all->outcome.is_complete);
 }
 
 static const char small[] =
@@ -390,13 +391,13 @@ static void read_small(const char *more, const char *bundle_more)
     assert_int_equal(read_campaign(text), WB_OK);
 }
 
-static void assert_problem(enum wb_bundles_state state, const char *problem)
+static void assert_problem(enum wb_simulation_state state, const char *problem)
 {
     const struct wb_bundles_result *const run = &results.runs[0];
-    assert_int_equal(run->state, state);
-    if (!strstr(wb_text_string(&run->problem), problem))
-        fail_msg("'%s' does not say '%s'", wb_text_string(&run->problem), problem);
-    assert_null(strstr(wb_text_string(&run->problem), folder));
+    assert_int_equal(run->simulation.state, state);
+    if (!strstr(wb_text_string(&run->simulation.problem), problem))
+        fail_msg("'%s' does not say '%s'", wb_text_string(&run->simulation.problem), problem);
+    assert_null(strstr(wb_text_string(&run->simulation.problem), folder));
 }
 
 static void a_dataset_with_other_settings_is_outdated(void **state)
@@ -431,8 +432,8 @@ static void a_dataset_with_other_settings_is_outdated(void **state)
         wb_bundles_release(&campaign);
         read_small("", "");
         compute();
-        assert_problem(WB_BUNDLES_STALE, changes[i].problem);
-        assert_true(wb_bundles_run_is_missing(&results.runs[0]));
+        assert_problem(WB_SIMULATION_STALE, changes[i].problem);
+        assert_true(wb_simulation_is_missing(&results.runs[0].simulation));
         release();
     }
 }
@@ -445,8 +446,8 @@ static void a_dataset_of_a_changed_bundle_is_outdated(void **state)
     wb_bundles_release(&campaign);
     read_small("", "# another line\n");
     compute();
-    assert_problem(WB_BUNDLES_STALE, "have changed since");
-    assert_int_equal(results.fits[0].state, WB_BUNDLES_MISSING);
+    assert_problem(WB_SIMULATION_STALE, "have changed since");
+    assert_int_equal(results.fits[0].state, WB_SIMULATION_MISSING);
     release();
 }
 
@@ -458,7 +459,7 @@ static void a_dataset_that_was_cut_short_is_outdated(void **state)
         .model = campaign.runs[0].model, .factor = 1.0, .cpu = 1.0, .rows = 30};
     made_up_write(&half, campaign.runs[0].dataset.path);
     compute();
-    assert_problem(WB_BUNDLES_STALE, "it did not come to its end: made up");
+    assert_problem(WB_SIMULATION_STALE, "it did not come to its end: made up");
     release();
 }
 
@@ -473,27 +474,27 @@ static void something_else_in_a_datasets_place_is_left_alone(void **state)
              in_folder("sim/x-1d"), in_folder("sim/x"));
     assert_int_equal(system(text), 0);
     compute();
-    assert_problem(WB_BUNDLES_REFUSED, "not made by 'solve bundle'");
-    assert_false(wb_bundles_run_is_missing(&results.runs[0]));
+    assert_problem(WB_SIMULATION_REFUSED, "not made by 'solve bundle'");
+    assert_false(wb_simulation_is_missing(&results.runs[0].simulation));
     release();
     read_small("", "");
     make_run(0, 1.0);
     write_text("sim/x/surface.csv", "nonsense\n");
     compute();
-    assert_problem(WB_BUNDLES_REFUSED, "sim/x/surface.csv:1: ");
+    assert_problem(WB_SIMULATION_REFUSED, "sim/x/surface.csv:1: ");
     release();
     read_small("", "");
     make_run(0, 1.0);
     write_text("sim/x/energies.csv", "nonsense\n");
     compute();
-    assert_problem(WB_BUNDLES_REFUSED, "sim/x/energies.csv:1: expected the columns");
+    assert_problem(WB_SIMULATION_REFUSED, "sim/x/energies.csv:1: expected the columns");
     release();
     read_small("", "");
     make_run(0, 1.0);
     snprintf(text, sizeof text, "sed -i '3,$d' '%s'", in_folder("sim/x/energies.csv"));
     assert_int_equal(system(text), 0);
     compute();
-    assert_problem(WB_BUNDLES_REFUSED, "sim/x/energies.csv:3: expected a row");
+    assert_problem(WB_SIMULATION_REFUSED, "sim/x/energies.csv:3: expected a row");
     release();
 }
 
@@ -507,8 +508,8 @@ static void a_rod_with_other_properties_is_outdated(void **state)
     wb_bundles_release(&campaign);
     read_small("", "");
     compute();
-    assert_int_equal(results.rods[0].state, WB_BUNDLES_STALE);
-    assert_non_null(strstr(wb_text_string(&results.rods[0].problem),
+    assert_int_equal(results.rods[0].simulation.state, WB_SIMULATION_STALE);
+    assert_non_null(strstr(wb_text_string(&results.rods[0].simulation.problem),
                            "the yield stress (MPa) is 3 in it, and 2.7 is wanted"));
     assert_true(isnan(wb_bundles_results_cost(&results, 0)));
     release();
@@ -537,16 +538,16 @@ static void limits_that_are_exceeded_are_told(void **state)
     make_run(0, 1.06);
     make_rod(0, 0.1);
     compute();
-    assert_true(results.is_complete);
-    assert_true(results.exceeds_limit);
+    assert_true(results.outcome.is_complete);
+    assert_true(results.outcome.exceeds_limit);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+        struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
         campaign.limits = cases[i].limits;
         assert_int_equal(wb_bundles_results_judge(&results, verdicts), 1);
         assert_string_equal(verdicts[0].key, cases[i].key);
         assert_int_equal(verdicts[0].kept, cases[i].kept);
     }
-    struct wb_bundles_verdict none[WB_BUNDLES_VERDICTS];
+    struct wb_verdict none[WB_BUNDLES_VERDICTS];
     campaign.limits = (struct wb_bundles_limits){.kinetic = 0.02};
     campaign.runs[0].judged = false;
     assert_int_equal(wb_bundles_results_judge(&results, none), 0);
@@ -558,8 +559,8 @@ static void limits_that_are_exceeded_are_told(void **state)
 static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
-        assert_int_equal(wb_bundles_report_write(whole_report(), in_folder("report"), false),
-                         WB_OK);
+        assert_int_equal(
+            wb_report_write(&wb_bundles_kind, whole_report(), in_folder("report"), false), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -628,7 +629,8 @@ static void the_same_datasets_give_the_same_bytes(void **state)
     (void)state;
     char command[3 * WB_PATH];
     write_report();
-    assert_int_equal(wb_bundles_report_write(whole_report(), in_folder("again"), true), WB_OK);
+    assert_int_equal(wb_report_write(&wb_bundles_kind, whole_report(), in_folder("again"), true),
+                     WB_OK);
     snprintf(command, sizeof command, "diff -r '%s' '%s' >/dev/null", in_folder("report"),
              in_folder("again"));
     assert_int_equal(system(command), 0);
@@ -642,8 +644,8 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     memcpy(strstr(text, "sim\n"), "xyz\n", 4);
     assert_int_equal(read_campaign(text), WB_OK);
     compute();
-    assert_int_equal(results.n_usable, 1); /* the beam that is named by its path */
-    assert_int_equal(wb_bundles_report_write(&results, in_folder("none"), true), WB_OK);
+    assert_int_equal(results.outcome.n_usable, 1); /* the beam that is named by its path */
+    assert_int_equal(wb_report_write(&wb_bundles_kind, &results, in_folder("none"), true), WB_OK);
     release();
     assert_true(says("none/report.html", "6 of 7 datasets are missing"));
     assert_true(says("none/report.html", "-o xyz/twelve"));

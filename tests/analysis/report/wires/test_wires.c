@@ -5,7 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/report/wires/wires_report.h"
+#include "analysis/report/report.h"
+#include "analysis/report/wires/wires_kind.h"
 #include "base/file.h"
 #include "base/json.h"
 
@@ -106,7 +107,11 @@ static void a_campaign_names_models_and_their_datasets(void **state)
     assert_string_equal(comparison.cases[WB_WIRES_RESIDUAL + 1].label, "Two");
     assert_close(comparison.section, 3.26e-3, 1e-12);
     assert_true(comparison.mixture);
-    assert_int_equal(wb_wires_count(&comparison), 11);
+    int n_wanted = 0;
+    for (int i = 0; i < comparison.n_cases; i++)
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++)
+            n_wanted += comparison.cases[i].datasets[k].wanted;
+    assert_int_equal(n_wanted, 9);
     wb_wires_release(&comparison);
 }
 
@@ -116,7 +121,7 @@ static void the_shipped_campaign_can_be_read(void **state)
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/section2.yaml"), WB_OK);
     assert_int_equal(wb_wires_read(&comparison, path), WB_OK);
-    assert_string_equal(comparison.name, "fixtures/campaigns/section2.yaml");
+    assert_string_equal(comparison.head.name, "fixtures/campaigns/section2.yaml");
     assert_int_equal(comparison.n_cases, 5);
     wb_wires_release(&comparison);
 }
@@ -213,7 +218,9 @@ static void write_dataset(int index, enum wb_wires_solver solver)
 static void compute(const char *text)
 {
     assert_int_equal(read_campaign(text), WB_OK);
-    assert_int_equal(wb_wires_compute(&results, &comparison, NULL, NULL), WB_OK);
+    memset(&results, 0, sizeof results);
+    wb_wires_results_load(&results, &comparison);
+    assert_int_equal(wb_wires_results_compute(&results, NULL, NULL), WB_OK);
 }
 
 static void release(void)
@@ -235,7 +242,8 @@ static const struct wb_wires_results *whole_campaign(void)
         }
     }
     whole_comparison = comparison;
-    assert_int_equal(wb_wires_compute(&whole_results, &whole_comparison, NULL, NULL), WB_OK);
+    wb_wires_results_load(&whole_results, &whole_comparison);
+    assert_int_equal(wb_wires_results_compute(&whole_results, NULL, NULL), WB_OK);
     return &whole_results;
 }
 
@@ -243,10 +251,10 @@ static void stresses_of_beam_theory_are_found_with_their_ratio(void **state)
 {
     (void)state;
     const struct wb_wires_results *const whole_ = whole_campaign();
-    assert_int_equal(whole_->n_usable, 9);
-    assert_int_equal(whole_->n_wanted, 9);
-    assert_true(whole_->is_complete);
-    assert_false(whole_->exceeds_limit);
+    assert_int_equal(whole_->outcome.n_usable, 9);
+    assert_int_equal(whole_->outcome.n_wanted, 9);
+    assert_true(whole_->outcome.is_complete);
+    assert_false(whole_->outcome.exceeds_limit);
     assert_int_equal(whole_->n_stresses, 2);
     for (int i = 0; i < 2; i++) {
         const struct wb_wires_stress *const stress = &whole_->stresses[i];
@@ -312,7 +320,7 @@ static void the_fitted_rod_follows_the_solid(void **state)
 {
     (void)state;
     const struct wb_wires_results *const whole_ = whole_campaign();
-    assert_int_equal(whole_->fit_state, WB_WIRES_USABLE);
+    assert_int_equal(whole_->fit_state, WB_SIMULATION_USABLE);
     assert_true(whole_->fit.rms < 0.01);
     assert_close_relative(whole_->fit.material.youngs_modulus, 13.84e9, 1e-3);
     const struct wb_wires_run *const solid =
@@ -379,8 +387,8 @@ static void limits_that_are_exceeded_are_told(void **state)
         char text[1000];
         snprintf(text, sizeof text, form, cases[i].limit);
         compute(text);
-        assert_int_equal(results.exceeds_limit, cases[i].exceeded);
-        assert_false(results.is_complete);
+        assert_int_equal(results.outcome.exceeds_limit, cases[i].exceeded);
+        assert_false(results.outcome.is_complete);
         release();
     }
 }
@@ -413,18 +421,18 @@ static void a_missing_dataset_is_told_with_the_command_that_makes_it(void **stat
     copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
     copy_file("fixtures/models/follower-8awg.yaml", "plastic.yaml", "");
     compute(own);
-    assert_int_equal(results.n_wanted, 4);
-    assert_int_equal(results.n_usable, 0);
-    assert_false(results.is_complete);
+    assert_int_equal(results.outcome.n_wanted, 4);
+    assert_int_equal(results.outcome.n_usable, 0);
+    assert_false(results.outcome.is_complete);
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTOPLASTIC][WB_WIRES_SOLID];
-    assert_int_equal(run->state, WB_WIRES_MISSING);
-    assert_string_equal(run->command,
+    assert_int_equal(run->simulation.state, WB_SIMULATION_MISSING);
+    assert_string_equal(results.comparison->cases[WB_WIRES_ELASTOPLASTIC].datasets[0].command,
                         "wirebench solve wire3d plastic.yaml -o own/follower-8awg-3d");
-    assert_int_equal(results.fit_state, WB_WIRES_MISSING);
+    assert_int_equal(results.fit_state, WB_SIMULATION_MISSING);
     release();
 }
 
-static void a_dataset_of_a_changed_model_is_refused(void **state)
+static void a_dataset_of_a_changed_model_is_outdated(void **state)
 {
     (void)state;
     copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
@@ -434,22 +442,22 @@ static void a_dataset_of_a_changed_model_is_refused(void **state)
     write_dataset(WB_WIRES_ELASTIC, WB_WIRES_ROD);
     wb_wires_release(&comparison);
     compute(own);
-    assert_int_equal(results.n_usable, 2);
+    assert_int_equal(results.outcome.n_usable, 2);
     release();
 
     copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "# one more line\n");
     compute(own);
-    assert_int_equal(results.n_usable, 0);
+    assert_int_equal(results.outcome.n_usable, 0);
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTIC][WB_WIRES_SOLID];
-    assert_int_equal(run->state, WB_WIRES_REFUSED);
+    assert_int_equal(run->simulation.state, WB_SIMULATION_STALE);
     assert_true(run->is_stale);
-    assert_non_null(strstr(wb_text_string(&run->problem), "have changed since"));
+    assert_non_null(strstr(wb_text_string(&run->simulation.problem), "have changed since"));
     /* What it cost can still be told. */
-    assert_close(run->cpu_s, 200.0, 1e-12);
+    assert_close(run->simulation.cpu_s, 200.0, 1e-12);
     release();
 }
 
-static void a_dataset_that_did_not_converge_is_refused(void **state)
+static void a_dataset_that_did_not_converge_is_outdated(void **state)
 {
     (void)state;
     copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
@@ -464,12 +472,12 @@ static void a_dataset_that_did_not_converge_is_refused(void **state)
     wb_wires_release(&comparison);
     compute(own);
     const struct wb_wires_run *const runs = results.runs[WB_WIRES_ELASTOPLASTIC];
-    assert_int_equal(runs[0].state, WB_WIRES_REFUSED);
+    assert_int_equal(runs[0].simulation.state, WB_SIMULATION_STALE);
     assert_true(runs[0].is_cut_short);
-    assert_non_null(strstr(wb_text_string(&runs[0].problem), "at 12 N: made up"));
-    assert_int_equal(runs[1].state, WB_WIRES_REFUSED);
-    assert_non_null(strstr(wb_text_string(&runs[1].problem), "by 'solve wire3d'"));
-    assert_int_equal(results.fit_state, WB_WIRES_MISSING);
+    assert_non_null(strstr(wb_text_string(&runs[0].simulation.problem), "at 12 N: made up"));
+    assert_int_equal(runs[1].simulation.state, WB_SIMULATION_REFUSED);
+    assert_non_null(strstr(wb_text_string(&runs[1].simulation.problem), "by 'solve wire3d'"));
+    assert_int_equal(results.fit_state, WB_SIMULATION_MISSING);
     release();
 }
 
@@ -484,10 +492,10 @@ static void a_damaged_dataset_is_refused_without_this_machines_paths(void **stat
     write_text("own/follower-8awg-elastic-3d/fields.csv", "nonsense\n");
     compute(own);
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTIC][WB_WIRES_SOLID];
-    assert_int_equal(run->state, WB_WIRES_REFUSED);
-    assert_non_null(
-        strstr(wb_text_string(&run->problem), "own/follower-8awg-elastic-3d/fields.csv:1"));
-    assert_null(strstr(wb_text_string(&run->problem), folder));
+    assert_int_equal(run->simulation.state, WB_SIMULATION_REFUSED);
+    assert_non_null(strstr(wb_text_string(&run->simulation.problem),
+                           "own/follower-8awg-elastic-3d/fields.csv:1"));
+    assert_null(strstr(wb_text_string(&run->simulation.problem), folder));
     release();
 }
 
@@ -497,8 +505,8 @@ static void a_damaged_dataset_is_refused_without_this_machines_paths(void **stat
 static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
-        assert_int_equal(wb_wires_report_write(whole_campaign(), in_folder("report"), false),
-                         WB_OK);
+        assert_int_equal(
+            wb_report_write(&wb_wires_kind, whole_campaign(), in_folder("report"), false), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -558,7 +566,8 @@ static void the_same_datasets_give_the_same_bytes(void **state)
     (void)state;
     char command[3 * WB_PATH];
     write_report();
-    assert_int_equal(wb_wires_report_write(whole_campaign(), in_folder("again"), true), WB_OK);
+    assert_int_equal(wb_report_write(&wb_wires_kind, whole_campaign(), in_folder("again"), true),
+                     WB_OK);
     snprintf(command, sizeof command, "diff -r '%s' '%s' >/dev/null", in_folder("report"),
              in_folder("again"));
     assert_int_equal(system(command), 0);
@@ -573,8 +582,10 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     snprintf(text, sizeof text, "%s", own);
     memcpy(strstr(text, "own\nelastic"), "xyz", 3);
     assert_int_equal(read_campaign(text), WB_OK);
-    assert_int_equal(wb_wires_compute(&results, &comparison, NULL, NULL), WB_OK);
-    assert_int_equal(wb_wires_report_write(&results, in_folder("none"), true), WB_OK);
+    memset(&results, 0, sizeof results);
+    wb_wires_results_load(&results, &comparison);
+    assert_int_equal(wb_wires_results_compute(&results, NULL, NULL), WB_OK);
+    assert_int_equal(wb_report_write(&wb_wires_kind, &results, in_folder("none"), true), WB_OK);
     release();
     assert_true(says("none/report.html", "<b>Incomplete.</b> 4 of 4 datasets are missing"));
     assert_true(says("none/report.html", "wirebench solve wire3d plastic.yaml -o "
@@ -600,8 +611,8 @@ int main(void)
         cmocka_unit_test(an_axis_goes_through_its_points_and_is_smooth_between_them),
         cmocka_unit_test(limits_that_are_exceeded_are_told),
         cmocka_unit_test(a_missing_dataset_is_told_with_the_command_that_makes_it),
-        cmocka_unit_test(a_dataset_of_a_changed_model_is_refused),
-        cmocka_unit_test(a_dataset_that_did_not_converge_is_refused),
+        cmocka_unit_test(a_dataset_of_a_changed_model_is_outdated),
+        cmocka_unit_test(a_dataset_that_did_not_converge_is_outdated),
         cmocka_unit_test(a_damaged_dataset_is_refused_without_this_machines_paths),
         cmocka_unit_test(the_report_is_whole_and_says_that_it_shows_simulations),
         cmocka_unit_test(report_json_has_what_the_pages_tell),

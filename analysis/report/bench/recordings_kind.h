@@ -1,0 +1,11 @@
+/* The report of a campaign of recordings: wires that were tested, calibrated and validated. */
+#ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_KIND_H
+#define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_KIND_H
+
+#include "analysis/report/bench/recordings_results.h"
+#include "analysis/report/kind.h"
+
+/* Campaign and results: struct wb_recordings, struct wb_recordings_results. */
+extern const struct wb_kind wb_recordings_kind;
+
+#endif

@@ -1,0 +1,117 @@
+#include "analysis/report/bundles/bundles_kind.h"
+
+#include <stdio.h>
+
+#include "analysis/report/bundles/bundles_figures.h"
+#include "analysis/report/bundles/bundles_json.h"
+#include "analysis/report/bundles/bundles_pages.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static void print_bundle(FILE *out, const struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
+    fprintf(out, "%-16s", bundle->label);
+    if (run)
+        fprintf(out, "  F_max %.4g N", run->curve.max_force);
+    if (run && run->published)
+        fprintf(out, "  RMS from the published curve %.4f", run->rms);
+    if (fit)
+        fprintf(out, "  E %.0f MPa, yield stress %.2f MPa, K %.4g MPa, n %.3f, RMS %.4f",
+                fit->result.material.youngs_modulus / WB_MPA,
+                fit->result.material.yield_stress / WB_MPA,
+                fit->result.material.strength_coefficient / WB_MPA,
+                fit->result.material.hardening_exponent, fit->result.rms);
+    else
+        fprintf(out, "  no fitted beam: %s", wb_text_string(&results->fits[index].problem));
+    fprintf(out, "\n");
+}
+
+static void print(FILE *out, const void *context)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    struct wb_verdict verdicts[WB_BUNDLES_VERDICTS];
+    fprintf(out, "%s (simulations): %d of %d datasets used\n", campaign->head.title,
+            results->outcome.n_usable, results->outcome.n_wanted);
+    wb_simulation_print_missing(out, wb_bundles_results_list, results);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        print_bundle(out, results, i);
+    const int n = wb_bundles_results_judge(results, verdicts);
+    for (int i = 0; i < n; i++) {
+        if (!verdicts[i].kept)
+            fprintf(out, "  limit %s exceeded by %s: %.4g, limit %.4g\n", verdicts[i].key,
+                    verdicts[i].label, verdicts[i].value, verdicts[i].limit);
+    }
+}
+
+/* --- the row --- */
+
+static enum wb_status read(void *campaign, const char *path)
+{
+    return wb_bundles_read(campaign, path);
+}
+
+static enum wb_status load(void *results, const void *campaign)
+{
+    wb_bundles_results_load(results, campaign);
+    return WB_OK;
+}
+
+static int count_steps(const void *campaign)
+{
+    const struct wb_bundles *const own = campaign;
+    return own->n_bundles;
+}
+
+static enum wb_status compute(void *results, int n_threads, wb_kind_progress *progress,
+                              void *context)
+{
+    (void)n_threads;
+    wb_bundles_results_compute(results, progress, context);
+    return WB_OK;
+}
+
+static void pages(struct wb_document *document, const void *results,
+                  const struct wb_figures *figures)
+{
+    wb_bundles_pages_build(document, results, figures);
+}
+
+static struct wb_json *json(const void *results, const char *const *files, int n_files)
+{
+    return wb_bundles_json_build(results, files, n_files);
+}
+
+static void release(void *results)
+{
+    wb_bundles_results_release(results);
+}
+
+static void release_campaign(void *campaign)
+{
+    wb_bundles_release(campaign);
+}
+
+const struct wb_kind wb_bundles_kind = {
+    .name = "bundles",
+    .data = "datasets",
+    .datasets = wb_bundles_results_list,
+    .campaign_size = sizeof(struct wb_bundles),
+    .results_size = sizeof(struct wb_bundles_results),
+    .read = read,
+    .load = load,
+    .count_steps = count_steps,
+    .compute = compute,
+    .figures = wb_bundles_figures,
+    .n_figures = WB_BUNDLES_FIGURE_ROWS,
+    .pages = pages,
+    .json = json,
+    .print = print,
+    .release = release,
+    .release_campaign = release_campaign,
+};

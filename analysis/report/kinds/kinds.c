@@ -1,0 +1,11 @@
+#include "analysis/report/kinds/kinds.h"
+
+#include "analysis/report/bench/recordings_kind.h"
+#include "analysis/report/bundles/bundles_kind.h"
+#include "analysis/report/wires/wires_kind.h"
+
+const struct wb_kind *const wb_kinds[WB_KINDS] = {
+    &wb_recordings_kind,
+    &wb_wires_kind,
+    &wb_bundles_kind,
+};

@@ -1,0 +1,54 @@
+#include "analysis/report/numbers.h"
+
+#include "base/units.h"
+#include "base/version.h"
+
+void wb_numbers_put_title(struct wb_json *root, const char *title, const char *data)
+{
+    wb_json_set_text(root, "title", title);
+    wb_json_set_text(root, "data", data);
+}
+
+void wb_numbers_put_program(struct wb_json *root)
+{
+    struct wb_json *const tool = wb_json_set_object(root, "tool");
+    wb_json_set_text(tool, "name", "wirebench report");
+    wb_json_set_text(tool, "version", wb_version());
+    wb_json_set_text(tool, "revision", wb_version_revision());
+}
+
+void wb_numbers_put_campaign(struct wb_json *root, const struct wb_campaign *campaign)
+{
+    struct wb_json *const file = wb_json_set_object(root, "campaign");
+    wb_json_set_text(file, "file", campaign->name);
+    wb_json_set_text(file, "sha256", campaign->sha256);
+}
+
+void wb_numbers_put_outcome(struct wb_json *root, const struct wb_kind_outcome *outcome)
+{
+    wb_json_set_boolean(root, "complete", outcome->is_complete);
+    wb_json_set_boolean(root, "limit_exceeded", outcome->exceeds_limit);
+}
+
+void wb_numbers_put_files(struct wb_json *root, const char *const *files, int n_files)
+{
+    struct wb_json *const list = wb_json_set_array(root, "files");
+    for (int i = 0; i < n_files; i++)
+        wb_json_append_text(list, files[i]);
+}
+
+void wb_numbers_put_list(struct wb_json *object, const char *key, const double *values, int n,
+                         double unit)
+{
+    struct wb_json *const list = wb_json_set_array(object, key);
+    for (int i = 0; i < n; i++)
+        wb_json_append_number(list, values[i] / unit);
+}
+
+void wb_numbers_put_properties(struct wb_json *object, const struct wb_material *material)
+{
+    wb_json_set_number(object, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
+    wb_json_set_number(object, "yield_stress_MPa", material->yield_stress / WB_MPA);
+    wb_json_set_number(object, "strength_coefficient_MPa", material->strength_coefficient / WB_MPA);
+    wb_json_set_number(object, "hardening_exponent", material->hardening_exponent);
+}

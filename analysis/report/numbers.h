@@ -1,0 +1,26 @@
+/* Parts of report.json that all kinds of report have. Builders take NULL objects and return
+ * nothing; the whole document says whether memory ran out, as base/json.h has it.
+ */
+#ifndef WB_ANALYSIS_REPORT_NUMBERS_H
+#define WB_ANALYSIS_REPORT_NUMBERS_H
+
+#include "analysis/report/kind.h"
+#include "base/json.h"
+#include "fe/material/material.h"
+
+/* Title, `data` ("simulation", "measured"), then the program; the campaign; how it came out; the
+ * report's files. */
+void wb_numbers_put_title(struct wb_json *root, const char *title, const char *data);
+void wb_numbers_put_program(struct wb_json *root);
+void wb_numbers_put_campaign(struct wb_json *root, const struct wb_campaign *campaign);
+void wb_numbers_put_outcome(struct wb_json *root, const struct wb_kind_outcome *outcome);
+void wb_numbers_put_files(struct wb_json *root, const char *const *files, int n_files);
+
+/* A list of numbers in another unit. */
+void wb_numbers_put_list(struct wb_json *object, const char *key, const double *values, int n,
+                         double unit);
+
+/* E, sigma_Y, K and n, into an object. */
+void wb_numbers_put_properties(struct wb_json *object, const struct wb_material *material);
+
+#endif

@@ -1,0 +1,142 @@
+#include "analysis/report/report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/files.h"
+#include "analysis/report/missing.h"
+#include "base/config.h"
+#include "base/progress.h"
+
+#define WB_LOG_DOMAIN "report"
+
+enum wb_status wb_report_write(const struct wb_kind *kind, const void *results, const char *folder,
+                               bool force)
+{
+    struct wb_figures figures;
+    struct wb_document document;
+    WB_TRY(wb_figures_create(&figures, kind->figures, kind->n_figures, results));
+    kind->pages(&document, results, &figures);
+    const struct wb_files_content content = {
+        .document = &document, .figures = &figures, .json = kind->json, .context = results};
+    const enum wb_status status = wb_files_write(&content, folder, force);
+    wb_document_release(&document);
+    wb_figures_release(&figures);
+    return status;
+}
+
+/* --- one report in the making --- */
+
+struct making {
+    const struct wb_kind *kind;
+    const struct wb_report_order *order;
+    void *campaign, *results; /* owned */
+    enum wb_report_end end;
+};
+
+static enum wb_status refuse_interrupted(struct making *making)
+{
+    wb_error("interrupted: no report is written");
+    making->end = WB_REPORT_INTERRUPTED;
+    return WB_OK;
+}
+
+/* Has the missing datasets made and reads them; *ends: that is all that was asked for. */
+static enum wb_status make_missing(struct making *making, bool *ends)
+{
+    const struct wb_kind *const kind = making->kind;
+    const struct wb_report_order *const order = making->order;
+    struct wb_missing_outcome outcome;
+    if (!kind->datasets) {
+        wb_warn("%s cannot be computed: nothing is made of what is missing", kind->data);
+        return WB_OK;
+    }
+    WB_TRY(wb_missing_make(&outcome, kind->datasets, making->results, order->folder, order->jobs));
+    *ends = outcome.n > 0 && (order->jobs->dry_run || outcome.interrupted);
+    if (*ends && outcome.interrupted)
+        return refuse_interrupted(making);
+    making->end = WB_REPORT_NOTHING;
+    if (*ends)
+        return WB_OK;
+    if (outcome.n > 0) {
+        kind->release(making->results);
+        WB_TRY(kind->load(making->results, making->campaign));
+    }
+    wb_missing_remove_checkpoints(kind->datasets, making->results, order->folder);
+    return WB_OK;
+}
+
+static void show_progress(void *context, int done, int total, const char *what)
+{
+    (void)total;
+    wb_progress_update(context, done, what);
+}
+
+static enum wb_status compute(struct making *making)
+{
+    const struct wb_kind *const kind = making->kind;
+    struct wb_progress progress;
+    wb_progress_start(&progress, "report", "steps", kind->count_steps(making->campaign));
+    const enum wb_status status =
+        kind->compute(making->results, making->order->n_threads, show_progress, &progress);
+    wb_progress_finish(&progress);
+    return status;
+}
+
+static enum wb_status deliver(struct making *making)
+{
+    const struct wb_report_order *const order = making->order;
+    const struct wb_kind_outcome *const outcome = making->results;
+    if (outcome->interrupted)
+        return refuse_interrupted(making);
+    WB_TRY(wb_report_write(making->kind, making->results, order->folder, order->force));
+    if (!order->quiet)
+        making->kind->print(stdout, making->results);
+    making->end = !outcome->is_complete    ? WB_REPORT_INCOMPLETE
+                  : outcome->exceeds_limit ? WB_REPORT_LIMIT
+                                           : WB_REPORT_COMPLETE;
+    return WB_OK;
+}
+
+static enum wb_status make(struct making *making)
+{
+    const struct wb_kind *const kind = making->kind;
+    const struct wb_report_order *const order = making->order;
+    bool ends = false;
+    making->campaign = calloc(1, kind->campaign_size);
+    making->results = calloc(1, kind->results_size);
+    if (!making->campaign || !making->results)
+        return wb_fail(WB_ERR_MEMORY, "out of memory");
+    WB_TRY(kind->read(making->campaign, order->campaign));
+    /* A folder that may not be written should not cost the time of the computations. */
+    WB_TRY(wb_file_prepare_output(order->folder, order->force));
+    WB_TRY(kind->load(making->results, making->campaign));
+    if (wb_jobs_wanted(order->jobs))
+        WB_TRY(make_missing(making, &ends));
+    if (ends)
+        return WB_OK;
+    WB_TRY(compute(making));
+    return deliver(making);
+}
+
+enum wb_status wb_report_make(enum wb_report_end *end, const struct wb_kind *const *kinds,
+                              size_t n_kinds, const struct wb_report_order *order)
+{
+    const char *names[16] = {NULL};
+    struct making making = {.order = order};
+    int kind = 0;
+    for (size_t i = 0; i < n_kinds && i < WB_COUNT(names); i++)
+        names[i] = kinds[i]->name;
+    WB_TRY(wb_campaign_read_kind(&kind, order->campaign, names, n_kinds));
+    making.kind = kinds[kind];
+    const enum wb_status status = make(&making);
+    if (making.results)
+        making.kind->release(making.results);
+    if (making.campaign)
+        making.kind->release_campaign(making.campaign);
+    free(making.results);
+    free(making.campaign);
+    if (status == WB_OK)
+        *end = making.end;
+    return status;
+}

@@ -1,0 +1,171 @@
+#include "analysis/report/simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/reasons.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const char shipped[] = "simulations";
+
+/* --- what a campaign wants --- */
+
+const char *wb_simulation_as_shown(const char *given)
+{
+    if (given[0] == '/' || strstr(given, ".."))
+        given = wb_file_name(given);
+    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
+}
+
+enum wb_status wb_simulation_find(struct wb_simulation *simulation,
+                                  const struct wb_campaign *campaign, const char *given)
+{
+    char folder[WB_PATH];
+    simulation->wanted = true;
+    snprintf(simulation->log, sizeof simulation->log, "%.120s", wb_file_name(given));
+    if (strchr(given, '/')) {
+        snprintf(simulation->name, sizeof simulation->name, "%.250s",
+                 wb_simulation_as_shown(given));
+        return wb_file_join(simulation->path, campaign->folder, given);
+    }
+    const char *const shown = wb_simulation_as_shown(campaign->simulations);
+    const bool has_name = shown[0] && strcmp(shown, ".") != 0;
+    snprintf(simulation->name, sizeof simulation->name, "%.120s/%.120s", has_name ? shown : shipped,
+             given);
+    if (campaign->simulations[0])
+        WB_TRY(wb_file_join(folder, campaign->folder, campaign->simulations));
+    else if (wb_file_find_data(folder, shipped) != WB_OK)
+        snprintf(folder, sizeof folder, "%s", shipped);
+    return wb_file_join(simulation->path, folder, given);
+}
+
+static void show(struct wb_simulation *simulation, const char *text)
+{
+    const size_t used = strlen(simulation->command);
+    const char *const quote = strpbrk(text, " \t'\"$") ? "'" : "";
+    snprintf(simulation->command + used, sizeof simulation->command - used, "%s%s%s%s",
+             used ? " " : "", quote, text, quote);
+}
+
+enum wb_status wb_simulation_argue(struct wb_simulation *simulation, const char *argument,
+                                   const char *shown)
+{
+    int n = 0;
+    while (n < WB_SIMULATION_ARGUMENTS - 1 && simulation->arguments[n])
+        n++;
+    simulation->arguments[n] = n < WB_SIMULATION_ARGUMENTS - 1 ? strdup(argument) : NULL;
+    if (!simulation->arguments[n])
+        return wb_fail(WB_ERR_MEMORY, "no room for the arguments of %s", simulation->name);
+    if (n == 0)
+        show(simulation, "wirebench");
+    show(simulation, shown ? shown : argument);
+    return WB_OK;
+}
+
+void wb_simulation_end(struct wb_simulation *simulation)
+{
+    show(simulation, "-o");
+    show(simulation, simulation->name);
+}
+
+void wb_simulation_release(struct wb_simulation *simulation)
+{
+    for (int i = 0; i < WB_SIMULATION_ARGUMENTS; i++)
+        free((char *)simulation->arguments[i]);
+}
+
+/* --- what is there --- */
+
+double wb_simulation_number(const struct wb_json *object, const char *key)
+{
+    double value;
+    return wb_json_get_number(object, key, &value) ? value : (double)NAN;
+}
+
+const struct wb_json *wb_simulation_of(const struct wb_simulation_result *result)
+{
+    return wb_json_get(result->dataset.document, "simulation");
+}
+
+bool wb_simulation_is_solved_by(const struct wb_simulation_result *result, const char *solver)
+{
+    const char *made_by = "";
+    return result->dataset.info.is_simulation &&
+           wb_json_get_text(wb_simulation_of(result), "model", &made_by) &&
+           strcmp(made_by, solver) == 0;
+}
+
+bool wb_simulation_is_missing(const struct wb_simulation_result *result)
+{
+    return result->state == WB_SIMULATION_MISSING || result->state == WB_SIMULATION_STALE;
+}
+
+static enum wb_status read(struct wb_simulation_result *result, const struct wb_simulation *wanted,
+                           const struct wb_simulation_reader *reader, bool *stale,
+                           struct wb_reason *why)
+{
+    const char *revision = "";
+    char rows[WB_PATH];
+    WB_TRY(wb_dataset_read(&result->dataset, wanted->path, why));
+    (void)wb_json_get_text(wb_json_get(result->dataset.document, "tool"), "revision", &revision);
+    snprintf(result->revision, sizeof result->revision, "%s", revision);
+    result->cpu_s = wb_simulation_number(wb_simulation_of(result), "cpu_s");
+    WB_TRY(reader->check(reader->context, stale, why));
+    WB_TRY(wb_file_join(rows, wanted->path, "force_deflection.csv"));
+    WB_TRY(wb_hash_file(rows, result->sha256));
+    return reader->take ? reader->take(reader->context, why) : WB_OK;
+}
+
+void wb_simulation_load(struct wb_simulation_result *result, const struct wb_simulation *wanted,
+                        const struct wb_simulation_reader *reader)
+{
+    char file[WB_PATH];
+    bool stale = false;
+    result->cpu_s = (double)NAN;
+    if (!wanted->wanted)
+        return;
+    result->state = WB_SIMULATION_MISSING;
+    if (wb_file_join(file, wanted->path, "dataset.json") != WB_OK || !wb_file_exists(file)) {
+        wb_text_append(&result->problem, "there is no such dataset");
+        return;
+    }
+    const struct wb_reasons reasons = {&result->problem, wanted->path, wanted->name};
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = read(result, wanted, reader, &stale, &why);
+    result->state = status == WB_OK ? WB_SIMULATION_USABLE
+                    : stale         ? WB_SIMULATION_STALE
+                                    : WB_SIMULATION_REFUSED;
+    if (status != WB_OK)
+        wb_reasons_warn(&reasons, status, &why);
+}
+
+void wb_simulation_result_release(struct wb_simulation_result *result)
+{
+    wb_text_release(&result->problem);
+    wb_dataset_release(&result->dataset);
+}
+
+/* --- all of a report --- */
+
+void wb_simulation_count(wb_simulation_list *list, const void *results, int *n_wanted,
+                         int *n_usable)
+{
+    struct wb_simulation_entry entry;
+    *n_wanted = *n_usable = 0;
+    for (int i = 0; list(results, i, &entry); i++) {
+        *n_wanted += entry.wanted->wanted;
+        *n_usable += entry.result->state == WB_SIMULATION_USABLE;
+    }
+}
+
+void wb_simulation_print_missing(FILE *out, wb_simulation_list *list, const void *results)
+{
+    struct wb_simulation_entry entry;
+    for (int i = 0; list(results, i, &entry); i++) {
+        if (entry.wanted->wanted && entry.result->state != WB_SIMULATION_USABLE)
+            fprintf(out, "  %s: %s; to make it:\n    %s\n", entry.wanted->name,
+                    wb_text_string(&entry.result->problem), entry.wanted->command);
+    }
+}

@@ -1,0 +1,118 @@
+/* A dataset of a simulation that a campaign wants: where it lies, how this program makes it, and
+ * whether what is there can be used.
+ *
+ * A dataset that is not there is no error: reports say so, and how to make it.
+ */
+#ifndef WB_ANALYSIS_REPORT_SIMULATION_H
+#define WB_ANALYSIS_REPORT_SIMULATION_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "analysis/dataset.h"
+#include "analysis/report/campaign.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/json.h"
+#include "base/reason.h"
+#include "base/status.h"
+#include "base/text.h"
+
+enum {
+    WB_SIMULATION_ARGUMENTS = 28
+};
+
+/* What a campaign wants. */
+struct wb_simulation {
+    bool wanted;
+    char name[256];     /* for readers: no path of this machine */
+    char path[WB_PATH]; /* of its folder, which may not be there */
+    char log[128];      /* a name for a log */
+    /* Of wirebench, NULL-terminated, without the program and without -o; owned. */
+    const char *arguments[WB_SIMULATION_ARGUMENTS];
+    char command[1200]; /* the whole of it for readers, without paths of this machine */
+};
+
+/* Path and name of a dataset. A name lies among the campaign's simulations, by default the shipped
+ * ones; whatever holds a '/' is a path from the campaign file. */
+WB_MUST_CHECK enum wb_status wb_simulation_find(struct wb_simulation *simulation,
+                                                const struct wb_campaign *campaign,
+                                                const char *given);
+
+/* Then its command, argument by argument, each shown as `shown` (NULL: as it is), and the end. */
+WB_MUST_CHECK enum wb_status wb_simulation_argue(struct wb_simulation *simulation,
+                                                 const char *argument, const char *shown);
+void wb_simulation_end(struct wb_simulation *simulation);
+
+void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
+
+/* A path from the campaign file as a command in that file's folder has it: as it is given, or its
+ * last part where it says where on this machine it is. */
+const char *wb_simulation_as_shown(const char *given);
+
+/* --- what is there --- */
+
+enum wb_simulation_state {
+    WB_SIMULATION_NOT_WANTED,
+    WB_SIMULATION_MISSING, /* there is no such dataset */
+    WB_SIMULATION_STALE,   /* of a model or of settings that have changed, or cut short: to be made
+                              again */
+    WB_SIMULATION_REFUSED, /* it is something else, damaged, ... */
+    WB_SIMULATION_USABLE
+};
+
+struct wb_simulation_result {
+    enum wb_simulation_state state;
+    struct wb_text problem;      /* why it cannot be used */
+    char revision[64];           /* of the program that made it */
+    char sha256[WB_SHA256_TEXT]; /* of its force_deflection.csv */
+    double cpu_s;                /* that it took; NaN: not known */
+    struct wb_dataset dataset;   /* of a usable one */
+};
+
+/* How a kind of report looks at a dataset that was read. */
+struct wb_simulation_reader {
+    /* Whether it is of the model and the settings that are wanted, and whole. Sets *stale when a
+     * failure is one that making the dataset again mends. */
+    enum wb_status (*check)(void *context, bool *stale, struct wb_reason *why);
+    /* Reads the rest; NULL: there is none. */
+    enum wb_status (*take)(void *context, struct wb_reason *why);
+    void *context;
+};
+
+/* Reads what is wanted into a zeroed result. Nothing fails: the result says what is wrong. */
+void wb_simulation_load(struct wb_simulation_result *result, const struct wb_simulation *wanted,
+                        const struct wb_simulation_reader *reader);
+void wb_simulation_result_release(struct wb_simulation_result *result);
+
+/* Whether it is to be made (again). */
+bool wb_simulation_is_missing(const struct wb_simulation_result *result);
+
+/* A number of a dataset's description; NaN where there is none. */
+double wb_simulation_number(const struct wb_json *object, const char *key);
+
+/* The dataset's `simulation`, and whether its `model` says that this solver made it. */
+const struct wb_json *wb_simulation_of(const struct wb_simulation_result *result);
+bool wb_simulation_is_solved_by(const struct wb_simulation_result *result, const char *solver);
+
+/* --- all of a report --- */
+
+struct wb_simulation_entry {
+    const struct wb_simulation *wanted;
+    const struct wb_simulation_result *result;
+    double cost;           /* of making it, beside the others; 0: not known */
+    const char *resumable; /* SHA-256 of its model: the run takes --threads, and --checkpoint FILE
+                              to go on where it was ended; NULL: it does not */
+};
+
+/* How a kind of report lists its datasets: the one at an index; false after the last. */
+typedef bool wb_simulation_list(const void *results, int index, struct wb_simulation_entry *entry);
+
+/* How many are wanted and usable. */
+void wb_simulation_count(wb_simulation_list *list, const void *results, int *n_wanted,
+                         int *n_usable);
+
+/* Prints which cannot be used, why, and how to make them. */
+void wb_simulation_print_missing(FILE *out, wb_simulation_list *list, const void *results);
+
+#endif
