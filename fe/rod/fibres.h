@@ -1,5 +1,5 @@
-/* A section made ready for stepping: fibres sorted by material, inverse power laws tabulated, and
- * the plastic history of one section point as a plain row of doubles.
+/* A section prepared for computing: its fibres are sorted by material, its power laws tabulated,
+ * and the plastic history of a section point is a plain row of doubles.
  *
  * Stresses are those of wb_material_stress() to about 1e-11 of the yield stress
  * (tests/twin/test_fibres_twin.c): p(c) comes from the table of fe/material/hardening.h, and

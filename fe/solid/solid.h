@@ -28,7 +28,7 @@ struct wb_solid_settings {
     int max_iterations;        /* 0: 12 */
 };
 
-/* All that acts. */
+/* All loads. */
 struct wb_solid_loads {
     double weight, supports, nodal; /* factors */
     struct wb_tip_loads tip;

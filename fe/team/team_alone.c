@@ -1,4 +1,4 @@
-/* Ranks of a build without MPI: there is one. */
+/* The ranks of a build without MPI: one. */
 #include <stdlib.h>
 
 #include "fe/team/team_ranks.h"

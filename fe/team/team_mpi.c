@@ -1,5 +1,4 @@
-/* Ranks by MPI. Nothing is asked of it unless mpirun started this process: joining takes a while.
- */
+/* The ranks by MPI. Without mpirun no function of MPI is called, because joining takes a while. */
 #include <mpi.h>
 #include <stdlib.h>
 
