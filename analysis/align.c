@@ -199,7 +199,7 @@ enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_pa
                             const struct wb_align_settings *settings)
 {
     memset(dataset, 0, sizeof *dataset);
-    WB_TRY(wb_setting_check(&wb_align_table, settings));
+    WB_TRY(wb_setting_check(&wb_align_table, settings, NULL));
     /* GSL's own handler aborts; its codes are looked at here. */
     gsl_set_error_handler_off();
     struct wb_align *const align = calloc(1, sizeof *align);

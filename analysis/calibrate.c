@@ -52,6 +52,7 @@ struct objective {
     double first_strength, first_exponent;
     double *value;         /* (curve->n) */
     enum wb_status status; /* of the last evaluation that failed other than by convergence */
+    struct wb_reason *why; /* NULL: failures are logged */
     int evaluations, failed;
 };
 
@@ -261,10 +262,11 @@ static double yield_point(const struct wb_calibrate_settings *settings)
     return wb_calibrate_settings_meant(settings).yield_point;
 }
 
-static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings)
+static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings,
+                                                     struct wb_reason *why)
 {
     return (struct wb_computed_settings){settings->straight, settings->n_elements,
-                                         settings->n_fibres};
+                                         settings->n_fibres, why};
 }
 
 /* How far outside the domain a point lies, 0 inside. */
@@ -314,7 +316,7 @@ static enum wb_status add_step(struct wb_calibrate_result *result,
     const size_t n = (size_t)result->n_path;
     struct wb_calibrate_step *const path = realloc(result->path, (n + 1) * sizeof *path);
     if (!path)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the optimiser's path");
+        return wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the optimiser's path");
     path[n] = (struct wb_calibrate_step){
         .strength_coefficient = gsl_vector_get(best, 0) * objective->first_strength,
         .hardening_exponent = gsl_vector_get(best, 1) * objective->first_exponent,
@@ -360,7 +362,7 @@ static enum wb_status iterate(struct wb_calibrate_result *result, struct objecti
         /* The only failure is a contraction that hits a non-finite value, which evaluate() never
          * returns. */
         if (gsl_multimin_fminimizer_iterate(minimizer) != GSL_SUCCESS)
-            return wb_fail(WB_ERR_CONVERGENCE, "the simplex could not go on");
+            return wb_fail_to(objective->why, WB_ERR_CONVERGENCE, "the simplex could not go on");
     }
 }
 
@@ -377,7 +379,7 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
     enum wb_status status = WB_OK;
     double first_error = 0.0;
     if (!minimizer || !start || !edges) {
-        status = wb_fail(WB_ERR_MEMORY, "no memory for the simplex");
+        status = wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the simplex");
     } else {
         for (size_t i = 0; i < 2; i++) {
             gsl_vector_set(start, i, at[i]);
@@ -385,7 +387,8 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
         }
         first_error = evaluate(start, objective);
         if (gsl_multimin_fminimizer_set(minimizer, &function, start, edges) != GSL_SUCCESS)
-            status = wb_fail(WB_ERR_CONVERGENCE, "the first simplex could not be made");
+            status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
+                                "the first simplex could not be made");
     }
     if (status == WB_OK)
         status = iterate(result, objective, minimizer, first_error, settings);
@@ -395,11 +398,11 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
         at[1] = gsl_vector_get(best, 1);
         if (result->path[result->n_path - 1].error >= PENALTY &&
             result->end != WB_CALIBRATE_STOPPED)
-            status = wb_fail(WB_ERR_CONVERGENCE,
-                             "wire '%s': the beam converges nowhere around the first guess "
-                             "(K0 = %.4g MPa, n0 = %.4g)",
-                             result->info.wire, objective->first_strength / WB_MPA,
-                             objective->first_exponent);
+            status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
+                                "wire '%s': the beam converges nowhere around the first guess "
+                                "(K0 = %.4g MPa, n0 = %.4g)",
+                                result->info.wire, objective->first_strength / WB_MPA,
+                                objective->first_exponent);
     }
     if (minimizer)
         gsl_multimin_fminimizer_free(minimizer);
@@ -418,10 +421,11 @@ static enum wb_status check_share(const struct objective *objective,
     const double predicted = objective->value[curve->n - 1];
     const double share = curve->force[curve->n - 1] / predicted;
     if (predicted > 0.0 && share > ELASTIC_SHARE)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': yield is not reached: at %.2f mm the force is still %.0f %% of "
-                       "the linear elastic prediction's",
-                       info->wire, curve->max_deflection / WB_MM, 100.0 * share);
+        return wb_fail_to(
+            objective->why, WB_ERR_DATA,
+            "wire '%s': yield is not reached: at %.2f mm the force is still %.0f %% of "
+            "the linear elastic prediction's",
+            info->wire, curve->max_deflection / WB_MM, 100.0 * share);
     return WB_OK;
 }
 
@@ -437,10 +441,10 @@ static enum wb_status check_leaves(const struct objective *objective,
         highest = fmax(highest, fabs(objective->value[i]));
     }
     if (apart < (1.0 - ELASTIC_SHARE) * highest)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': yield is not reached: up to %.4g N the deflection is within "
-                       "%.2f mm of the linear elastic prediction's",
-                       info->wire, curve->max_force, apart / WB_MM);
+        return wb_fail_to(objective->why, WB_ERR_DATA,
+                          "wire '%s': yield is not reached: up to %.4g N the deflection is within "
+                          "%.2f mm of the linear elastic prediction's",
+                          info->wire, curve->max_force, apart / WB_MM);
     return WB_OK;
 }
 
@@ -526,7 +530,7 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
         struct wb_first_guess computed;
         double at[2] = {1.0, 1.0};
         WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material,
-                                       &objective->evaluations));
+                                       &objective->evaluations, objective->why));
         objective->material = result->material;
         scale_closed_forms(&objective->material, measured, &computed, settings);
         objective->first_strength = result->material.strength_coefficient;
@@ -605,7 +609,8 @@ struct leaving_out {
  * `material` on. */
 static enum wb_status refit_curve(const struct leaving_out *how,
                                   const struct wb_bow_samples *samples,
-                                  struct wb_material *material, bool *settled)
+                                  struct wb_material *material, bool *settled,
+                                  struct wb_reason *why)
 {
     const struct wb_calibrate_settings *const settings = how->settings;
     struct wb_computed *computed;
@@ -613,11 +618,11 @@ static enum wb_status refit_curve(const struct leaving_out *how,
     struct wb_first_guess guess;
     wb_curve_mean_info(samples->datasets, samples->n, &info);
     WB_TRY(wb_first_guess_run(&guess, samples->curve, &info, samples->elastic_zone,
-                              samples->yield_point));
+                              samples->yield_point, why));
     struct wb_first_guess before = {.youngs_modulus = material->youngs_modulus,
                                     .yield_stress = material->yield_stress};
     if (settings->bow_corrected && !settings->straight)
-        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations));
+        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations, why));
     scale_closed_forms(material, &guess, &before, settings);
     WB_TRY(wb_computed_create(&computed, &info, material, samples->how));
     const enum wb_status status =
@@ -627,28 +632,30 @@ static enum wb_status refit_curve(const struct leaving_out *how,
 }
 
 static enum wb_status refit_samples(void *context, const struct wb_dataset *const *datasets, int n,
-                                    struct wb_material *material, bool *settled)
+                                    struct wb_material *material, bool *settled,
+                                    struct wb_reason *why)
 {
     const struct leaving_out *const how = context;
     const struct wb_curve_grid grid = grid_of(how->settings);
-    const struct wb_computed_settings computed = computed_settings(how->settings);
+    const struct wb_computed_settings computed = computed_settings(how->settings, why);
     struct wb_curve curve;
     *settled = false;
-    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
     const struct wb_bow_samples samples = {
         datasets, n, &curve, how->settings->elastic_zone, yield_point(how->settings), &computed};
-    const enum wb_status status = refit_curve(how, &samples, material, settled);
+    const enum wb_status status = refit_curve(how, &samples, material, settled, why);
     wb_curve_release(&curve);
     return status;
 }
 
 enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
                                        const struct wb_dataset *const *datasets, int n,
-                                       const struct wb_calibrate_settings *settings)
+                                       const struct wb_calibrate_settings *settings,
+                                       struct wb_reason *why)
 {
     struct leaving_out how = {settings, &result->evaluations};
     const struct wb_jackknife_refit refit = {refit_samples, &how};
-    return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit);
+    return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit, why);
 }
 
 /* --- all --- */
@@ -656,14 +663,15 @@ enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
 static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                                       const struct wb_curve *curve,
                                       const struct wb_dataset *const *datasets, int n,
-                                      const struct wb_calibrate_settings *settings)
+                                      const struct wb_calibrate_settings *settings,
+                                      struct wb_reason *why)
 {
     struct wb_first_guess guess;
     wb_curve_mean_info(datasets, n, &result->info);
     wb_curve_warn_unknown_shapes(datasets, n);
     result->bow_spread = bow_spread(datasets, n);
     WB_TRY(wb_first_guess_run(&guess, curve, &result->info, settings->elastic_zone,
-                              yield_point(settings)));
+                              yield_point(settings), why));
     result->first_strength_coefficient = guess.strength_coefficient;
     result->first_hardening_exponent = guess.hardening_exponent;
     struct objective objective = {
@@ -676,15 +684,16 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                      .hardening_exponent = guess.hardening_exponent},
         .first_strength = guess.strength_coefficient,
         .first_exponent = guess.hardening_exponent,
+        .why = why,
     };
     if (settings->youngs_modulus > 0.0)
         objective.material.youngs_modulus = settings->youngs_modulus;
     if (settings->yield_stress > 0.0)
         objective.material.yield_stress = settings->yield_stress;
-    const struct wb_computed_settings how = computed_settings(settings);
+    const struct wb_computed_settings how = computed_settings(settings, why);
     objective.value = malloc((size_t)curve->n * sizeof *objective.value);
     if (!objective.value)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d points", curve->n);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", curve->n);
     enum wb_status status =
         wb_computed_create(&objective.computed, &result->info, &objective.material, &how);
     if (status == WB_OK)
@@ -704,26 +713,26 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     wb_computed_destroy(objective.computed);
     free(objective.value);
     if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
-        status = wb_calibrate_deviations(result, datasets, n, settings);
+        status = wb_calibrate_deviations(result, datasets, n, settings, why);
     return status;
 }
 
 enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
                                 const struct wb_dataset *const *datasets, int n,
-                                const struct wb_calibrate_settings *settings)
+                                const struct wb_calibrate_settings *settings, struct wb_reason *why)
 {
     /* GSL's default handler aborts the program. */
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, silence_gsl);
     const double started = wb_progress_thread_cpu();
-    WB_TRY(wb_setting_check(&wb_calibrate_table, settings));
+    WB_TRY(wb_setting_check(&wb_calibrate_table, settings, why));
     struct wb_calibrate_result made = {0};
     struct wb_curve curve;
     for (int k = 0; k < 4; k++)
         made.deviation[k] = (double)NAN;
     const struct wb_curve_grid grid = grid_of(settings);
-    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
-    const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings);
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
+    const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings, why);
     wb_curve_release(&curve);
     if (status != WB_OK) {
         wb_calibrate_result_release(&made);

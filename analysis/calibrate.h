@@ -3,12 +3,13 @@
  * E from eq. 10, sigma_Y from eq. 11 (elastic zone and yield point are settings), n0 and K0 from
  * eqs. 12-16, then Nelder-Mead (GSL nmsimplex2) over K and n from the paper's simplex on E_L2 of
  * eq. 17, with the beam under the test's real loading and the samples' mean natural shape. E and
- * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size test
- * sees both.
+ * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size of
+ * the simplex counts both alike.
  *
- * Of a follower test deflections are compared at equal forces, over the whole of the loading:
- * forces at equal deflections would end short of the largest deflection and tell nothing of the
- * curling beyond. Errors are then over the largest deflection.
+ * In a follower test, whose force stays normal to the wire's tip, deflections are compared at equal
+ * forces over the whole of the loading: forces at equal deflections would end short of the largest
+ * deflection and leave out how the wire curls up beyond it. Errors are then divided by the largest
+ * deflection.
  */
 #ifndef WB_ANALYSIS_CALIBRATE_H
 #define WB_ANALYSIS_CALIBRATE_H
@@ -16,6 +17,7 @@
 #include <stdbool.h>
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
 #include "base/setting.h"
 #include "base/status.h"
 #include "fe/material/material.h"
@@ -111,10 +113,12 @@ int wb_calibrate_remarks(const struct wb_calibrate_result *result,
                          const char *remarks[WB_CALIBRATE_MOST_REMARKS]);
 
 /* Calibrates on the average curve of `n` datasets. Unusable data (yield not reached, too few
- * points, reversed sign, ...) is WB_ERR_DATA with the reason. */
+ * points, reversed sign, ...) is WB_ERR_DATA. `why` receives why it failed; NULL: that is logged.
+ */
 WB_MUST_CHECK enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
                                               const struct wb_dataset *const *datasets, int n,
-                                              const struct wb_calibrate_settings *settings);
+                                              const struct wb_calibrate_settings *settings,
+                                              struct wb_reason *why);
 void wb_calibrate_result_release(struct wb_calibrate_result *result);
 
 #endif

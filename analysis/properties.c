@@ -149,11 +149,7 @@ enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_r
     if (!force && wb_file_exists(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
     format(&text, result, settings, names, n_names);
-    enum wb_status status;
-    if (text.failed)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
-    else
-        status = wb_file_write(path, wb_text_string(&text), text.length);
+    const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);
     return status;
 }

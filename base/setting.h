@@ -21,6 +21,7 @@
 
 #include "base/config.h"
 #include "base/json.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -96,11 +97,11 @@ WB_MUST_CHECK enum wb_status wb_setting_read_list(const struct wb_setting *row,
                                                   void *settings);
 
 /* Checks a field, or a filled struct: numbers in their range, or as the default.
- * WB_ERR_ARGUMENT. */
+ * WB_ERR_ARGUMENT, with the reason in `why`, or logged where that is NULL. */
 WB_MUST_CHECK enum wb_status wb_setting_check_row(const struct wb_setting *row,
-                                                  const void *settings);
+                                                  const void *settings, struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_setting_check(const struct wb_setting_table *table,
-                                              const void *settings);
+                                              const void *settings, struct wb_reason *why);
 
 /* Whether the field of a struct that began as all zero holds anything. */
 bool wb_setting_is_given(const struct wb_setting *row, const void *settings);

@@ -230,7 +230,7 @@ static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *r
     o->settings.progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "beam runs", 0.0);
     const enum wb_status status =
-        wb_calibrate_run(result, o->datasets.pointers, o->datasets.n, &o->settings);
+        wb_calibrate_run(result, o->datasets.pointers, o->datasets.n, &o->settings, NULL);
     wb_progress_finish(&progress);
     return status;
 }

@@ -90,7 +90,7 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
             members[n++] = datasets->pointers[i];
     }
     const enum wb_status status =
-        wb_validate_run(&groups->results[group], properties, members, n, &o->settings);
+        wb_validate_run(&groups->results[group], properties, members, n, &o->settings, NULL);
     free(members);
     return status;
 }

@@ -24,8 +24,8 @@ struct wb_team; /* opaque */
 WB_MUST_CHECK enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size);
 void wb_team_destroy(struct wb_team *team); /* accepts NULL */
 
-int wb_team_size(const struct wb_team *team);  /* members of all ranks */
-int wb_team_first(const struct wb_team *team); /* of this rank; then come n_threads - 1 more */
+/* The first member of this rank; then come n_threads - 1 more. */
+int wb_team_first(const struct wb_team *team);
 
 /* Calls work(context, member) for the members of this rank, each in its thread, the first in the
  * caller's; returns when all are done. */

@@ -34,11 +34,6 @@ int wb_team_ranks(void)
     return 1;
 }
 
-const char *wb_team_mpi(void)
-{
-    return NULL;
-}
-
 void wb_team_sum(double *values, int n)
 {
     (void)values, (void)n;

@@ -87,15 +87,6 @@ void wb_wire_run_release(struct wb_wire_run *run); /* accepts a zeroed one */
 /* Rows that a model gives when it runs through: one at the start and those of every step. */
 int wb_wire_run_planned_rows(const struct wb_wire_model *model);
 
-/* Told of the tip's tangent after every increment: in one row it may turn past pi. */
-void wb_wire_run_turn(struct wb_wire_run *run, const double tangent[3]);
-
-/* Appends a row that has step, fraction, loads, tip, tangent, tension, vertical_force, increments
- * and iterations, and completes it: cycle, phase, angle, force. `slack`: the strand carries
- * nothing. `shape` is (n_shape x 3). Rows beyond the spare ones are not taken. */
-void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
-                     const struct wb_wire_row *row, bool slack, const double (*shape)[3]);
-
 /* What `step` wants at `share` of its way from `start`, the state in which it began. */
 struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
                                          const struct wb_wire_target *start, double share);
@@ -110,8 +101,9 @@ bool wb_wire_run_tell(struct wb_wire_progress *progress, const double tangent[3]
 void wb_wire_run_set_forces(struct wb_wire_row *row, const struct wb_wire_model *model,
                             double tension, double vertical, const double frame[3][3]);
 
-/* Appends a row that has fraction, loads, tip, tangent and forces as wb_wire_run_add() does, and
- * tells the observer, whose status it keeps. */
+/* Appends a row that has fraction, loads, tip, tangent and forces, and completes it: step, cycle,
+ * phase, angle, force. `slack`: the strand carries nothing. `shape` is (n_shape x 3). Tells the
+ * observer, whose status it keeps. */
 void wb_wire_run_end_row(struct wb_wire_progress *progress, struct wb_wire_row *row, bool slack,
                          const double (*shape)[3]);
 

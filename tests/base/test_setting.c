@@ -264,20 +264,20 @@ static void filled_structs_are_checked(void **unused)
     wb_setting_fill(&table, &e);
     e.pair.second = 1.0;
     /* The count's default, 0, is out of its range. */
-    assert_int_equal(wb_setting_check(&table, &e), WB_OK);
+    assert_int_equal(wb_setting_check(&table, &e, NULL), WB_OK);
     e.length = 1e6 * 1e-3;
-    assert_int_equal(wb_setting_check(&table, &e), WB_OK);
+    assert_int_equal(wb_setting_check(&table, &e, NULL), WB_OK);
     wb_log_set_sink(discard_message, NULL);
     e.length = nextafter(e.length, 1e9);
-    assert_int_equal(wb_setting_check(&table, &e), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_setting_check(&table, &e, NULL), WB_ERR_ARGUMENT);
     e.length = (double)NAN;
-    assert_int_equal(wb_setting_check(&table, &e), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_setting_check(&table, &e, NULL), WB_ERR_ARGUMENT);
     e.length = 1.0;
     e.count = 10;
-    assert_int_equal(wb_setting_check(&table, &e), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_setting_check(&table, &e, NULL), WB_ERR_ARGUMENT);
     e.count = 1;
     e.pair.second = 3.0;
-    assert_int_equal(wb_setting_check(&table, &e), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_setting_check(&table, &e, NULL), WB_ERR_ARGUMENT);
     wb_log_set_sink(NULL, NULL);
 }
 

@@ -10,6 +10,7 @@
 #include "analysis/dataset.h"
 #include "analysis/report/bundles/bundles.h"
 #include "analysis/surface.h"
+#include "base/reason.h"
 #include "base/text.h"
 
 enum wb_bundles_state {
@@ -68,7 +69,8 @@ void wb_bundles_run_release(struct wb_bundles_result *result); /* accepts a zero
  * fit's grid and computes the published curve on it. */
 WB_MUST_CHECK enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
                                                     const struct wb_bundles_run *run,
-                                                    const struct wb_calibrate_settings *fit);
+                                                    const struct wb_calibrate_settings *fit,
+                                                    struct wb_reason *why);
 
 /* Whether it is to be made (again) by --solve. */
 bool wb_bundles_run_is_missing(const struct wb_bundles_result *result);

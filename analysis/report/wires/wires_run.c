@@ -39,46 +39,48 @@ static void read_simulation(struct wb_wires_run *run)
 
 /* Whether the dataset is of this model as it is now, and whole. */
 static enum wb_status check_simulation(struct wb_wires_run *run, const struct wb_wires_case *item,
-                                       enum wb_wires_solver solver)
+                                       enum wb_wires_solver solver, struct wb_reason *why)
 {
     const struct wb_json *const simulation = wb_json_get(run->dataset.document, "simulation");
     const struct wb_test_info *const info = &run->dataset.info;
     const char *sha256 = "", *made_by = "", *problem = "";
     if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "model", &made_by) ||
         !wb_json_get_text(simulation, "sha256", &sha256))
-        return wb_fail(WB_ERR_DATA, "it does not say of which model it is a simulation");
+        return wb_fail_to(why, WB_ERR_DATA, "it does not say of which model it is a simulation");
     if (strcmp(made_by, wb_wires_command(solver)) != 0)
-        return wb_fail(WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
-                       wb_wires_command(solver));
+        return wb_fail_to(why, WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
+                          wb_wires_command(solver));
     run->is_stale = strcmp(sha256, item->model->sha256) != 0;
     if (run->is_stale)
-        return wb_fail(WB_ERR_DATA, "the model, its wire or its materials have changed since");
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the model, its wire or its materials have changed since");
     (void)wb_json_get_text(simulation, "problem", &problem);
     run->is_cut_short = !wb_dataset_is_complete(&run->dataset);
     if (run->is_cut_short)
-        return wb_fail(WB_ERR_DATA, "it did not converge to its end%s%s", problem[0] ? ": " : "",
-                       problem);
+        return wb_fail_to(why, WB_ERR_DATA, "it did not converge to its end%s%s",
+                          problem[0] ? ": " : "", problem);
     return WB_OK;
 }
 
 /* State and axis at the end of the history. */
-static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model)
+static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model,
+                               struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &run->dataset;
     const double force = model->step[model->n_steps - 1].loads.follower[1];
     if (dataset->n_rows == 0 || dataset->n_shape_rows < 2)
-        return wb_fail(WB_ERR_DATA, "it has no rows or no shapes");
+        return wb_fail_to(why, WB_ERR_DATA, "it has no rows or no shapes");
     const struct wb_row *const last = &dataset->rows[dataset->n_rows - 1];
     size_t first = dataset->n_shape_rows;
     while (first > 0 && dataset->shape_rows[first - 1].t == last->t)
         first--;
     const size_t n = dataset->n_shape_rows - first;
     if (n < 2)
-        return wb_fail(WB_ERR_DATA, "it has no shape of its last row");
+        return wb_fail_to(why, WB_ERR_DATA, "it has no shape of its last row");
     run->s = malloc(n * sizeof *run->s);
     run->shape = malloc(n * sizeof *run->shape);
     if (!run->s || !run->shape)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a dataset");
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading a dataset");
     for (size_t i = 0; i < n; i++) {
         const struct wb_shape_row *const row = &dataset->shape_rows[first + i];
         const double z = isfinite(row->z) ? row->z : 0.0;
@@ -90,8 +92,8 @@ static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_mo
     run->force = force;
     run->tip_angle = last->tip_angle;
     if (fabs(run->s[n - 1] - model->length) > 1e-6 * model->length)
-        return wb_fail(WB_ERR_DATA, "its shapes end at %g mm, not at the wire's tip",
-                       run->s[n - 1] / WB_MM);
+        return wb_fail_to(why, WB_ERR_DATA, "its shapes end at %g mm, not at the wire's tip",
+                          run->s[n - 1] / WB_MM);
     return WB_OK;
 }
 
@@ -110,7 +112,8 @@ static int row_before_loading(const struct wb_wires_run *run)
 
 /* Tips along the last step. Its rows stand at equal steps of the force when there are as many as
  * the model asks for; else the path was followed through a limit point. */
-static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wire_model *model)
+static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wire_model *model,
+                                   struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &run->dataset;
     const int first = row_before_loading(run), rows = model->step[model->n_steps - 1].rows;
@@ -119,7 +122,7 @@ static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wir
     run->loading = malloc(((size_t)rows + 1) * sizeof *run->loading);
     run->loaded = malloc(((size_t)rows + 1) * sizeof *run->loaded);
     if (!run->loading || !run->loaded)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a dataset");
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading a dataset");
     size_t at = 0;
     for (int i = 0; i <= rows; i++) {
         const double t = dataset->rows[first + i].t;
@@ -154,18 +157,18 @@ static void keep_to_law(struct wb_fields *fields, const struct wb_wire_model *mo
 }
 
 static enum wb_status read_run(struct wb_wires_run *run, const struct wb_wires_case *item,
-                               enum wb_wires_solver solver)
+                               enum wb_wires_solver solver, struct wb_reason *why)
 {
     const char *const path = item->datasets[solver].path;
     char rows[WB_PATH];
-    WB_TRY(wb_dataset_read(&run->dataset, path));
+    WB_TRY(wb_dataset_read(&run->dataset, path, why));
     read_simulation(run);
-    WB_TRY(check_simulation(run, item, solver));
-    WB_TRY(take_end(run, item->model));
-    WB_TRY(take_loading(run, item->model));
+    WB_TRY(check_simulation(run, item, solver, why));
+    WB_TRY(take_end(run, item->model, why));
+    WB_TRY(take_loading(run, item->model, why));
     WB_TRY(wb_file_join(rows, path, "force_deflection.csv"));
     WB_TRY(wb_hash_file(rows, run->sha256));
-    WB_TRY(wb_fields_read(&run->fields, path));
+    WB_TRY(wb_fields_read(&run->fields, path, why));
     keep_to_law(&run->fields, item->model);
     return WB_OK;
 }
@@ -186,13 +189,12 @@ void wb_wires_run_load(struct wb_wires_run *run, const struct wb_wires_case *ite
         wb_text_append(&run->problem, "there is no such dataset");
         return;
     }
-    struct wb_reasons reasons = {&run->problem, wanted->path, wanted->name, true};
-    wb_reasons_begin(&reasons);
-    const enum wb_status status = read_run(run, item, solver);
-    wb_reasons_tell(&reasons);
+    const struct wb_reasons reasons = {&run->problem, wanted->path, wanted->name};
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = read_run(run, item, solver, &why);
     run->state = status == WB_OK ? WB_WIRES_USABLE : WB_WIRES_REFUSED;
-    if (status != WB_OK && run->problem.length == 0)
-        wb_text_append(&run->problem, "%s", wb_status_text(status));
+    if (status != WB_OK)
+        wb_reasons_warn(&reasons, status, &why);
 }
 
 void wb_wires_run_release(struct wb_wires_run *run)
