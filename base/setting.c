@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "base/setting_private.h"
 
 #define WB_LOG_DOMAIN "setting"
 
@@ -32,16 +33,6 @@ static bool has_range(const struct wb_setting *row)
 static const char *title_of(const struct wb_setting *row)
 {
     return row->title ? row->title : row->name;
-}
-
-const struct wb_setting *wb_setting_find(const struct wb_setting_table *table, const char *name)
-{
-    for (size_t i = 0; i < table->n; i++) {
-        const struct wb_setting *const row = &table->rows[i];
-        if (strcmp(row->name, name) == 0 || (row->option && strcmp(row->option, name) == 0))
-            return row;
-    }
-    return NULL;
 }
 
 bool wb_setting_applies(const struct wb_setting *row, unsigned place)

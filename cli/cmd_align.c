@@ -81,7 +81,7 @@ static const struct wb_settings_source source = {
 static const struct wb_settings_command command = {
     .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
 
-/* One recording's dataset and where it went. */
+/* One recording's dataset and the folder it is written to. */
 struct result {
     char folder[WB_PATH];
     struct wb_dataset dataset;

@@ -151,7 +151,7 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     return wb_command_print_json(root);
 }
 
-/* Decimals that show so many significant digits of a value, without an exponent. */
+/* How many decimals show so many significant digits of a value without an exponent. */
 static int decimals(double value, int digits)
 {
     const double size = fabs(value);

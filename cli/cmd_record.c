@@ -112,7 +112,7 @@ static const struct wb_settings_source source = {
 static const struct wb_settings_command command = {
     .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
 
-/* What the live line says, each field apart. */
+/* The fields of the live line, as text. */
 struct fields {
     const char *origin;
     char phase[48], force[64], travel[32], deflection[32], markers[32], drops[32], rates[64];

@@ -69,7 +69,7 @@ static const struct wb_settings_source source = {
 static const struct wb_settings_command command = {
     .argp = &argp, .sources = &source, .n_sources = 1, .place = WB_CALIBRATE_VALIDATE};
 
-/* All groups of one call. */
+/* The datasets in groups of one wire, length and loading, with the result of each group. */
 struct groups {
     int n;
     int *of;                            /* (datasets) group of each */

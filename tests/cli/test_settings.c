@@ -10,6 +10,7 @@
 #include "analysis/calibrate.h"
 #include "analysis/report/campaign.h"
 #include "base/file.h"
+#include "base/setting_private.h"
 #include "cli/solve.h"
 #include "daq/bend_test.h"
 #include "fe/model/bundle_override.h"
