@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -55,16 +56,177 @@ struct objective {
     int evaluations, failed;
 };
 
+static const struct wb_setting rows[] = {
+    {.name = "elastic_zone",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, elastic_zone),
+     .least = 1e-3,
+     .largest = 0.3,
+     .fallback = 0.05,
+     .option = "elastic-zone",
+     .argument = "R",
+     .help = "Deflection over length for E, eq. 10",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "yield_point",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_point),
+     .least = 1e-3,
+     .largest = 0.3,
+     .otherwise = "as the elastic zone",
+     .option = "yield-point",
+     .argument = "R",
+     .help = "Deflection over length for the yield stress, eq. 11; the paper's tables show 0.04",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, step),
+     .scale = WB_MM,
+     .least = 1e-2,
+     .largest = 100.0,
+     .fallback = 0.5,
+     .option = "step-mm",
+     .argument = "H",
+     .help = "Deflection step of the comparison",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "straight",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, straight),
+     .option = "straight",
+     .help = "Ignore the natural shape (bow) of the samples",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "restart",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, restart),
+     .fallback = true,
+     .option = "no-restart",
+     .help = "Do not start once more from the optimum",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_elements),
+     .least = 2,
+     .largest = 2000,
+     .fallback = 50,
+     .option = "elements",
+     .argument = "N",
+     .help = "Beam elements",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "fibres",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_fibres),
+     .least = 4,
+     .largest = 1000,
+     .fallback = 20,
+     .option = "fibres",
+     .argument = "N",
+     .help = "Fibres over the diameter",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "size_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, size_tolerance),
+     .least = 1e-12,
+     .largest = 0.05,
+     .fallback = 1e-4,
+     .option = "size-tolerance",
+     .argument = "X",
+     .help = "Stop when the simplex is smaller, in units of K0 and n0",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "error_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, error_tolerance),
+     .least = 0.0,
+     .largest = 1.0,
+     .fallback = 1e-4,
+     .option = "error-tolerance",
+     .argument = "X",
+     .help = "Stop when the error is smaller, over F_max",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "max_iterations",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, max_iterations),
+     .least = 1,
+     .largest = 100000,
+     .fallback = 200,
+     .option = "max-iterations",
+     .argument = "N",
+     .help = "Stop after N iterations of a simplex",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "bow_corrected",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, bow_corrected),
+     .option = "bow-corrected",
+     .help = "Take what the samples' bows make of eqs. 10 and 11 out of E and the yield stress",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN},
+    {.name = "youngs_modulus_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, youngs_modulus),
+     .scale = WB_MPA,
+     .least = 1e-3,
+     .largest = 1e7,
+     .otherwise = "eq. 10",
+     .option = "youngs-modulus-mpa",
+     .argument = "E",
+     .help = "Young's modulus",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "yield_stress_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_stress),
+     .scale = WB_MPA,
+     .least = 1e-6,
+     .largest = 1e7,
+     .otherwise = "eq. 11",
+     .option = "yield-stress-mpa",
+     .argument = "S",
+     .help = "Yield stress",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "force_step_N",
+     .unit = "N",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, force_step),
+     .least = 1e-9,
+     .largest = 1e6,
+     .otherwise = "a step for each row, at most 100",
+     .option = "force-step-n",
+     .argument = "H",
+     .help = "Force step of the comparison of tests with a follower force, whose deflections are "
+             "compared at equal forces",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+    {.name = "largest_deflection_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, largest_deflection),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e6,
+     .otherwise = "nothing",
+     .option = "largest-deflection-mm",
+     .argument = "D",
+     .help = "Leave out what comes later in the loading",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+};
+
+const struct wb_setting_table wb_calibrate_table = {.rows = rows, .n = WB_COUNT(rows)};
+
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings)
 {
-    *settings = (struct wb_calibrate_settings){
-        .elastic_zone = 0.05,
-        .size_tolerance = 1e-4,
-        .error_tolerance = 1e-4,
-        .max_iterations = 200,
-        .restart = true,
-        .step = 0.5 * WB_MM,
-    };
+    *settings = (struct wb_calibrate_settings){.progress = NULL};
+    wb_setting_fill(&wb_calibrate_table, settings);
+}
+
+struct wb_calibrate_settings
+wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings)
+{
+    struct wb_calibrate_settings meant = *settings;
+    if (!(meant.yield_point > 0.0))
+        meant.yield_point = meant.elastic_zone;
+    return meant;
 }
 
 const char *wb_calibrate_end_text(enum wb_calibrate_end end)
@@ -97,7 +259,7 @@ static struct wb_curve_grid grid_of(const struct wb_calibrate_settings *settings
 
 static double yield_point(const struct wb_calibrate_settings *settings)
 {
-    return settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
+    return wb_calibrate_settings_meant(settings).yield_point;
 }
 
 static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings,
@@ -105,25 +267,6 @@ static struct wb_computed_settings computed_settings(const struct wb_calibrate_s
 {
     return (struct wb_computed_settings){settings->straight, settings->n_elements,
                                          settings->n_fibres, why};
-}
-
-static enum wb_status check_settings(const struct wb_calibrate_settings *settings,
-                                     struct wb_reason *why)
-{
-    const double zone = settings->elastic_zone, point = yield_point(settings);
-    if (!(fmin(zone, point) >= WB_CALIBRATE_LEAST_ZONE &&
-          fmax(zone, point) <= WB_CALIBRATE_LARGEST_ZONE))
-        return wb_fail_to(
-            why, WB_ERR_ARGUMENT,
-            "elastic zone and yield point must be from %g to %g of the length, not %g "
-            "and %g",
-            WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE, zone, point);
-    if (!(settings->step > 0.0) || !(settings->size_tolerance > 0.0) ||
-        !(settings->error_tolerance >= 0.0) || settings->max_iterations < 1 ||
-        !(settings->force_step >= 0.0) || !(settings->largest_deflection >= 0.0))
-        return wb_fail_to(why, WB_ERR_ARGUMENT,
-                          "steps, largest deflection, tolerances and iterations must be positive");
-    return WB_OK;
 }
 
 /* How far outside the domain a point lies, 0 inside. */
@@ -582,7 +725,7 @@ enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, silence_gsl);
     const double started = wb_progress_thread_cpu();
-    WB_TRY(check_settings(settings, why));
+    WB_TRY(wb_setting_check(&wb_calibrate_table, settings, why));
     struct wb_calibrate_result made = {0};
     struct wb_curve curve;
     for (int k = 0; k < 4; k++)

@@ -19,8 +19,6 @@
 /* Of a table. */
 #define MAX_COLUMNS 64
 
-static const char *const phase_names[] = {"load", "unload", "slack"};
-
 enum loading {
     LOADING_TIP,
     LOADING_FOLLOWER,
@@ -35,11 +33,6 @@ static enum loading loading_of(const struct wb_test_info *info)
     if (info->is_general)
         return LOADING_GENERAL;
     return info->is_follower ? LOADING_FOLLOWER : LOADING_TIP;
-}
-
-const char *wb_phase_name(enum wb_phase phase)
-{
-    return phase_names[phase];
 }
 
 /* theta0(s) = sum_i b_i u^(i+1), u = s/L, and its derivative over s by Horner's scheme. */
@@ -318,7 +311,7 @@ static enum wb_status append_field(struct wb_text *text, const struct column *co
     } else if (column->kind == KIND_PHASE) {
         enum wb_phase phase;
         memcpy(&phase, member, sizeof phase);
-        wb_text_append(text, "%s", wb_phase_name(phase));
+        wb_text_append(text, "%s", wb_trial_phase_name(phase));
     } else {
         char number[WB_CSV_TABLE_NUMBER];
         double value;
@@ -468,7 +461,7 @@ static enum wb_status read_header(struct reader *reader, const struct column *co
 static bool parse_phase(const char *text, enum wb_phase *phase)
 {
     for (int i = WB_PHASE_LOAD; i <= WB_PHASE_SLACK; i++) {
-        if (strcmp(text, wb_phase_name((enum wb_phase)i)) == 0) {
+        if (strcmp(text, wb_trial_phase_name((enum wb_phase)i)) == 0) {
             *phase = (enum wb_phase)i;
             return true;
         }

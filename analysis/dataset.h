@@ -22,15 +22,7 @@
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
-
-enum wb_phase {
-    WB_PHASE_LOAD,
-    WB_PHASE_UNLOAD,
-    WB_PHASE_SLACK
-};
-
-/* "load", "unload", "slack". */
-const char *wb_phase_name(enum wb_phase phase);
+#include "fe/linear/trial.h"
 
 /* One row of force_deflection.csv:
  * t_s,cycle,phase,deflection_mm,tension_N,force_N,stage_mm,tip_x_mm,tip_angle_rad

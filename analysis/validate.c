@@ -130,7 +130,7 @@ static enum wb_status check_reached(const struct wb_validate_result *result, str
 static enum wb_status validate_curve(struct wb_validate_result *result,
                                      const struct wb_properties *properties,
                                      const struct wb_dataset *const *datasets, int n,
-                                     const struct wb_validate_settings *settings,
+                                     const struct wb_calibrate_settings *settings,
                                      struct wb_reason *why)
 {
     struct wb_material elastic = properties->material;
@@ -168,11 +168,12 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
 enum wb_status wb_validate_run(struct wb_validate_result *result,
                                const struct wb_properties *properties,
                                const struct wb_dataset *const *datasets, int n,
-                               const struct wb_validate_settings *settings, struct wb_reason *why)
+                               const struct wb_calibrate_settings *settings, struct wb_reason *why)
 {
-    const struct wb_validate_settings defaults = {0};
+    struct wb_calibrate_settings defaults;
     const double started = wb_progress_thread_cpu();
     struct wb_validate_result made = {0};
+    wb_calibrate_default_settings(&defaults);
     if (!settings)
         settings = &defaults;
     const struct wb_curve_grid grid = {.step = settings->step,

@@ -47,14 +47,6 @@ struct wb_validate_result {
     double cpu_s;
 };
 
-struct wb_validate_settings {
-    bool straight;             /* ignore the natural shape */
-    double step;               /* m; 0: 0.5 mm */
-    double force_step;         /* N, of follower tests; 0: see analysis/curve.h */
-    double largest_deflection; /* m: what comes later in the loading is left out; 0: nothing */
-    int n_elements, n_fibres;  /* 0: defaults */
-};
-
 /* Predicts the average first loading of n datasets of one kind. `settings` NULL: defaults.
  * WB_ERR_DATA when the properties are another wire's or the datasets cannot serve,
  * WB_ERR_CONVERGENCE when the beam does not get anywhere; stopping on the way is a result, see
@@ -62,7 +54,7 @@ struct wb_validate_settings {
 WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
                                              const struct wb_properties *properties,
                                              const struct wb_dataset *const *datasets, int n,
-                                             const struct wb_validate_settings *settings,
+                                             const struct wb_calibrate_settings *settings,
                                              struct wb_reason *why);
 /* Measured and computed forces and errors on the grid, as CSV:
  * deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,elastoplastic_error,elastic_N,

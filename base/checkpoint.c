@@ -1,5 +1,6 @@
 #include "base/checkpoint.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,18 +9,22 @@
 
 #define WB_LOG_DOMAIN "checkpoint"
 
-/* Text up to a line "end", then bytes:
+/* Text up to a line "end", then fields:
  *
- *     wirebench checkpoint 1
+ *     wirebench checkpoint 2
  *     IDENTITY
  *     SHA-256
  *     SIZE
  *     end
+ *
+ * A field is its name, which ends in a zero, its size (size_t) and its bytes.
  */
-static const char first_line[] = "wirebench checkpoint 1\n";
+static const char first_words[] = "wirebench checkpoint ";
 
 enum {
-    MOST_HEAD = 4096
+    VERSION = 2,
+    MOST_HEAD = 4096,
+    MOST_NAME = 256
 };
 
 void wb_checkpoint_init(struct wb_checkpoint *checkpoint)
@@ -48,23 +53,125 @@ static bool make_room(struct wb_checkpoint *c, size_t size)
     return true;
 }
 
-void wb_checkpoint_carry(struct wb_checkpoint *c, void *data, size_t size)
+/* --- groups --- */
+
+void wb_checkpoint_enter(struct wb_checkpoint *c, const char *format, ...)
 {
-    if (c->status != WB_OK || size == 0)
-        return;
-    if (c->restores && size > c->size - c->at) {
-        c->status = wb_fail(WB_ERR_DATA, "the checkpoint ends early, after %zu bytes", c->size);
+    const size_t used = strlen(c->group), room = sizeof c->group - used;
+    va_list arguments;
+
+    va_start(arguments, format);
+    const int n = vsnprintf(c->group + used, room, format, arguments);
+    va_end(arguments);
+    if (n < 0 || (size_t)n + 1 >= room) {
+        c->status = wb_fail(WB_ERR_ARGUMENT, "too many groups in a checkpoint: %s", c->group);
+        c->group[used] = '\0';
         return;
     }
-    if (!c->restores && !make_room(c, size))
+    strcat(c->group, "/");
+}
+
+void wb_checkpoint_leave(struct wb_checkpoint *c)
+{
+    size_t end = strlen(c->group);
+
+    if (end > 0)
+        end--; /* its own slash */
+    while (end > 0 && c->group[end - 1] != '/')
+        end--;
+    c->group[end] = '\0';
+}
+
+/* --- fields --- */
+
+void wb_checkpoint_append(struct wb_checkpoint *c, const void *fields, size_t size)
+{
+    if (c->status != WB_OK || size == 0 || !make_room(c, size))
         return;
-    if (c->restores)
-        memcpy(data, c->bytes + c->at, size);
-    else
-        memcpy(c->bytes + c->at, data, size);
+    memcpy(c->bytes + c->at, fields, size);
     c->at += size;
-    if (!c->restores)
-        c->size = c->at;
+    c->size = c->at;
+}
+
+struct field {
+    const char *name;
+    size_t size;
+    const unsigned char *data;
+};
+
+/* The field at the present place; false where there is none, or only a part of one. */
+static bool find_field(const struct wb_checkpoint *c, struct field *field)
+{
+    const unsigned char *at = c->at < c->size ? c->bytes + c->at : NULL;
+    const unsigned char *const end = at ? at + (c->size - c->at) : NULL;
+    const unsigned char *const stop = at ? memchr(at, '\0', (size_t)(end - at)) : NULL;
+
+    if (!stop || (size_t)(end - stop) - 1 < sizeof field->size)
+        return false;
+    field->name = (const char *)at;
+    memcpy(&field->size, stop + 1, sizeof field->size);
+    field->data = stop + 1 + sizeof field->size;
+    return field->size <= (size_t)(end - field->data);
+}
+
+static void pass(struct wb_checkpoint *c, const struct field *field)
+{
+    c->at = (size_t)(field->data - c->bytes) + field->size;
+}
+
+static void restore(struct wb_checkpoint *c, const char *name, void *data, size_t size)
+{
+    struct field field;
+
+    if (!find_field(c, &field)) {
+        c->status = wb_fail(WB_ERR_DATA,
+                            "the checkpoint has no field '%s': it ends early, after "
+                            "%zu bytes",
+                            name, c->size);
+        return;
+    }
+    if (strcmp(field.name, name) != 0) {
+        c->status = wb_fail(WB_ERR_DATA, "the checkpoint has no field '%s': '%s' is in its place",
+                            name, field.name);
+        return;
+    }
+    if (field.size != size) {
+        c->status = wb_fail(WB_ERR_DATA, "the checkpoint's field '%s' has %zu bytes: expected %zu",
+                            name, field.size, size);
+        return;
+    }
+    if (size > 0)
+        memcpy(data, field.data, size);
+    pass(c, &field);
+}
+
+void wb_checkpoint_visit(struct wb_checkpoint *c, const char *name, void *data, size_t size)
+{
+    char whole[MOST_NAME];
+
+    if (c->status != WB_OK)
+        return;
+    const int n = snprintf(whole, sizeof whole, "%s%s", c->group, name);
+    if (n < 0 || n >= MOST_NAME) {
+        c->status = wb_fail(WB_ERR_ARGUMENT, "a checkpoint's field with the name '%s'", name);
+        return;
+    }
+    if (c->restores) {
+        restore(c, whole, data, size);
+        return;
+    }
+    wb_checkpoint_append(c, whole, (size_t)n + 1);
+    wb_checkpoint_append(c, &size, sizeof size);
+    wb_checkpoint_append(c, data, size);
+}
+
+void wb_checkpoint_skip(struct wb_checkpoint *c)
+{
+    struct field field;
+
+    while (c->restores && c->status == WB_OK && find_field(c, &field) &&
+           strncmp(field.name, c->group, strlen(c->group)) == 0)
+        pass(c, &field);
 }
 
 void wb_checkpoint_rewind(struct wb_checkpoint *checkpoint)
@@ -75,10 +182,18 @@ void wb_checkpoint_rewind(struct wb_checkpoint *checkpoint)
 
 enum wb_status wb_checkpoint_finish(struct wb_checkpoint *c)
 {
-    if (c->status == WB_OK && c->restores && c->at != c->size)
-        c->status = wb_fail(WB_ERR_DATA, "the checkpoint has %zu bytes too many", c->size - c->at);
+    struct field field;
+
+    if (c->status != WB_OK || !c->restores || c->at == c->size)
+        return c->status;
+    c->status =
+        find_field(c, &field)
+            ? wb_fail(WB_ERR_DATA, "the checkpoint has a field too many: '%s'", field.name)
+            : wb_fail(WB_ERR_DATA, "the checkpoint has %zu bytes too many", c->size - c->at);
     return c->status;
 }
+
+/* --- files --- */
 
 enum wb_status wb_checkpoint_write(const struct wb_checkpoint *c, const char *path,
                                    const char *identity)
@@ -86,8 +201,8 @@ enum wb_status wb_checkpoint_write(const struct wb_checkpoint *c, const char *pa
     char head[MOST_HEAD], hash[WB_SHA256_TEXT];
 
     wb_hash_bytes(c->bytes, c->size, hash);
-    const int n =
-        snprintf(head, sizeof head, "%s%s\n%s\n%zu\nend\n", first_line, identity, hash, c->size);
+    const int n = snprintf(head, sizeof head, "%s%d\n%s\n%s\n%zu\nend\n", first_words, VERSION,
+                           identity, hash, c->size);
     if (n < 0 || n >= MOST_HEAD)
         return wb_fail(WB_ERR_ARGUMENT, "%s: an identity of %zu bytes", path, strlen(identity));
     unsigned char *all = malloc((size_t)n + c->size);
@@ -121,10 +236,15 @@ static enum wb_status check_head(const char *path, char **at, const char *end, c
     const char *const last = take_line(at, end);
     char actual[WB_SHA256_TEXT];
 
-    if (!last || strncmp(first, first_line, strlen(first_line) - 1) != 0 ||
-        strcmp(last, "end") != 0)
+    if (!last || strncmp(first, first_words, strlen(first_words)) != 0 || strcmp(last, "end") != 0)
         return wb_fail(WB_ERR_FORMAT,
                        "%s: not a checkpoint of this program; remove it to begin anew", path);
+    const char *const version = first + strlen(first_words);
+    if (strtol(version, NULL, 10) != VERSION)
+        return wb_fail(WB_ERR_FORMAT,
+                       "%s: a checkpoint of version %.8s, this program reads version %d; remove it "
+                       "to begin anew",
+                       path, version, VERSION);
     if (strcmp(whose, identity) != 0)
         return wb_fail(WB_ERR_DATA,
                        "%s: the checkpoint is of another run; remove it to begin anew. It is of: "

@@ -42,7 +42,7 @@ static enum wb_status take(struct wb_bundle_states *states, int number,
                            const struct wb_bundle_row *row, const struct wb_bundle *bundle)
 {
     /* Later cycles reach the same deflection: the first is kept. */
-    const bool surface = states->wants_surface && row->phase == WB_HISTORY_LOAD &&
+    const bool surface = states->wants_surface && row->phase == WB_PHASE_LOAD &&
                          row->deflection > (1.0 + 1e-3) * states->deflection;
     const bool vtk =
         states->wants_vtk && (number % states->every == 0 || number % states->turn == 0);
@@ -74,56 +74,62 @@ enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
     return status;
 }
 
-static void carry_body(struct wb_surface_body *body, struct wb_checkpoint *checkpoint)
+static void visit_body(struct wb_surface_body *body, struct wb_checkpoint *c)
 {
-    struct wb_surface_node *nodes = body->nodes;
-
-    wb_checkpoint_carry(checkpoint, body, sizeof *body);
-    const size_t size = (size_t)body->n_around * (size_t)body->n_along * sizeof *nodes;
-    if (checkpoint->restores) {
+    wb_checkpoint_visit_member(c, body, is_tape);
+    wb_checkpoint_visit_member(c, body, closed);
+    wb_checkpoint_visit_member(c, body, n_around);
+    wb_checkpoint_visit_member(c, body, n_along);
+    if (c->status != WB_OK)
+        return;
+    const size_t size = (size_t)body->n_around * (size_t)body->n_along * sizeof *body->nodes;
+    if (c->restores) {
         body->nodes = calloc(size > 0 ? size : 1, 1);
         if (!body->nodes)
-            checkpoint->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
+            c->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
     }
-    wb_checkpoint_carry(checkpoint, body->nodes, size);
+    wb_checkpoint_visit(c, "nodes", body->nodes, size);
 }
 
-static void carry_surface(struct wb_surface *surface, struct wb_checkpoint *checkpoint)
+static void visit_surface(struct wb_surface *surface, struct wb_checkpoint *c)
 {
     int n = surface->n;
 
-    wb_checkpoint_carry(checkpoint, &n, sizeof n);
-    if (checkpoint->restores && n > 0 && checkpoint->status == WB_OK) {
+    wb_checkpoint_visit(c, "bodies", &n, sizeof n);
+    if (c->restores && n > 0 && c->status == WB_OK) {
         wb_surface_release(surface);
         surface->bodies = calloc((size_t)n, sizeof *surface->bodies);
         if (!surface->bodies) {
-            checkpoint->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
+            c->status = wb_fail(WB_ERR_MEMORY, "no memory for a surface");
             return;
         }
         surface->n = n;
     }
-    for (int i = 0; i < n && checkpoint->status == WB_OK; i++)
-        carry_body(&surface->bodies[i], checkpoint);
+    for (int i = 0; i < n && c->status == WB_OK; i++) {
+        wb_checkpoint_enter(c, "body %d", i + 1);
+        visit_body(&surface->bodies[i], c);
+        wb_checkpoint_leave(c);
+    }
 }
 
-static void carry_series(struct wb_vtk_file_series *series, struct wb_checkpoint *checkpoint)
+static void visit_series(struct wb_vtk_file_series *series, struct wb_checkpoint *c)
 {
     size_t length = series->states.length;
     char *bytes = series->states.bytes;
 
-    wb_checkpoint_carry(checkpoint, &series->n, sizeof series->n);
-    wb_checkpoint_carry(checkpoint, &length, sizeof length);
-    if (checkpoint->restores) {
+    wb_checkpoint_visit_member(c, series, n);
+    wb_checkpoint_visit(c, "length", &length, sizeof length);
+    if (c->restores) {
         bytes = malloc(length + 1);
         if (!bytes) {
-            checkpoint->status = wb_fail(WB_ERR_MEMORY, "no memory for a VTK series");
+            c->status = wb_fail(WB_ERR_MEMORY, "no memory for a VTK series");
             return;
         }
     }
-    wb_checkpoint_carry(checkpoint, bytes, length);
-    if (!checkpoint->restores)
+    wb_checkpoint_visit(c, "states", bytes, length);
+    if (!c->restores)
         return;
-    if (checkpoint->status == WB_OK)
+    if (c->status == WB_OK)
         wb_text_append_bytes(&series->states, bytes, length);
     free(bytes);
 }
@@ -144,41 +150,48 @@ static void find_purpose(struct purpose *purpose, const struct wb_bundle_states 
         snprintf(purpose->folder, sizeof purpose->folder, "%s", states->series.folder);
 }
 
-static void carry_purpose(const struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
+static void visit_purpose(const struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
 {
-    struct purpose own, carried;
+    struct purpose own, saved;
 
     find_purpose(&own, states);
-    carried = own;
-    wb_checkpoint_carry(checkpoint, &carried, sizeof carried);
+    saved = own;
+    wb_checkpoint_visit_member(checkpoint, &saved, wants_surface);
+    wb_checkpoint_visit_member(checkpoint, &saved, wants_vtk);
+    wb_checkpoint_visit_member(checkpoint, &saved, every);
+    wb_checkpoint_visit_member(checkpoint, &saved, folder);
     /* Other ranks keep no states. */
     if (checkpoint->status != WB_OK || !checkpoint->restores || wb_team_rank() > 0)
         return;
-    carried.folder[sizeof carried.folder - 1] = '\0';
-    if (own.wants_surface != carried.wants_surface)
+    saved.folder[sizeof saved.folder - 1] = '\0';
+    if (own.wants_surface != saved.wants_surface)
         checkpoint->status =
             wb_fail(WB_ERR_DATA, "the checkpoint is of a run %s -o: remove it to begin anew",
-                    carried.wants_surface ? "with" : "without");
-    else if (own.wants_vtk != carried.wants_vtk || own.every != carried.every ||
-             strcmp(own.folder, carried.folder) != 0)
+                    saved.wants_surface ? "with" : "without");
+    else if (own.wants_vtk != saved.wants_vtk || own.every != saved.every ||
+             strcmp(own.folder, saved.folder) != 0)
         checkpoint->status =
-            carried.wants_vtk
+            saved.wants_vtk
                 ? wb_fail(WB_ERR_DATA,
                           "the checkpoint is of a run with --vtk=%s --vtk-every=%d: remove it to "
                           "begin anew",
-                          carried.folder, carried.every)
+                          saved.folder, saved.every)
                 : wb_fail(WB_ERR_DATA, "the checkpoint is of a run without --vtk: remove it to "
                                        "begin anew");
 }
 
-void wb_bundle_states_carry(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
+void wb_bundle_states_visit(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
 {
-    carry_purpose(states, checkpoint);
-    wb_checkpoint_carry(checkpoint, &states->attempt, sizeof states->attempt);
-    wb_checkpoint_carry(checkpoint, &states->deflection, sizeof states->deflection);
-    wb_checkpoint_carry(checkpoint, &states->spent, sizeof states->spent);
-    carry_surface(&states->surface, checkpoint);
-    carry_series(&states->series, checkpoint);
+    visit_purpose(states, checkpoint);
+    wb_checkpoint_visit_member(checkpoint, states, attempt);
+    wb_checkpoint_visit_member(checkpoint, states, deflection);
+    wb_checkpoint_visit_member(checkpoint, states, spent);
+    wb_checkpoint_enter(checkpoint, "surface");
+    visit_surface(&states->surface, checkpoint);
+    wb_checkpoint_leave(checkpoint);
+    wb_checkpoint_enter(checkpoint, "series");
+    visit_series(&states->series, checkpoint);
+    wb_checkpoint_leave(checkpoint);
 }
 
 void wb_bundle_states_release(struct wb_bundle_states *states)

@@ -32,8 +32,8 @@ WB_MUST_CHECK enum wb_status wb_bundle_states_take(struct wb_bundle_states *stat
                                                    const struct wb_bundle_history *history,
                                                    const struct wb_bundle_row *row,
                                                    const struct wb_bundle *bundle);
-/* For wb_bundle_observer's `carry`. */
-void wb_bundle_states_carry(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint);
+/* For wb_bundle_observer's `visit`. */
+void wb_bundle_states_visit(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint);
 void wb_bundle_states_release(struct wb_bundle_states *states); /* accepts a zeroed one */
 
 #endif

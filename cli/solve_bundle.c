@@ -136,10 +136,10 @@ static enum wb_status report_place(void *context, const struct wb_bundle_history
     return is_first() ? wb_bundle_states_take(&run->states, history, row, bundle) : WB_OK;
 }
 
-static void carry_states(void *context, struct wb_checkpoint *checkpoint)
+static void visit_states(void *context, struct wb_checkpoint *checkpoint)
 {
     struct run *run = context;
-    wb_bundle_states_carry(&run->states, checkpoint);
+    wb_bundle_states_visit(&run->states, checkpoint);
 }
 
 static enum wb_status compute(struct run *run)
@@ -147,7 +147,7 @@ static enum wb_status compute(struct run *run)
     const struct wb_bundle_observer observer = {
         .progress = report_progress,
         .place = report_place,
-        .carry = carry_states,
+        .visit = visit_states,
         .context = run,
     };
     const struct wb_bundle_run_options options = {

@@ -61,6 +61,7 @@ struct wb_bundle_state {
 };
 
 struct wb_bundle; /* opaque */
+struct wb_bundle_part;
 
 /* `model` is borrowed and must outlive it. On failure *out is NULL. */
 WB_MUST_CHECK enum wb_status wb_bundle_create(struct wb_bundle **out,
@@ -68,17 +69,16 @@ WB_MUST_CHECK enum wb_status wb_bundle_create(struct wb_bundle **out,
                                               const struct wb_bundle_settings *settings);
 void wb_bundle_destroy(struct wb_bundle *bundle); /* accepts NULL */
 
-/* Into how many parts it is cut, of all ranks; and would be. `mesh` may be NULL. */
+/* Into how many parts it is cut, of all ranks (fe/bundle/bundle_parts.h). */
 int wb_bundle_parts(const struct wb_bundle *bundle);
-int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *mesh, int threads);
 
-/* Brings the fields and histories of parts together, for those who read them; all ranks have them
- * then. Nothing where it was done since the last step. */
-void wb_bundle_gather(const struct wb_bundle *bundle);
+/* All stations with fields and the states of materials, brought together from all parts where there
+ * was a step since. */
+const struct wb_bundle_part *wb_bundle_whole(const struct wb_bundle *bundle);
 
-/* Carries the state of a bundle of the same model, settings and number of parts to a checkpoint or
- * back: it goes on bit for bit. */
-void wb_bundle_carry(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
+/* Saves the state, or restores that of a bundle of the same model, settings and number of parts,
+ * which then goes on bit for bit. */
+void wb_bundle_visit(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
 
 double wb_bundle_time_step(const struct wb_bundle *bundle); /* s */
 long wb_bundle_hexahedra(const struct wb_bundle *bundle);

@@ -11,7 +11,7 @@
 
 #include "base/checkpoint.h"
 #include "base/status.h"
-#include "fe/bundle/bundle.h"
+#include "fe/bundle/bundle_body.h"
 
 struct wb_bundle_bond; /* opaque */
 
@@ -22,9 +22,9 @@ struct wb_bundle_bond_energies {
     double deepest;            /* m, penetration of the tape into a wire */
 };
 
-/* For a bundle whose wires and ring are made. */
+/* For bodies whose wires and ring are made; they must outlive it. */
 WB_MUST_CHECK enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out,
-                                                   struct wb_bundle *bundle);
+                                                   struct wb_bundle_bodies *bodies);
 void wb_bundle_bond_destroy(struct wb_bundle_bond *bond); /* accepts NULL */
 
 /* Adds the forces of interface and contact to the ring's and the wires' at their present positions.
@@ -32,12 +32,12 @@ void wb_bundle_bond_destroy(struct wb_bundle_bond *bond); /* accepts NULL */
 WB_MUST_CHECK enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bond,
                                                        struct wb_bundle_bond_energies *energies);
 
-/* Adds the areas that were bonded at first, and whose bond is broken, m2, of the bundle's own
+/* Adds the areas that were bonded at first, and whose bond is broken, m2, of the bodies' own
  * stations. */
 void wb_bundle_bond_add_areas(const struct wb_bundle_bond *bond, double area[2]);
 
-/* What a checkpoint keeps. */
-void wb_bundle_bond_carry(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint);
+/* Saves or restores damage and friction. */
+void wb_bundle_bond_visit(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint);
 
 /* Bounds of what it adds to the largest squared frequency, 1/s2: of a wire whose section nodes have
  * the masses given (kg at an inner station, scaled), and of the ring. */

@@ -4,12 +4,10 @@
 #include <stdlib.h>
 
 #include "base/vec3.h"
-#include "fe/bundle/bundle_private.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
 enum {
-    MOST_BODIES = WB_PACKING_MOST + 2, /* wires, the tape's ring and its directors */
     MOST_ITERATIONS = 20
 };
 
@@ -30,9 +28,9 @@ struct motion {
 };
 
 struct wb_bundle_cap {
-    const struct wb_bundle *bundle; /* borrowed: it owns this */
+    const struct wb_bundle_bodies *bodies; /* borrowed */
     int n_parts;
-    struct part part[MOST_BODIES];
+    struct part part[WB_BUNDLE_MOST_BODIES];
     double mass;         /* kg, scaled */
     double moment[3][3]; /* S of the straight bundle, kg m2, scaled */
     struct motion motion;
@@ -189,7 +187,7 @@ static void add_loads(const struct part *part, double R[3][3], double force[3], 
     for (int k = 0; k < part->body->layout.n_nodes; k++) {
         double f[3], r[3], moment[3];
         for (int c = 0; c < 3; c++)
-            f[c] = wb_bundle_force_at(part->body, end_of(part, k, c));
+            f[c] = wb_bundle_body_force(part->body, end_of(part, k, c));
         apply(R, part->arm[k], r);
         wb_vec3_cross(r, f, moment);
         for (int c = 0; c < 3; c++) {
@@ -211,7 +209,7 @@ static void lead_nodes(const struct wb_bundle_cap *cap, double R[3][3])
                 const size_t at = end_of(part, k, c);
                 const double place = r[c] + (part->turns_only ? 0.0 : cap->motion.centre[c]);
                 part->body->velocity[at] =
-                    (place - part->body->position[at]) / cap->bundle->time_step;
+                    (place - part->body->position[at]) / cap->bodies->time_step;
             }
         }
     }
@@ -220,8 +218,8 @@ static void lead_nodes(const struct wb_bundle_cap *cap, double R[3][3])
 void wb_bundle_cap_advance(struct wb_bundle_cap *cap, double half)
 {
     struct motion *m = &cap->motion;
-    const double dt = cap->bundle->time_step;
-    const double gravity = -cap->bundle->gravity / cap->bundle->model->run.mass_scaling;
+    const double dt = cap->bodies->time_step;
+    const double gravity = -cap->bodies->gravity / cap->bodies->model->run.mass_scaling;
     double R[3][3], S[3][3], force[3] = {0.0}, torque[3] = {0.0}, momentum[3], next[3];
 
     rotation_of(m->turned, R);
@@ -257,27 +255,34 @@ void wb_bundle_cap_stop(struct wb_bundle_cap *cap)
     cap->motion.kinetic = 0.0;
 }
 
-void *wb_bundle_cap_data(struct wb_bundle_cap *cap, size_t *bytes)
+void wb_bundle_cap_visit(struct wb_bundle_cap *cap, struct wb_checkpoint *c)
 {
-    *bytes = sizeof cap->motion;
-    return &cap->motion;
+    struct motion *motion = &cap->motion;
+
+    wb_checkpoint_enter(c, "cap");
+    wb_checkpoint_visit_member(c, motion, centre);
+    wb_checkpoint_visit_member(c, motion, velocity);
+    wb_checkpoint_visit_member(c, motion, turned);
+    wb_checkpoint_visit_member(c, motion, turn);
+    wb_checkpoint_visit_member(c, motion, kinetic);
+    wb_checkpoint_leave(c);
 }
 
 /* --- creation --- */
 
 static void list_parts(struct wb_bundle_cap *cap)
 {
-    const struct wb_bundle *bundle = cap->bundle;
+    const struct wb_bundle_bodies *bodies = cap->bodies;
 
-    for (int w = 0; w < bundle->n_wires; w++)
+    for (int w = 0; w < bodies->n_wires; w++)
         cap->part[cap->n_parts++] =
-            (struct part){.body = &bundle->wire[w], .node_mass = bundle->wire[w].node_mass};
-    if (!bundle->has_tape)
+            (struct part){.body = &bodies->wire[w], .node_mass = bodies->wire[w].node_mass};
+    if (!bodies->has_tape)
         return;
     cap->part[cap->n_parts++] =
-        (struct part){.body = &bundle->ring, .node_mass = bundle->ring.node_mass};
+        (struct part){.body = &bodies->ring, .node_mass = bodies->ring.node_mass};
     cap->part[cap->n_parts++] = (struct part){
-        .body = &bundle->directors, .node_mass = bundle->tape_inertia, .turns_only = true};
+        .body = &bodies->directors, .node_mass = bodies->tape_inertia, .turns_only = true};
 }
 
 static enum wb_status find_arms(struct wb_bundle_cap *cap, double length)
@@ -310,7 +315,7 @@ static enum wb_status find_arms(struct wb_bundle_cap *cap, double length)
 /* M' = beta M - (beta - 1) M 1 1^T M / (1^T M 1), of each body. */
 static void find_moment(struct wb_bundle_cap *cap, double length)
 {
-    const double beta = cap->bundle->model->run.selective;
+    const double beta = cap->bodies->model->run.selective;
 
     for (int p = 0; p < cap->n_parts; p++) {
         const struct part *part = &cap->part[p];
@@ -330,29 +335,16 @@ static void find_moment(struct wb_bundle_cap *cap, double length)
     }
 }
 
-static void hold_end(const struct wb_bundle *bundle)
+enum wb_status wb_bundle_cap_create(struct wb_bundle_cap **out,
+                                    const struct wb_bundle_bodies *bodies)
 {
-    const int last = bundle->n_stations - 1;
-
-    for (int c = 0; c < 3; c++) {
-        for (int t = 0; t < bundle->model->n_types; t++)
-            wb_swept_step_hold(bundle->type[t].step, last, c, true);
-        if (bundle->has_tape) {
-            wb_swept_step_hold(bundle->tape_step, last, c, true);
-            wb_swept_step_hold(bundle->director_step, last, c, true);
-        }
-    }
-}
-
-enum wb_status wb_bundle_cap_create(struct wb_bundle_cap **out, const struct wb_bundle *bundle)
-{
-    const double length = 0.5 * bundle->spacing * bundle->model->run.mass_scaling;
+    const double length = 0.5 * bodies->spacing * bodies->model->run.mass_scaling;
 
     *out = NULL;
     struct wb_bundle_cap *cap = calloc(1, sizeof *cap);
     if (!cap)
         return wb_fail(WB_ERR_MEMORY, "out of memory for the capped end");
-    cap->bundle = bundle;
+    cap->bodies = bodies;
     cap->motion.turned[0] = 1.0;
     list_parts(cap);
     const enum wb_status status = find_arms(cap, length);
@@ -361,7 +353,7 @@ enum wb_status wb_bundle_cap_create(struct wb_bundle_cap **out, const struct wb_
         return status;
     }
     find_moment(cap, length);
-    hold_end(bundle);
+    wb_bundle_bodies_hold(bodies, bodies->extent.n_stations - 1);
     *out = cap;
     return WB_OK;
 }

@@ -17,19 +17,18 @@
 #ifndef WB_FE_BUNDLE_BUNDLE_CAP_H
 #define WB_FE_BUNDLE_BUNDLE_CAP_H
 
-#include <stddef.h>
-
+#include "base/checkpoint.h"
 #include "base/status.h"
-#include "fe/bundle/bundle.h"
+#include "fe/bundle/bundle_body.h"
 
 struct wb_bundle_cap; /* opaque */
 
-/* For a bundle whose wires and tape are made, straight; holds their last station. */
+/* For bodies that are straight, wires and tape; holds their last station. They must outlive it. */
 WB_MUST_CHECK enum wb_status wb_bundle_cap_create(struct wb_bundle_cap **out,
-                                                  const struct wb_bundle *bundle);
+                                                  const struct wb_bundle_bodies *bodies);
 void wb_bundle_cap_destroy(struct wb_bundle_cap *cap); /* accepts NULL */
 
-/* One step under the forces of the bundle's fields: velocities of the last station, for the update
+/* One step under the forces of the bodies' fields: velocities of the last station, for the update
  * of its bodies. `half` is 0.5 in the first step from rest, else 1. */
 void wb_bundle_cap_advance(struct wb_bundle_cap *cap, double half);
 
@@ -39,7 +38,7 @@ double wb_bundle_cap_kinetic(const struct wb_bundle_cap *cap);
 /* Brings it to rest where it is. */
 void wb_bundle_cap_stop(struct wb_bundle_cap *cap);
 
-/* What a checkpoint keeps: `bytes` at the address returned. */
-void *wb_bundle_cap_data(struct wb_bundle_cap *cap, size_t *bytes);
+/* Saves or restores its motion. */
+void wb_bundle_cap_visit(struct wb_bundle_cap *cap, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -6,32 +6,33 @@
 #include <string.h>
 
 #include "base/log.h"
-#include "fe/bundle/bundle_private.h"
+#include "fe/bundle/bundle_parts_private.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
 enum {
     LANES = WB_SWEPT_LANES,
+    MOST_PARTS = 1024,
     LEAST_HALO = 8,
     BEYOND_SLIP = 3 /* stations that contact needs beyond the slip */
 };
 
 /* A part in this process. */
-struct part {
-    struct wb_bundle *bundle;
+struct member {
+    struct wb_bundle_part *part;
     enum wb_status status;
     char problem[320];
     double plastic_work;
 };
 
 struct wb_bundle_parts {
-    struct wb_bundle *whole; /* borrowed */
+    struct wb_bundle_part *whole; /* borrowed */
     struct wb_team *team;
     int count, n_here, first; /* of all ranks; in this one, the first of which */
     int halo;                 /* stations */
     int *border;              /* (count + 1): first stations, and the end */
-    struct part *part;        /* (n_here) */
+    struct member *here;      /* (n_here) */
     int steps;                /* of the present advance */
     bool is_stale;            /* the whole's fields */
 };
@@ -82,13 +83,13 @@ int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *name, in
 {
     const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(model, name ? name : model->run.mesh);
     const int ranks = wb_team_ranks();
-    int border[WB_BUNDLE_MOST_PARTS + 1];
+    int border[MOST_PARTS + 1];
 
     if (!mesh)
         return ranks;
     const int halo = halo_of(model, mesh);
     int each = threads < 1 ? 1 : threads;
-    while (each > 1 && (each * ranks > WB_BUNDLE_MOST_PARTS ||
+    while (each > 1 && (each * ranks > MOST_PARTS ||
                         !find_borders(halo, mesh->elements_along + 1, each * ranks, border)))
         each--;
     return each * ranks;
@@ -97,9 +98,9 @@ int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *name, in
 int wb_bundle_parts_largest(const struct wb_bundle_model *model, const char *name, int count)
 {
     const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(model, name);
-    int border[WB_BUNDLE_MOST_PARTS + 1], largest = 0;
+    int border[MOST_PARTS + 1], largest = 0;
 
-    if (!mesh || count < 1 || count > WB_BUNDLE_MOST_PARTS)
+    if (!mesh || count < 1 || count > MOST_PARTS)
         return 0;
     const int halo = halo_of(model, mesh);
     if (count > 1 && !find_borders(halo, mesh->elements_along + 1, count, border))
@@ -114,24 +115,11 @@ int wb_bundle_parts_largest(const struct wb_bundle_model *model, const char *nam
 
 /* --- one part --- */
 
-static int bodies_of(struct wb_bundle *bundle, struct wb_bundle_body *body[WB_PACKING_MOST + 2])
+/* Positions of a halo's width of stations into a packet, or from there. No packet: nothing. */
+static void pack(struct wb_bundle_bodies *bodies, int from, int n, double *packet)
 {
-    int n = 0;
-
-    for (int w = 0; w < bundle->n_wires; w++)
-        body[n++] = &bundle->wire[w];
-    if (bundle->has_tape) {
-        body[n++] = &bundle->ring;
-        body[n++] = &bundle->directors;
-    }
-    return n;
-}
-
-/* Positions of a halo's width of stations into a packet, or from there. */
-static void pack(struct wb_bundle *bundle, int from, int n, double *packet)
-{
-    struct wb_bundle_body *body[WB_PACKING_MOST + 2];
-    const int n_bodies = bodies_of(bundle, body);
+    struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
+    const int n_bodies = wb_bundle_bodies_list(bodies, body);
 
     for (int b = 0; packet && b < n_bodies; b++)
         for (int row = 0; row < 3 * body[b]->layout.n_nodes; row++, packet += n)
@@ -139,10 +127,10 @@ static void pack(struct wb_bundle *bundle, int from, int n, double *packet)
                    (size_t)n * sizeof *packet);
 }
 
-static void unpack(struct wb_bundle *bundle, int to, int n, const double *packet)
+static void unpack(struct wb_bundle_bodies *bodies, int to, int n, const double *packet)
 {
-    struct wb_bundle_body *body[WB_PACKING_MOST + 2];
-    const int n_bodies = bodies_of(bundle, body);
+    struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
+    const int n_bodies = wb_bundle_bodies_list(bodies, body);
 
     for (int b = 0; packet && b < n_bodies; b++)
         for (int row = 0; row < 3 * body[b]->layout.n_nodes; row++, packet += n)
@@ -150,46 +138,55 @@ static void unpack(struct wb_bundle *bundle, int to, int n, const double *packet
                    (size_t)n * sizeof *packet);
 }
 
-static size_t packet_size(struct wb_bundle *bundle, int halo)
+/* Numbers in a packet: positions of wires, ring and directors. */
+static size_t packet_size(const struct wb_bundle_bodies *bodies, int halo)
 {
-    struct wb_bundle_body *body[WB_PACKING_MOST + 2];
-    const int n_bodies = bodies_of(bundle, body);
-    size_t rows = 0;
+    size_t nodes = 2 * (size_t)bodies->ring.layout.n_nodes;
 
-    for (int b = 0; b < n_bodies; b++)
-        rows += 3 * (size_t)body[b]->layout.n_nodes;
-    return rows * (size_t)halo;
+    for (int w = 0; w < bodies->n_wires; w++)
+        nodes += (size_t)bodies->wire[w].layout.n_nodes;
+    return 3 * nodes * (size_t)halo;
 }
 
-size_t wb_bundle_parts_bytes(const struct wb_bundle *whole)
+size_t wb_bundle_parts_bytes(const struct wb_bundle_part *whole)
 {
-    struct wb_bundle *changeable;
-
-    memcpy(&changeable, &whole, sizeof changeable);
-    return packet_size(changeable, halo_of(whole->model, whole->mesh)) * sizeof(double);
+    const struct wb_bundle_bodies *bodies = &whole->bodies;
+    return packet_size(bodies, halo_of(bodies->model, bodies->mesh)) * sizeof(double);
 }
 
-static void swap(struct wb_bundle_parts *parts, int member)
+static struct member *member_of(const struct wb_bundle_parts *parts, int number)
 {
-    struct wb_bundle *b = parts->part[member - parts->first].bundle;
+    const bool is_here = number >= parts->first && number < parts->first + parts->n_here;
+    return is_here ? &parts->here[number - parts->first] : NULL;
+}
+
+/* With the neighbours; a row of one has none. */
+static void swap(struct wb_bundle_parts *parts, int number)
+{
+    struct wb_bundle_bodies *bodies = &member_of(parts, number)->part->bodies;
+    const struct wb_swept_range own = bodies->extent.own;
+    struct wb_team *team = parts->team;
     const int n = parts->halo;
 
-    pack(b, b->own.first, n, wb_team_packet(parts->team, member, WB_TEAM_BEFORE));
-    pack(b, b->own.end - n, n, wb_team_packet(parts->team, member, WB_TEAM_AFTER));
-    wb_team_post(parts->team, member);
-    unpack(b, b->own.first - n, n, wb_team_await(parts->team, member, WB_TEAM_BEFORE));
-    unpack(b, b->own.end, n, wb_team_await(parts->team, member, WB_TEAM_AFTER));
+    if (parts->count == 1)
+        return;
+    pack(bodies, own.first, n, wb_team_packet(team, number, WB_TEAM_BEFORE));
+    pack(bodies, own.end - n, n, wb_team_packet(team, number, WB_TEAM_AFTER));
+    wb_team_post(team, number);
+    unpack(bodies, own.first - n, n, wb_team_await(team, number, WB_TEAM_BEFORE));
+    unpack(bodies, own.end, n, wb_team_await(team, number, WB_TEAM_AFTER));
 }
 
 /* Slip at the borders, which varies slowly along wires. */
-static enum wb_status check_slip(const struct wb_bundle *b, int halo)
+static enum wb_status check_slip(const struct wb_bundle_part *part, int halo)
 {
+    const struct wb_swept_range own = part->bodies.extent.own;
     double most = 0.0;
 
-    for (int p = 0; b->contact && p < wb_swept_contact_pairs(b->contact); p++) {
+    for (int p = 0; part->contact && p < wb_swept_contact_pairs(part->contact); p++) {
         for (int side = 0; side < 2; side++) {
             struct wb_swept_contact_point point;
-            wb_swept_contact_get_point(b->contact, p, side == 0 ? b->own.first : b->own.end - 1,
+            wb_swept_contact_get_point(part->contact, p, side == 0 ? own.first : own.end - 1,
                                        &point);
             most = fmax(most, fabs(point.shift));
         }
@@ -199,35 +196,35 @@ static enum wb_status check_slip(const struct wb_bundle *b, int halo)
     return wb_fail(WB_ERR_DATA,
                    "%s: wires slip past each other by %.1f stations, more than the %d that parts "
                    "of the bundle know of their neighbours; compute it with one thread",
-                   b->model->path, most, halo - BEYOND_SLIP);
+                   part->bodies.model->path, most, halo - BEYOND_SLIP);
 }
 
 static void keep_problem(void *context, enum wb_log_level level, const char *domain,
                          const char *message)
 {
-    struct part *part = context;
+    struct member *member = context;
     (void)level, (void)domain;
-    snprintf(part->problem, sizeof part->problem, "%s", message);
+    snprintf(member->problem, sizeof member->problem, "%s", message);
 }
 
 /* A part that is lost goes on swapping: the others count on it. */
-static void advance_part(void *context, int member)
+static void advance_part(void *context, int number)
 {
     struct wb_bundle_parts *parts = context;
-    struct part *part = &parts->part[member - parts->first];
+    struct member *member = member_of(parts, number);
     void *outer_context;
     wb_log_sink *const outer = wb_log_get_tap(&outer_context);
     const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
 
-    wb_log_set_tap(keep_problem, part);
-    part->status = WB_OK;
+    wb_log_set_tap(keep_problem, member);
+    member->status = WB_OK;
     for (int i = 0; i < parts->steps; i++) {
-        if (part->status == WB_OK)
-            part->status = wb_bundle_step(part->bundle, i == parts->steps - 1);
-        swap(parts, member);
+        if (member->status == WB_OK)
+            member->status = wb_bundle_part_step(member->part, i == parts->steps - 1);
+        swap(parts, number);
     }
-    if (part->status == WB_OK)
-        part->status = check_slip(part->bundle, parts->halo);
+    if (member->status == WB_OK && parts->count > 1)
+        member->status = check_slip(member->part, parts->halo);
     wb_log_set_tap(outer, outer_context);
     wb_log_set_gravest(before);
 }
@@ -268,43 +265,44 @@ enum {
     N_MOST
 };
 
-static void add_part(const struct wb_bundle *b, double sum[N_SUMS], double most[N_MOST])
+static void add_part(const struct wb_bundle_account *a, double sum[N_SUMS], double most[N_MOST])
 {
     const double own[N_SUMS] = {
-        [KINETIC] = b->kinetic,
-        [STORED] = b->wires.stored,
-        [ARTIFICIAL] = b->wires.artificial,
-        [BEYOND] = (double)b->wires.beyond_limit,
-        [SHELL_STORED] = b->shells.stored,
-        [SHELL_ARTIFICIAL] = b->shells.artificial,
-        [SHELL_BEYOND] = (double)b->shells.beyond_limit,
-        [NORMAL] = b->touching.normal,
-        [TANGENTIAL] = b->touching.tangential,
-        [FRICTION] = b->touching.friction,
-        [BOND_STORED] = b->bonded.stored,
-        [BOND_DISSIPATED] = b->bonded.dissipated,
-        [BOND_CONTACT] = b->bonded.contact,
-        [BOND_FRICTION] = b->bonded.friction,
-        [FRICTION_WORK] = b->friction_work,
-        [DAMAGE_WORK] = b->damage_work,
-        [TIP_WORK] = b->tip_work,
-        [TENSION] = b->tension,
-        [VERTICAL] = b->vertical,
-        [PULL] = b->pull[0],
-        [PULL + 1] = b->pull[1],
-        [PULL + 2] = b->pull[2],
-        [SLACK] = b->slack ? 1.0 : 0.0,
+        [KINETIC] = a->kinetic,
+        [STORED] = a->wires.stored,
+        [ARTIFICIAL] = a->wires.artificial,
+        [BEYOND] = (double)a->wires.beyond_limit,
+        [SHELL_STORED] = a->shells.stored,
+        [SHELL_ARTIFICIAL] = a->shells.artificial,
+        [SHELL_BEYOND] = (double)a->shells.beyond_limit,
+        [NORMAL] = a->touching.normal,
+        [TANGENTIAL] = a->touching.tangential,
+        [FRICTION] = a->touching.friction,
+        [BOND_STORED] = a->bonded.stored,
+        [BOND_DISSIPATED] = a->bonded.dissipated,
+        [BOND_CONTACT] = a->bonded.contact,
+        [BOND_FRICTION] = a->bonded.friction,
+        [FRICTION_WORK] = a->friction_work,
+        [DAMAGE_WORK] = a->damage_work,
+        [TIP_WORK] = a->tip_work,
+        [TENSION] = a->tension,
+        [VERTICAL] = a->vertical,
+        [PULL] = a->pull[0],
+        [PULL + 1] = a->pull[1],
+        [PULL + 2] = a->pull[2],
+        [SLACK] = a->slack ? 1.0 : 0.0,
     };
 
     for (int i = 0; i < N_SUMS; i++)
         sum[i] += own[i];
-    most[STRAIN] = fmax(most[STRAIN], b->wires.largest_strain);
-    most[SHELL_STRAIN] = fmax(most[SHELL_STRAIN], b->shells.largest_strain);
-    most[DEEPEST] = fmax(most[DEEPEST], b->touching.deepest);
-    most[BOND_DEEPEST] = fmax(most[BOND_DEEPEST], b->bonded.deepest);
+    most[STRAIN] = fmax(most[STRAIN], a->wires.largest_strain);
+    most[SHELL_STRAIN] = fmax(most[SHELL_STRAIN], a->shells.largest_strain);
+    most[DEEPEST] = fmax(most[DEEPEST], a->touching.deepest);
+    most[BOND_DEEPEST] = fmax(most[BOND_DEEPEST], a->bonded.deepest);
 }
 
-static void take_sums(struct wb_bundle *whole, const double sum[N_SUMS], const double most[N_MOST])
+static void take_sums(struct wb_bundle_account *whole, const double sum[N_SUMS],
+                      const double most[N_MOST])
 {
     whole->kinetic = sum[KINETIC];
     whole->wires = (struct wb_swept_hex_sums){
@@ -342,7 +340,7 @@ static void take_sums(struct wb_bundle *whole, const double sum[N_SUMS], const d
     whole->slack = sum[SLACK] > 0.0;
 }
 
-/* --- fields and histories --- */
+/* --- fields and states of materials --- */
 
 /* Stations' columns on their way to the whole. */
 struct cargo {
@@ -370,81 +368,77 @@ static void load_field(struct cargo *cargo, void *field, size_t size,
     }
 }
 
-/* Histories are in rows of as many elements as a block has stations, block by block. */
-static void load_history(struct cargo *cargo, void *history, size_t bytes,
-                         const struct wb_bundle_body *body, struct wb_swept_range range)
+/* States are in rows of as many elements as a block has stations, block by block. */
+static void load_state(struct cargo *cargo, void *state, size_t bytes,
+                       const struct wb_bundle_body *body, struct wb_swept_range range)
 {
-    const size_t size = wb_bundle_force_size(body), row = LANES * size;
+    const size_t size = wb_bundle_body_force_size(body), row = LANES * size;
     const size_t per_block = bytes / (size_t)(body->layout.stride / LANES);
 
     for (int j = range.first; j < range.end;) {
         const int block = j / LANES, left = LANES - j % LANES;
         const int n = range.end - j < left ? range.end - j : left;
-        unsigned char *at = (unsigned char *)history + (size_t)block * per_block;
+        unsigned char *at = (unsigned char *)state + (size_t)block * per_block;
         for (size_t i = 0; i < per_block; i += row)
             load_column(cargo, at + i + (size_t)(j % LANES) * size, (size_t)n * size);
         j += n;
     }
 }
 
-/* Columns of all fields, and of histories where they are asked for. */
-static void load(struct wb_bundle *bundle, struct wb_swept_range range, bool histories,
+/* Columns of all fields, and of the states of materials where they are asked for. */
+static void load(struct wb_bundle_bodies *bodies, struct wb_swept_range range, bool states,
                  struct cargo *cargo)
 {
-    struct wb_bundle_body *body[WB_PACKING_MOST + 2];
-    const int n_bodies = bodies_of(bundle, body);
+    struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
+    const int n_bodies = wb_bundle_bodies_list(bodies, body);
     size_t bytes;
 
     for (int b = 0; b < n_bodies; b++) {
         const struct wb_swept_layout *layout = &body[b]->layout;
         load_field(cargo, body[b]->position, sizeof(double), layout, range);
         load_field(cargo, body[b]->velocity, sizeof(double), layout, range);
-        load_field(cargo, body[b]->force, wb_bundle_force_size(body[b]), layout, range);
+        load_field(cargo, body[b]->force, wb_bundle_body_force_size(body[b]), layout, range);
     }
-    for (int w = 0; histories && w < bundle->n_wires; w++) {
-        void *history = wb_swept_hex_state_data(bundle->history[w], &bytes);
-        load_history(cargo, history, bytes, &bundle->wire[w], range);
+    for (int w = 0; states && w < bodies->n_wires; w++) {
+        void *state = wb_swept_hex_state_data(bodies->wire_state[w], &bytes);
+        load_state(cargo, state, bytes, &bodies->wire[w], range);
     }
-    if (histories && bundle->has_tape) {
-        void *history = wb_swept_tape_state_data(bundle->tape_history, &bytes);
-        load_history(cargo, history, bytes, &bundle->ring, range);
+    if (states && bodies->has_tape) {
+        void *state = wb_swept_tape_state_data(bodies->tape_state, &bytes);
+        load_state(cargo, state, bytes, &bodies->ring, range);
     }
-}
-
-static struct part *part_here(struct wb_bundle_parts *parts, int member)
-{
-    const bool is_here = member >= parts->first && member < parts->first + parts->n_here;
-    return is_here ? &parts->part[member - parts->first] : NULL;
 }
 
 /* Own stations `from` to `end` - 1 (of the whole) of a part into the whole of every rank. */
-static void bring(struct wb_bundle_parts *parts, int member, int from, int end, bool histories)
+static void bring(struct wb_bundle_parts *parts, int number, int from, int end, bool states)
 {
-    struct part *part = part_here(parts, member);
+    const struct member *member = member_of(parts, number);
+    struct wb_bundle_bodies *whole = &parts->whole->bodies;
     const struct wb_swept_range there = {from, end};
     struct cargo cargo = {.bytes = NULL};
 
-    load(parts->whole, there, histories, &cargo);
+    load(whole, there, states, &cargo);
     const size_t size = cargo.size;
     cargo = (struct cargo){.bytes = malloc(size)};
     if (!cargo.bytes) {
         wb_error("no memory to gather a bundle of %zu bytes", size);
         wb_team_abort(1);
     }
-    if (part) {
-        const struct wb_swept_range here = {from - part->bundle->first, end - part->bundle->first};
-        load(part->bundle, here, histories, &cargo);
+    if (member) {
+        struct wb_bundle_bodies *bodies = &member->part->bodies;
+        const int first = bodies->extent.first;
+        load(bodies, (struct wb_swept_range){from - first, end - first}, states, &cargo);
     }
-    wb_team_share(cargo.bytes, size, member / parts->n_here);
+    wb_team_share(cargo.bytes, size, number / parts->n_here);
     cargo.size = 0;
     cargo.unloads = true;
-    load(parts->whole, there, histories, &cargo);
+    load(whole, there, states, &cargo);
     free(cargo.bytes);
 }
 
 static void bring_tip(struct wb_bundle_parts *parts)
 {
-    const int end = parts->whole->n_stations;
+    const int end = parts->whole->bodies.extent.n_stations;
     bring(parts, parts->count - 1, end - 1, end, false);
 }
 
@@ -457,35 +451,41 @@ void wb_bundle_parts_gather(struct wb_bundle_parts *parts)
 
 /* --- all parts --- */
 
+/* Several parts begin an account of their own with every advance. */
 static void hand_down(struct wb_bundle_parts *parts)
 {
-    const struct wb_bundle *whole = parts->whole;
-
     for (int i = 0; i < parts->n_here; i++) {
-        struct wb_bundle *b = parts->part[i].bundle;
-        b->time_step = whole->time_step;
-        b->from = whole->from;
-        b->to = whole->to;
-        b->way_start = whole->way_start;
-        b->way_duration = whole->way_duration;
-        b->let_go = whole->let_go;
-        b->time = whole->time;
-        b->steps = whole->steps;
-        b->has_moved = whole->has_moved;
-        b->friction_work = b->damage_work = b->tip_work = 0.0;
+        struct wb_bundle_part *part = parts->here[i].part;
+        struct wb_bundle_account *account = &part->account;
+        part->way = parts->whole->way;
+        part->clock = parts->whole->clock;
+        account->friction_work = account->damage_work = account->tip_work = 0.0;
     }
+}
+
+static void sum_up(struct wb_bundle_parts *parts)
+{
+    double sum[N_SUMS] = {0.0}, most[N_MOST] = {0.0};
+
+    for (int i = 0; i < parts->n_here; i++)
+        add_part(&parts->here[i].part->account, sum, most);
+    wb_team_sum(sum, N_SUMS);
+    wb_team_greatest(most, N_MOST);
+    take_sums(&parts->whole->account, sum, most);
+    parts->whole->clock = parts->here[0].part->clock;
+    bring_tip(parts);
 }
 
 /* The first failure along the bundle; its reason is told on all ranks. */
 static enum wb_status agree(struct wb_bundle_parts *parts)
 {
-    const struct part *lost = NULL;
+    const struct member *lost = NULL;
     double first = parts->count;
     char problem[sizeof lost->problem] = "";
 
     for (int i = parts->n_here - 1; i >= 0; i--) {
-        if (parts->part[i].status != WB_OK) {
-            lost = &parts->part[i];
+        if (parts->here[i].status != WB_OK) {
+            lost = &parts->here[i];
             first = parts->first + i;
         }
     }
@@ -502,32 +502,28 @@ static enum wb_status agree(struct wb_bundle_parts *parts)
 
 enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n)
 {
-    struct wb_bundle *whole = parts->whole;
-    double sum[N_SUMS] = {0.0}, most[N_MOST] = {0.0};
+    const bool is_one = parts->count == 1;
 
     if (n < 1)
         return WB_OK;
-    hand_down(parts);
+    if (!is_one)
+        hand_down(parts);
     parts->steps = n;
+    parts->is_stale = !is_one;
     wb_team_run(parts->team, advance_part, parts);
-    parts->is_stale = true;
     WB_TRY(agree(parts));
-    for (int i = 0; i < parts->n_here; i++)
-        add_part(parts->part[i].bundle, sum, most);
-    wb_team_sum(sum, N_SUMS);
-    wb_team_greatest(most, N_MOST);
-    take_sums(whole, sum, most);
-    whole->time = parts->part[0].bundle->time;
-    whole->steps = parts->part[0].bundle->steps;
-    whole->has_moved = true;
-    bring_tip(parts);
+    if (!is_one)
+        sum_up(parts);
     return WB_OK;
 }
 
 void wb_bundle_parts_stop(struct wb_bundle_parts *parts)
 {
+    wb_bundle_part_stop(parts->whole);
+    if (parts->count == 1)
+        return;
     for (int i = 0; i < parts->n_here; i++)
-        wb_bundle_stop(parts->part[i].bundle);
+        wb_bundle_part_stop(parts->here[i].part);
     parts->is_stale = true;
 }
 
@@ -536,28 +532,15 @@ double wb_bundle_parts_potential(struct wb_bundle_parts *parts)
     double sum = 0.0;
 
     for (int i = 0; i < parts->n_here; i++)
-        sum += wb_bundle_potential(parts->part[i].bundle);
+        sum += wb_bundle_bodies_potential(&parts->here[i].part->bodies);
     wb_team_sum(&sum, 1);
     return sum;
 }
 
-static void find_plastic_work(void *context, int member)
+static void find_plastic_work(void *context, int number)
 {
-    struct wb_bundle_parts *parts = context;
-    struct part *part = &parts->part[member - parts->first];
-
-    part->plastic_work = wb_bundle_plastic_work(part->bundle);
-}
-
-void wb_bundle_parts_add_bonds(struct wb_bundle_parts *parts, double area[2])
-{
-    double sum[2] = {0.0, 0.0};
-
-    for (int i = 0; i < parts->n_here; i++)
-        wb_bundle_bond_add_areas(parts->part[i].bundle->bond, sum);
-    wb_team_sum(sum, 2);
-    area[0] += sum[0];
-    area[1] += sum[1];
+    struct member *member = member_of(context, number);
+    member->plastic_work = wb_bundle_bodies_plastic_work(&member->part->bodies);
 }
 
 double wb_bundle_parts_plastic_work(struct wb_bundle_parts *parts)
@@ -566,9 +549,21 @@ double wb_bundle_parts_plastic_work(struct wb_bundle_parts *parts)
 
     wb_team_run(parts->team, find_plastic_work, parts);
     for (int i = 0; i < parts->n_here; i++)
-        sum += parts->part[i].plastic_work;
+        sum += parts->here[i].plastic_work;
     wb_team_sum(&sum, 1);
     return sum;
+}
+
+double wb_bundle_parts_debonded(struct wb_bundle_parts *parts)
+{
+    double area[2] = {0.0, 0.0};
+
+    if (!parts->whole->bond)
+        return 0.0;
+    for (int i = 0; i < parts->n_here; i++)
+        wb_bundle_bond_add_areas(parts->here[i].part->bond, area);
+    wb_team_sum(area, 2);
+    return area[0] > 0.0 ? area[1] / area[0] : 0.0;
 }
 
 int wb_bundle_parts_count(const struct wb_bundle_parts *parts)
@@ -576,58 +571,55 @@ int wb_bundle_parts_count(const struct wb_bundle_parts *parts)
     return parts->count;
 }
 
+/* --- checkpoints --- */
+
 /* A part's state, from its rank to all. */
-static void save_part(struct wb_bundle_parts *parts, int member, struct wb_checkpoint *out)
+static void save_part(struct wb_bundle_parts *parts, int number, struct wb_checkpoint *out)
 {
-    struct part *part = part_here(parts, member);
+    const struct member *member = member_of(parts, number);
     struct wb_checkpoint own;
 
     wb_checkpoint_init(&own);
-    if (part)
-        wb_bundle_carry_fields(part->bundle, &own);
+    wb_checkpoint_enter(&own, "part %d", number + 1);
+    if (member)
+        wb_bundle_part_visit_fields(member->part, &own);
     size_t size = own.size;
-    wb_team_share(&size, sizeof size, member / parts->n_here);
-    unsigned char *bytes = part ? own.bytes : malloc(size);
+    wb_team_share(&size, sizeof size, number / parts->n_here);
+    unsigned char *bytes = member ? own.bytes : malloc(size);
     if (!bytes) {
         wb_error("no memory for a checkpoint of %zu bytes", size);
         wb_team_abort(1);
     }
-    wb_team_share(bytes, size, member / parts->n_here);
-    wb_checkpoint_carry(out, &size, sizeof size);
-    wb_checkpoint_carry(out, bytes, size);
-    if (!part)
+    wb_team_share(bytes, size, number / parts->n_here);
+    wb_checkpoint_append(out, bytes, size);
+    if (!member)
         free(bytes);
     wb_checkpoint_release(&own);
 }
 
-static void restore_part(struct wb_bundle_parts *parts, int member, struct wb_checkpoint *in)
+/* A rank passes over the parts of others. */
+static void restore_part(struct wb_bundle_parts *parts, int number, struct wb_checkpoint *in)
 {
-    struct part *part = part_here(parts, member);
-    size_t size = 0;
+    const struct member *member = member_of(parts, number);
 
-    wb_checkpoint_carry(in, &size, sizeof size);
-    if (in->status == WB_OK && size > in->size - in->at)
-        in->status = wb_fail(WB_ERR_DATA, "the checkpoint ends early, in part %d", member + 1);
-    if (in->status != WB_OK)
-        return;
-    if (part) {
-        struct wb_checkpoint own = {.restores = true, .bytes = in->bytes + in->at, .size = size};
-        wb_bundle_carry_fields(part->bundle, &own);
-        if (in->status == WB_OK)
-            in->status = wb_checkpoint_finish(&own);
-    }
-    in->at += size;
+    wb_checkpoint_enter(in, "part %d", number + 1);
+    if (member)
+        wb_bundle_part_visit_fields(member->part, in);
+    else
+        wb_checkpoint_skip(in);
+    wb_checkpoint_leave(in);
 }
 
-void wb_bundle_parts_carry(struct wb_bundle_parts *parts, struct wb_checkpoint *checkpoint)
+void wb_bundle_parts_visit(struct wb_bundle_parts *parts, struct wb_checkpoint *checkpoint)
 {
+    wb_bundle_part_visit_progress(parts->whole, checkpoint);
     for (int i = 0; i < parts->count; i++) {
         if (checkpoint->restores)
             restore_part(parts, i, checkpoint);
         else
             save_part(parts, i, checkpoint);
     }
-    if (!checkpoint->restores)
+    if (!checkpoint->restores || parts->count == 1)
         return;
     parts->is_stale = true;
     bring_tip(parts);
@@ -635,29 +627,39 @@ void wb_bundle_parts_carry(struct wb_bundle_parts *parts, struct wb_checkpoint *
 
 /* --- memory --- */
 
+/* In a row of one the whole is the part. */
 static enum wb_status make_parts(struct wb_bundle_parts *parts)
 {
-    const struct wb_bundle *whole = parts->whole;
+    struct wb_bundle_part *whole = parts->whole;
+    const struct wb_bundle_bodies *bodies = &whole->bodies;
+    const int n = bodies->extent.n_stations;
 
-    if (!find_borders(parts->halo, whole->n_stations, parts->count, parts->border))
+    if (parts->count == 1) {
+        parts->here[0].part = whole;
+        parts->border[1] = n;
+        return WB_OK;
+    }
+    if (!find_borders(parts->halo, n, parts->count, parts->border))
         return wb_fail(WB_ERR_ARGUMENT,
                        "%s: mesh %s has too few stations (%d) for %d parts; use fewer ranks",
-                       whole->model->path, whole->mesh->name, whole->n_stations, parts->count);
+                       bodies->model->path, bodies->mesh->name, n, parts->count);
     for (int i = 0; i < parts->n_here; i++) {
-        const int member = parts->first + i, begin = parts->border[member];
-        const int end = parts->border[member + 1];
-        const int before = member > 0 ? parts->halo : 0;
-        const int after = member < parts->count - 1 ? parts->halo : 0;
-        WB_TRY(wb_bundle_create_part(&parts->part[i].bundle, whole, begin - before,
+        const int number = parts->first + i, begin = parts->border[number];
+        const int end = parts->border[number + 1];
+        const int before = number > 0 ? parts->halo : 0;
+        const int after = number < parts->count - 1 ? parts->halo : 0;
+        WB_TRY(wb_bundle_part_create(&parts->here[i].part, whole, begin - before,
                                      before + end - begin + after,
                                      (struct wb_swept_range){before, before + end - begin}));
     }
     return WB_OK;
 }
 
-enum wb_status wb_bundle_parts_create(struct wb_bundle_parts **out, struct wb_bundle *whole,
+enum wb_status wb_bundle_parts_create(struct wb_bundle_parts **out, struct wb_bundle_part *whole,
                                       int count)
 {
+    const struct wb_bundle_bodies *bodies = &whole->bodies;
+
     *out = NULL;
     struct wb_bundle_parts *parts = calloc(1, sizeof *parts);
     if (!parts)
@@ -665,14 +667,14 @@ enum wb_status wb_bundle_parts_create(struct wb_bundle_parts **out, struct wb_bu
     parts->whole = whole;
     parts->count = count;
     parts->n_here = count / wb_team_ranks();
-    parts->halo = halo_of(whole->model, whole->mesh);
+    parts->halo = halo_of(bodies->model, bodies->mesh);
     parts->border = calloc((size_t)count + 1, sizeof *parts->border);
-    parts->part = calloc((size_t)parts->n_here, sizeof *parts->part);
+    parts->here = calloc((size_t)parts->n_here, sizeof *parts->here);
     enum wb_status status = WB_OK;
-    if (!parts->border || !parts->part)
+    if (!parts->border || !parts->here)
         status = wb_fail(WB_ERR_MEMORY, "out of memory for parts of a bundle");
     if (status == WB_OK)
-        status = wb_team_create(&parts->team, parts->n_here, packet_size(whole, parts->halo));
+        status = wb_team_create(&parts->team, parts->n_here, packet_size(bodies, parts->halo));
     if (status == WB_OK) {
         parts->first = wb_team_first(parts->team);
         status = make_parts(parts);
@@ -690,9 +692,10 @@ void wb_bundle_parts_destroy(struct wb_bundle_parts *parts)
     if (!parts)
         return;
     wb_team_destroy(parts->team);
-    for (int i = 0; parts->part && i < parts->n_here; i++)
-        wb_bundle_destroy(parts->part[i].bundle);
+    for (int i = 0; parts->here && i < parts->n_here; i++)
+        if (parts->here[i].part != parts->whole)
+            wb_bundle_part_destroy(parts->here[i].part);
     free(parts->border);
-    free(parts->part);
+    free(parts->here);
     free(parts);
 }

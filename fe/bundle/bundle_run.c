@@ -266,9 +266,9 @@ static double value_at(const struct wb_bundle_run_line *line, double x, double *
     return mean + slope * (x - at);
 }
 
-static enum wb_history_phase phase_of(const struct wb_bundle_run_now *r)
+static enum wb_phase phase_of(const struct wb_bundle_run_now *r)
 {
-    return r->branch % 2 == 0 ? WB_HISTORY_LOAD : WB_HISTORY_UNLOAD;
+    return r->branch % 2 == 0 ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
 }
 
 static void take_place(struct wb_bundle_run_now *r)
@@ -282,7 +282,7 @@ static void take_place(struct wb_bundle_run_now *r)
     *row = (struct wb_bundle_row){
         .time = r->state.time - r->begin,
         .cycle = 1 + r->branch / 2,
-        .phase = r->state.slack ? WB_HISTORY_SLACK : phase_of(r),
+        .phase = r->state.slack ? WB_PHASE_SLACK : phase_of(r),
         .deflection = r->state.deflection,
         .tip = {ends[1][0], ends[1][1], ends[1][2]},
         .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
@@ -319,13 +319,13 @@ static void finish_row(struct wb_bundle_run_now *r)
     /* A strand that swings about zero is slack for a step and taut for the next. Where the tip
      * hangs there are no samples: it was slack there, whatever comes after. */
     if (!r->hangs && r->samples_before)
-        row->phase = r->slack_samples > r->vertical.n ? WB_HISTORY_SLACK : phase_of(r);
+        row->phase = r->slack_samples > r->vertical.n ? WB_PHASE_SLACK : phase_of(r);
     if (r->vertical.n == 0.0)
         sample(r);
     if (r->vertical.n == 0.0)
-        row->phase = WB_HISTORY_SLACK;
+        row->phase = WB_PHASE_SLACK;
     /* Where the strand is taut the target is the deflection. */
-    if (row->phase != WB_HISTORY_SLACK) {
+    if (row->phase != WB_PHASE_SLACK) {
         row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
         row->tension = value_at(&r->tension, row->deflection, &ignored);
     }
@@ -433,7 +433,7 @@ static enum verdict show_place(struct wb_bundle_run_now *r)
 
     if (!observer || !observer->place)
         return GO_ON;
-    wb_bundle_gather(r->bundle);
+    (void)wb_bundle_whole(r->bundle); /* all ranks take part in that */
     r->status = wb_team_agree(observer->place(observer->context, r->history, &r->row, r->bundle));
     return r->status == WB_OK ? GO_ON : NO_MEMORY;
 }
@@ -557,7 +557,7 @@ static enum verdict attempt(struct wb_bundle_run_now *r)
     if (r->status == WB_OK && !resumes)
         begin_attempt(r);
     else if (resumes)
-        wb_bundle_run_carry(r, &checkpoint);
+        wb_bundle_run_visit(r, &checkpoint);
     const struct wb_bundle_settings settings = {
         .mesh = r->options.mesh, .duration = h->duration, .threads = r->options.threads};
     if (r->status == WB_OK)

@@ -31,8 +31,8 @@
 
 #include "base/status.h"
 #include "fe/bundle/bundle.h"
+#include "fe/linear/trial.h"
 #include "fe/model/bundle_model.h"
-#include "fe/trial/history.h"
 
 enum {
     WB_BUNDLE_RUN_ATTEMPTS = 5
@@ -41,7 +41,7 @@ enum {
 struct wb_bundle_row {
     double time; /* s, of the model, since the loading began */
     int cycle;   /* from 1 */
-    enum wb_history_phase phase;
+    enum wb_phase phase;
     double deflection;         /* m */
     double tip[3];             /* m, mean of the wires' ends, from the bundle's axis */
     double tip_angle;          /* rad, of the last elements' secant */
@@ -105,8 +105,8 @@ struct wb_bundle_observer {
      */
     enum wb_status (*place)(void *context, const struct wb_bundle_history *history,
                             const struct wb_bundle_row *row, const struct wb_bundle *bundle);
-    /* What the observer itself keeps in a checkpoint, to there or back. May be NULL. */
-    void (*carry)(void *context, struct wb_checkpoint *checkpoint);
+    /* Saves or restores what the observer itself keeps in a checkpoint. May be NULL. */
+    void (*visit)(void *context, struct wb_checkpoint *checkpoint);
     void *context;
 };
 

@@ -1,5 +1,4 @@
 /* Checkpoints of a run. */
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +7,7 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "fe/bundle/bundle_parts.h"
 #include "fe/bundle/bundle_run_private.h"
 #include "fe/swept/swept_hex.h"
 #include "fe/team/team.h"
@@ -45,19 +45,10 @@ void wb_bundle_run_take_time(struct wb_bundle_run_now *r)
 static void identify(const struct wb_bundle_run_now *r, char text[MOST_IDENTITY])
 {
     const struct wb_bundle_model *m = r->model;
-    const struct wb_bundle_interface *i = &m->interface;
     const char *mesh = r->options.mesh ? r->options.mesh : m->run.mesh;
-    char settings[1024], hash[WB_SHA256_TEXT];
+    char hash[WB_SHA256_TEXT];
 
-    snprintf(settings, sizeof settings,
-             "%s %d %d %d %d %.17g %.17g %.17g %.17g %.17g %.17g %d %.17g %.17g %.17g %d %.17g "
-             "%.17g %.17g %.17g %.17g %.17g",
-             m->sha256, m->has_tape, (int)m->tip, m->run.rows, m->run.cycles, m->run.deflection,
-             m->run.duration, m->run.mass_scaling, m->run.selective, m->run.kinetic_limit,
-             m->loads.strand_length, m->loads.weight, m->length, i->normal_stiffness,
-             i->shear_stiffness, i->has_damage, i->damage.strength, i->damage.shear_strength,
-             i->damage.fracture_energy, i->friction_static, i->friction_kinetic, i->friction_decay);
-    wb_hash_bytes(settings, strlen(settings), hash);
+    wb_bundle_model_identify(m, hash);
     snprintf(text, MOST_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
              "%s precision, %s, wirebench %s, program %.12s",
@@ -67,23 +58,68 @@ static void identify(const struct wb_bundle_run_now *r, char text[MOST_IDENTITY]
              wb_version_revision(), r->program);
 }
 
-/* Memory of the history stays; what it holds comes and goes. */
-void wb_bundle_run_carry(struct wb_bundle_run_now *r, struct wb_checkpoint *c)
+/* Its memory stays; what it holds is saved or restored. */
+static void visit_history(struct wb_bundle_history *h, struct wb_checkpoint *c)
 {
-    struct wb_bundle_history *h = r->history;
-    const struct wb_bundle_history own = *h;
-    const size_t rows = (size_t)own.capacity, places = rows * (size_t)own.n_shape;
+    const size_t rows = (size_t)h->capacity, places = rows * (size_t)h->n_shape;
 
-    wb_checkpoint_carry(c, h, sizeof *h);
-    h->capacity = own.capacity;
-    h->rows = own.rows;
-    h->shape_s = own.shape_s;
-    h->shape = own.shape;
-    wb_checkpoint_carry(c, h->rows, rows * sizeof *h->rows);
-    wb_checkpoint_carry(c, h->shape, places * sizeof *h->shape);
-    if (r->options.observer && r->options.observer->carry)
-        r->options.observer->carry(r->options.observer->context, c);
-    wb_checkpoint_carry(c, &r->state, sizeof *r - offsetof(struct wb_bundle_run_now, state));
+    wb_checkpoint_enter(c, "history");
+    wb_checkpoint_visit_member(c, h, n_rows);
+    wb_checkpoint_visit(c, "rows", h->rows, rows * sizeof *h->rows);
+    wb_checkpoint_visit(c, "shape", h->shape, places * sizeof *h->shape);
+    wb_checkpoint_visit_member(c, h, converged);
+    wb_checkpoint_visit_member(c, h, problem);
+    wb_checkpoint_visit_member(c, h, zero_force);
+    wb_checkpoint_visit_member(c, h, duration);
+    wb_checkpoint_visit_member(c, h, chosen);
+    wb_checkpoint_visit_member(c, h, exceeded);
+    wb_checkpoint_visit_member(c, h, attempts);
+    wb_checkpoint_visit_member(c, h, all_steps);
+    wb_checkpoint_visit_member(c, h, largest);
+    wb_checkpoint_visit_member(c, h, wall);
+    wb_checkpoint_visit_member(c, h, cpu);
+    wb_checkpoint_leave(c);
+}
+
+/* How far the test has come. */
+static void visit_place(struct wb_bundle_run_now *r, struct wb_checkpoint *c)
+{
+    wb_checkpoint_visit_member(c, r, state);
+    wb_checkpoint_visit_member(c, r, from);
+    wb_checkpoint_visit_member(c, r, counting);
+    wb_checkpoint_visit_member(c, r, judged);
+    wb_checkpoint_visit_member(c, r, begin);
+    wb_checkpoint_visit_member(c, r, next);
+    wb_checkpoint_visit_member(c, r, kinetic);
+    wb_checkpoint_visit_member(c, r, artificial);
+    wb_checkpoint_visit_member(c, r, most_external);
+    wb_checkpoint_visit_member(c, r, branch);
+    wb_checkpoint_visit_member(c, r, under_way);
+    wb_checkpoint_visit_member(c, r, place);
+    wb_checkpoint_visit_member(c, r, looks);
+    wb_checkpoint_visit_member(c, r, left);
+    wb_checkpoint_visit_member(c, r, way);
+    wb_checkpoint_visit_member(c, r, hangs);
+    wb_checkpoint_visit_member(c, r, way_time);
+    wb_checkpoint_visit_member(c, r, block);
+    wb_checkpoint_visit_member(c, r, vertical);
+    wb_checkpoint_visit_member(c, r, tension);
+    wb_checkpoint_visit_member(c, r, slack_samples);
+    wb_checkpoint_visit_member(c, r, samples_before);
+    wb_checkpoint_visit_member(c, r, row);
+}
+
+void wb_bundle_run_visit(struct wb_bundle_run_now *r, struct wb_checkpoint *c)
+{
+    const struct wb_bundle_observer *observer = r->options.observer;
+
+    visit_history(r->history, c);
+    if (observer && observer->visit) {
+        wb_checkpoint_enter(c, "observer");
+        observer->visit(observer->context, c);
+        wb_checkpoint_leave(c);
+    }
+    visit_place(r, c);
 }
 
 enum wb_status wb_bundle_run_save(struct wb_bundle_run_now *r)
@@ -93,8 +129,8 @@ enum wb_status wb_bundle_run_save(struct wb_bundle_run_now *r)
 
     wb_checkpoint_init(&c);
     wb_bundle_run_take_time(r);
-    wb_bundle_run_carry(r, &c);
-    wb_bundle_carry(r->bundle, &c);
+    wb_bundle_run_visit(r, &c);
+    wb_bundle_visit(r->bundle, &c);
     enum wb_status status = wb_checkpoint_finish(&c);
     identify(r, identity);
     if (status == WB_OK && wb_team_rank() == 0)
@@ -138,7 +174,7 @@ enum wb_status wb_bundle_run_resume(struct wb_bundle_run_now *r, struct wb_check
 {
     struct wb_bundle_history *h = r->history;
 
-    wb_bundle_carry(r->bundle, c);
+    wb_bundle_visit(r->bundle, c);
     WB_TRY(wb_team_agree(wb_checkpoint_finish(c)));
     h->resumed = true;
     r->wall_before = h->wall;

@@ -28,7 +28,7 @@ struct wb_bundle_run_now {
     bool may_resume;
     char program[WB_SHA256_TEXT]; /* this binary's, where there are checkpoints */
 
-    /* From here on all is in a checkpoint. */
+    /* From here on all is in a checkpoint (visit_place() in bundle_run_checkpoint.c). */
     struct wb_bundle_state state;
     double from;   /* m: ratios count from here on */
     bool counting; /* the tip was there */
@@ -58,8 +58,8 @@ struct wb_bundle_run_clock wb_bundle_run_clock(void);
 /* Into the history, what was spent so far. */
 void wb_bundle_run_take_time(struct wb_bundle_run_now *r);
 
-/* All but the bundle, to a checkpoint or back. Memory of the history stays. */
-void wb_bundle_run_carry(struct wb_bundle_run_now *r, struct wb_checkpoint *c);
+/* Saves or restores all but the bundle. Memory of the history stays. */
+void wb_bundle_run_visit(struct wb_bundle_run_now *r, struct wb_checkpoint *c);
 
 WB_MUST_CHECK enum wb_status wb_bundle_run_save(struct wb_bundle_run_now *r);
 
@@ -67,7 +67,7 @@ WB_MUST_CHECK enum wb_status wb_bundle_run_save(struct wb_bundle_run_now *r);
 WB_MUST_CHECK enum wb_status wb_bundle_run_find(struct wb_bundle_run_now *r,
                                                 struct wb_checkpoint *c);
 
-/* The bundle, after all else was carried. */
+/* The bundle, after all else was restored. */
 WB_MUST_CHECK enum wb_status wb_bundle_run_resume(struct wb_bundle_run_now *r,
                                                   struct wb_checkpoint *c);
 

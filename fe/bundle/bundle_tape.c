@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/units.h"
-#include "fe/bundle/bundle_private.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -17,10 +16,10 @@ static const double lacking_power = 1.3;       /* of elements' length, found for
 /* --- geometry --- */
 
 /* Elements round the ring; a strip has one node more. */
-static int elements_of(const struct wb_bundle *bundle)
+static int elements_of(const struct wb_bundle_bodies *bodies)
 {
-    const int round = wb_bundle_model_tape_quads(bundle->model, bundle->mesh);
-    const struct wb_taping *taping = &bundle->model->tape.taping;
+    const int round = wb_bundle_model_tape_quads(bodies->model, bodies->mesh);
+    const struct wb_taping *taping = &bodies->model->tape.taping;
 
     if (taping->kind == WB_TAPING_SLEEVE)
         return round;
@@ -43,13 +42,13 @@ static double layers_below(double level, double layers, double ramp)
     return below;
 }
 
-struct wb_bundle_tape_place wb_bundle_tape_place(const struct wb_bundle *bundle, double node,
+struct wb_bundle_tape_place wb_bundle_tape_place(const struct wb_bundle_bodies *bodies, double node,
                                                  int station)
 {
-    const struct wb_bundle_tape *tape = &bundle->model->tape;
+    const struct wb_bundle_tape *tape = &bodies->model->tape;
     const struct wb_taping *taping = &tape->taping;
     const double middle = tape->gap + 0.5 * wb_taping_thickness(taping);
-    const double around = wb_hull_length(&tape->hull, middle), part = node / elements_of(bundle);
+    const double around = wb_hull_length(&tape->hull, middle), part = node / elements_of(bodies);
     struct wb_bundle_tape_place place = {.is_tape = true};
 
     /* The outline runs from z towards y, a right-handed strip the other way as it goes along. */
@@ -57,28 +56,28 @@ struct wb_bundle_tape_place wb_bundle_tape_place(const struct wb_bundle *bundle,
         place.point = wb_hull_at(&tape->hull, middle, around * part);
         return place;
     }
-    const double along = (bundle->first + station) * bundle->spacing;
+    const double along = (bodies->extent.first + station) * bodies->spacing;
     const double turned = -taping->helix.hand * along / taping->advance; /* turns */
     const double layers = taping->layers;
     place.point = wb_hull_at(&tape->hull, middle, around * (turned + layers * (part - 0.5)));
     place.level = layers * (taping->helix.hand < 0 ? part : 1.0 - part);
     place.is_tape = part >= 0.0 && part <= 1.0;
-    const double ramp = fmin(layers / elements_of(bundle), 0.25);
+    const double ramp = fmin(layers / elements_of(bodies), 0.25);
     const double thickness = taping->layer_thickness;
     place.outside =
         tape->gap + thickness * (0.5 + layers_below(place.level, layers, ramp)) - middle;
     return place;
 }
 
-static void place_ring(struct wb_bundle *bundle)
+static void place_ring(struct wb_bundle_bodies *bodies)
 {
-    struct wb_bundle_body *ring = &bundle->ring;
+    struct wb_bundle_body *ring = &bodies->ring;
 
     for (int k = 0; k < ring->layout.n_nodes; k++) {
         for (int j = 0; j < ring->layout.stride; j++) {
-            const int station = j < bundle->n_stations ? j : bundle->n_stations - 1;
-            const struct wb_bundle_tape_place at = wb_bundle_tape_place(bundle, k, station);
-            const double x[3] = {(bundle->first + station) * bundle->spacing,
+            const int station = j < bodies->extent.n_stations ? j : bodies->extent.n_stations - 1;
+            const struct wb_bundle_tape_place at = wb_bundle_tape_place(bodies, k, station);
+            const double x[3] = {(bodies->extent.first + station) * bodies->spacing,
                                  at.point.y + at.outside * sin(at.point.normal),
                                  at.point.z + at.outside * cos(at.point.normal)};
             for (int c = 0; c < 3; c++)
@@ -91,122 +90,110 @@ static void place_ring(struct wb_bundle *bundle)
 
 /* Elements along for which the strip's facets, which cut the outline's corners, are nearly as large
  * as it is. */
-static int elements_needed(const struct wb_bundle *bundle, double lacking)
+static int elements_needed(const struct wb_bundle_bodies *bodies, double lacking)
 {
-    return (int)ceil(1.05 * bundle->mesh->elements_along *
+    return (int)ceil(1.05 * bodies->mesh->elements_along *
                      pow(lacking / most_lacking, 1.0 / lacking_power));
 }
 
-static enum wb_status refuse_mesh(const struct wb_bundle *bundle, int needed)
+static enum wb_status refuse_mesh(const struct wb_bundle_bodies *bodies, int needed)
 {
     return wb_fail(
         WB_ERR_ARGUMENT,
         "%s: mesh '%s', %d elements along, is too coarse for a helix that is wound by %.3g "
         "mm a turn: use a mesh with elements_along: %d or more",
-        bundle->model->path, bundle->mesh->name, bundle->mesh->elements_along,
-        bundle->model->tape.taping.advance / WB_MM, needed);
+        bodies->model->path, bodies->mesh->name, bodies->mesh->elements_along,
+        bodies->model->tape.taping.advance / WB_MM, needed);
 }
 
 /* Before the tape is made: elements that turn by more are not convex. */
-static enum wb_status check_twist(const struct wb_bundle *bundle)
+static enum wb_status check_twist(const struct wb_bundle_bodies *bodies)
 {
-    const double turned = bundle->spacing / bundle->model->tape.taping.advance;
+    const double turned = bodies->spacing / bodies->model->tape.taping.advance;
 
     if (turned <= most_turned)
         return WB_OK;
-    return refuse_mesh(bundle, (int)ceil(bundle->mesh->elements_along * turned / usual_turned));
+    return refuse_mesh(bodies, (int)ceil(bodies->mesh->elements_along * turned / usual_turned));
 }
 
-static enum wb_status check_mass(const struct wb_bundle *bundle)
+static enum wb_status check_mass(const struct wb_bundle_bodies *bodies)
 {
-    const double whole = wb_bundle_model_tape_mass(bundle->model);
-    const double lacking = 1.0 - bundle->ring.mass / whole;
+    const double whole = wb_bundle_model_tape_mass(bodies->model);
+    const double lacking = 1.0 - bodies->ring.mass / whole;
 
     if (lacking <= most_lacking)
         return WB_OK;
-    return refuse_mesh(bundle, elements_needed(bundle, lacking));
+    return refuse_mesh(bodies, elements_needed(bodies, lacking));
 }
 
-static enum wb_status make_ring(struct wb_bundle *bundle)
+static enum wb_status make_ring(struct wb_bundle_bodies *bodies)
 {
-    const struct wb_bundle_tape *tape = &bundle->model->tape;
+    const struct wb_bundle_tape *tape = &bodies->model->tape;
     const bool closed = tape->taping.kind == WB_TAPING_SLEEVE;
     const struct wb_swept_layout layout =
-        wb_swept_layout(elements_of(bundle) + !closed, bundle->n_stations);
+        wb_swept_layout(elements_of(bodies) + !closed, bodies->extent.n_stations);
 
-    WB_TRY(wb_bundle_create_fields(bundle, &bundle->ring, layout));
-    WB_TRY(wb_bundle_create_fields(bundle, &bundle->directors, layout));
-    place_ring(bundle);
+    WB_TRY(wb_bundle_bodies_create_fields(bodies, &bodies->ring, layout));
+    WB_TRY(wb_bundle_bodies_create_fields(bodies, &bodies->directors, layout));
+    place_ring(bodies);
     const struct wb_swept_tape_model model = {
         .material = tape->material.material,
         .density = tape->material.density,
         .thickness = layer_thickness(&tape->taping),
         .layout = layout,
-        .position = bundle->ring.position,
-        .spacing = bundle->spacing,
-        .counted = bundle->own,
+        .position = bodies->ring.position,
+        .spacing = bodies->spacing,
+        .counted = bodies->extent.own,
         .closed = closed,
-        .double_precision = bundle->model->run.double_precision,
+        .double_precision = bodies->model->run.double_precision,
     };
-    WB_TRY(wb_swept_tape_create(&bundle->tape, &model));
-    return wb_swept_tape_state_create(&bundle->tape_history, bundle->tape);
+    WB_TRY(wb_swept_tape_create(&bodies->tape, &model));
+    return wb_swept_tape_state_create(&bodies->tape_state, bodies->tape);
 }
 
-static enum wb_status make_steps(struct wb_bundle *bundle)
+static enum wb_status make_steps(struct wb_bundle_bodies *bodies,
+                                 const struct wb_bundle_bodies *whole)
 {
-    const struct wb_swept_layout layout = bundle->ring.layout;
+    const struct wb_swept_layout layout = bodies->ring.layout;
     const size_t n = (size_t)layout.n_nodes;
 
-    bundle->tape_mass = calloc(n, sizeof *bundle->tape_mass);
-    bundle->tape_inertia = calloc(n, sizeof *bundle->tape_inertia);
-    if (!bundle->tape_mass || !bundle->tape_inertia)
+    bodies->tape_mass = calloc(n, sizeof *bodies->tape_mass);
+    bodies->tape_inertia = calloc(n, sizeof *bodies->tape_inertia);
+    if (!bodies->tape_mass || !bodies->tape_inertia)
         return wb_fail(WB_ERR_MEMORY, "out of memory for the tape");
-    wb_swept_tape_masses(bundle->tape, bundle->tape_mass, bundle->tape_inertia);
-    /* They are means over all stations. */
-    if (bundle->whole) {
-        memcpy(bundle->tape_mass, bundle->whole->tape_mass, n * sizeof *bundle->tape_mass);
-        memcpy(bundle->tape_inertia, bundle->whole->tape_inertia, n * sizeof *bundle->tape_inertia);
+    wb_swept_tape_masses(bodies->tape, bodies->tape_mass, bodies->tape_inertia);
+    if (whole) {
+        memcpy(bodies->tape_mass, whole->tape_mass, n * sizeof *bodies->tape_mass);
+        memcpy(bodies->tape_inertia, whole->tape_inertia, n * sizeof *bodies->tape_inertia);
     }
-    WB_TRY(wb_bundle_create_step(bundle, layout, bundle->tape_mass, bundle->gravity,
-                                 &bundle->tape_step));
-    return wb_bundle_create_step(bundle, layout, bundle->tape_inertia, 0.0, &bundle->director_step);
+    WB_TRY(wb_bundle_bodies_create_step(bodies, layout, bodies->tape_mass, bodies->gravity,
+                                        &bodies->tape_step));
+    return wb_bundle_bodies_create_step(bodies, layout, bodies->tape_inertia, 0.0,
+                                        &bodies->director_step);
 }
 
-enum wb_status wb_bundle_tape_create(struct wb_bundle *bundle)
+enum wb_status wb_bundle_tape_create(struct wb_bundle_bodies *bodies,
+                                     const struct wb_bundle_bodies *whole)
 {
-    struct wb_bundle_body *ring = &bundle->ring, *directors = &bundle->directors;
-
-    const bool is_helix = bundle->model->tape.taping.kind == WB_TAPING_HELIX;
+    struct wb_bundle_body *ring = &bodies->ring, *directors = &bodies->directors;
+    const bool is_helix = bodies->model->tape.taping.kind == WB_TAPING_HELIX;
 
     if (is_helix)
-        WB_TRY(check_twist(bundle));
-    bundle->has_tape = true;
-    WB_TRY(make_ring(bundle));
-    memcpy(directors->position, wb_swept_tape_directors(bundle->tape),
+        WB_TRY(check_twist(bodies));
+    bodies->has_tape = true;
+    WB_TRY(make_ring(bodies));
+    memcpy(directors->position, wb_swept_tape_directors(bodies->tape),
            wb_swept_size(&directors->layout) * sizeof *directors->position);
-    WB_TRY(make_steps(bundle));
-    ring->step = bundle->tape_step;
-    ring->node_mass = bundle->tape_mass;
-    directors->step = bundle->director_step;
+    WB_TRY(make_steps(bodies, whole));
+    ring->step = bodies->tape_step;
+    ring->node_mass = bodies->tape_mass;
+    directors->step = bodies->director_step;
     for (int k = 0; k < ring->layout.n_nodes; k++) {
-        const size_t tip =
-            (size_t)(3 * k + 1) * (size_t)ring->layout.stride + (size_t)bundle->n_stations - 1;
-        ring->mass += bundle->tape_mass[k];
-        ring->start += bundle->tape_mass[k] * ring->position[tip];
+        const size_t tip = (size_t)(3 * k + 1) * (size_t)ring->layout.stride +
+                           (size_t)bodies->extent.n_stations - 1;
+        ring->mass += bodies->tape_mass[k];
+        ring->start += bodies->tape_mass[k] * ring->position[tip];
     }
     ring->start /= ring->mass;
-    if (is_helix)
-        WB_TRY(check_mass(bundle));
-    return wb_bundle_bond_create(&bundle->bond, bundle);
-}
-
-void wb_bundle_tape_release(struct wb_bundle *bundle)
-{
-    wb_bundle_bond_destroy(bundle->bond);
-    wb_swept_tape_state_destroy(bundle->tape_history);
-    wb_swept_tape_destroy(bundle->tape);
-    wb_swept_step_destroy(bundle->tape_step);
-    wb_swept_step_destroy(bundle->director_step);
-    free(bundle->tape_mass);
-    free(bundle->tape_inertia);
+    return is_helix ? check_mass(bodies) : WB_OK;
 }

@@ -12,13 +12,14 @@
 #define WB_FE_BUNDLE_BUNDLE_TAPE_H
 
 #include "base/status.h"
-#include "fe/bundle/bundle.h"
+#include "fe/bundle/bundle_body.h"
 #include "fe/model/hull.h"
 
-/* Ring and directors of a bundle whose wires are made, with histories, masses and steps, and the
- * bond. */
-WB_MUST_CHECK enum wb_status wb_bundle_tape_create(struct wb_bundle *bundle);
-void wb_bundle_tape_release(struct wb_bundle *bundle);
+/* Ring and directors of bodies whose wires are made, with the state of their material, masses and
+ * steps. Masses are means over all stations: parts take over those of the whole (NULL: these bodies
+ * are the whole). */
+WB_MUST_CHECK enum wb_status wb_bundle_tape_create(struct wb_bundle_bodies *bodies,
+                                                   const struct wb_bundle_bodies *whole);
 
 /* A place on the tape. */
 struct wb_bundle_tape_place {
@@ -30,7 +31,7 @@ struct wb_bundle_tape_place {
 };
 
 /* At a station, `node` of the ring; or between two. */
-struct wb_bundle_tape_place wb_bundle_tape_place(const struct wb_bundle *bundle, double node,
+struct wb_bundle_tape_place wb_bundle_tape_place(const struct wb_bundle_bodies *bodies, double node,
                                                  int station);
 
 #endif

@@ -5,10 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fe/bundle/bundle_private.h"
+#include "fe/bundle/bundle_part.h"
 #include "fe/swept/swept_hex_stress.h"
-#include "fe/swept/swept_tape_private.h"
-#include "fe/swept/swept_tape_stress.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -24,29 +22,29 @@ struct sum {
 
 /* --- the mesh --- */
 
-static const struct wb_swept_section *section_of(const struct wb_bundle *bundle, int wire)
+static const struct wb_swept_section *section_of(const struct wb_bundle_bodies *bodies, int wire)
 {
-    return &bundle->type[bundle->model->type_of[wire]].section;
+    return &bodies->type[bodies->model->type_of[wire]].section;
 }
 
-static int tape_quads(const struct wb_bundle *bundle)
+static int tape_quads(const struct wb_bundle_bodies *bodies)
 {
-    return bundle->has_tape
-               ? wb_swept_tape_elements(bundle->tape) * (bundle->ring.layout.n_stations - 1)
+    return bodies->has_tape
+               ? wb_swept_tape_elements(bodies->tape) * (bodies->ring.layout.n_stations - 1)
                : 0;
 }
 
-static void count(struct wb_bundle_fields *f, const struct wb_bundle *bundle)
+static void count(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies)
 {
-    f->n_bodies = bundle->n_wires + (bundle->has_tape ? 1 : 0);
-    for (int w = 0; w < bundle->n_wires; w++) {
-        const struct wb_swept_layout *layout = &bundle->wire[w].layout;
+    f->n_bodies = bodies->n_wires + (bodies->has_tape ? 1 : 0);
+    for (int w = 0; w < bodies->n_wires; w++) {
+        const struct wb_swept_layout *layout = &bodies->wire[w].layout;
         f->n_points += layout->n_nodes * layout->n_stations;
-        f->n_hexahedra += section_of(bundle, w)->n_quads * (layout->n_stations - 1);
+        f->n_hexahedra += section_of(bodies, w)->n_quads * (layout->n_stations - 1);
     }
-    if (bundle->has_tape)
-        f->n_points += bundle->ring.layout.n_nodes * bundle->ring.layout.n_stations;
-    f->n_quads = tape_quads(bundle);
+    if (bodies->has_tape)
+        f->n_points += bodies->ring.layout.n_nodes * bodies->ring.layout.n_stations;
+    f->n_quads = tape_quads(bodies);
 }
 
 static enum wb_status allocate(struct wb_bundle_fields *f)
@@ -93,17 +91,18 @@ static void read_points(const struct wb_bundle_fields_body *body, int stride, co
 }
 
 /* A wire: its straight place, and its hexahedra from `cell` on; returns the next. */
-static int mesh_wire(struct wb_bundle_fields *f, const struct wb_bundle *bundle, int w, int cell)
+static int mesh_wire(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies, int w,
+                     int cell)
 {
-    const struct wb_swept_section *section = section_of(bundle, w);
-    const struct wb_packing_circle *circle = &bundle->model->packing.wire[w];
+    const struct wb_swept_section *section = section_of(bodies, w);
+    const struct wb_packing_circle *circle = &bodies->model->packing.wire[w];
     const struct wb_bundle_fields_body *body = &f->bodies[w];
     const int n = body->n_nodes;
 
     for (int j = 0; j < body->n_stations; j++)
         for (int k = 0; k < n; k++) {
             double *at = f->reference[body->first + j * n + k];
-            at[0] = j * bundle->spacing;
+            at[0] = j * bodies->spacing;
             at[1] = circle->y + section->node[k][0];
             at[2] = circle->z + section->node[k][1];
         }
@@ -116,14 +115,15 @@ static int mesh_wire(struct wb_bundle_fields *f, const struct wb_bundle *bundle,
     return cell;
 }
 
-static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle)
+static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies)
 {
-    const int tape = bundle->n_wires;
+    const int tape = bodies->n_wires;
     const struct wb_bundle_fields_body *body = &f->bodies[tape];
-    const int n = body->n_nodes, around = wb_swept_tape_elements(bundle->tape);
+    const int n = body->n_nodes, around = wb_swept_tape_elements(bodies->tape);
     int cell = 0;
 
-    read_points(body, bundle->ring.layout.stride, bundle->tape->position, f->reference);
+    read_points(body, bodies->ring.layout.stride, wb_swept_tape_get_model(bodies->tape)->position,
+                f->reference);
     for (int j = 0; j < body->n_stations - 1; j++)
         for (int k = 0; k < around; k++, cell++) {
             const int here = body->first + j * n, next = (k + 1) % n;
@@ -133,28 +133,28 @@ static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle
         }
 }
 
-static enum wb_status make_mesh(struct wb_bundle_fields *f, const struct wb_bundle *bundle)
+static enum wb_status make_mesh(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies)
 {
     int first = 0, cell = 0;
 
     for (int b = 0; b < f->n_bodies; b++) {
-        const bool is_tape = b == bundle->n_wires;
+        const bool is_tape = b == bodies->n_wires;
         const struct wb_swept_layout *layout =
-            is_tape ? &bundle->ring.layout : &bundle->wire[b].layout;
+            is_tape ? &bodies->ring.layout : &bodies->wire[b].layout;
         f->bodies[b] = (struct wb_bundle_fields_body){
             .is_tape = is_tape,
-            .closed = !is_tape || wb_swept_tape_elements(bundle->tape) == layout->n_nodes,
+            .closed = !is_tape || wb_swept_tape_elements(bodies->tape) == layout->n_nodes,
             .n_nodes = layout->n_nodes,
             .n_stations = layout->n_stations,
             .first = first,
         };
         first += layout->n_nodes * layout->n_stations;
         if (is_tape) {
-            mesh_tape(f, bundle);
+            mesh_tape(f, bodies);
             continue;
         }
-        WB_TRY(set_outline(&f->bodies[b], section_of(bundle, b)));
-        cell = mesh_wire(f, bundle, b, cell);
+        WB_TRY(set_outline(&f->bodies[b], section_of(bodies, b)));
+        cell = mesh_wire(f, bodies, b, cell);
     }
     return WB_OK;
 }
@@ -162,11 +162,13 @@ static enum wb_status make_mesh(struct wb_bundle_fields *f, const struct wb_bund
 enum wb_status wb_bundle_fields_init(struct wb_bundle_fields *fields,
                                      const struct wb_bundle *bundle)
 {
+    const struct wb_bundle_bodies *bodies = &wb_bundle_whole(bundle)->bodies;
+
     *fields = (struct wb_bundle_fields){0};
-    count(fields, bundle);
+    count(fields, bodies);
     enum wb_status status = allocate(fields);
     if (status == WB_OK)
-        status = make_mesh(fields, bundle);
+        status = make_mesh(fields, bodies);
     if (status == WB_OK)
         status = wb_bundle_fields_take(fields, bundle);
     if (status != WB_OK)
@@ -201,17 +203,17 @@ static double flow_stress(const struct wb_material *m, double plastic)
     return m->yield_stress + m->strength_coefficient * pow(plastic, m->hardening_exponent);
 }
 
-static void sum_up_wire(const struct wb_bundle *bundle, int w, struct sum *sums)
+static void sum_up_wire(const struct wb_bundle_bodies *bodies, int w, struct sum *sums)
 {
-    const struct wb_swept_hex *hex = bundle->type[bundle->model->type_of[w]].hex;
-    const struct wb_swept_section *section = section_of(bundle, w);
-    const struct wb_bundle_body *body = &bundle->wire[w];
+    const struct wb_swept_hex *hex = bodies->type[bodies->model->type_of[w]].hex;
+    const struct wb_swept_section *section = section_of(bodies, w);
+    const struct wb_bundle_body *body = &bodies->wire[w];
     const int n = body->layout.n_nodes;
 
     for (int j = 0; j < body->layout.n_stations - 1; j++) {
         for (int e = 0; e < section->n_quads; e++) {
             struct wb_swept_hex_stress points[4], corners[4];
-            wb_swept_hex_stress_find(hex, bundle->history[w], body->position, e, j, points);
+            wb_swept_hex_stress_find(hex, bodies->wire_state[w], body->position, e, j, points);
             wb_swept_hex_stress_at_corners(hex, points, corners);
             for (int a = 0; a < 8; a++) {
                 struct sum *sum = &sums[(j + a / 4) * n + section->quad[e][a % 4]];
@@ -224,16 +226,16 @@ static void sum_up_wire(const struct wb_bundle *bundle, int w, struct sum *sums)
     }
 }
 
-static void take_wire(struct wb_bundle_fields *f, const struct wb_bundle *bundle, int w,
+static void take_wire(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies, int w,
                       struct sum *sums)
 {
     const struct wb_bundle_fields_body *body = &f->bodies[w];
-    const struct wb_material *law = &bundle->model->type[bundle->model->type_of[w]].material;
+    const struct wb_material *law = &bodies->model->type[bodies->model->type_of[w]].material;
     const int n = body->n_nodes * body->n_stations;
 
-    read_points(body, bundle->wire[w].layout.stride, bundle->wire[w].position, f->position);
+    read_points(body, bodies->wire[w].layout.stride, bodies->wire[w].position, f->position);
     memset(sums, 0, (size_t)n * sizeof *sums);
-    sum_up_wire(bundle, w, sums);
+    sum_up_wire(bodies, w, sums);
     for (int i = 0; i < n; i++) {
         double mean[TENSOR];
         for (int k = 0; k < TENSOR; k++)
@@ -246,21 +248,22 @@ static void take_wire(struct wb_bundle_fields *f, const struct wb_bundle *bundle
     }
 }
 
-static void take_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle, struct sum *sums)
+static void take_tape(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies,
+                      struct sum *sums)
 {
-    const struct wb_bundle_fields_body *body = &f->bodies[bundle->n_wires];
-    const double *position = bundle->ring.position, *director = bundle->directors.position;
-    const int n = body->n_nodes, around = wb_swept_tape_elements(bundle->tape);
+    const struct wb_bundle_fields_body *body = &f->bodies[bodies->n_wires];
+    const double *position = bodies->ring.position, *director = bodies->directors.position;
+    const int n = body->n_nodes, around = wb_swept_tape_elements(bodies->tape);
 
-    read_points(body, bundle->ring.layout.stride, position, f->position);
+    read_points(body, bodies->ring.layout.stride, position, f->position);
     memset(sums, 0, (size_t)(n * body->n_stations) * sizeof *sums);
     for (int j = 0; j < body->n_stations - 1; j++)
         for (int k = 0; k < around; k++) {
             struct wb_swept_tape_stress out[WB_SWEPT_TAPE_STRESS_MOST];
             double stress = 0.0, plastic = 0.0;
-            wb_swept_tape_stress_find(bundle->tape, bundle->tape_history, position, director, k, j,
+            wb_swept_tape_stress_find(bodies->tape, bodies->tape_state, position, director, k, j,
                                       out);
-            for (int q = 0; q < wb_swept_tape_stress_points(bundle->tape); q++) {
+            for (int q = 0; q < wb_swept_tape_stress_points(bodies->tape); q++) {
                 stress = fmax(stress, wb_swept_tape_stress_von_mises(out[q].stress));
                 plastic = fmax(plastic, out[q].plastic);
             }
@@ -280,9 +283,9 @@ static void take_tape(struct wb_bundle_fields *f, const struct wb_bundle *bundle
 enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
                                      const struct wb_bundle *bundle)
 {
+    const struct wb_bundle_bodies *bodies = &wb_bundle_whole(bundle)->bodies;
     int most = 0;
 
-    wb_bundle_gather(bundle);
     for (int b = 0; b < fields->n_bodies; b++) {
         const int n = fields->bodies[b].n_nodes * fields->bodies[b].n_stations;
         most = n > most ? n : most;
@@ -290,10 +293,10 @@ enum wb_status wb_bundle_fields_take(struct wb_bundle_fields *fields,
     struct sum *sums = malloc((size_t)most * sizeof *sums);
     if (!sums)
         return wb_fail(WB_ERR_MEMORY, "no memory for the stresses at %d points", most);
-    for (int w = 0; w < bundle->n_wires; w++)
-        take_wire(fields, bundle, w, sums);
-    if (bundle->has_tape)
-        take_tape(fields, bundle, sums);
+    for (int w = 0; w < bodies->n_wires; w++)
+        take_wire(fields, bodies, w, sums);
+    if (bodies->has_tape)
+        take_tape(fields, bodies, sums);
     free(sums);
     return WB_OK;
 }

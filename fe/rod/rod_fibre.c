@@ -47,7 +47,7 @@ struct returned {
 static inline double ratio_at(const struct wb_rod_fibre_law *law, double c)
 {
     const double scaled = c * law->per_yield;
-    if (law->table && wb_hardening_covers(scaled))
+    if (wb_hardening_covers(scaled))
         return wb_hardening_lookup(law->table, scaled);
     return wb_hardening_ratio(&law->material, c);
 }

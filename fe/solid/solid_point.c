@@ -365,8 +365,9 @@ static void push_vectors(const struct wb_solid_point_motion *motion, struct wb_s
 
 void wb_solid_point_deviatoric(const struct wb_solid_point_law *law,
                                const struct wb_solid_point_motion *motion,
-                               const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                               bool tangent, struct wb_solid_point_response *response)
+                               const struct wb_solid_point_state *before,
+                               struct wb_solid_point_state *after, bool tangent,
+                               struct wb_solid_point_response *response)
 {
     const double mu = law->shear_modulus;
     const bool kinematic = law->radial.hardening == WB_HARDENING_KINEMATIC_LINEAR;

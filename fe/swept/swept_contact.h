@@ -37,13 +37,6 @@
 #include "base/status.h"
 #include "fe/swept/swept.h"
 
-enum wb_swept_contact_instructions {
-    WB_SWEPT_CONTACT_BEST, /* of what this processor has */
-    WB_SWEPT_CONTACT_BASELINE,
-    WB_SWEPT_CONTACT_AVX2,
-    WB_SWEPT_CONTACT_AVX512
-};
-
 struct wb_swept_contact_wire {
     int n_nodes;             /* of the section */
     int n_surface;           /* at least 3 */
@@ -67,7 +60,7 @@ struct wb_swept_contact_settings {
     struct wb_swept_range counted; /* points of contact, in energies; all are computed */
     int most_pairs;        /* of neighbours; 0: 4 a wire (touching circles have at most 3) */
     bool double_precision; /* of the forces; else float */
-    enum wb_swept_contact_instructions instructions;
+    enum wb_swept_instructions instructions;
 };
 
 void wb_swept_contact_default_settings(struct wb_swept_contact_settings *settings);

@@ -21,6 +21,9 @@ enum {
 static const double default_hourglass = 0.05;
 static const double table_tolerance = 1e-5;
 
+static const struct wb_swept_hex_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_hex_kernel);
+
 struct wb_swept_hex {
     struct wb_swept_hex_model model;
     const struct wb_swept_hex_kernel *kernel;
@@ -45,21 +48,7 @@ static double shear_modulus(const struct wb_material *m)
 
 static size_t real_size(const struct wb_swept_hex *hex)
 {
-    return hex->model.double_precision ? sizeof(double) : sizeof(float);
-}
-
-/* What lies in `from` into aligned memory of the kernel's type. */
-static enum wb_status take_over(void **out, const struct wb_swept_hex *hex, const double *from,
-                                size_t count)
-{
-    WB_TRY(wb_swept_allocate(out, count, real_size(hex)));
-    for (size_t i = 0; i < count; i++) {
-        if (hex->model.double_precision)
-            ((double *)*out)[i] = from[i];
-        else
-            ((float *)*out)[i] = (float)from[i];
-    }
-    return WB_OK;
+    return wb_swept_kernel_real_size(hex->model.double_precision);
 }
 
 /* Powers of t = m - 3/2 (m the mantissa, 1 to 2) of p / x in an octave, by Newton's divided
@@ -121,7 +110,8 @@ static enum wb_status make_table(struct wb_swept_hex *hex)
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "the hardening law (K = %g Pa, n = %g) cannot be tabulated: error %.1e",
                        radial.strength_coefficient, radial.hardening_exponent, worst);
-    return take_over(&hex->table, hex, &table[0][0], TERMS * OCTAVES);
+    return wb_swept_kernel_convert(&hex->table, hex->model.double_precision, &table[0][0],
+                                   TERMS * OCTAVES);
 }
 
 static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
@@ -171,30 +161,7 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
             memcpy(at[a], section->node[section->quad[e][a]], sizeof at[a]);
         fill_row(&hex->model, &quad, (const double(*)[2])at, hex->rows + e * CONSTANTS);
     }
-    return take_over(&hex->constants, hex, hex->rows, count);
-}
-
-static const struct wb_swept_hex_kernel *find_kernel(const struct wb_swept_hex_model *model)
-{
-    static const struct wb_swept_hex_kernel *const kernels[][2] = {
-#ifdef __x86_64__
-        [WB_SWEPT_HEX_AVX512] = {&wb_swept_hex_kernel_float_avx512,
-                                 &wb_swept_hex_kernel_double_avx512},
-        [WB_SWEPT_HEX_AVX2] = {&wb_swept_hex_kernel_float_avx2, &wb_swept_hex_kernel_double_avx2},
-#endif
-        [WB_SWEPT_HEX_BASELINE] = {&wb_swept_hex_kernel_float_baseline,
-                                   &wb_swept_hex_kernel_double_baseline},
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = n - 1; i >= WB_SWEPT_HEX_BASELINE; i--) {
-        const struct wb_swept_hex_kernel *kernel = kernels[i][model->double_precision];
-        const bool wanted =
-            model->instructions == WB_SWEPT_HEX_BEST || (int)model->instructions == i;
-        if (wanted && kernel->runs_here())
-            return kernel;
-    }
-    return NULL;
+    return wb_swept_kernel_convert(&hex->constants, hex->model.double_precision, hex->rows, count);
 }
 
 static enum wb_status check(const struct wb_swept_hex_model *m)
@@ -247,9 +214,8 @@ static enum wb_status fill(struct wb_swept_hex *hex)
     const bool elastic = m->material.hardening == WB_HARDENING_NONE_ELASTIC;
 
     WB_TRY(check(m));
-    hex->kernel = find_kernel(m);
-    if (!hex->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    WB_TRY(wb_swept_choose_instructions(&hex->model.instructions, m->instructions));
+    hex->kernel = kernels[m->instructions][m->double_precision];
     hex->n_points = m->formulation == WB_SWEPT_HEX_ONE_POINT ? 1 : 4;
     WB_TRY(make_constants(hex));
     WB_TRY(make_table(hex));
@@ -331,13 +297,12 @@ int wb_swept_hex_blocks(const struct wb_swept_hex *hex)
 
 const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex)
 {
-    return hex->kernel->name;
+    return wb_swept_instructions_name(hex->model.instructions);
 }
 
 const char *wb_swept_hex_best_instructions(void)
 {
-    const struct wb_swept_hex_model model = {.instructions = WB_SWEPT_HEX_BEST};
-    return find_kernel(&model)->name;
+    return wb_swept_instructions_name(WB_SWEPT_BEST);
 }
 
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4])
@@ -444,8 +409,7 @@ double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int q
     const size_t at = (place * WB_SWEPT_HEX_KERNEL_HISTORY + 5) * WB_SWEPT_LANES +
                       (size_t)(element % WB_SWEPT_LANES);
 
-    return hex->model.double_precision ? ((const double *)state->history)[at]
-                                       : (double)((const float *)state->history)[at];
+    return wb_swept_kernel_get(hex->model.double_precision, state->history, (ptrdiff_t)at);
 }
 
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)

@@ -10,7 +10,7 @@
  * - one point: mean gradients (Flanagan and Belytschko 1981), four hourglass vectors.
  *
  * Hourglass stiffness is elastic. Four points yield in bending with few elements, one point needs
- * about 60 a section for it. Details are in swept_hex_kernel.inc.
+ * about 60 a section for it. Details are in swept_hex_kernel.c.
  *
  * The logarithm is a polynomial: at a strain of 5 % along the axes forces are 0.2 % off, with a
  * shear strain of 5 % 1.3 %, and with strains of 3 % 0.04 and 0.5 %. Elements with a component of
@@ -38,13 +38,6 @@ enum wb_swept_hex_formulation {
     WB_SWEPT_HEX_ONE_POINT
 };
 
-enum wb_swept_hex_instructions {
-    WB_SWEPT_HEX_BEST, /* of what this processor has */
-    WB_SWEPT_HEX_BASELINE,
-    WB_SWEPT_HEX_AVX2,
-    WB_SWEPT_HEX_AVX512
-};
-
 struct wb_swept_hex_model {
     const struct wb_swept_section *section; /* borrowed; must outlive the hex */
     struct wb_material material;            /* elastic or power law */
@@ -55,7 +48,7 @@ struct wb_swept_hex_model {
     double hourglass; /* coefficient, 1; 0: 0.05. Of one point, 1 gives the fields that bend an
                          element their elastic stiffness */
     bool double_precision;
-    enum wb_swept_hex_instructions instructions;
+    enum wb_swept_instructions instructions;
 };
 
 struct wb_swept_hex_fields {

@@ -1,5 +1,4 @@
-/* The force kernels behind fe/swept/swept_hex.h: one source, swept_hex_kernel.inc, compiled for
- * float and double and for each instruction set.
+/* The force kernels behind fe/swept/swept_hex.h. Lanes are elements along the wire.
  *
  * Everything that a kernel multiplies with is prepared in its own type: constants of the section's
  * elements in rows of WB_SWEPT_HEX_KERNEL_CONSTANTS, and the table of the hardening law. Histories
@@ -14,8 +13,8 @@
 
 #include <stdbool.h>
 
-#include "fe/swept/swept.h"
 #include "fe/swept/swept_hex.h"
+#include "fe/swept/swept_kernel.h"
 
 enum {
     WB_SWEPT_HEX_KERNEL_CONSTANTS = 48, /* a row */
@@ -67,20 +66,10 @@ struct wb_swept_hex_kernel_call {
 };
 
 struct wb_swept_hex_kernel {
-    const char *name;
-    bool is_double;
-    bool (*runs_here)(void); /* whether this processor has the instructions */
     void (*four_points)(const struct wb_swept_hex_kernel_call *call);
     void (*one_point)(const struct wb_swept_hex_kernel_call *call);
 };
 
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_baseline;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_baseline;
-#ifdef __x86_64__
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_avx2;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_avx2;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_avx512;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_avx512;
-#endif
+WB_SWEPT_KERNEL_DECLARE(wb_swept_hex_kernel);
 
 #endif

@@ -1,5 +1,4 @@
-/* The force kernels behind fe/swept/swept_tape.h: one source, swept_tape_kernel.inc, compiled for
- * float and double and for each instruction set.
+/* The force kernels behind fe/swept/swept_tape.h.
  *
  * An element lies between the ring's nodes k and k + 1 and the stations j and j + 1; lanes are
  * stations. Constants of the reference state and histories are in blocks of WB_SWEPT_LANES:
@@ -15,7 +14,7 @@
 
 #include <stdbool.h>
 
-#include "fe/swept/swept.h"
+#include "fe/swept/swept_kernel.h"
 #include "fe/swept/swept_tape.h"
 
 enum {
@@ -79,21 +78,11 @@ struct wb_swept_tape_kernel_call {
 };
 
 struct wb_swept_tape_kernel {
-    const char *name;
-    bool is_double;
-    bool (*runs_here)(void);
     void (*forces)(const struct wb_swept_tape_kernel_call *call);
     /* Makes the measures of the present state those of reference. */
     void (*measure)(const struct wb_swept_tape_kernel_call *call);
 };
 
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_baseline;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_baseline;
-#ifdef __x86_64__
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_avx2;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_avx2;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_avx512;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_avx512;
-#endif
+WB_SWEPT_KERNEL_DECLARE(wb_swept_tape_kernel);
 
 #endif

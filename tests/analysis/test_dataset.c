@@ -552,9 +552,9 @@ static void bow_and_curvature_match_closed_forms(void **state)
 static void phases_have_their_names(void **state)
 {
     (void)state;
-    assert_string_equal(wb_phase_name(WB_PHASE_LOAD), "load");
-    assert_string_equal(wb_phase_name(WB_PHASE_UNLOAD), "unload");
-    assert_string_equal(wb_phase_name(WB_PHASE_SLACK), "slack");
+    assert_string_equal(wb_trial_phase_name(WB_PHASE_LOAD), "load");
+    assert_string_equal(wb_trial_phase_name(WB_PHASE_UNLOAD), "unload");
+    assert_string_equal(wb_trial_phase_name(WB_PHASE_SLACK), "slack");
 }
 
 int main(void)

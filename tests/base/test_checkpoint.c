@@ -1,4 +1,4 @@
-/* Checkpoints: what was carried comes back, and nothing else is taken for one. */
+/* Checkpoints: what was saved comes back, and nothing else is taken for one. */
 #include "tests/check.h"
 
 #include <stdbool.h>
@@ -34,11 +34,11 @@ struct numbers {
     char text[9];
 };
 
-static void carry(struct wb_checkpoint *c, struct numbers *numbers)
+static void visit(struct wb_checkpoint *c, struct numbers *numbers)
 {
-    wb_checkpoint_carry(c, numbers->x, sizeof numbers->x);
-    wb_checkpoint_carry(c, &numbers->n, sizeof numbers->n);
-    wb_checkpoint_carry(c, numbers->text, sizeof numbers->text);
+    wb_checkpoint_visit(c, "x", numbers->x, sizeof numbers->x);
+    wb_checkpoint_visit_member(c, numbers, n);
+    wb_checkpoint_visit_member(c, numbers, text);
 }
 
 static void write_numbers(struct numbers *numbers)
@@ -49,26 +49,26 @@ static void write_numbers(struct numbers *numbers)
     numbers->n = -7;
     memcpy(numbers->text, "\n\0end\n\0", 8);
     wb_checkpoint_init(&c);
-    carry(&c, numbers);
+    visit(&c, numbers);
     assert_int_equal(wb_checkpoint_finish(&c), WB_OK);
     assert_int_equal(wb_checkpoint_write(&c, path, "seven wires"), WB_OK);
     wb_checkpoint_release(&c);
 }
 
-static void what_was_carried_comes_back(void **unused)
+static void what_was_saved_comes_back(void **unused)
 {
     (void)unused;
     struct numbers out = {.n = 0}, in = {.n = 0};
     struct wb_checkpoint c;
     write_numbers(&out);
     assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
-    carry(&c, &in);
+    visit(&c, &in);
     assert_int_equal(wb_checkpoint_finish(&c), WB_OK);
     assert_memory_equal(in.x, out.x, sizeof in.x);
     assert_int_equal(in.n, -7);
     assert_memory_equal(in.text, out.text, sizeof in.text);
     wb_checkpoint_rewind(&c);
-    wb_checkpoint_carry(&c, in.x, 8);
+    wb_checkpoint_visit(&c, "x", in.x, sizeof in.x);
     wb_checkpoint_release(&c);
 }
 
@@ -87,15 +87,103 @@ static void too_little_or_too_much_is_noticed(void **unused)
     wb_log_set_sink(discard, message);
     write_numbers(&out);
     assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
-    wb_checkpoint_carry(&c, in.x, sizeof in.x);
+    wb_checkpoint_visit(&c, "x", in.x, sizeof in.x);
     assert_int_equal(wb_checkpoint_finish(&c), WB_ERR_DATA);
+    assert_non_null(strstr(message, "too many: 'n'"));
     wb_checkpoint_release(&c);
     assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
-    carry(&c, &in);
-    carry(&c, &in);
+    visit(&c, &in);
+    visit(&c, &in);
     assert_int_equal(wb_checkpoint_finish(&c), WB_ERR_DATA);
+    assert_non_null(strstr(message, "no field 'x': it ends early"));
     wb_checkpoint_release(&c);
     wb_log_set_sink(NULL, NULL);
+}
+
+/* Leaves the values as they are. */
+static void a_field_with_another_name_or_size_is_told(void **unused)
+{
+    (void)unused;
+    struct numbers out = {.n = 0}, in = {.n = 1};
+    struct wb_checkpoint c;
+    char message[256] = "";
+    wb_log_set_sink(discard, message);
+    write_numbers(&out);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
+    wb_checkpoint_visit_member(&c, &in, n);
+    assert_int_equal(wb_checkpoint_finish(&c), WB_ERR_DATA);
+    assert_int_equal(in.n, 1);
+    assert_string_equal(message, "the checkpoint has no field 'n': 'x' is in its place");
+    wb_checkpoint_release(&c);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_OK);
+    wb_checkpoint_visit(&c, "x", in.x, sizeof in.x - 8);
+    assert_int_equal(wb_checkpoint_finish(&c), WB_ERR_DATA);
+    assert_true(in.x[0] == 0.0);
+    assert_string_equal(message, "the checkpoint's field 'x' has 8000 bytes: expected 7992");
+    wb_checkpoint_release(&c);
+    wb_log_set_sink(NULL, NULL);
+}
+
+/* The state of each of three parts is saved apart, and put together. */
+static void groups_name_their_fields_and_can_be_skipped(void **unused)
+{
+    (void)unused;
+    struct wb_checkpoint all;
+    char message[256] = "";
+    int value = 0;
+
+    wb_checkpoint_init(&all);
+    for (int part = 1; part <= 3; part++) {
+        struct wb_checkpoint own;
+        wb_checkpoint_init(&own);
+        wb_checkpoint_enter(&own, "part %d", part);
+        wb_checkpoint_enter(&own, "wire");
+        value = 10 * part;
+        wb_checkpoint_visit(&own, "a", &value, sizeof value);
+        wb_checkpoint_leave(&own);
+        wb_checkpoint_visit(&own, "b", &value, sizeof value);
+        wb_checkpoint_leave(&own);
+        assert_string_equal(own.group, "");
+        wb_checkpoint_append(&all, own.bytes, own.size);
+        wb_checkpoint_release(&own);
+    }
+    wb_checkpoint_rewind(&all);
+    for (int part = 1; part <= 3; part++) {
+        wb_checkpoint_enter(&all, "part %d", part);
+        if (part == 2) {
+            wb_checkpoint_enter(&all, "wire");
+            wb_checkpoint_visit(&all, "a", &value, sizeof value);
+            wb_checkpoint_leave(&all);
+            assert_int_equal(value, 20);
+        }
+        wb_checkpoint_skip(&all);
+        wb_checkpoint_leave(&all);
+    }
+    assert_int_equal(wb_checkpoint_finish(&all), WB_OK);
+
+    wb_log_set_sink(discard, message);
+    wb_checkpoint_rewind(&all);
+    wb_checkpoint_enter(&all, "part 1");
+    wb_checkpoint_visit(&all, "a", &value, sizeof value);
+    assert_int_equal(wb_checkpoint_finish(&all), WB_ERR_DATA);
+    assert_non_null(strstr(message, "no field 'part 1/a': 'part 1/wire/a' is in its place"));
+    wb_log_set_sink(NULL, NULL);
+    wb_checkpoint_release(&all);
+}
+
+static void groups_without_end_are_refused(void **unused)
+{
+    (void)unused;
+    struct wb_checkpoint c;
+    char message[256] = "";
+
+    wb_checkpoint_init(&c);
+    wb_log_set_sink(discard, message);
+    for (int i = 0; i < 100; i++)
+        wb_checkpoint_enter(&c, "group");
+    assert_int_equal(wb_checkpoint_finish(&c), WB_ERR_ARGUMENT);
+    wb_log_set_sink(NULL, NULL);
+    wb_checkpoint_release(&c);
 }
 
 /* Changes the byte there, or cuts the file. */
@@ -131,6 +219,10 @@ static void other_files_and_damaged_ones_are_refused(void **unused)
     damage(0, false);
     assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_FORMAT);
     assert_non_null(strstr(message, "not a checkpoint"));
+    const char old[] = "wirebench checkpoint 1\nseven wires\n0\n0\nend\n";
+    assert_int_equal(wb_file_write(path, old, strlen(old)), WB_OK);
+    assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_FORMAT);
+    assert_non_null(strstr(message, "a checkpoint of version 1"));
     assert_int_equal(wb_file_write(path, "", 0), WB_OK);
     assert_int_equal(wb_checkpoint_read(&c, path, "seven wires"), WB_ERR_FORMAT);
     assert_int_equal(unlink(path), 0);
@@ -141,8 +233,11 @@ static void other_files_and_damaged_ones_are_refused(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_was_carried_comes_back),
+        cmocka_unit_test(what_was_saved_comes_back),
         cmocka_unit_test(too_little_or_too_much_is_noticed),
+        cmocka_unit_test(a_field_with_another_name_or_size_is_told),
+        cmocka_unit_test(groups_name_their_fields_and_can_be_skipped),
+        cmocka_unit_test(groups_without_end_are_refused),
         cmocka_unit_test(other_files_and_damaged_ones_are_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

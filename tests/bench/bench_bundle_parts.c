@@ -12,8 +12,9 @@
 #include <time.h>
 
 #include "base/file.h"
-#include "fe/bundle/bundle_parts.h"
-#include "fe/bundle/bundle_private.h"
+#include "fe/bundle/bundle.h"
+#include "fe/bundle/bundle_part.h"
+#include "fe/bundle/bundle_parts_private.h"
 #include "fe/team/team.h"
 
 enum {
@@ -114,19 +115,20 @@ static double cpu_now(void)
 static double part_time(const struct wb_bundle *whole, const char *mesh, int parts)
 {
     const int n = wb_bundle_parts_largest(&model, mesh, parts);
-    struct wb_bundle *part;
+    struct wb_bundle_part *part;
     double best = (double)INFINITY;
 
-    if (n == 0 || wb_bundle_create_part(&part, whole, 0, n, (struct wb_swept_range){0, n}) != WB_OK)
+    if (n == 0 || wb_bundle_part_create(&part, wb_bundle_whole(whole), 0, n,
+                                        (struct wb_swept_range){0, n}) != WB_OK)
         return (double)NAN;
     for (int i = 0; i < BLOCKS; i++) {
         const double start = cpu_now();
         for (int k = 0; k < steps; k++)
-            if (wb_bundle_step(part, k == steps - 1) != WB_OK)
+            if (wb_bundle_part_step(part, k == steps - 1) != WB_OK)
                 best = (double)NAN;
         best = fmin(best, (cpu_now() - start) / steps);
     }
-    wb_bundle_destroy(part);
+    wb_bundle_part_destroy(part);
     return best;
 }
 
@@ -156,7 +158,7 @@ static int measure(const char *mesh, int threads, int longer, double *one, doubl
     for (int i = 0; i < BLOCKS && !failed; i++)
         failed = (bundle[0] && time_block(bundle[0], one)) || time_block(bundle[1], two);
     if (!failed)
-        *bytes = wb_bundle_parts_bytes(bundle[1]);
+        *bytes = wb_bundle_parts_bytes(wb_bundle_whole(bundle[1]));
     wb_bundle_destroy(bundle[0]);
     wb_bundle_destroy(bundle[1]);
     model = shorter;

@@ -1,5 +1,5 @@
 /* The capped tip: a frame in closed form, and what has to be kept. */
-#include "fe/bundle/bundle_private.h"
+#include "fe/bundle/bundle_part.h"
 #include "tests/fe/bundle/bundles_lead.h"
 
 /* Two wires, one above the other, that do not touch: by the cap they are a frame. With the slope t
@@ -57,13 +57,13 @@ static size_t end_of(const struct wb_bundle_body *body, int node, int component)
            (size_t)body->layout.n_stations - 1;
 }
 
-static struct sums sum_up(const struct wb_bundle *bundle)
+static struct sums sum_up(const struct wb_bundle_bodies *bodies)
 {
     struct sums sums = {{0.0}, {0.0}, 0.0};
-    for (int w = 0; w < bundle->n_wires; w++) {
-        const struct wb_bundle_body *body = &bundle->wire[w];
+    for (int w = 0; w < bodies->n_wires; w++) {
+        const struct wb_bundle_body *body = &bodies->wire[w];
         for (int k = 0; k < body->layout.n_nodes; k++) {
-            const double m = 0.5 * bundle->spacing * model.run.mass_scaling * body->node_mass[k];
+            const double m = 0.5 * bodies->spacing * model.run.mass_scaling * body->node_mass[k];
             double x[3], v[3];
             for (int c = 0; c < 3; c++) {
                 x[c] = body->position[end_of(body, k, c)];
@@ -79,13 +79,13 @@ static struct sums sum_up(const struct wb_bundle *bundle)
     return sums;
 }
 
-static void move_end(struct wb_bundle *bundle)
+static void move_end(struct wb_bundle_bodies *bodies)
 {
-    for (int w = 0; w < bundle->n_wires; w++) {
-        struct wb_bundle_body *body = &bundle->wire[w];
+    for (int w = 0; w < bodies->n_wires; w++) {
+        struct wb_bundle_body *body = &bodies->wire[w];
         for (int i = 0; i < 3 * body->layout.n_nodes; i++)
             body->position[end_of(body, 0, i)] +=
-                bundle->time_step * body->velocity[end_of(body, 0, i)];
+                bodies->time_step * body->velocity[end_of(body, 0, i)];
     }
 }
 
@@ -95,22 +95,23 @@ static void move_end(struct wb_bundle *bundle)
 static void an_end_that_is_struck_tumbles_as_a_rigid_body(void **unused)
 {
     (void)unused;
-    const struct wb_bundle_settings settings = {.duration = 1.0};
     const double force[3] = {3000.0, -200.0, 400.0};
-    struct wb_bundle *bundle;
+    struct wb_bundle_part *part;
     double energy = 0.0, last = 0.0, before = 0.0, along = 1.0;
 
     read_model("wires: [{wire: type3, count: 2}]\npacking: places\n"
                "places_mm: [[-0.8, 0.3], [0.8, 0]]\nends: {tip: capped}\n"
                "run: {mesh: twelve, deflection_mm: 1}\nloads: {weight: false}\n");
-    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    struct wb_bundle_body *body = &bundle->wire[1];
+    const struct wb_bundle_mesh *mesh = wb_bundle_model_mesh(&model, model.run.mesh);
+    assert_int_equal(wb_bundle_part_create_whole(&part, &model, mesh, 0.9), WB_OK);
+    struct wb_bundle_bodies *bodies = &part->bodies;
+    struct wb_bundle_body *body = &bodies->wire[1];
     const int struck = body->layout.n_nodes - 1;
     double arm[3], impulse[3], moment[3];
     for (int c = 0; c < 3; c++) {
-        wb_bundle_add_force(body, end_of(body, struck, c), force[c]);
+        wb_bundle_body_add_force(body, end_of(body, struck, c), force[c]);
         arm[c] = body->position[end_of(body, struck, c)];
-        impulse[c] = 0.5 * bundle->time_step * force[c];
+        impulse[c] = 0.5 * bodies->time_step * force[c];
     }
     for (int c = 0; c < 3; c++)
         moment[c] =
@@ -118,23 +119,23 @@ static void an_end_that_is_struck_tumbles_as_a_rigid_body(void **unused)
     const double size =
         sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1] + impulse[2] * impulse[2]);
     for (int i = 0; i < 5000; i++) {
-        wb_bundle_cap_advance(bundle->cap, i == 0 ? 0.5 : 1.0);
-        const struct sums sums = sum_up(bundle);
+        wb_bundle_cap_advance(part->cap, i == 0 ? 0.5 : 1.0);
+        const struct sums sums = sum_up(bodies);
         for (int c = 0; c < 3; c++) {
             assert_close(sums.momentum[c], impulse[c], 1e-9 * size);
             assert_close(sums.angular[c], moment[c], 1e-9 * size * arm[0]);
-            wb_bundle_add_force(body, end_of(body, struck, c),
-                                -wb_bundle_force_at(body, end_of(body, struck, c)));
+            wb_bundle_body_add_force(body, end_of(body, struck, c),
+                                     -wb_bundle_body_force(body, end_of(body, struck, c)));
         }
         energy = i == 0 ? sums.kinetic : energy;
         assert_close_relative(sums.kinetic, energy, 1e-3);
         if (i > 0)
-            assert_close_relative(wb_bundle_cap_kinetic(bundle->cap), energy, 1e-3);
-        move_end(bundle);
+            assert_close_relative(wb_bundle_cap_kinetic(part->cap), energy, 1e-3);
+        move_end(bodies);
         double square = 0.0, x[2];
         for (int c = 0; c < 3; c++) {
             for (int w = 0; w < 2; w++)
-                x[w] = bundle->wire[w].position[end_of(&bundle->wire[w], w ? struck : 0, c)];
+                x[w] = bodies->wire[w].position[end_of(&bodies->wire[w], w ? struck : 0, c)];
             square += (x[1] - x[0]) * (x[1] - x[0]);
             last = c == 1 ? (x[1] - x[0]) : last;
         }
@@ -143,7 +144,7 @@ static void an_end_that_is_struck_tumbles_as_a_rigid_body(void **unused)
         assert_close_relative(square, before, 1e-9);
     }
     assert_true(along < -0.5);
-    wb_bundle_destroy(bundle);
+    wb_bundle_part_destroy(part);
 }
 
 int main(void)

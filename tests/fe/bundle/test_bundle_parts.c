@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "fe/bundle/bundle_parts.h"
 #include "fe/team/team.h"
 
 enum {
@@ -311,7 +312,7 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
         wb_bundle_lead(bundle, way, duration);
         assert_int_equal(wb_bundle_advance(bundle, 137), WB_OK);
         wb_checkpoint_init(&checkpoint);
-        wb_bundle_carry(bundle, &checkpoint);
+        wb_bundle_visit(bundle, &checkpoint);
         assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
         advance(bundle, 4);
         take(bundle, &straight);
@@ -319,7 +320,7 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
 
         bundle = create(threads);
         wb_checkpoint_rewind(&checkpoint);
-        wb_bundle_carry(bundle, &checkpoint);
+        wb_bundle_visit(bundle, &checkpoint);
         assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
         advance(bundle, 4);
         take(bundle, &resumed);
@@ -338,17 +339,17 @@ static void a_checkpoint_that_ends_early_is_refused(void **unused)
     struct wb_bundle *bundle = create(2);
     wb_bundle_lead(bundle, way, duration);
     wb_checkpoint_init(&checkpoint);
-    wb_bundle_carry(bundle, &checkpoint);
+    wb_bundle_visit(bundle, &checkpoint);
     assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
     char messages[1024] = "";
     checkpoint.size /= 4; /* in the first part */
     wb_checkpoint_rewind(&checkpoint);
     wb_log_set_sink(keep_message, messages);
-    wb_bundle_carry(bundle, &checkpoint);
+    wb_bundle_visit(bundle, &checkpoint);
     wb_log_set_sink(NULL, NULL);
     assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_ERR_DATA);
     assert_true(checkpoint.at <= checkpoint.size);
-    assert_non_null(strstr(messages, "in part 1"));
+    assert_non_null(strstr(messages, "'part 1/"));
     wb_bundle_destroy(bundle);
     wb_checkpoint_release(&checkpoint);
 }
@@ -423,7 +424,7 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
         const struct wb_bundle_run_options plain = {.threads = threads};
         run_with(&plain);
         assert_int_equal(history.parts, threads);
-        assert_int_equal(history.rows[8].phase, WB_HISTORY_SLACK);
+        assert_int_equal(history.rows[8].phase, WB_PHASE_SLACK);
         const struct wb_bundle_history straight = history;
         history = (struct wb_bundle_history){0};
 

@@ -332,7 +332,7 @@ static void all_instructions_agree(void **unused)
                 uint64_t seed = 3;
                 struct wb_swept_hex *hex;
                 model.double_precision = way % 2 == 0;
-                model.instructions = (enum wb_swept_hex_instructions)(1 + way / 2);
+                model.instructions = (enum wb_swept_instructions)(1 + way / 2);
                 if (wb_swept_hex_create(&hex, &model) != WB_OK) {
                     assert_true(way > 1);
                     continue;

@@ -1,0 +1,129 @@
+/* The bodies of a bundle, or of a part of it along its axis: wires, and the tape's ring with its
+ * directors, as swept meshes with their fields and steps.
+ *
+ * Contact, bonds and the capped end act on them and are made from them; they know nothing of each
+ * other, nor of parts (fe/bundle/bundle_part.h).
+ */
+#ifndef WB_FE_BUNDLE_BUNDLE_BODY_H
+#define WB_FE_BUNDLE_BUNDLE_BODY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/checkpoint.h"
+#include "base/status.h"
+#include "fe/model/bundle_model.h"
+#include "fe/swept/swept_hex.h"
+#include "fe/swept/swept_step.h"
+#include "fe/swept/swept_tape.h"
+
+enum {
+    WB_BUNDLE_MOST_BODIES = WB_PACKING_MOST + 2 /* wires, the tape's ring and its directors */
+};
+
+/* --- one body --- */
+
+struct wb_bundle_body {
+    struct wb_swept_layout layout;
+    double *position, *velocity; /* owned, as the force */
+    void *force;                 /* float, or double of a run in double precision */
+    bool is_double;
+    const struct wb_swept_step *step; /* owned elsewhere */
+    const double *node_mass;          /* (n_nodes) kg/m, unscaled; owned elsewhere */
+    double mass;                      /* kg/m, unscaled */
+    double start;                     /* m: mean height of the section, unscaled masses */
+};
+
+/* A place of the force field, N; bytes of one. */
+double wb_bundle_body_force(const struct wb_bundle_body *body, size_t at);
+void wb_bundle_body_add_force(struct wb_bundle_body *body, size_t at, double force);
+size_t wb_bundle_body_force_size(const struct wb_bundle_body *body);
+
+/* --- all bodies --- */
+
+/* What the wires of one type share. */
+struct wb_bundle_type {
+    struct wb_swept_section section;
+    struct wb_swept_hex *hex;
+    struct wb_swept_step *step;
+    double *node_mass; /* (n_nodes) kg/m */
+};
+
+/* Which stations of the whole bundle the bodies have. */
+struct wb_bundle_extent {
+    int first, n_stations;     /* the first, of the whole; how many */
+    int n_whole;               /* stations of the whole */
+    struct wb_swept_range own; /* of these: those that are counted and moved. The others belong to
+                                  neighbours and are only computed */
+};
+
+struct wb_bundle_bodies {
+    const struct wb_bundle_model *model; /* borrowed */
+    const struct wb_bundle_mesh *mesh;
+    struct wb_bundle_extent extent;
+    double spacing;   /* m, of stations */
+    double gravity;   /* m/s2, downwards */
+    double time_step; /* s */
+
+    struct wb_bundle_type type[WB_BUNDLE_MODEL_TYPES];
+    int n_wires;
+    struct wb_bundle_body wire[WB_PACKING_MOST];
+    struct wb_swept_hex_state *wire_state[WB_PACKING_MOST]; /* of their material */
+    const double *positions[WB_PACKING_MOST];               /* the wires' fields, side by side */
+    void *forces[WB_PACKING_MOST];
+    bool is_large; /* the fields do not stay in a core's cache from step to step */
+
+    bool has_tape;
+    struct wb_swept_tape *tape;
+    struct wb_swept_tape_state *tape_state; /* of its material */
+    struct wb_swept_step *tape_step, *director_step;
+    double *tape_mass, *tape_inertia; /* (ring nodes) kg/m, kg m */
+    struct wb_bundle_body ring, directors;
+};
+
+/* The wires, straight and at rest; the tape is made by wb_bundle_tape_create(). To be released also
+ * on failure. */
+WB_MUST_CHECK enum wb_status wb_bundle_bodies_init(struct wb_bundle_bodies *bodies,
+                                                   const struct wb_bundle_model *model,
+                                                   const struct wb_bundle_mesh *mesh,
+                                                   const struct wb_bundle_extent *extent);
+/* With the tape; accepts zeroed ones. */
+void wb_bundle_bodies_release(struct wb_bundle_bodies *bodies);
+
+/* Zeroed fields of another body; steps of a body, which must be destroyed. */
+WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
+                                                            struct wb_bundle_body *body,
+                                                            struct wb_swept_layout layout);
+WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle_bodies *bodies,
+                                                          struct wb_swept_layout layout,
+                                                          const double *node_mass, double gravity,
+                                                          struct wb_swept_step **out);
+
+/* Holds all nodes of a station. */
+void wb_bundle_bodies_hold(const struct wb_bundle_bodies *bodies, int station);
+
+/* Wires, ring and directors; how many. */
+int wb_bundle_bodies_list(struct wb_bundle_bodies *bodies,
+                          struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES]);
+
+/* The last station that the clamp holds, of the whole. */
+int wb_bundle_bodies_last_held(const struct wb_bundle_bodies *bodies);
+
+/* Whether the tip is one of their own stations. */
+bool wb_bundle_bodies_have_tip(const struct wb_bundle_bodies *bodies);
+
+/* Kilograms of a body's station, scaled, half at the ends. */
+double wb_bundle_bodies_station_mass(const struct wb_bundle_bodies *bodies,
+                                     const struct wb_bundle_body *body, int station);
+
+/* All that moves stands still. */
+void wb_bundle_bodies_stop(struct wb_bundle_bodies *bodies);
+
+/* The weight's potential and the plastic work, J, of their own stations. */
+double wb_bundle_bodies_potential(const struct wb_bundle_bodies *bodies);
+double wb_bundle_bodies_plastic_work(const struct wb_bundle_bodies *bodies);
+
+/* Saves or restores fields and the states of materials. */
+void wb_bundle_bodies_visit(struct wb_bundle_bodies *bodies, struct wb_checkpoint *checkpoint);
+
+#endif

@@ -1,0 +1,86 @@
+/* A part of a bundle: its bodies over some of the stations, with contact, the tape's hold on the
+ * wires and the capped end, and how all of it makes a step in time.
+ *
+ * A bundle is a row of one or more parts (fe/bundle/bundle_parts.h); the part that owns the last
+ * station leads the tip. A part knows nothing of its neighbours: it computes the stations that they
+ * own as well, and somebody else brings their positions.
+ */
+#ifndef WB_FE_BUNDLE_BUNDLE_PART_H
+#define WB_FE_BUNDLE_BUNDLE_PART_H
+
+#include <stdbool.h>
+
+#include "base/checkpoint.h"
+#include "base/status.h"
+#include "fe/bundle/bundle_body.h"
+#include "fe/bundle/bundle_bond.h"
+#include "fe/bundle/bundle_cap.h"
+#include "fe/swept/swept_contact.h"
+
+/* The way of the tip: a smooth step from one deflection to another. */
+struct wb_bundle_way {
+    double from, to;        /* m */
+    double start, duration; /* s */
+    bool let_go;            /* no force acts on the tip */
+};
+
+/* How far the steps have come. */
+struct wb_bundle_clock {
+    double time; /* s, of all steps since creation but settling */
+    long long steps;
+    bool has_moved; /* velocities are half a step behind positions */
+};
+
+/* What the last step tells; works are sums over steps. */
+struct wb_bundle_account {
+    double tension, vertical; /* N */
+    double pull[3];           /* N, on the tip */
+    bool slack;
+    double tip_work, friction_work, damage_work; /* J */
+    double kinetic;                              /* J */
+    struct wb_swept_contact_energies touching;
+    struct wb_swept_hex_sums wires;
+    struct wb_swept_tape_sums shells;
+    struct wb_bundle_bond_energies bonded;
+};
+
+struct wb_bundle_part {
+    struct wb_bundle_bodies bodies;
+    struct wb_swept_contact *contact; /* NULL with one wire */
+    struct wb_bundle_bond *bond;      /* NULL without tape */
+    struct wb_bundle_cap *cap;        /* NULL: the tip is free, or another part's */
+    struct wb_bundle_way way;
+    struct wb_bundle_clock clock;
+    struct wb_bundle_account account;
+};
+
+/* The whole bundle as one part, straight and at rest. Its step is `safety` times the bound of the
+ * stable one. On failure *out is NULL. */
+WB_MUST_CHECK enum wb_status wb_bundle_part_create_whole(struct wb_bundle_part **out,
+                                                         const struct wb_bundle_model *model,
+                                                         const struct wb_bundle_mesh *mesh,
+                                                         double safety);
+/* The stations of the whole from `first` on, of which it owns some; its step is that of the whole.
+ */
+WB_MUST_CHECK enum wb_status wb_bundle_part_create(struct wb_bundle_part **out,
+                                                   const struct wb_bundle_part *whole, int first,
+                                                   int n_stations, struct wb_swept_range own);
+void wb_bundle_part_destroy(struct wb_bundle_part *part); /* accepts NULL */
+
+/* One step; `look` keeps what energies need. WB_ERR_DATA when the run is lost. */
+WB_MUST_CHECK enum wb_status wb_bundle_part_step(struct wb_bundle_part *part, bool look);
+
+/* All that moves stands still. */
+void wb_bundle_part_stop(struct wb_bundle_part *part);
+
+/* Mean position of the tip over masses, m; its height less that of the straight bundle. */
+void wb_bundle_part_tip(const struct wb_bundle_part *part, double position[3]);
+
+/* Where the tip is led to at a time, m. */
+double wb_bundle_part_target(const struct wb_bundle_part *part, double time);
+
+/* Saves or restores fields, the states of materials and contacts; and way, clock and account. */
+void wb_bundle_part_visit_fields(struct wb_bundle_part *part, struct wb_checkpoint *checkpoint);
+void wb_bundle_part_visit_progress(struct wb_bundle_part *part, struct wb_checkpoint *checkpoint);
+
+#endif
