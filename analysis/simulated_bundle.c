@@ -148,7 +148,7 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
     wb_json_set_boolean(object, "converged", h->converged);
     wb_json_set_boolean(object, "stopped", h->stopped);
     if (!h->converged)
-        wb_json_set_text(object, "problem", h->problem);
+        wb_json_set_text(object, "problem", h->reason.text);
     wb_json_set_number(object, "zero_force_N", h->zero_force);
     wb_json_set_integer(object, "threads", h->parts > 0 ? h->parts / wb_team_ranks() : 1);
     wb_json_set_integer(object, "ranks", wb_team_ranks());

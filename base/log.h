@@ -33,8 +33,6 @@ void wb_log_set_sink(wb_log_sink *sink, void *context);
 /* Lets `tap` see the errors and warnings of the calling thread as well, whatever the threshold, for
  * those who report why something failed; NULL ends it. Called before the sink, without a lock. */
 void wb_log_set_tap(wb_log_sink *tap, void *context);
-/* The tap that is set, and its context, for those who set another for a while. */
-wb_log_sink *wb_log_get_tap(void **context);
 
 /* From now on graver messages of the calling thread are delivered as `level`, also to its tap
  * (which sees them even so): for those who try what may well fail. WB_LOG_ERROR ends it. Returns

@@ -248,7 +248,7 @@ static void warn(const struct run *run)
     const char *name = run->model.name;
 
     if (!h->converged)
-        wb_warn("%s: the run was lost: %s; %d of %d rows were computed", name, h->problem,
+        wb_warn("%s: the run was lost: %s; %d of %d rows were computed", name, h->reason.text,
                 h->n_rows, h->capacity);
     if (h->stopped)
         wb_warn("stopped after %d rows", h->n_rows);

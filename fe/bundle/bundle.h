@@ -22,6 +22,7 @@
 #include <stdbool.h>
 
 #include "base/checkpoint.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/model/bundle_model.h"
 
@@ -92,24 +93,27 @@ struct wb_bundle_watch {
 
 /* Brings the weight on with the tip held at zero, at rest: motion is stopped whenever its energy
  * begins to fall, until it is small. Nothing without weight. WB_ERR_CONVERGENCE when it does not
- * come to rest. `watch` may be NULL. */
+ * come to rest, WB_ERR_DATA as of wb_bundle_advance(). `watch` may be NULL, and `reason`, which
+ * gets why it failed: then the log gets it. */
 WB_MUST_CHECK enum wb_status wb_bundle_settle(struct wb_bundle *bundle,
-                                              const struct wb_bundle_watch *watch);
+                                              const struct wb_bundle_watch *watch,
+                                              struct wb_reason *reason);
 
 /* Lets go of the tip, as a slack strand does: it comes to rest where nothing acts on it but the
  * weight. Motion is stopped as in settling; the energy this takes is counted as work from outside.
- * The tip's target is where it rests. WB_ERR_CONVERGENCE when it does not come to rest. `watch` may
- * be NULL. */
+ * The tip's target is where it rests. Failures as of wb_bundle_settle(). */
 WB_MUST_CHECK enum wb_status wb_bundle_let_go(struct wb_bundle *bundle,
-                                              const struct wb_bundle_watch *watch);
+                                              const struct wb_bundle_watch *watch,
+                                              struct wb_reason *reason);
 
 /* Leads the tip from its present target to `deflection` (m) within the time given (s), by a smooth
  * step, from now on. */
 void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration);
 
 /* `n` steps. WB_ERR_DATA when the run is lost (a number is not finite, wires pass through each
- * other), with the reason. */
-WB_MUST_CHECK enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n);
+ * other): `reason` gets why, NULL: the log gets it. */
+WB_MUST_CHECK enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n,
+                                               struct wb_reason *reason);
 
 void wb_bundle_get_state(const struct wb_bundle *bundle, struct wb_bundle_state *state);
 

@@ -10,6 +10,7 @@
 #define WB_FE_BUNDLE_BUNDLE_BOND_H
 
 #include "base/checkpoint.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_body.h"
 
@@ -22,9 +23,12 @@ struct wb_bundle_bond_energies {
     double deepest;            /* m, penetration of the tape into a wire */
 };
 
-/* For bodies whose wires and ring are made; they must outlive it. */
+/* For bodies whose wires and ring are made. `reason` gets why a step was lost. Both must outlive
+ * it.
+ */
 WB_MUST_CHECK enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out,
-                                                   struct wb_bundle_bodies *bodies);
+                                                   struct wb_bundle_bodies *bodies,
+                                                   struct wb_reason *reason);
 void wb_bundle_bond_destroy(struct wb_bundle_bond *bond); /* accepts NULL */
 
 /* Adds the forces of interface and contact to the ring's and the wires' at their present positions.

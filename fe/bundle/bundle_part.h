@@ -11,6 +11,7 @@
 #include <stdbool.h>
 
 #include "base/checkpoint.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_body.h"
 #include "fe/bundle/bundle_bond.h"
@@ -52,6 +53,7 @@ struct wb_bundle_part {
     struct wb_bundle_way way;
     struct wb_bundle_clock clock;
     struct wb_bundle_account account;
+    struct wb_reason reason; /* why the last step was lost */
 };
 
 /* The whole bundle as one part, straight and at rest. Its step is `safety` times the bound of the
@@ -67,7 +69,8 @@ WB_MUST_CHECK enum wb_status wb_bundle_part_create(struct wb_bundle_part **out,
                                                    int n_stations, struct wb_swept_range own);
 void wb_bundle_part_destroy(struct wb_bundle_part *part); /* accepts NULL */
 
-/* One step; `look` keeps what energies need. WB_ERR_DATA when the run is lost. */
+/* One step; `look` keeps what energies need. WB_ERR_DATA when the run is lost: part->reason says
+ * why. */
 WB_MUST_CHECK enum wb_status wb_bundle_part_step(struct wb_bundle_part *part, bool look);
 
 /* All that moves stands still. */

@@ -21,6 +21,7 @@
 #define WB_FE_BUNDLE_BUNDLE_PARTS_H
 
 #include "base/checkpoint.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_part.h"
 
@@ -36,8 +37,10 @@ void wb_bundle_parts_destroy(struct wb_bundle_parts *parts); /* accepts NULL */
 
 int wb_bundle_parts_count(const struct wb_bundle_parts *parts);
 
-/* `n` steps of all parts; the whole's clock and account follow. */
-WB_MUST_CHECK enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n);
+/* `n` steps of all parts; the whole's clock and account follow. Where the run is lost `reason` gets
+ * why, NULL: the log gets it. */
+WB_MUST_CHECK enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n,
+                                                     struct wb_reason *reason);
 
 /* All that moves stands still. */
 void wb_bundle_parts_stop(struct wb_bundle_parts *parts);

@@ -1,9 +1,7 @@
 #include "fe/bundle/bundle_run_private.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/log.h"
 #include "base/units.h"
@@ -84,19 +82,15 @@ static int branches_of(const struct wb_bundle_model *model)
     return model->run.cycles == 0 ? 1 : 2 * model->run.cycles;
 }
 
-/* A run that is lost keeps the reason that was given. */
-static void keep_reason(void *context, enum wb_log_level level, const char *domain,
-                        const char *message)
-{
-    struct wb_bundle_run_now *r = context;
-    (void)level, (void)domain;
-    snprintf(r->history->problem, sizeof r->history->problem, "%s", message);
-}
-
 static enum verdict lose(struct wb_bundle_run_now *r)
 {
-    if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE)
+    const struct wb_reason *const reason = &r->history->reason;
+
+    if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE) {
+        if (reason->text[0])
+            wb_error("%s", reason->text);
         return NO_MEMORY;
+    }
     r->status = WB_OK;
     r->history->converged = false;
     return DONE;
@@ -143,23 +137,20 @@ enum motion {
 static enum verdict move(struct wb_bundle_run_now *r, enum motion motion, int n)
 {
     const struct wb_bundle_watch watch = {rest_is_wanted, r};
+    struct wb_reason *const reason = &r->history->reason;
 
-    r->history->problem[0] = '\0';
-    wb_log_set_tap(keep_reason, r);
-    const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
+    *reason = (struct wb_reason){0};
     switch (motion) {
     case STEPS:
-        r->status = wb_bundle_advance(r->bundle, n);
+        r->status = wb_bundle_advance(r->bundle, n, reason);
         break;
     case SETTLING:
-        r->status = wb_bundle_settle(r->bundle, &watch);
+        r->status = wb_bundle_settle(r->bundle, &watch, reason);
         break;
     case LETTING_GO:
-        r->status = wb_bundle_let_go(r->bundle, &watch);
+        r->status = wb_bundle_let_go(r->bundle, &watch, reason);
         break;
     }
-    wb_log_set_gravest(before);
-    wb_log_set_tap(NULL, NULL);
     if (r->status != WB_OK)
         return lose(r);
     wb_bundle_get_state(r->bundle, &r->state);
@@ -231,10 +222,10 @@ static enum verdict look(struct wb_bundle_run_now *r, struct wb_bundle_energies 
     largest->artificial = fmax(largest->artificial, r->artificial);
     largest->imbalance = fmax(largest->imbalance, imbalance);
     if (!(imbalance <= lost_balance)) {
-        snprintf(r->history->problem, sizeof r->history->problem,
-                 "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
-                 "are missing or too much",
-                 r->state.deflection / WB_MM, r->state.steps, imbalance);
+        wb_reason_set(&r->history->reason,
+                      "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
+                      "are missing or too much",
+                      r->state.deflection / WB_MM, r->state.steps, imbalance);
         r->status = WB_ERR_DATA;
         return lose(r);
     }
@@ -617,7 +608,7 @@ static void begin_history(struct wb_bundle_run_now *r)
     h->duration = h->chosen ? guess_duration(r->model, r->from) : r->model->run.duration;
     h->converged = true;
     h->stopped = h->kept = h->resumed = false;
-    h->problem[0] = '\0';
+    h->reason = (struct wb_reason){0};
     h->attempts = 0;
     h->all_steps = 0;
 }

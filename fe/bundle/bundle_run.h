@@ -29,6 +29,7 @@
 
 #include <stdbool.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/bundle/bundle.h"
 #include "fe/model/bundle_model.h"
@@ -65,23 +66,23 @@ struct wb_bundle_history {
     int n_rows, capacity;
     struct wb_bundle_row *rows; /* (n_rows), owned; only those reached */
     int n_shape;
-    double *shape_s;     /* (n_shape) m, reference arc lengths, owned */
-    double (*shape)[3];  /* (n_rows x n_shape), m, owned */
-    bool converged;      /* false: ends early */
-    bool stopped;        /* by the observer */
-    bool kept;           /* stopped, and the checkpoint holds all until then */
-    bool resumed;        /* from a checkpoint */
-    char problem[320];   /* where and why it was lost; "" otherwise */
-    double zero_force;   /* N: subtracted from `force` */
-    double duration;     /* s, of a loading */
-    bool chosen;         /* the duration, by the limit */
-    bool exceeded;       /* the limit, by the last attempt */
-    int attempts;        /* the runs begun; those before the last gave no rows */
-    double time_step;    /* s */
-    long hexahedra;      /* in all wires */
-    int shells;          /* of the tape */
-    long long steps;     /* of the last attempt, with settling */
-    long long all_steps; /* of all attempts */
+    double *shape_s;         /* (n_shape) m, reference arc lengths, owned */
+    double (*shape)[3];      /* (n_rows x n_shape), m, owned */
+    bool converged;          /* false: ends early */
+    bool stopped;            /* by the observer */
+    bool kept;               /* stopped, and the checkpoint holds all until then */
+    bool resumed;            /* from a checkpoint */
+    struct wb_reason reason; /* where and why it was lost */
+    double zero_force;       /* N: subtracted from `force` */
+    double duration;         /* s, of a loading */
+    bool chosen;             /* the duration, by the limit */
+    bool exceeded;           /* the limit, by the last attempt */
+    int attempts;            /* the runs begun; those before the last gave no rows */
+    double time_step;        /* s */
+    long hexahedra;          /* in all wires */
+    int shells;              /* of the tape */
+    long long steps;         /* of the last attempt, with settling */
+    long long all_steps;     /* of all attempts */
     struct wb_bundle_extremes largest;
     int parts;        /* along the axis, each with a thread of its own (of all ranks) */
     double wall, cpu; /* s, of all attempts, also before a checkpoint; cpu of all ranks */

@@ -77,7 +77,7 @@ static void visit_history(struct wb_bundle_history *h, struct wb_checkpoint *c)
     wb_checkpoint_visit(c, "rows", h->rows, rows * sizeof *h->rows);
     wb_checkpoint_visit(c, "shape", h->shape, places * sizeof *h->shape);
     wb_checkpoint_visit_member(c, h, converged);
-    wb_checkpoint_visit_member(c, h, problem);
+    wb_checkpoint_visit_member(c, h, reason);
     wb_checkpoint_visit_member(c, h, zero_force);
     wb_checkpoint_visit_member(c, h, duration);
     wb_checkpoint_visit_member(c, h, chosen);

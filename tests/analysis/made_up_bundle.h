@@ -125,7 +125,7 @@ static inline void made_up_write(const struct made_up_bundle *bundle, const char
     assert_int_equal(wb_bundle_run_init(&history, m, MADE_UP_SHAPE), WB_OK);
     made_up_bend(bundle, &history);
     history.converged = history.n_rows == m->run.rows + 1;
-    snprintf(history.problem, sizeof history.problem, "made up");
+    wb_reason_set(&history.reason, "made up");
     history.duration = m->run.duration > 0.0 ? m->run.duration : 1.5;
     history.chosen = !(m->run.duration > 0.0);
     history.attempts = 1;

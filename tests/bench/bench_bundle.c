@@ -74,14 +74,14 @@ static double step_cost(clockid_t clock, const struct wb_bundle_settings *settin
         return -1.0;
     *time_step = wb_bundle_time_step(bundle);
     wb_bundle_lead(bundle, model.run.deflection, settings->duration);
-    if (wb_bundle_advance(bundle, (int)(after / *time_step)) != WB_OK) {
+    if (wb_bundle_advance(bundle, (int)(after / *time_step), NULL) != WB_OK) {
         wb_bundle_destroy(bundle);
         return -1.0;
     }
     for (int round = 0; round <= rounds; round++) {
         const int n = round == 0 ? 1 + steps / 10 : steps;
         const double start = seconds(clock);
-        if (wb_bundle_advance(bundle, n) != WB_OK) {
+        if (wb_bundle_advance(bundle, n, NULL) != WB_OK) {
             cost = -1.0;
             break;
         }
@@ -186,7 +186,7 @@ static double run_loading(struct wb_bundle_history *history, double stop_at)
     const double start = cpu_now();
 
     if (wb_bundle_run(history, &model, NULL, &observer) != WB_OK || !history->converged) {
-        printf("lost: %s\n", history->problem);
+        printf("lost: %s\n", history->reason.text);
         return -1.0;
     }
     const double end = cpu_now();

@@ -17,7 +17,7 @@ static inline void lead_and_check(struct wb_bundle *bundle, double deflection, d
     wb_bundle_lead(bundle, deflection, duration);
     for (int i = 0; i < steps; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
-        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
         for (int c = 0; c < 3; c++) {
             const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];

@@ -48,7 +48,7 @@ static void under_its_weight_it_hangs_as_a_propped_beam(void **unused)
 
     read_model(ONE RUN("deflection_mm: 40") "loads: {weight: true}\n");
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    assert_int_equal(wb_bundle_settle(bundle, NULL), WB_OK);
+    assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
     for (int i = 0; i < 19; i++)
         s[i] = L * (i + 1) / 20;
     wb_bundle_shape(bundle, 19, s, shape);
@@ -83,7 +83,7 @@ static void momentum_comes_from_outside_alone(void **unused)
     wb_bundle_lead(bundle, 20e-3, settings.duration);
     for (int i = 0; i < 2000; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
-        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
         for (int c = 0; c < 3; c++) {
             const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];
@@ -151,7 +151,7 @@ static void a_strand_that_is_too_short_is_told(void **unused)
     run_model(NULL);
     wb_log_set_sink(NULL, NULL);
     assert_false(history.converged);
-    assert_non_null(strstr(history.problem, "the strand of 10 mm"));
+    assert_non_null(strstr(history.reason.text, "the strand of 10 mm"));
 }
 
 /* As a wire that is shorter by what the epoxy holds. */

@@ -58,7 +58,7 @@ static struct wb_bundle *create(int threads)
 static void advance(struct wb_bundle *bundle, int rounds)
 {
     for (int i = 0; i < rounds; i++)
-        assert_int_equal(wb_bundle_advance(bundle, STEPS), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, STEPS, NULL), WB_OK);
 }
 
 static void bend(int threads, struct result *out)
@@ -193,7 +193,7 @@ static void momentum_comes_from_outside_alone(void **unused)
     struct wb_bundle *bundle = create(3);
     wb_bundle_lead(bundle, way, duration);
     for (int i = 0; i < 400; i++) {
-        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
         const double force = outside.clamp[1] + outside.tip[1] + outside.weight[1];
         impulse += force * wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
@@ -240,7 +240,7 @@ static void parts_settle_under_the_weight(void **unused)
     read_model(CAPPED);
     for (int i = 0; i < 2; i++) {
         struct wb_bundle *bundle = create(i + 1);
-        assert_int_equal(wb_bundle_settle(bundle, NULL), WB_OK);
+        assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
         take(bundle, &result[i]);
         wb_bundle_destroy(bundle);
     }
@@ -274,27 +274,38 @@ static void keep_message(void *context, enum wb_log_level level, const char *dom
     snprintf((char *)context + used, 1024 - used, "%s\n", message);
 }
 
-/* A part that is lost keeps nobody waiting, and its reason is told once. */
+static enum wb_status advance_to_the_end(struct wb_reason *reason)
+{
+    const struct wb_bundle_settings settings = {
+        .duration = duration, .threads = 3, .step_safety = 3.0};
+    struct wb_bundle *bundle;
+    enum wb_status status = WB_OK;
+    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
+    wb_bundle_lead(bundle, way, duration);
+    for (int i = 0; i < 100 && status == WB_OK; i++)
+        status = wb_bundle_advance(bundle, STEPS, reason);
+    wb_bundle_destroy(bundle);
+    return status;
+}
+
+/* A part that is lost keeps nobody waiting; its reason is told once, to the log or to the caller.
+ */
 static void a_lost_part_ends_the_run(void **unused)
 {
     (void)unused;
-    const struct wb_bundle_settings settings = {
-        .duration = duration, .threads = 3, .step_safety = 3.0};
-    char messages[1024] = "";
-    struct wb_bundle *bundle;
-    enum wb_status status = WB_OK;
+    struct wb_reason reason = {0};
+    char messages[1024] = "", none[1024] = "";
     read_model(FINE);
-    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    wb_bundle_lead(bundle, way, duration);
     wb_log_set_sink(keep_message, messages);
-    for (int i = 0; i < 100 && status == WB_OK; i++)
-        status = wb_bundle_advance(bundle, STEPS);
+    assert_int_equal(advance_to_the_end(NULL), WB_ERR_DATA);
+    wb_log_set_sink(keep_message, none);
+    assert_int_equal(advance_to_the_end(&reason), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
-    assert_int_equal(status, WB_ERR_DATA);
     assert_non_null(strchr(messages, '\n'));
     assert_string_equal(strchr(messages, '\n'), "\n");
     assert_true(strlen(messages) > 10);
-    wb_bundle_destroy(bundle);
+    assert_string_equal(none, "");
+    assert_memory_equal(reason.text, messages, strlen(messages) - 1);
 }
 
 /* --- checkpoints --- */
@@ -310,7 +321,7 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
         struct wb_checkpoint checkpoint;
         struct wb_bundle *bundle = create(threads);
         wb_bundle_lead(bundle, way, duration);
-        assert_int_equal(wb_bundle_advance(bundle, 137), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 137, NULL), WB_OK);
         wb_checkpoint_init(&checkpoint);
         wb_bundle_visit(bundle, &checkpoint);
         assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
@@ -381,7 +392,7 @@ static void a_lost_run_tells_its_reason(void **unused)
         assert_int_equal(wb_bundle_run_with(&history, &model, &options), WB_OK);
         assert_int_equal(history.parts, threads);
         assert_false(history.converged);
-        assert_true(strlen(history.problem) > 10);
+        assert_true(strlen(history.reason.text) > 10);
     }
 }
 
