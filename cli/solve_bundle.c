@@ -157,7 +157,7 @@ static enum wb_status compute(struct run *run)
         .checkpoint_interval = run->options->checkpoint_interval,
         .observer = &observer,
     };
-    const enum wb_status status = wb_bundle_run_with(&run->history, &run->model, &options);
+    const enum wb_status status = wb_bundle_run(&run->history, &run->model, &options);
 
     if (run->attempt > 0)
         wb_progress_finish(&run->progress);

@@ -128,16 +128,11 @@ struct wb_bundle_run_options {
     const struct wb_bundle_observer *observer; /* may be NULL */
 };
 
-/* Runs the model's test on its mesh `mesh` (NULL: its own). A run that is lost on the way is a
- * result: converged is false, completed rows stay. `observer` may be NULL. */
+/* Runs the model's test; `options` may be NULL. A run that is lost on the way is a result:
+ * converged is false, completed rows stay. The checkpoint's file stays, too: the caller removes it
+ * when a run that was not stopped is safe elsewhere. */
 WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_history *history,
-                                           const struct wb_bundle_model *model, const char *mesh,
-                                           const struct wb_bundle_observer *observer);
-
-/* The same, with all that can be chosen; NULL: nothing is. The checkpoint's file stays: the caller
- * removes it when a run that was not stopped is safe elsewhere. */
-WB_MUST_CHECK enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
-                                                const struct wb_bundle_model *model,
-                                                const struct wb_bundle_run_options *options);
+                                           const struct wb_bundle_model *model,
+                                           const struct wb_bundle_run_options *options);
 
 #endif

@@ -183,9 +183,10 @@ static double run_loading(struct wb_bundle_history *history, double stop_at)
 {
     struct stop stop = {.at = stop_at};
     const struct wb_bundle_observer observer = {.progress = watch, .context = &stop};
+    const struct wb_bundle_run_options options = {.observer = &observer};
     const double start = cpu_now();
 
-    if (wb_bundle_run(history, &model, NULL, &observer) != WB_OK || !history->converged) {
+    if (wb_bundle_run(history, &model, &options) != WB_OK || !history->converged) {
         printf("lost: %s\n", history->reason.text);
         return -1.0;
     }

@@ -54,9 +54,10 @@ static inline void read_model(const char *lines)
 
 static inline void run_model(const struct wb_bundle_observer *observer)
 {
+    const struct wb_bundle_run_options options = {.observer = observer};
     wb_bundle_run_release(&history);
     assert_int_equal(wb_bundle_run_init(&history, &model, 21), WB_OK);
-    assert_int_equal(wb_bundle_run(&history, &model, NULL, observer), WB_OK);
+    assert_int_equal(wb_bundle_run(&history, &model, &options), WB_OK);
 }
 
 #define ONE "wires: [{wire: type3}]\npacking: hexagon\n"

@@ -376,7 +376,7 @@ static void run_with(const struct wb_bundle_run_options *options)
 {
     wb_bundle_run_release(&history);
     assert_int_equal(wb_bundle_run_init(&history, &model, 5), WB_OK);
-    assert_int_equal(wb_bundle_run_with(&history, &model, options), WB_OK);
+    assert_int_equal(wb_bundle_run(&history, &model, options), WB_OK);
     assert_true(history.converged);
 }
 
@@ -389,7 +389,7 @@ static void a_lost_run_tells_its_reason(void **unused)
         model.run.duration = 1e-4;
         wb_bundle_run_release(&history);
         assert_int_equal(wb_bundle_run_init(&history, &model, 0), WB_OK);
-        assert_int_equal(wb_bundle_run_with(&history, &model, &options), WB_OK);
+        assert_int_equal(wb_bundle_run(&history, &model, &options), WB_OK);
         assert_int_equal(history.parts, threads);
         assert_false(history.converged);
         assert_true(strlen(history.reason.text) > 10);
@@ -472,7 +472,7 @@ static void another_models_checkpoint_is_refused(void **unused)
     assert_true(history.stopped && wb_file_exists(file));
     wb_log_set_sink(keep_message, messages);
     model.interface.friction_static = 0.3;
-    assert_int_equal(wb_bundle_run_with(&history, &model, &options), WB_ERR_DATA);
+    assert_int_equal(wb_bundle_run(&history, &model, &options), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
     assert_non_null(strstr(messages, "another run"));
     assert_true(wb_file_exists(file));
