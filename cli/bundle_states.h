@@ -16,7 +16,7 @@
 struct wb_bundle_states {
     bool wants_surface, wants_vtk; /* set by the caller */
     int every;                     /* rows between VTK files; from 1 */
-    int turn;                      /* rows from turn to turn of the history, which have files too */
+    int turn;                      /* rows from turn to turn of the loading, which have files too */
     struct wb_vtk_file_series series; /* initialised by the caller */
     /* From here on made by wb_bundle_states_take(). */
     int attempt;
@@ -29,7 +29,7 @@ struct wb_bundle_states {
 
 /* Takes what is wanted of a row's state; for wb_bundle_observer's `place`. */
 WB_MUST_CHECK enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
-                                                   const struct wb_bundle_history *history,
+                                                   const struct wb_bundle_result *result,
                                                    const struct wb_bundle_row *row,
                                                    const struct wb_bundle *bundle);
 /* For wb_bundle_observer's `visit`. */

@@ -47,7 +47,7 @@ struct clocks {
 
 /* A test under way. */
 struct run {
-    struct wb_bundle_history *history;
+    struct wb_bundle_result *result;
     const struct wb_bundle_model *model;
     struct wb_bundle_run_options options;
     struct wb_bundle *bundle;
@@ -90,39 +90,39 @@ int wb_bundle_run_planned_rows(const struct wb_bundle_model *model)
     return 1 + model->run.rows * (model->run.cycles == 0 ? 1 : 2 * model->run.cycles);
 }
 
-enum wb_status wb_bundle_run_init(struct wb_bundle_history *history,
-                                  const struct wb_bundle_model *model, int n_shape)
+enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
+                                     const struct wb_bundle_model *model, int n_shape)
 {
-    *history = (struct wb_bundle_history){0};
+    *result = (struct wb_bundle_result){0};
     if (n_shape < 0 || n_shape == 1 || n_shape > MOST_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
                        n_shape, MOST_SHAPE);
 
     const size_t rows = (size_t)wb_bundle_run_planned_rows(model), n = (size_t)n_shape;
-    history->rows = calloc(rows, sizeof *history->rows);
+    result->rows = calloc(rows, sizeof *result->rows);
     if (n_shape > 0) {
-        history->shape_s = calloc(n, sizeof *history->shape_s);
-        history->shape = calloc(rows * n, sizeof *history->shape);
+        result->shape_s = calloc(n, sizeof *result->shape_s);
+        result->shape = calloc(rows * n, sizeof *result->shape);
     }
-    if (!history->rows || (n_shape > 0 && (!history->shape_s || !history->shape))) {
-        wb_bundle_run_release(history);
+    if (!result->rows || (n_shape > 0 && (!result->shape_s || !result->shape))) {
+        wb_bundle_result_release(result);
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
     }
-    history->capacity = (int)rows;
-    history->n_shape = n_shape;
+    result->capacity = (int)rows;
+    result->n_shape = n_shape;
     for (int i = 0; i < n_shape; i++)
-        history->shape_s[i] = model->length * i / (n_shape - 1);
+        result->shape_s[i] = model->length * i / (n_shape - 1);
     return WB_OK;
 }
 
-void wb_bundle_run_release(struct wb_bundle_history *history)
+void wb_bundle_result_release(struct wb_bundle_result *result)
 {
-    if (!history)
+    if (!result)
         return;
-    free(history->rows);
-    free(history->shape_s);
-    free(history->shape);
-    *history = (struct wb_bundle_history){0};
+    free(result->rows);
+    free(result->shape_s);
+    free(result->shape);
+    *result = (struct wb_bundle_result){0};
 }
 
 /* --- time --- */
@@ -139,15 +139,15 @@ static struct clocks read_clocks(void)
     return (struct clocks){seconds_of(CLOCK_MONOTONIC), seconds_of(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
-/* Into the history, what was spent so far. */
+/* Into the result, what was spent so far. */
 static void take_time(struct run *r)
 {
     const struct clocks at = read_clocks();
     double cpu = at.cpu - r->begun.cpu;
 
     wb_team_sum(&cpu, 1);
-    r->history->wall = r->wall_before + (at.wall - r->begun.wall);
-    r->history->cpu = r->cpu_before + cpu;
+    r->result->wall = r->wall_before + (at.wall - r->begun.wall);
+    r->result->cpu = r->cpu_before + cpu;
 }
 
 /* --- checkpoints --- */
@@ -172,18 +172,18 @@ static void identify(const struct run *r, char text[MOST_IDENTITY])
     snprintf(text, MOST_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
              "%s precision, %s, wirebench %s, program %.12s",
-             m->name, mesh, hash, r->history->n_shape,
+             m->name, mesh, hash, r->result->n_shape,
              wb_bundle_parts_of(m, mesh, r->options.threads),
              m->run.double_precision ? "double" : "single", wb_swept_hex_best_instructions(),
              wb_version_revision(), r->program);
 }
 
 /* Its memory stays; what it holds is saved or restored. */
-static void visit_history(struct wb_bundle_history *h, struct wb_checkpoint *c)
+static void visit_result(struct wb_bundle_result *h, struct wb_checkpoint *c)
 {
     const size_t rows = (size_t)h->capacity, places = rows * (size_t)h->n_shape;
 
-    wb_checkpoint_enter(c, "history");
+    wb_checkpoint_enter(c, "result");
     wb_checkpoint_visit_member(c, h, n_rows);
     wb_checkpoint_visit(c, "rows", h->rows, rows * sizeof *h->rows);
     wb_checkpoint_visit(c, "shape", h->shape, places * sizeof *h->shape);
@@ -234,7 +234,7 @@ static void visit_run(struct run *r, struct wb_checkpoint *c)
 {
     const struct wb_bundle_observer *observer = r->options.observer;
 
-    visit_history(r->history, c);
+    visit_result(r->result, c);
     if (observer && observer->visit) {
         wb_checkpoint_enter(c, "observer");
         observer->visit(observer->context, c);
@@ -261,8 +261,8 @@ static enum wb_status save(struct run *r)
     return wb_team_agree(status);
 }
 
-/* Reads what an earlier process left into `c`, which restores then; nothing where there is none. All
- * ranks get what rank 0 reads. */
+/* Reads what an earlier process left into `c`, which restores then; nothing where there is none.
+ * All ranks get what rank 0 reads. */
 static enum wb_status find_checkpoint(struct run *r, struct wb_checkpoint *c)
 {
     char identity[MOST_IDENTITY];
@@ -294,7 +294,7 @@ static enum wb_status find_checkpoint(struct run *r, struct wb_checkpoint *c)
 /* Restores the bundle, after all else. */
 static enum wb_status resume(struct run *r, struct wb_checkpoint *c)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
 
     wb_bundle_visit(r->bundle, c);
     WB_TRY(wb_team_agree(wb_checkpoint_finish(c)));
@@ -322,7 +322,7 @@ static int branches_of(const struct wb_bundle_model *model)
 
 static enum verdict lose(struct run *r)
 {
-    const struct wb_reason *const reason = &r->history->reason;
+    const struct wb_reason *const reason = &r->result->reason;
 
     if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE) {
         if (reason->text[0])
@@ -330,14 +330,14 @@ static enum verdict lose(struct run *r)
         return NO_MEMORY;
     }
     r->status = WB_OK;
-    r->history->converged = false;
+    r->result->converged = false;
     return DONE;
 }
 
 /* Whether the caller wants to go on. */
 static bool is_wanted(const struct run *r, bool rests)
 {
-    const struct wb_bundle_history *h = r->history;
+    const struct wb_bundle_result *h = r->result;
     const struct wb_bundle_observer *observer = r->options.observer;
     const double whole = h->duration * branches_of(r->model);
     const struct wb_bundle_progress progress = {
@@ -360,9 +360,9 @@ static bool rest_is_wanted(void *context)
     struct run *r = context;
 
     wb_bundle_get_state(r->bundle, &r->state);
-    bool wanted = is_wanted(r, true) || r->history->n_rows > 0;
+    bool wanted = is_wanted(r, true) || r->result->n_rows > 0;
     wb_team_share(&wanted, sizeof wanted, 0);
-    r->history->stopped = !wanted;
+    r->result->stopped = !wanted;
     return wanted;
 }
 
@@ -375,7 +375,7 @@ enum motion {
 static enum verdict move(struct run *r, enum motion motion, int n)
 {
     const struct wb_bundle_watch watch = {rest_is_wanted, r};
-    struct wb_reason *const reason = &r->history->reason;
+    struct wb_reason *const reason = &r->result->reason;
 
     *reason = (struct wb_reason){0};
     switch (motion) {
@@ -392,7 +392,7 @@ static enum verdict move(struct run *r, enum motion motion, int n)
     if (r->status != WB_OK)
         return lose(r);
     wb_bundle_get_state(r->bundle, &r->state);
-    return r->history->stopped ? DONE : GO_ON;
+    return r->result->stopped ? DONE : GO_ON;
 }
 
 static enum verdict advance(struct run *r, int n)
@@ -409,7 +409,7 @@ static double over(double part, double whole)
 
 static void count_limits(struct run *r)
 {
-    struct wb_bundle_extremes *largest = &r->history->largest;
+    struct wb_bundle_extremes *largest = &r->result->largest;
     struct wb_bundle_limits limits;
 
     wb_bundle_get_limits(r->bundle, &limits);
@@ -421,7 +421,7 @@ static void count_limits(struct run *r)
 /* What a ratio says of the duration while the first loading goes on. */
 static enum verdict judge(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
     const double limit = r->model->run.kinetic_limit;
     const double needed = h->duration * sqrt(h->largest.kinetic / limit);
     const bool last = h->attempts == WB_BUNDLE_RUN_ATTEMPTS;
@@ -443,7 +443,7 @@ static enum verdict judge(struct run *r)
 
 static enum verdict look(struct run *r, struct wb_bundle_energies *e)
 {
-    struct wb_bundle_extremes *largest = &r->history->largest;
+    struct wb_bundle_extremes *largest = &r->result->largest;
 
     wb_bundle_get_energies(r->bundle, e);
     const double internal = wb_bundle_internal(e);
@@ -460,7 +460,7 @@ static enum verdict look(struct run *r, struct wb_bundle_energies *e)
     largest->artificial = fmax(largest->artificial, r->artificial);
     largest->imbalance = fmax(largest->imbalance, imbalance);
     if (!(imbalance <= lost_balance)) {
-        wb_reason_set(&r->history->reason,
+        wb_reason_set(&r->result->reason,
                       "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
                       "are missing or too much",
                       r->state.deflection / WB_MM, r->state.steps, imbalance);
@@ -516,10 +516,9 @@ static void take_place(struct run *r)
         .tip = {ends[1][0], ends[1][1], ends[1][2]},
         .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
     };
-    if (r->history->n_shape > 0)
-        wb_bundle_shape(r->bundle, r->history->n_shape, r->history->shape_s,
-                        r->history->shape +
-                            (size_t)r->history->n_rows * (size_t)r->history->n_shape);
+    if (r->result->n_shape > 0)
+        wb_bundle_shape(r->bundle, r->result->n_shape, r->result->shape_s,
+                        r->result->shape + (size_t)r->result->n_rows * (size_t)r->result->n_shape);
     r->samples_before = r->vertical.n + r->slack_samples > 0.0;
 }
 
@@ -541,7 +540,7 @@ static void begin_line(struct run *r)
 
 static void finish_row(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
     struct wb_bundle_row *row = &r->row;
     double ignored;
 
@@ -579,8 +578,8 @@ static enum verdict report(struct run *r)
         wb_warn("%s: this checkpoint is not written", file);
     if (choice[0])
         return GO_ON;
-    r->history->stopped = true;
-    r->history->kept = saved;
+    r->result->stopped = true;
+    r->result->kept = saved;
     return DONE;
 }
 
@@ -626,10 +625,10 @@ static bool went_slack(const struct run *r)
  * slack the tip comes to rest, and nothing moves any more on this way. */
 static enum verdict go_to(struct run *r, double place, bool look_there)
 {
-    const double dt = r->history->time_step;
+    const double dt = r->result->time_step;
     const double share =
         fmin(1.0, fmax(0.0, (target_of(r, place) - r->way[0]) / (r->way[1] - r->way[0])));
-    const double end = r->way_time + r->history->duration * time_of(share);
+    const double end = r->way_time + r->result->duration * time_of(share);
     struct wb_bundle_energies energies;
 
     if (r->left < 0)
@@ -663,7 +662,7 @@ static enum verdict show_place(struct run *r)
     if (!observer || !observer->place)
         return GO_ON;
     (void)wb_bundle_whole(r->bundle); /* all ranks take part in that */
-    r->status = wb_team_agree(observer->place(observer->context, r->history, &r->row, r->bundle));
+    r->status = wb_team_agree(observer->place(observer->context, r->result, &r->row, r->bundle));
     return r->status == WB_OK ? GO_ON : NO_MEMORY;
 }
 
@@ -692,9 +691,9 @@ static enum verdict pass_row(struct run *r)
 
 static void begin_way(struct run *r)
 {
-    const double duration = r->history->duration;
+    const double duration = r->result->duration;
     const double steps =
-        duration / (1.875 * r->model->run.rows * r->history->time_step * SAMPLES_OF_A_ROW);
+        duration / (1.875 * r->model->run.rows * r->result->time_step * SAMPLES_OF_A_ROW);
 
     r->block = (int)fmin(fmax(steps, 1.0), MOST_BLOCK);
     r->way_time = r->state.time;
@@ -762,7 +761,7 @@ static enum verdict rest(struct run *r)
 
 static void begin_attempt(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
 
     h->n_rows = 0;
     h->exceeded = false;
@@ -777,7 +776,7 @@ static void begin_attempt(struct run *r)
 
 static enum verdict attempt(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
     struct wb_checkpoint checkpoint = {.bytes = NULL};
     enum verdict verdict = GO_ON;
 
@@ -838,9 +837,9 @@ static double guess_duration(const struct wb_bundle_model *model, double from)
     return 0.5 * sqrt(ratio / model->run.kinetic_limit);
 }
 
-static void begin_history(struct run *r)
+static void begin_result(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
 
     h->chosen = r->model->run.duration == 0.0;
     h->duration = h->chosen ? guess_duration(r->model, r->from) : r->model->run.duration;
@@ -851,11 +850,11 @@ static void begin_history(struct run *r)
     h->all_steps = 0;
 }
 
-enum wb_status wb_bundle_run(struct wb_bundle_history *history, const struct wb_bundle_model *model,
+enum wb_status wb_bundle_run(struct wb_bundle_result *result, const struct wb_bundle_model *model,
                              const struct wb_bundle_run_options *options)
 {
     struct run r = {
-        .history = history,
+        .result = result,
         .model = model,
         .begun = read_clocks(),
         .saved = read_clocks(),
@@ -869,16 +868,16 @@ enum wb_status wb_bundle_run(struct wb_bundle_history *history, const struct wb_
         r.options = *options;
     if (r.options.checkpoint_interval == 0.0)
         r.options.checkpoint_interval = usual_interval;
-    if (history->capacity < wb_bundle_run_planned_rows(model))
-        return wb_fail(WB_ERR_ARGUMENT, "a history of %d rows for a test of %d", history->capacity,
+    if (result->capacity < wb_bundle_run_planned_rows(model))
+        return wb_fail(WB_ERR_ARGUMENT, "a result of %d rows for a test of %d", result->capacity,
                        wb_bundle_run_planned_rows(model));
     if (r.options.checkpoint)
         WB_TRY(wb_team_agree(wb_hash_file("/proc/self/exe", r.program)));
-    begin_history(&r);
+    begin_result(&r);
     do {
         verdict = attempt(&r);
         if (verdict == ANEW)
-            history->duration = r.next;
+            result->duration = r.next;
     } while (verdict == ANEW);
     take_time(&r);
     return r.status;

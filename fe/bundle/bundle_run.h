@@ -21,7 +21,7 @@
  * program) is refused. At the end the file is removed; a run that its observer stops leaves a last
  * one.
  *
- * With several ranks (fe/team/team.h) all call these functions alike and have the same history; the
+ * With several ranks (fe/team/team.h) all call these functions alike and have the same result; the
  * observer of rank 0 decides.
  */
 #ifndef WB_FE_BUNDLE_BUNDLE_RUN_H
@@ -62,7 +62,7 @@ struct wb_bundle_extremes {
     bool beyond;                /* strain went beyond what the elements' logarithm is made for */
 };
 
-struct wb_bundle_history {
+struct wb_bundle_result {
     int n_rows, capacity;
     struct wb_bundle_row *rows; /* (n_rows), owned; only those reached */
     int n_shape;
@@ -92,7 +92,7 @@ struct wb_bundle_history {
 struct wb_bundle_progress {
     int attempt;                /* from 1 */
     long long steps;            /* of this attempt */
-    double done;                /* of this attempt's whole history, 0 to 1 */
+    double done;                /* of this attempt, 0 to 1 */
     bool rests;                 /* it comes to rest, under its weight or let go by the strand */
     double deflection;          /* m */
     double kinetic, artificial; /* over internal energy, as last looked at; NaN at first */
@@ -102,9 +102,9 @@ struct wb_bundle_observer {
     /* Several times a row. False stops the run: completed rows stay. May be NULL. */
     bool (*progress)(void *context, const struct wb_bundle_progress *progress);
     /* The bundle at the place of each row, whose forces are not known yet: `row` is to become
-     * number history->n_rows. A new attempt begins at 0 again. An error ends the run. May be NULL.
+     * number result->n_rows. A new attempt begins at 0 again. An error ends the run. May be NULL.
      */
-    enum wb_status (*place)(void *context, const struct wb_bundle_history *history,
+    enum wb_status (*place)(void *context, const struct wb_bundle_result *result,
                             const struct wb_bundle_row *row, const struct wb_bundle *bundle);
     /* Saves or restores what the observer itself keeps in a checkpoint. May be NULL. */
     void (*visit)(void *context, struct wb_checkpoint *checkpoint);
@@ -116,9 +116,10 @@ int wb_bundle_run_planned_rows(const struct wb_bundle_model *model);
 
 /* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length (none,
  * or 2 to 1000). */
-WB_MUST_CHECK enum wb_status wb_bundle_run_init(struct wb_bundle_history *history,
-                                                const struct wb_bundle_model *model, int n_shape);
-void wb_bundle_run_release(struct wb_bundle_history *history); /* accepts a zeroed one */
+WB_MUST_CHECK enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
+                                                   const struct wb_bundle_model *model,
+                                                   int n_shape);
+void wb_bundle_result_release(struct wb_bundle_result *result); /* accepts a zeroed one */
 
 struct wb_bundle_run_options {
     const char *mesh;                          /* NULL: the model's own */
@@ -131,7 +132,7 @@ struct wb_bundle_run_options {
 /* Runs the model's test; `options` may be NULL. A run that is lost on the way is a result:
  * converged is false, completed rows stay. The checkpoint's file stays, too: the caller removes it
  * when a run that was not stopped is safe elsewhere. */
-WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_history *history,
+WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_result *result,
                                            const struct wb_bundle_model *model,
                                            const struct wb_bundle_run_options *options);
 
