@@ -6,6 +6,7 @@
 
 #include "fe/bundle/bundle_part.h"
 #include "fe/bundle/bundle_parts.h"
+#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -133,13 +134,6 @@ void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration
     };
 }
 
-/* Of the tip's force and the weight. */
-static double external_work(const struct wb_bundle *bundle)
-{
-    return bundle->whole->account.tip_work + bundle->weight_zero -
-           wb_bundle_parts_potential(bundle->parts);
-}
-
 /* Motion is stopped whenever its energy begins to fall, until it is small beside the work that was
  * done; whoever stops it takes its energy away. */
 static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
@@ -239,7 +233,8 @@ void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_ene
             account->touching.normal + account->touching.tangential + account->bonded.contact,
         .friction = account->friction_work,
         .cohesive = account->bonded.stored + account->damage_work,
-        .external = external_work(bundle),
+        .external =
+            account->tip_work + bundle->weight_zero - wb_bundle_parts_potential(bundle->parts),
     };
 }
 
@@ -275,13 +270,6 @@ void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outs
         add_outside(bodies, &bodies->wire[w], outside);
     if (bodies->has_tape)
         add_outside(bodies, &bodies->ring, outside);
-}
-
-double wb_bundle_kinetic_ratio(const struct wb_bundle *bundle)
-{
-    const double kinetic = bundle->whole->account.kinetic;
-    const double internal = external_work(bundle) - kinetic;
-    return internal > 0.0 ? kinetic / internal : (double)INFINITY;
 }
 
 void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, double (*shape)[3])

@@ -120,18 +120,6 @@ void wb_bundle_get_state(const struct wb_bundle *bundle, struct wb_bundle_state 
 /* All energies as of the last step; costs about ten steps. */
 void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_energies *energies);
 
-/* What acts on the bundle from outside in the last step, N, and its momentum after it, kg m/s, of
- * the scaled masses: each step changes it by all three forces times the step. */
-struct wb_bundle_outside {
-    double clamp[3], tip[3], weight[3];
-    double momentum[3];
-};
-void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outside *outside);
-
-/* Kinetic over internal energy without the plastic part's cost: kinetic / (external less kinetic);
- * infinite where nothing is stored. */
-double wb_bundle_kinetic_ratio(const struct wb_bundle *bundle);
-
 /* Axis of the bundle at n arc lengths s (m): mean of the wires' section centres, over masses. */
 void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, double (*shape)[3]);
 

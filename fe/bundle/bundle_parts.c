@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fe/bundle/bundle_parts_private.h"
+#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"

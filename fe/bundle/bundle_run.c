@@ -282,7 +282,7 @@ static enum wb_status find_checkpoint(struct run *r, struct wb_checkpoint *c)
     if (wb_team_rank() > 0 && size > 0) {
         c->bytes = malloc(size);
         c->size = size;
-        c->restores = c->bytes;
+        wb_checkpoint_rewind(c);
         if (!c->bytes)
             status = wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint of %zu bytes", size);
     }

@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "fe/bundle/bundle.h"
 #include "fe/bundle/bundle_part.h"
-#include "fe/bundle/bundle_parts_private.h"
+#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 enum {

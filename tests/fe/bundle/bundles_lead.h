@@ -2,6 +2,7 @@
 #ifndef WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 #define WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 
+#include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
 
 /* Leads the tip to a deflection. Energies are kept to the part given of the largest work, momentum

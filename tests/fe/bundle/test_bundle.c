@@ -1,5 +1,6 @@
 /* Bundles in explicit dynamics, on meshes that are coarse so that it is fast: against the 1D beam,
  * statics, and what has to be kept. */
+#include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
 
 /* --- one wire --- */
