@@ -1,5 +1,5 @@
-/* What `wirebench solve bundle` keeps of a run's states on the way: VTK files, and the surface at
- * the largest deflection.
+/* What `wirebench solve bundle` keeps of the bundle's states while it runs: VTK files, and the
+ * surface at the largest deflection.
  */
 #ifndef WB_CLI_BUNDLE_STATES_H
 #define WB_CLI_BUNDLE_STATES_H
@@ -27,12 +27,12 @@ struct wb_bundle_states {
     struct wb_solve_time spent; /* on all this */
 };
 
-/* Takes what is wanted of a row's state; for wb_bundle_observer's `place`. */
+/* Keeps what is wanted of the state at a row; called by wb_bundle_observer's `place`. */
 WB_MUST_CHECK enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
                                                    const struct wb_bundle_result *result,
                                                    const struct wb_bundle_row *row,
                                                    const struct wb_bundle *bundle);
-/* For wb_bundle_observer's `visit`. */
+/* Saves or restores all that; called by wb_bundle_observer's `visit`. */
 void wb_bundle_states_visit(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint);
 void wb_bundle_states_release(struct wb_bundle_states *states); /* accepts a zeroed one */
 

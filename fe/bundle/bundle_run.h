@@ -1,27 +1,28 @@
-/* A whole test of a bundle: settling, loading by a smooth step to the model's deflection, unloading
- * and cycles where it asks for them; rows, shapes and energies on the way.
+/* A whole bending test of a bundle: it settles under its weight, is loaded to the model's
+ * deflection along a smooth step, and is unloaded and loaded again where the model asks for cycles.
+ * The result holds rows (force against deflection), shapes and energies.
  *
- * Rows: the first at zero with the weight on, then run.rows in equal steps of the tip's target, up
- * and, with cycles, down to zero again. Shapes, energies and the tip's place are those of the
- * moment at which the target is there. The force is a mean: the value there of the straight line
- * through the forces against the target from half a step before to half a step after, so that
- * vibration averages out (at both ends of a way the half on its side). What is slack in a window is
- * left out. Where the strand goes slack on the way back the tip comes to rest: in slack rows it
- * hangs there, and the next loading begins there.
+ * Rows: row 0 is at zero deflection with the weight on. The others are run.rows equal steps of the
+ * tip's target up to the deflection and, with cycles, down to zero again. The shape, the energies
+ * and the place of the tip are those of the moment at which the target is reached. The force is a
+ * mean over the time from half a row before to half a row after, so that vibration averages out: a
+ * straight line is fitted through force against target, and its value at the row taken (at both
+ * ends of a way only one half exists). Samples with a slack strand are left out. If the strand goes
+ * slack while unloading, the tip comes to rest: it hangs there in all slack rows, and the next
+ * loading begins there.
  *
- * Quasi-static control: where the model leaves the duration open it is chosen so that kinetic over
- * internal energy stays below run.kinetic_limit from 2 mm on (half the deflection, if that is
- * less). The ratio goes as duration^-2: a run that shows by 3 mm that it is too fast, or much too
- * slow, begins anew with the duration that follows, and so does one that is found too fast later,
- * at most WB_BUNDLE_RUN_ATTEMPTS times in all.
+ * Duration: if the model leaves it open, it is chosen so that kinetic over internal energy stays
+ * below run.kinetic_limit from 2 mm on (from half the deflection on, if that is less). This ratio
+ * goes as duration^-2. A run that shows by 3 mm that it is too fast, or much too slow, begins anew
+ * with the duration that follows from its ratio; so does a run that turns out too fast later. There
+ * are at most WB_BUNDLE_RUN_ATTEMPTS attempts.
  *
- * Checkpoints: every so often all that a run needs to go on is written to a file
- * (base/checkpoint.h). A run of the same model and settings that finds the file goes on from there,
- * to the same result bit for bit; what is not the same (model, mesh, overrides, number of parts,
- * program) is refused. At the end the file is removed; a run that its observer stops leaves a last
- * one.
+ * Checkpoints: from time to time everything that the run needs to go on is written to a file
+ * (base/checkpoint.h). A later run of the same model and settings that finds the file goes on from
+ * there, to the same result bit for bit. A file of another model, mesh, number of parts or program,
+ * or with other overrides, is refused. A run that its observer stops leaves a last checkpoint.
  *
- * With several ranks (fe/team/team.h) all call these functions alike and have the same result; the
+ * With several ranks (fe/team/team.h) every rank calls these functions and has the same result; the
  * observer of rank 0 decides.
  */
 #ifndef WB_FE_BUNDLE_BUNDLE_RUN_H
@@ -53,7 +54,7 @@ struct wb_bundle_row {
     struct wb_bundle_energies energies;
 };
 
-/* Largest values from 2 mm on (see above). */
+/* Largest values of a run, ratios from 2 mm on (see above). */
 struct wb_bundle_extremes {
     double kinetic, artificial; /* over internal energy */
     double imbalance;           /* |imbalance| over the largest external work so far */
@@ -99,10 +100,11 @@ struct wb_bundle_progress {
 };
 
 struct wb_bundle_observer {
-    /* Several times a row. False stops the run: completed rows stay. May be NULL. */
+    /* Called several times a row. False stops the run; completed rows stay. May be NULL. */
     bool (*progress)(void *context, const struct wb_bundle_progress *progress);
-    /* The bundle at the place of each row, whose forces are not known yet: `row` is to become
-     * number result->n_rows. A new attempt begins at 0 again. An error ends the run. May be NULL.
+    /* Called when the bundle is at the place of a row, before the row's forces are known; it
+     * becomes row number result->n_rows. A new attempt begins at 0 again. An error ends the run.
+     * May be NULL.
      */
     enum wb_status (*place)(void *context, const struct wb_bundle_result *result,
                             const struct wb_bundle_row *row, const struct wb_bundle *bundle);
@@ -111,7 +113,7 @@ struct wb_bundle_observer {
     void *context;
 };
 
-/* Rows that a model gives when it runs through. */
+/* The number of rows of a complete test. */
 int wb_bundle_run_planned_rows(const struct wb_bundle_model *model);
 
 /* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length (none,
