@@ -11,21 +11,24 @@
 #define WB_ANALYSIS_ALIGN_H
 
 #include "analysis/dataset.h"
+#include "base/setting.h"
 #include "base/status.h"
 
+/* Defaults and ranges: wb_align_table. */
 struct wb_align_settings {
     double longest_gap; /* s of bench time: rows are made only where both neighbours of force
-                           and shape are nearer than this; default 0.1 */
+                           and shape are nearer than this */
     double row_rate;    /* rows a second of bench time; 0: one row a mocap frame thinned to 20/s */
-    double shape_step;  /* m of deflection between stored shapes; default 0.5 mm */
-    double lost_steps;  /* m: stage residual that is flagged; default 0.3 mm */
+    double shape_step;  /* m of deflection between stored shapes */
+    double lost_steps;  /* m: stage residual that is flagged */
 };
+extern const struct wb_setting_table wb_align_table;
 
 /* How the warning about gaps, of which a report makes one line for all recordings, goes on after
  * their number. */
 #define WB_ALIGN_GAPS_TEXT "in the rows, the longest of"
 
-/* Fills in the defaults above. */
+/* Fills in the defaults. */
 void wb_align_default_settings(struct wb_align_settings *settings);
 
 /* Aligns one recording. The dataset's document tells everything that was done; warnings are also

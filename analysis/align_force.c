@@ -2,10 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include <gsl/gsl_fit.h>
-#include <gsl/gsl_multifit.h>
-
 #include "analysis/align_private.h"
+#include "analysis/fit.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -34,47 +32,6 @@
 /* The taut part may begin so far above zero deflection; force is then extrapolated. */
 #define FARTHEST_ZERO (2.0 * WB_MM)
 
-bool wb_align_fit_line(const double *x, const double *y, size_t n, struct wb_align_line *line)
-{
-    double c00, c01, c11, squares;
-    if (n < 3)
-        return false;
-    gsl_fit_linear(x, 1, y, 1, n, &line->value, &line->slope, &c00, &c01, &c11, &squares);
-    line->value_deviation = sqrt(c00);
-    line->slope_deviation = sqrt(c11);
-    line->residual = sqrt(squares / (double)(n - 2));
-    return isfinite(line->value) && isfinite(line->slope);
-}
-
-bool wb_align_fit_parabola(const double *x, const double *y, size_t n, double c[3],
-                           double *deviation)
-{
-    if (n < 4)
-        return false;
-    gsl_matrix *const design = gsl_matrix_alloc(n, 3);
-    gsl_matrix *const covariance = gsl_matrix_alloc(3, 3);
-    gsl_multifit_linear_workspace *const work = gsl_multifit_linear_alloc(n, 3);
-    gsl_vector_view coefficients = gsl_vector_view_array(c, 3);
-    gsl_vector_const_view values = gsl_vector_const_view_array(y, n);
-    bool fitted = false;
-    if (design && covariance && work) {
-        for (size_t i = 0; i < n; i++) {
-            gsl_matrix_set(design, i, 0, 1.0);
-            gsl_matrix_set(design, i, 1, x[i]);
-            gsl_matrix_set(design, i, 2, x[i] * x[i]);
-        }
-        double squares;
-        fitted = gsl_multifit_linear(design, &values.vector, &coefficients.vector, covariance,
-                                     &squares, work) == GSL_SUCCESS &&
-                 isfinite(c[0]) && isfinite(c[1]) && isfinite(c[2]);
-        *deviation = sqrt(gsl_matrix_get(covariance, 0, 0));
-    }
-    gsl_multifit_linear_free(work);
-    gsl_matrix_free(covariance);
-    gsl_matrix_free(design);
-    return fitted;
-}
-
 static double settle_time(const struct wb_align *align)
 {
     return fmax(SETTLE_DELAYS * align->filter_delay, LEAST_SETTLE);
@@ -95,20 +52,6 @@ static double row_noise(const struct wb_align *align)
     return align->reading_noise / sqrt(in_row);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-double wb_align_median(double *values, size_t n)
-{
-    if (n == 0)
-        return (double)NAN;
-    qsort(values, n, sizeof *values, compare_doubles);
-    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 /* --- how large forces are --- */
 
 static enum wb_status find_largest(struct wb_align *align)
@@ -118,7 +61,7 @@ static enum wb_status find_largest(struct wb_align *align)
         return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     for (size_t i = 0; i < align->n_rows; i++)
         readings[i] = align->rows[i].reading;
-    qsort(readings, align->n_rows, sizeof *readings, compare_doubles);
+    wb_fit_sort(readings, align->n_rows);
     const double low = readings[align->n_rows / 50];
     align->largest = readings[align->n_rows - 1 - align->n_rows / 50];
     free(readings);
@@ -157,7 +100,7 @@ static enum wb_status find_taut_level(struct wb_align *align)
         if (align->rows[i].cycle == 1 && align->rows[i].reading > TAUT_PART * align->largest)
             levels[n++] = tautness(align, &align->rows[i]);
     }
-    align->taut_level = align->rig.strand.length > 0.0 ? wb_align_median(levels, n) : (double)NAN;
+    align->taut_level = align->rig.strand.length > 0.0 ? wb_fit_median(levels, n) : (double)NAN;
     free(levels);
     return WB_OK;
 }
@@ -405,7 +348,7 @@ static size_t gather(const struct wb_align *align, size_t first, double highest,
 static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, double *y)
 {
     const double begin = align->rows[first].tip_y;
-    struct wb_align_line line;
+    struct wb_fit_line line;
     if (begin > FARTHEST_ZERO)
         return wb_fail(WB_ERR_DATA,
                        "%s: at the first loading the strand is taut only from %.2f mm on, too far "
@@ -415,7 +358,7 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
     size_t n = gather(align, first, fmax(begin, 0.0) + window, x, y);
     for (; n < LEAST_FIT_ROWS && window < 4.0 * ZERO_WINDOW; window *= 1.5)
         n = gather(align, first, fmax(begin, 0.0) + window, x, y);
-    if (n < LEAST_FIT_ROWS || !wb_align_fit_line(x, y, n, &line) || !(line.slope > 0.0))
+    if (n < LEAST_FIT_ROWS || !wb_fit_line(x, y, n, &line) || !(line.slope > 0.0))
         return wb_fail(WB_ERR_DATA,
                        "%s: no force at zero deflection: %zu rows of the first loading lie near "
                        "it, expected %d with a rising force (does the test pass zero slowly "
@@ -427,7 +370,7 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
      * stands too high. */
     double c[3], deviation;
     n = gather(align, first, begin + ZERO_RANGE, x, y);
-    if (n >= 3 * LEAST_FIT_ROWS && wb_align_fit_parabola(x, y, n, c, &deviation) && c[1] > 0.0) {
+    if (n >= 3 * LEAST_FIT_ROWS && wb_fit_parabola(x, y, n, c, &deviation) && c[1] > 0.0) {
         align->zero_force = c[0];
         align->zero_force_deviation = deviation;
     }
@@ -437,7 +380,7 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
                       "deflection is extrapolated",
                       begin / WB_MM);
     n = gather(align, first, begin + fmax(SLOPE_PART * align->specimen.length, ZERO_WINDOW), x, y);
-    if (!wb_align_fit_line(x, y, n, &line))
+    if (!wb_fit_line(x, y, n, &line))
         return wb_fail(WB_ERR_DATA, "%s: no initial slope of force over deflection", align->name);
     align->stiffness = line.slope;
     align->stiffness_deviation = line.slope_deviation;

@@ -33,6 +33,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "analysis/align_private.h"
+#include "analysis/fit.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -54,7 +55,8 @@
 #define MAX_TERMS 2
 #define MAX_OBSERVATIONS (WB_SPECIMEN_MAX_MARKERS + 1)
 
-double wb_align_tip_shape(double u)
+/* Elastic shape over tip deflection of a cantilever bent by a tip force, p(u) above, u = s/L. */
+static double tip_shape(double u)
 {
     return 0.5 * u * u * (3.0 - u);
 }
@@ -68,7 +70,7 @@ static double weight_shape(double u)
 static double term_shape(int term, double u)
 {
     const int power = term + 2;
-    return (pow(u, power) - wb_align_tip_shape(u)) / power;
+    return (pow(u, power) - tip_shape(u)) / power;
 }
 
 /* Observations, their errors as combinations of independent ones: each marker's own (the clamp's
@@ -90,7 +92,7 @@ static int mean_deviation(const struct wb_align *align, int marker, double u, do
         if (row->cycle > 1 || row->phase == WB_PHASE_UNLOAD || fabs(row->tip_y) > NEAR_ZERO)
             break;
         if (isfinite(row->y[marker])) {
-            *mean += row->y[marker] - row->tip_y * wb_align_tip_shape(u);
+            *mean += row->y[marker] - row->tip_y * tip_shape(u);
             n++;
         }
     }
@@ -109,7 +111,7 @@ static void observe_markers(const struct wb_align *align, double weight, double 
                            : DEFAULT_OFFSET_ERROR;
     obs->n_errors = tip + 2;
     for (int marker = 1; marker < tip; marker++) {
-        const double u = specimen->markers[marker] / length, p = wb_align_tip_shape(u);
+        const double u = specimen->markers[marker] / length, p = tip_shape(u);
         double mean;
         const int n = mean_deviation(align, marker, u, &mean);
         if (n == 0)
@@ -156,8 +158,7 @@ static bool fit_parabola(const struct loading *loading, double highest, double *
     double deviation;
     while (n < loading->n && loading->y[n] < highest)
         n++;
-    return n >= 10 &&
-           wb_align_fit_parabola(loading->y, loading->force, n, coefficients, &deviation) &&
+    return n >= 10 && wb_fit_parabola(loading->y, loading->force, n, coefficients, &deviation) &&
            coefficients[1] > 0.0;
 }
 
@@ -192,8 +193,8 @@ static double crossing(const struct loading *loading, double force)
         first++;
     while (last < loading->n && loading->y[last] < about + 1.0 * WB_MM)
         last++;
-    struct wb_align_line line;
-    if (!wb_align_fit_line(loading->y + first, loading->force + first, last - first, &line) ||
+    struct wb_fit_line line;
+    if (!wb_fit_line(loading->y + first, loading->force + first, last - first, &line) ||
         !(line.slope > 0.0))
         return (double)NAN;
     return (force - line.value) / line.slope;
@@ -366,7 +367,7 @@ static double find_rest(const struct wb_align *align)
     }
     if (n == 0)
         return (double)NAN;
-    const double level = wb_align_median(levels, n);
+    const double level = wb_fit_median(levels, n);
     const double least = fmax(0.02 * align->rig.strand.counterweight * align->gravity,
                               10.0 * align->zero_force_deviation);
     return align->zero_force + align->stiffness * level > least ? level : (double)NAN;

@@ -1,9 +1,10 @@
-/* What the parts of align.c share: one recording on its way to a dataset.
+/* What the parts of the alignment share: one recording on its way to a dataset.
  *
- * The order: align_load.c decodes the recording, align_time.c puts everything on the bench's clock,
- * align_rows.c makes rows of it in the clamp's frame, align_stage.c compares the stage and cuts
- * cycles, align_force.c turns readings into tension and force, align_natural.c finds the natural
- * shape; align_report.c writes down what was done.
+ * The order: align_recording.c decodes the recording and puts everything on the bench's clock,
+ * align_rows.c makes rows of it in the clamp's frame, compares the stage and cuts cycles,
+ * align_force.c turns readings into tension and force, align_natural.c finds the natural shape, and
+ * align.c, which calls them all, fills the dataset. align_report.c, which all call, writes what was
+ * done into dataset.json.
  */
 #ifndef WB_ANALYSIS_ALIGN_PRIVATE_H
 #define WB_ANALYSIS_ALIGN_PRIVATE_H
@@ -135,9 +136,6 @@ struct wb_align {
 struct wb_align_reading *wb_align_readings(const struct wb_align *align);
 struct wb_align_report_point *wb_align_reports(const struct wb_align *align);
 
-/* Adds a copy of an item. */
-bool wb_align_list_add(struct wb_align_list *list, const void *item, size_t size);
-
 /* The parts, in order. Each logs its failure. */
 WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const char *path);
 WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
@@ -148,30 +146,9 @@ WB_MUST_CHECK enum wb_status wb_align_stage(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_force(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_natural(struct wb_align *align);
 
-/* Reading less tare at bench time t: a local straight line over +-half seconds, or between the two
- * neighbours. False when a neighbour is farther than the longest gap. */
-bool wb_align_reading_at(const struct wb_align *align, double t, double half, double *reading);
-
-/* Shape functions of the start, see align_natural.c: elastic shape over tip deflection of a
- * cantilever bent by a tip force, at u = s/L. */
-double wb_align_tip_shape(double u);
-
-/* Ordinary straight line through n points: value at x = 0, slope, standard errors. */
-struct wb_align_line {
-    double value, slope, value_deviation, slope_deviation, residual;
-};
-bool wb_align_fit_line(const double *x, const double *y, size_t n, struct wb_align_line *line);
-
-/* Least squares of c[0] + c[1] x + c[2] x^2 through n points; `deviation` is the standard error of
- * c[0]. */
-bool wb_align_fit_parabola(const double *x, const double *y, size_t n, double c[3],
-                           double *deviation);
-
 /* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
  * vertical over the wire's length. */
 double wb_align_level_uncertainty(const struct wb_align *align);
-
-double wb_align_median(double *values, size_t n); /* sorts; NaN when n is 0 */
 
 /* --- the document --- */
 

@@ -2,20 +2,17 @@
 
 #include <stdlib.h>
 
-#include "analysis/computed.h"
-
 #define WB_LOG_DOMAIN "calibrate"
 
 /* Adds 1/n of a sample's computed curve to `mean`. */
 static enum wb_status add_sample(double *mean, double *value, const struct wb_bow_samples *samples,
                                  const struct wb_test_info *info,
-                                 const struct wb_material *material,
-                                 const struct wb_computed_settings *how)
+                                 const struct wb_material *material)
 {
     const struct wb_curve *const curve = samples->curve;
     struct wb_computed *computed;
     int reached = 0;
-    WB_TRY(wb_computed_create(&computed, info, material, how));
+    WB_TRY(wb_computed_create(&computed, info, material, samples->how));
     enum wb_status status =
         wb_computed_curve(computed, material, curve->n, curve->step, value, &reached);
     wb_computed_destroy(computed);
@@ -31,29 +28,22 @@ static enum wb_status add_sample(double *mean, double *value, const struct wb_bo
 
 enum wb_status wb_bow_correction_guess(struct wb_first_guess *guess,
                                        const struct wb_bow_samples *samples,
-                                       const struct wb_material *material,
-                                       const struct wb_calibrate_settings *settings,
-                                       int *evaluations)
+                                       const struct wb_material *material, int *evaluations)
 {
-    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                             settings->n_fibres};
-    const double yield_point =
-        settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
     const size_t points = (size_t)samples->curve->n;
     double *const mean = calloc(2 * points, sizeof *mean);
     enum wb_status status = WB_OK;
     if (!mean)
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu points", points);
     for (int i = 0; status == WB_OK && i < samples->n; i++) {
-        status =
-            add_sample(mean, mean + points, samples, &samples->datasets[i]->info, material, &how);
+        status = add_sample(mean, mean + points, samples, &samples->datasets[i]->info, material);
         ++*evaluations;
     }
     if (status == WB_OK) {
         struct wb_curve computed = *samples->curve;
         computed.value = mean;
         status = wb_first_guess_run(guess, &computed, &samples->datasets[0]->info,
-                                    settings->elastic_zone, yield_point);
+                                    samples->elastic_zone, samples->yield_point);
     }
     free(mean);
     return status;

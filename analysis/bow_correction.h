@@ -3,7 +3,7 @@
 #ifndef WB_ANALYSIS_BOW_CORRECTION_H
 #define WB_ANALYSIS_BOW_CORRECTION_H
 
-#include "analysis/calibrate.h"
+#include "analysis/computed.h"
 #include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "analysis/first_guess.h"
@@ -12,7 +12,9 @@
 struct wb_bow_samples {
     const struct wb_dataset *const *datasets; /* (n) */
     int n;
-    const struct wb_curve *curve; /* their average: its grid is taken */
+    const struct wb_curve *curve;     /* their average: its grid is taken */
+    double elastic_zone, yield_point; /* deflection over length of eqs. 10 and 11 */
+    const struct wb_computed_settings *how;
 };
 
 /* Eqs. 10 and 11 on the mean of the curves computed with `material` for the samples, each with its
@@ -22,7 +24,6 @@ struct wb_bow_samples {
 WB_MUST_CHECK enum wb_status wb_bow_correction_guess(struct wb_first_guess *guess,
                                                      const struct wb_bow_samples *samples,
                                                      const struct wb_material *material,
-                                                     const struct wb_calibrate_settings *settings,
                                                      int *evaluations);
 
 #endif

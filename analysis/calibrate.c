@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -10,10 +11,12 @@
 #include <gsl/gsl_multimin.h>
 
 #include "analysis/bow_correction.h"
+#include "analysis/calibrate_private.h"
 #include "analysis/computed.h"
 #include "analysis/errors.h"
 #include "analysis/first_guess.h"
 #include "analysis/jackknife.h"
+#include "analysis/refit.h"
 #include "analysis/scatter.h"
 #include "base/progress.h"
 #include "base/units.h"
@@ -52,16 +55,177 @@ struct objective {
     int evaluations, failed;
 };
 
+static const struct wb_setting rows[] = {
+    {.name = "elastic_zone",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, elastic_zone),
+     .least = 1e-3,
+     .largest = 0.3,
+     .fallback = 0.05,
+     .option = "elastic-zone",
+     .argument = "R",
+     .help = "Deflection over length for E, eq. 10",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "yield_point",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_point),
+     .least = 1e-3,
+     .largest = 0.3,
+     .otherwise = "as the elastic zone",
+     .option = "yield-point",
+     .argument = "R",
+     .help = "Deflection over length for the yield stress, eq. 11; the paper's tables show 0.04",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, step),
+     .scale = WB_MM,
+     .least = 1e-2,
+     .largest = 100.0,
+     .fallback = 0.5,
+     .option = "step-mm",
+     .argument = "H",
+     .help = "Deflection step of the comparison",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "straight",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, straight),
+     .option = "straight",
+     .help = "Ignore the natural shape (bow) of the samples",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "restart",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, restart),
+     .fallback = true,
+     .option = "no-restart",
+     .help = "Do not start once more from the optimum",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_elements),
+     .least = 2,
+     .largest = 2000,
+     .fallback = 50,
+     .option = "elements",
+     .argument = "N",
+     .help = "Beam elements",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "fibres",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_fibres),
+     .least = 4,
+     .largest = 1000,
+     .fallback = 20,
+     .option = "fibres",
+     .argument = "N",
+     .help = "Fibres over the diameter",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "size_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, size_tolerance),
+     .least = 1e-12,
+     .largest = 0.05,
+     .fallback = 1e-4,
+     .option = "size-tolerance",
+     .argument = "X",
+     .help = "Stop when the simplex is smaller, in units of K0 and n0",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "error_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, error_tolerance),
+     .least = 0.0,
+     .largest = 1.0,
+     .fallback = 1e-4,
+     .option = "error-tolerance",
+     .argument = "X",
+     .help = "Stop when the error is smaller, over F_max",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "max_iterations",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, max_iterations),
+     .least = 1,
+     .largest = 100000,
+     .fallback = 200,
+     .option = "max-iterations",
+     .argument = "N",
+     .help = "Stop after N iterations of a simplex",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "bow_corrected",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, bow_corrected),
+     .option = "bow-corrected",
+     .help = "Take what the samples' bows make of eqs. 10 and 11 out of E and the yield stress",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN},
+    {.name = "youngs_modulus_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, youngs_modulus),
+     .scale = WB_MPA,
+     .least = 1e-3,
+     .largest = 1e7,
+     .otherwise = "eq. 10",
+     .option = "youngs-modulus-mpa",
+     .argument = "E",
+     .help = "Young's modulus",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "yield_stress_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_stress),
+     .scale = WB_MPA,
+     .least = 1e-6,
+     .largest = 1e7,
+     .otherwise = "eq. 11",
+     .option = "yield-stress-mpa",
+     .argument = "S",
+     .help = "Yield stress",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "force_step_N",
+     .unit = "N",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, force_step),
+     .least = 1e-9,
+     .largest = 1e6,
+     .otherwise = "a step for each row, at most 100",
+     .option = "force-step-n",
+     .argument = "H",
+     .help = "Force step of the comparison of tests with a follower force, whose deflections are "
+             "compared at equal forces",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+    {.name = "largest_deflection_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, largest_deflection),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e6,
+     .otherwise = "nothing",
+     .option = "largest-deflection-mm",
+     .argument = "D",
+     .help = "Leave out what comes later in the loading",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+};
+
+const struct wb_setting_table wb_calibrate_table = {.rows = rows, .n = WB_COUNT(rows)};
+
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings)
 {
-    *settings = (struct wb_calibrate_settings){
-        .elastic_zone = 0.05,
-        .size_tolerance = 1e-4,
-        .error_tolerance = 1e-4,
-        .max_iterations = 200,
-        .restart = true,
-        .step = 0.5 * WB_MM,
-    };
+    *settings = (struct wb_calibrate_settings){.progress = NULL};
+    wb_setting_fill(&wb_calibrate_table, settings);
+}
+
+struct wb_calibrate_settings
+wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings)
+{
+    struct wb_calibrate_settings meant = *settings;
+    if (!(meant.yield_point > 0.0))
+        meant.yield_point = meant.elastic_zone;
+    return meant;
 }
 
 const char *wb_calibrate_end_text(enum wb_calibrate_end end)
@@ -84,7 +248,8 @@ static void silence_gsl(void)
     gsl_set_error_handler_off();
 }
 
-struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *settings)
+/* The grid on which these settings compare. */
+static struct wb_curve_grid grid_of(const struct wb_calibrate_settings *settings)
 {
     return (struct wb_curve_grid){.step = settings->step,
                                   .force_step = settings->force_step,
@@ -93,24 +258,13 @@ struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *setti
 
 static double yield_point(const struct wb_calibrate_settings *settings)
 {
-    return settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
+    return wb_calibrate_settings_meant(settings).yield_point;
 }
 
-static enum wb_status check_settings(const struct wb_calibrate_settings *settings)
+static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings)
 {
-    const double zone = settings->elastic_zone, point = yield_point(settings);
-    if (!(fmin(zone, point) >= WB_CALIBRATE_LEAST_ZONE &&
-          fmax(zone, point) <= WB_CALIBRATE_LARGEST_ZONE))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "elastic zone and yield point must be from %g to %g of the length, not %g "
-                       "and %g",
-                       WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE, zone, point);
-    if (!(settings->step > 0.0) || !(settings->size_tolerance > 0.0) ||
-        !(settings->error_tolerance >= 0.0) || settings->max_iterations < 1 ||
-        !(settings->force_step >= 0.0) || !(settings->largest_deflection >= 0.0))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "steps, largest deflection, tolerances and iterations must be positive");
-    return WB_OK;
+    return (struct wb_computed_settings){settings->straight, settings->n_elements,
+                                         settings->n_fibres};
 }
 
 /* How far outside the domain a point lies, 0 inside. */
@@ -349,6 +503,17 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
     return WB_OK;
 }
 
+/* Multiplies E and sigma_Y, where they are not given, by the ratio of two closed forms. */
+static void scale_closed_forms(struct wb_material *material, const struct wb_first_guess *measured,
+                               const struct wb_first_guess *computed,
+                               const struct wb_calibrate_settings *settings)
+{
+    if (settings->youngs_modulus <= 0.0)
+        material->youngs_modulus *= measured->youngs_modulus / computed->youngs_modulus;
+    if (settings->yield_stress <= 0.0)
+        material->yield_stress *= measured->yield_stress / computed->yield_stress;
+}
+
 /* Takes what the bows make of eqs. 10 and 11 out of E and sigma_Y, by the ratio of measured to
  * computed, and seeks K and n again from where they are. */
 static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
@@ -360,14 +525,10 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
     for (int pass = 0; pass < BOW_PASSES && result->end != WB_CALIBRATE_STOPPED; pass++) {
         struct wb_first_guess computed;
         double at[2] = {1.0, 1.0};
-        WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material, settings,
+        WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material,
                                        &objective->evaluations));
         objective->material = result->material;
-        if (settings->youngs_modulus <= 0.0)
-            objective->material.youngs_modulus *=
-                measured->youngs_modulus / computed.youngs_modulus;
-        if (settings->yield_stress <= 0.0)
-            objective->material.yield_stress *= measured->yield_stress / computed.yield_stress;
+        scale_closed_forms(&objective->material, measured, &computed, settings);
         objective->first_strength = result->material.strength_coefficient;
         objective->first_exponent = result->material.hardening_exponent;
         WB_TRY(minimise(result, objective, at, settings));
@@ -433,6 +594,65 @@ int wb_calibrate_remarks(const struct wb_calibrate_result *result,
     return n;
 }
 
+/* --- uncertainties --- */
+
+struct leaving_out {
+    const struct wb_calibrate_settings *settings;
+    int *evaluations;
+};
+
+/* E and sigma_Y from eqs. 10 and 11 of the samples' own curve as ever; K and n from those of
+ * `material` on. */
+static enum wb_status refit_curve(const struct leaving_out *how,
+                                  const struct wb_bow_samples *samples,
+                                  struct wb_material *material, bool *settled)
+{
+    const struct wb_calibrate_settings *const settings = how->settings;
+    struct wb_computed *computed;
+    struct wb_test_info info;
+    struct wb_first_guess guess;
+    wb_curve_mean_info(samples->datasets, samples->n, &info);
+    WB_TRY(wb_first_guess_run(&guess, samples->curve, &info, samples->elastic_zone,
+                              samples->yield_point));
+    struct wb_first_guess before = {.youngs_modulus = material->youngs_modulus,
+                                    .yield_stress = material->yield_stress};
+    if (settings->bow_corrected && !settings->straight)
+        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations));
+    scale_closed_forms(material, &guess, &before, settings);
+    WB_TRY(wb_computed_create(&computed, &info, material, samples->how));
+    const enum wb_status status =
+        wb_refit_run(material, settled, computed, samples->curve, how->evaluations);
+    wb_computed_destroy(computed);
+    return status;
+}
+
+static enum wb_status refit_samples(void *context, const struct wb_dataset *const *datasets, int n,
+                                    struct wb_material *material, bool *settled)
+{
+    const struct leaving_out *const how = context;
+    const struct wb_curve_grid grid = grid_of(how->settings);
+    const struct wb_computed_settings computed = computed_settings(how->settings);
+    struct wb_curve curve;
+    *settled = false;
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
+    const struct wb_bow_samples samples = {
+        datasets, n, &curve, how->settings->elastic_zone, yield_point(how->settings), &computed};
+    const enum wb_status status = refit_curve(how, &samples, material, settled);
+    wb_curve_release(&curve);
+    return status;
+}
+
+enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
+                                       const struct wb_dataset *const *datasets, int n,
+                                       const struct wb_calibrate_settings *settings)
+{
+    struct leaving_out how = {settings, &result->evaluations};
+    const struct wb_jackknife_refit refit = {refit_samples, &how};
+    return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit);
+}
+
+/* --- all --- */
+
 static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                                       const struct wb_curve *curve,
                                       const struct wb_dataset *const *datasets, int n,
@@ -461,8 +681,7 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
         objective.material.youngs_modulus = settings->youngs_modulus;
     if (settings->yield_stress > 0.0)
         objective.material.yield_stress = settings->yield_stress;
-    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                             settings->n_fibres};
+    const struct wb_computed_settings how = computed_settings(settings);
     objective.value = malloc((size_t)curve->n * sizeof *objective.value);
     if (!objective.value)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d points", curve->n);
@@ -473,7 +692,8 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     if (status == WB_OK)
         status = optimise(result, &objective, settings);
     if (status == WB_OK && settings->bow_corrected && !settings->straight) {
-        const struct wb_bow_samples samples = {datasets, n, curve};
+        const struct wb_bow_samples samples = {
+            datasets, n, curve, settings->elastic_zone, yield_point(settings), &how};
         status = correct_for_bows(result, &objective, &samples, &guess, settings);
     }
     if (status == WB_OK)
@@ -484,8 +704,7 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     wb_computed_destroy(objective.computed);
     free(objective.value);
     if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
-        status = wb_jackknife_run(result->deviation, datasets, n, settings, &result->material,
-                                  &result->evaluations);
+        status = wb_calibrate_deviations(result, datasets, n, settings);
     return status;
 }
 
@@ -497,12 +716,12 @@ enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, silence_gsl);
     const double started = wb_progress_thread_cpu();
-    WB_TRY(check_settings(settings));
+    WB_TRY(wb_setting_check(&wb_calibrate_table, settings));
     struct wb_calibrate_result made = {0};
     struct wb_curve curve;
     for (int k = 0; k < 4; k++)
         made.deviation[k] = (double)NAN;
-    const struct wb_curve_grid grid = wb_calibrate_grid(settings);
+    const struct wb_curve_grid grid = grid_of(settings);
     WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
     const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings);
     wb_curve_release(&curve);

@@ -15,44 +15,50 @@
 
 #include <stdbool.h>
 
-#include "analysis/curve.h"
 #include "analysis/dataset.h"
+#include "base/setting.h"
 #include "base/status.h"
 #include "fe/material/material.h"
 
-/* Range of elastic zone and yield point: beyond it the closed forms do not hold by far. */
-#define WB_CALIBRATE_LEAST_ZONE 1e-3
-#define WB_CALIBRATE_LARGEST_ZONE 0.3
-
+/* Settings of calibration and of validation. Defaults and ranges: wb_calibrate_table. */
 struct wb_calibrate_settings {
-    double elastic_zone;    /* deflection over length for eq. 10; default 0.05 */
-    double yield_point;     /* the same for eq. 11; 0 (default): as elastic_zone */
-    double youngs_modulus;  /* Pa; given instead of eq. 10; 0 (default): eq. 10 */
-    double yield_stress;    /* Pa; given instead of eq. 11; 0 (default): eq. 11 */
-    double size_tolerance;  /* stop when the simplex' size is below, in units of (K0, n0); 1e-4 */
-    double error_tolerance; /* stop when E_L2 is below, relative to its scale F_max
-                               sqrt(delta_max), or its like of a follower test; default 1e-4 */
-    int max_iterations;     /* default 200 per start */
-    bool straight;          /* ignore the natural shape */
-    bool bow_corrected;     /* take what the samples' bows make of eqs. 10 and 11 out of E and
-                               sigma_Y, two passes; default false: the equations as printed */
-    bool restart;           /* restart once from the optimum; default true */
-    double step;            /* m, deflection step of the comparison grid; default 0.5 mm */
-    double force_step;      /* N, the same of follower tests; 0 (default): see analysis/curve.h */
-    double largest_deflection; /* m: what comes later in the loading is left out; 0 (default):
-                                  nothing */
-    int n_elements;            /* 0: 50 */
-    int n_fibres;              /* 0: 20 */
+    double elastic_zone;       /* deflection over length for eq. 10 */
+    double yield_point;        /* the same for eq. 11; 0: as elastic_zone */
+    double youngs_modulus;     /* Pa; given instead of eq. 10; 0: eq. 10 */
+    double yield_stress;       /* Pa; given instead of eq. 11; 0: eq. 11 */
+    double size_tolerance;     /* stop when the simplex' size is below, in units of (K0, n0) */
+    double error_tolerance;    /* stop when E_L2 is below, relative to its scale F_max
+                                  sqrt(delta_max), or its like of a follower test */
+    int max_iterations;        /* per start */
+    bool straight;             /* ignore the natural shape */
+    bool bow_corrected;        /* take what the samples' bows make of eqs. 10 and 11 out of E and
+                                  sigma_Y, two passes; false: the equations as printed */
+    bool restart;              /* restart once from the optimum */
+    double step;               /* m, deflection step of the comparison grid */
+    double force_step;         /* N, the same of follower tests; 0: see analysis/curve.h */
+    double largest_deflection; /* m: what comes later in the loading is left out; 0: nothing */
+    int n_elements;            /* of the beam */
+    int n_fibres;              /* over its diameter */
     /* Called after each iteration; may be NULL. Returns false to stop (Ctrl-C). */
     bool (*progress)(void *context, int evaluation, double error, double size);
     void *progress_context;
 };
 
-/* Fills in the defaults above; no progress. */
+/* Where a setting may be given, or is named. */
+enum {
+    WB_CALIBRATE_COMMAND = 1,  /* wirebench calibrate */
+    WB_CALIBRATE_VALIDATE = 2, /* wirebench validate */
+    WB_CALIBRATE_CAMPAIGN = 4, /* `settings` and `fit` of campaigns */
+    WB_CALIBRATE_REPORT = 8    /* `settings` of report.json */
+};
+extern const struct wb_setting_table wb_calibrate_table;
+
+/* Fills in the defaults; no progress. */
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings);
 
-/* The grid on which these settings compare. */
-struct wb_curve_grid wb_calibrate_grid(const struct wb_calibrate_settings *settings);
+/* The settings with the yield point that they mean. */
+struct wb_calibrate_settings
+wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings);
 
 enum wb_calibrate_end {
     WB_CALIBRATE_SIZE,       /* the simplex became small */
@@ -77,9 +83,8 @@ struct wb_calibrate_result {
     double max_force, max_deflection;                            /* N, m, of the averaged curve */
     double bow_spread; /* m: standard deviation of the samples' bows, as far as known; 0 with one */
     bool bow_corrected;
-    /* Standard uncertainties of E, sigma_Y, ln K, n from the scatter between samples (jackknife
-     * over the samples, each recalibrated from the optimum); NaN with one sample. K is within a
-     * factor of exp(deviation[2]). */
+    /* Standard uncertainties of E, sigma_Y, ln K, n from the scatter between samples (see
+     * analysis/jackknife.h); NaN with one sample. K is within a factor of exp(deviation[2]). */
     double deviation[4];
     enum wb_calibrate_end end;
     bool restarted;                      /* the restart was made */

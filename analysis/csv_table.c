@@ -6,10 +6,69 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "analysis/csv_table_private.h"
 #include "base/file.h"
 #include "base/number.h"
 
 #define WB_LOG_DOMAIN "table"
+
+/* Longest field that is taken for a number, which needs far less. */
+#define FIELD 64
+
+/* --- numbers --- */
+
+void wb_csv_table_format_number(double value, int shift, char *text)
+{
+    /* Shortest "d.ddde+xx" that reads back the same, then the exponent is changed by `shift`. */
+    char scientific[WB_CSV_TABLE_NUMBER];
+    int digits = 0;
+    do {
+        snprintf(scientific, sizeof scientific, "%.*e", digits, value);
+    } while (digits++ < 17 && strtod(scientific, NULL) != value);
+    char *const mark = strchr(scientific, 'e');
+    const int exponent = value == 0.0 ? 0 : atoi(mark + 1) + shift;
+    *mark = '\0';
+
+    const char *const sign = scientific[0] == '-' ? "-" : "";
+    char mantissa[20];
+    int n = 0;
+    for (const char *c = scientific; *c && n < (int)sizeof mantissa - 1; c++) {
+        if (*c >= '0' && *c <= '9')
+            mantissa[n++] = *c;
+    }
+    while (n > 1 && mantissa[n - 1] == '0')
+        n--;
+    mantissa[n] = '\0';
+    if (exponent < -7 || exponent > 15)
+        snprintf(text, WB_CSV_TABLE_NUMBER, "%s%c%s%se%d", sign, mantissa[0], n > 1 ? "." : "",
+                 mantissa + 1, exponent);
+    else if (exponent < 0)
+        snprintf(text, WB_CSV_TABLE_NUMBER, "%s0.%.*s%s", sign, -exponent - 1, "0000000", mantissa);
+    else if (n <= exponent + 1)
+        snprintf(text, WB_CSV_TABLE_NUMBER, "%s%s%.*s", sign, mantissa, exponent + 1 - n,
+                 "0000000000000000");
+    else
+        snprintf(text, WB_CSV_TABLE_NUMBER, "%s%.*s.%s", sign, exponent + 1, mantissa,
+                 mantissa + exponent + 1);
+}
+
+bool wb_csv_table_parse_number(const char *text, int shift, double *value)
+{
+    double plain;
+    char shifted[FIELD + 16];
+    if (!wb_number_parse(text, &plain) || strlen(text) >= FIELD)
+        return false;
+    const size_t mantissa = strcspn(text, "eE");
+    long exponent = 0;
+    if (text[mantissa] && !wb_number_parse_integer(text + mantissa + 1, &exponent))
+        return false;
+    if (labs(exponent) > 400)
+        return false;
+    snprintf(shifted, sizeof shifted, "%.*se%ld", (int)mantissa, text, exponent - shift);
+    return wb_number_parse(shifted, value);
+}
+
+/* --- tables --- */
 
 enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
                                    const char *expected, const char *text)

@@ -1,10 +1,11 @@
 /* Strict CSV tables beside a dataset's own: fields.csv, surface.csv. Comma-separated, no quotes, a
  * header line with the columns' names, every line with as many fields. Errors name file, line and
- * column.
+ * column. The numbers serve the dataset's own tables as well.
  */
 #ifndef WB_ANALYSIS_CSV_TABLE_H
 #define WB_ANALYSIS_CSV_TABLE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/status.h"
@@ -25,15 +26,22 @@ struct wb_csv_table {
     void *context;
 };
 
-/* Reads a table's text, which is taken apart in place. */
-WB_MUST_CHECK enum wb_status wb_csv_table_parse(struct wb_csv_table *table, char *text,
-                                                size_t size);
-
 /* For take(): refuses a field, or reads a whole number from 0 to `most`. */
 enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
                                    const char *expected, const char *text);
 WB_MUST_CHECK enum wb_status wb_csv_table_integer(const struct wb_csv_table *table, int column,
                                                   char *const *fields, int most, int *value);
+
+/* --- numbers --- */
+
+/* Lengths stand in millimetres; the decimal point is moved in the text, not in binary, so that
+ * every double comes back bit for bit: a finite double times 10^shift as the shortest decimal text
+ * that wb_csv_table_parse_number() turns back into the same double; `text` needs
+ * WB_CSV_TABLE_NUMBER bytes. */
+#define WB_CSV_TABLE_NUMBER 64
+void wb_csv_table_format_number(double value, int shift, char *text);
+/* False when the whole text is not one finite decimal number. */
+bool wb_csv_table_parse_number(const char *text, int shift, double *value);
 
 /* --- files --- */
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/loading.h"
+#include "analysis/curve_private.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "curve"
@@ -13,6 +13,208 @@
 #define SAME_LENGTH (0.1 * WB_MM)
 /* Most steps of a follower's force, unless set otherwise. */
 #define MOST_FORCE_STEPS 100
+/* Fewer points than this are no curve. */
+#define FEWEST_POINTS 10
+/* A bin without rows is interpolated between rows this many steps apart at most: a marker hidden
+ * for 1.5 s leaves 1.5 mm and a row at either end. */
+#define LONGEST_GAP 4.0
+
+/* --- the first loading of a sample --- */
+
+/* `at` is what the grid steps through, `value` what the curve holds. */
+struct loading_point {
+    double at, value;
+};
+
+/* The first loading of one sample, as points of what a curve's grid steps through and what it
+ * holds: deflection and force, or force and deflection of a follower test. */
+struct loading {
+    size_t n;
+    struct loading_point *points; /* (n) by ascending `at`; owned */
+};
+
+static int by_place(const void *a, const void *b)
+{
+    const double x = ((const struct loading_point *)a)->at;
+    const double y = ((const struct loading_point *)b)->at;
+    return (x > y) - (x < y);
+}
+
+static bool is_first_loading(const struct wb_row *row)
+{
+    return row->cycle == 1 && row->phase == WB_PHASE_LOAD;
+}
+
+/* Rows of the first loading: up to the largest force of a follower test, and up to the largest
+ * deflection that is wanted. */
+static size_t end_of_loading(const struct wb_dataset *dataset, double largest_deflection)
+{
+    const double limit = largest_deflection > 0.0 ? largest_deflection * (1.0 + 1e-9) : HUGE_VAL;
+    double force = -HUGE_VAL;
+    size_t end = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (!is_first_loading(row))
+            continue;
+        if (row->deflection > limit)
+            break;
+        if (dataset->info.is_follower && !(row->force >= force))
+            continue;
+        force = row->force;
+        end = i + 1;
+    }
+    return end;
+}
+
+static enum wb_status check_sense(const struct wb_dataset *dataset, double lowest, double highest,
+                                  double step)
+{
+    if (dataset->info.is_follower || highest > 0.0 || !(lowest < -step))
+        return WB_OK;
+    return wb_fail(WB_ERR_DATA,
+                   "wire '%s', sample %d: the first loading goes down to %.2f mm and never "
+                   "above zero; is the sign of the deflection reversed?",
+                   dataset->info.wire, dataset->info.sample, lowest / WB_MM);
+}
+
+/* Takes the rows of the first loading up to the grid's largest deflection, of a follower test up to
+ * its largest force. WB_ERR_DATA when they are no curve; release it then, too. */
+static enum wb_status extract_loading(struct loading *loading, const struct wb_dataset *dataset,
+                                      const struct wb_curve_grid *grid)
+{
+    const char *const wire = dataset->info.wire;
+    const int sample = dataset->info.sample;
+    const bool follows = dataset->info.is_follower;
+    const size_t end = end_of_loading(dataset, grid->largest_deflection);
+    double highest = -HUGE_VAL, lowest = HUGE_VAL;
+    loading->n = 0;
+    loading->points = malloc((end + 1) * sizeof *loading->points);
+    if (!loading->points)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows", end);
+    for (size_t i = 0; i < end; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (!is_first_loading(row))
+            continue;
+        if (!isfinite(row->deflection) || !isfinite(row->force))
+            return wb_fail(WB_ERR_DATA,
+                           "wire '%s', sample %d: row %zu has no finite deflection and force", wire,
+                           sample, i + 1);
+        highest = fmax(highest, row->deflection);
+        lowest = fmin(lowest, row->deflection);
+        /* Below zero the tip may still lie on its rest, where the force says nothing. */
+        if (follows ? row->force < 0.0 : row->deflection < -0.25 * grid->step)
+            continue;
+        loading->points[loading->n++] = follows
+                                            ? (struct loading_point){row->force, row->deflection}
+                                            : (struct loading_point){row->deflection, row->force};
+    }
+    WB_TRY(check_sense(dataset, lowest, highest, grid->step));
+    if (loading->n < FEWEST_POINTS)
+        return wb_fail(WB_ERR_DATA,
+                       "wire '%s', sample %d: the first loading (cycle 1, phase load) has only %zu "
+                       "rows, expected at least %d",
+                       wire, sample, loading->n, FEWEST_POINTS);
+    qsort(loading->points, loading->n, sizeof *loading->points, by_place);
+    return WB_OK;
+}
+
+/* Accepts a zeroed one. */
+static void release_loading(struct loading *loading)
+{
+    free(loading->points);
+    *loading = (struct loading){0};
+}
+
+/* Index of the first point at or above `at`; n when there is none. */
+static size_t first_at_or_above(const struct loading *loading, double at)
+{
+    size_t low = 0, high = loading->n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (loading->points[middle].at < at)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Straight line through the points around `centre` with triangular weights, taken at `centre`.
+ * False when they do not settle a value there: too few, or all on one side and far off. */
+static bool fit_locally(const struct loading *loading, double centre, double half, double *value)
+{
+    double weight_sum = 0.0, x_sum = 0.0, y_sum = 0.0, xx_sum = 0.0, xy_sum = 0.0;
+    double nearest_below = HUGE_VAL, nearest_above = HUGE_VAL;
+    int count = 0;
+    for (size_t i = first_at_or_above(loading, centre - half); i < loading->n; i++) {
+        const double x = loading->points[i].at - centre;
+        const double y = loading->points[i].value;
+        const double weight = 1.0 - fabs(x) / half;
+        if (x >= half)
+            break;
+        if (weight <= 0.0)
+            continue;
+        weight_sum += weight;
+        x_sum += weight * x;
+        y_sum += weight * y;
+        xx_sum += weight * x * x;
+        xy_sum += weight * x * y;
+        if (x <= 0.0)
+            nearest_below = fmin(nearest_below, -x);
+        if (x >= 0.0)
+            nearest_above = fmin(nearest_above, x);
+        count++;
+    }
+    if (count == 0)
+        return false;
+    const double x_mean = x_sum / weight_sum, y_mean = y_sum / weight_sum;
+    const double spread = xx_sum / weight_sum - x_mean * x_mean;
+    if (fabs(x_mean) < 1e-6 * half) {
+        *value = y_mean;
+        return true;
+    }
+    if (count < 3 || spread < 1e-3 * half * half)
+        return false;
+    const double nearest = fmin(nearest_below, nearest_above);
+    if (fmax(nearest_below, nearest_above) > half && nearest > 0.3 * half)
+        return false;
+    const double slope = (xy_sum / weight_sum - x_mean * y_mean) / spread;
+    *value = y_mean - slope * x_mean;
+    return true;
+}
+
+/* Straight line between the rows before and after; a row right there is taken as it is. */
+static bool interpolate_rows(const struct loading *loading, double at, double longest,
+                             double *value)
+{
+    const double near = 1e-6 * longest;
+    const size_t above = first_at_or_above(loading, at - near);
+    if (above < loading->n && loading->points[above].at <= at + near) {
+        *value = loading->points[above].value;
+        return true;
+    }
+    if (above == 0 || above == loading->n)
+        return false;
+    const struct loading_point *const a = &loading->points[above - 1];
+    const struct loading_point *const b = &loading->points[above];
+    const double gap = b->at - a->at;
+    if (!(gap <= longest * (1.0 + 1e-9)) || gap <= 0.0)
+        return false;
+    *value = a->value + (b->value - a->value) * (at - a->at) / gap;
+    return true;
+}
+
+/* Value at grid point i: of a straight line fitted to the points around it, or between the nearest.
+ * False where there are none near enough. */
+static bool loading_value(const struct loading *loading, int i, double step, double *value)
+{
+    /* At zero only one side has rows: a wider window holds the noise down there as well. */
+    const double half = i == 0 ? 1.5 * step : step;
+    return fit_locally(loading, i * step, half, value) ||
+           interpolate_rows(loading, i * step, LONGEST_GAP * step, value);
+}
+
+/* --- the average --- */
 
 /* What the grid steps through, for messages. */
 struct axis {
@@ -30,7 +232,8 @@ static bool same(double a, double b, double relative)
     return fabs(a - b) <= relative * fmax(fabs(a), fabs(b));
 }
 
-bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info *b)
+/* Same wire, length and loading: tests that may be averaged. */
+static bool same_kind(const struct wb_test_info *a, const struct wb_test_info *b)
 {
     return strcmp(a->wire, b->wire) == 0 && fabs(a->length - b->length) <= SAME_LENGTH &&
            a->is_follower == b->is_follower;
@@ -38,7 +241,7 @@ bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info 
 
 static enum wb_status check_same_test(const struct wb_test_info *a, const struct wb_test_info *b)
 {
-    if (!wb_curve_same_kind(a, b))
+    if (!same_kind(a, b))
         return wb_fail(WB_ERR_DATA,
                        "datasets of different kinds cannot be averaged: wire '%s' of %.4g mm%s and "
                        "wire '%s' of %.4g mm%s",
@@ -107,7 +310,7 @@ static void combine(struct wb_curve *curve, int at, const double *values, int n)
 }
 
 /* Grid points that every sample reaches. */
-static int common_points(const struct wb_loading *loadings, int n, double step)
+static int common_points(const struct loading *loadings, int n, double step)
 {
     double largest = HUGE_VAL, ignored;
     for (int i = 0; i < n; i++)
@@ -117,7 +320,7 @@ static int common_points(const struct wb_loading *loadings, int n, double step)
     for (int dropped = 0; dropped < 2 && points > 0; dropped++) {
         bool all = true;
         for (int i = 0; i < n; i++)
-            all = all && wb_loading_value(&loadings[i], points - 1, step, &ignored);
+            all = all && loading_value(&loadings[i], points - 1, step, &ignored);
         if (all)
             break;
         points--;
@@ -126,7 +329,7 @@ static int common_points(const struct wb_loading *loadings, int n, double step)
 }
 
 /* Says why a grid point has no value. */
-static enum wb_status fail_at(const struct wb_loading *loading, const struct wb_test_info *info,
+static enum wb_status fail_at(const struct loading *loading, const struct wb_test_info *info,
                               double at, double step)
 {
     const struct axis axis = axis_of(info);
@@ -140,7 +343,7 @@ static enum wb_status fail_at(const struct wb_loading *loading, const struct wb_
     return wb_fail(WB_ERR_DATA,
                    "wire '%s', sample %d: no rows of the first loading around %.2f %s (a gap of "
                    "more than %g steps of %g %s)",
-                   info->wire, info->sample, at / axis.size, axis.unit, WB_LOADING_LONGEST_GAP,
+                   info->wire, info->sample, at / axis.size, axis.unit, LONGEST_GAP,
                    step / axis.size, axis.unit);
 }
 
@@ -154,24 +357,23 @@ static void find_largest(struct wb_curve *curve)
     curve->max_force = curve->is_follower ? end : largest;
 }
 
-static enum wb_status average(struct wb_curve *curve, const struct wb_loading *loadings,
+static enum wb_status average(struct wb_curve *curve, const struct loading *loadings,
                               const struct wb_dataset *const *datasets, int n, double step)
 {
     const int points = common_points(loadings, n, step);
     const struct axis axis = axis_of(&datasets[0]->info);
-    if (points < WB_LOADING_FEWEST_POINTS)
+    if (points < FEWEST_POINTS)
         return wb_fail(WB_ERR_DATA,
                        "wire '%s': the first loading reaches only %d points of %g %s in every "
                        "sample, expected at least %d",
-                       datasets[0]->info.wire, points, step / axis.size, axis.unit,
-                       WB_LOADING_FEWEST_POINTS);
+                       datasets[0]->info.wire, points, step / axis.size, axis.unit, FEWEST_POINTS);
     double *const values = malloc((size_t)n * sizeof *values);
     if (!values)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d samples", n);
     enum wb_status status = allocate(curve, points);
     for (int k = 0; status == WB_OK && k < points; k++) {
         for (int i = 0; status == WB_OK && i < n; i++) {
-            if (!wb_loading_value(&loadings[i], k, step, &values[i]))
+            if (!loading_value(&loadings[i], k, step, &values[i]))
                 status = fail_at(&loadings[i], &datasets[i]->info, k * step, step);
         }
         if (status == WB_OK)
@@ -190,7 +392,7 @@ static enum wb_status average(struct wb_curve *curve, const struct wb_loading *l
 }
 
 /* Steps of force: a row each, where the rows lie equally and are not too many. */
-static double default_force_step(const struct wb_loading *loadings, int n)
+static double default_force_step(const struct loading *loadings, int n)
 {
     double largest = HUGE_VAL;
     for (int i = 0; i < n; i++)
@@ -199,12 +401,12 @@ static double default_force_step(const struct wb_loading *loadings, int n)
            (double)(loadings[0].n - 1 < MOST_FORCE_STEPS ? loadings[0].n - 1 : MOST_FORCE_STEPS);
 }
 
-static enum wb_status average_loadings(struct wb_curve *curve, struct wb_loading *loadings,
+static enum wb_status average_loadings(struct wb_curve *curve, struct loading *loadings,
                                        const struct wb_dataset *const *datasets, int n,
                                        const struct wb_curve_grid *grid)
 {
     for (int i = 0; i < n; i++)
-        WB_TRY(wb_loading_extract(&loadings[i], datasets[i], grid));
+        WB_TRY(extract_loading(&loadings[i], datasets[i], grid));
     double step = grid->step;
     if (datasets[0]->info.is_follower)
         step = grid->force_step > 0.0 ? grid->force_step : default_force_step(loadings, n);
@@ -232,12 +434,12 @@ enum wb_status wb_curve_average_on(struct wb_curve *curve, const struct wb_datas
         WB_TRY(check_info(&datasets[i]->info));
         WB_TRY(check_same_test(&datasets[0]->info, &datasets[i]->info));
     }
-    struct wb_loading *const loadings = calloc((size_t)n, sizeof *loadings);
+    struct loading *const loadings = calloc((size_t)n, sizeof *loadings);
     if (!loadings)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d samples", n);
     const enum wb_status status = average_loadings(&result, loadings, datasets, n, &complete);
     for (int i = 0; i < n; i++)
-        wb_loading_release(&loadings[i]);
+        release_loading(&loadings[i]);
     free(loadings);
     if (status == WB_OK)
         *curve = result;
@@ -252,29 +454,28 @@ enum wb_status wb_curve_average(struct wb_curve *curve, const struct wb_dataset 
 }
 
 /* Points up to the largest deflection, those that rise above all before them. */
-static int rising_points(const struct wb_curve *curve, struct wb_loading_point *points)
+static int rising_points(const struct wb_curve *curve, struct loading_point *points)
 {
     int n = 0;
     for (int i = 0; i < curve->n; i++) {
         if (n == 0 || curve->deflection[i] > points[n - 1].at)
-            points[n++] = (struct wb_loading_point){curve->deflection[i], i * curve->step};
+            points[n++] = (struct loading_point){curve->deflection[i], i * curve->step};
     }
     return n;
 }
 
 /* Force at a deflection on the line through two of the points; *from is where to look from on. */
-static double force_between(const struct wb_loading_point *points, int n, double deflection,
-                            int *from)
+static double force_between(const struct loading_point *points, int n, double deflection, int *from)
 {
     while (*from < n - 2 && points[*from + 1].at < deflection)
         ++*from;
-    const struct wb_loading_point *const a = &points[*from], *const b = a + 1;
+    const struct loading_point *const a = &points[*from], *const b = a + 1;
     return a->value + (b->value - a->value) * (deflection - a->at) / (b->at - a->at);
 }
 
 enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *curve, double step)
 {
-    struct wb_loading_point *const points = malloc((size_t)curve->n * sizeof *points);
+    struct loading_point *const points = malloc((size_t)curve->n * sizeof *points);
     struct wb_curve made = {0};
     int from = 0;
     if (!points)
@@ -282,7 +483,7 @@ enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *cur
     const int n = rising_points(curve, points);
     const double places = n > 1 ? floor(points[n - 1].at / step + 1e-6) : 0.0;
     enum wb_status status = WB_OK;
-    if (n < WB_LOADING_FEWEST_POINTS || !(places >= 1.0))
+    if (n < FEWEST_POINTS || !(places >= 1.0))
         status = wb_fail(WB_ERR_DATA,
                          "the deflection does not rise with the follower force from zero on (%d "
                          "points rise, to %.4g mm); is its sign reversed?",
@@ -381,7 +582,7 @@ int wb_curve_group(const struct wb_dataset *const *datasets, int n, int *group)
     for (int i = 0; i < n; i++) {
         group[i] = -1;
         for (int k = 0; k < i && group[i] < 0; k++) {
-            if (wb_curve_same_kind(&datasets[k]->info, &datasets[i]->info))
+            if (same_kind(&datasets[k]->info, &datasets[i]->info))
                 group[i] = group[k];
         }
         if (group[i] < 0)

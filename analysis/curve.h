@@ -62,16 +62,9 @@ void wb_curve_release(struct wb_curve *curve);
 /* What errors are divided by: max_force, or max_deflection of a follower test. */
 double wb_curve_scale(const struct wb_curve *curve);
 
-/* Linear interpolation of the mean force at a deflection within 0..max_deflection; NaN outside, and
- * for a follower's curve. */
-double wb_curve_force(const struct wb_curve *curve, double deflection);
-
 /* What the scatter between samples is worth: root mean square over the grid of the standard
  * deviation, over wb_curve_scale(); 0 for one sample. */
 double wb_curve_scatter(const struct wb_curve *curve);
-
-/* Same wire, length and loading: tests that may be averaged. */
-bool wb_curve_same_kind(const struct wb_test_info *a, const struct wb_test_info *b);
 
 /* Numbers datasets by kind in the order of their first appearance: group[i] from 0. Returns the
  * number of groups. */

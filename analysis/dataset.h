@@ -3,6 +3,10 @@
  * On disk a folder: dataset.json (provenance), force_deflection.csv, shape.csv. A bench test, an
  * imported file and a simulation all end here, and calibration cannot tell them apart.
  *
+ * The tables are strict: comma-separated, no quotes, comment lines ('#') only at the begin ("#
+ * virtual rig" where the data come from it), a header line with the columns' names, every line with
+ * as many fields as the header, numbers as plain decimals. Columns that are not known are skipped.
+ *
  * Frame: clamp at the origin, x along the straight wire, y upwards. Deflection is the tip's y.
  * `tension` is the strand's; `force` is its vertical part less its value at zero deflection on the
  * first loading. Slack rows are left out of every fit.
@@ -16,15 +20,7 @@
 
 #include "base/json.h"
 #include "base/status.h"
-
-enum wb_phase {
-    WB_PHASE_LOAD,
-    WB_PHASE_UNLOAD,
-    WB_PHASE_SLACK
-};
-
-/* "load", "unload", "slack". */
-const char *wb_phase_name(enum wb_phase phase);
+#include "fe/linear/trial.h"
 
 /* One row of force_deflection.csv:
  * t_s,cycle,phase,deflection_mm,tension_N,force_N,stage_mm,tip_x_mm,tip_angle_rad

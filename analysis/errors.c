@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "analysis/errors_private.h"
+
 double wb_errors_integral(int n, double step, const double *values)
 {
     double sum = 0.5 * (values[0] + values[n - 1]);

@@ -9,9 +9,6 @@
 #ifndef WB_ANALYSIS_ERRORS_H
 #define WB_ANALYSIS_ERRORS_H
 
-/* Integral of `values` over (n - 1) steps, trapezoid rule. */
-double wb_errors_integral(int n, double step, const double *values);
-
 /* E_L2 of eq. 17 as printed: square root of the integral of the squared difference, N m^(1/2). */
 double wb_errors_l2(int n, double step, const double *measured, const double *computed);
 

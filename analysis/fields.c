@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "analysis/csv_table.h"
-#include "analysis/dataset_csv.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "fields"
@@ -107,9 +106,9 @@ const struct wb_field *wb_fields_find(const struct wb_fields *fields, const char
 
 static void append_number(struct wb_text *text, double value, int shift)
 {
-    char rounded[WB_DATASET_CSV_NUMBER], number[WB_DATASET_CSV_NUMBER];
+    char rounded[WB_CSV_TABLE_NUMBER], number[WB_CSV_TABLE_NUMBER];
     snprintf(rounded, sizeof rounded, "%.*e", DIGITS - 1, value);
-    wb_dataset_csv_format_number(strtod(rounded, NULL), shift, number);
+    wb_csv_table_format_number(strtod(rounded, NULL), shift, number);
     wb_text_append_bytes(text, number, strlen(number));
 }
 
@@ -190,7 +189,7 @@ static enum wb_status parse_row(const struct wb_csv_table *table, char *const *f
     if (!cross && strcmp(fields[1], "longitudinal") != 0)
         return wb_csv_table_refuse(table, 1, "longitudinal or cross", fields[1]);
     row->x = (double)NAN;
-    if (cross && !wb_dataset_csv_parse_number(fields[2], 3, &row->x))
+    if (cross && !wb_csv_table_parse_number(fields[2], 3, &row->x))
         return wb_csv_table_refuse(table, 2, "a number", fields[2]);
     if (!cross && fields[2][0] != '\0')
         return wb_csv_table_refuse(table, 2, "nothing for a longitudinal section", fields[2]);
@@ -199,8 +198,7 @@ static enum wb_status parse_row(const struct wb_csv_table *table, char *const *f
     WB_TRY(wb_csv_table_integer(table, 4, fields, MOST_PARTS - 1, &row->part));
     WB_TRY(wb_csv_table_integer(table, 5, fields, 7, &row->node));
     for (int i = 0; i < VALUES; i++)
-        if (!wb_dataset_csv_parse_number(fields[TEXT_COLUMNS + i], value_shifts[i],
-                                         &row->values[i]))
+        if (!wb_csv_table_parse_number(fields[TEXT_COLUMNS + i], value_shifts[i], &row->values[i]))
             return wb_csv_table_refuse(table, TEXT_COLUMNS + i, "a number",
                                        fields[TEXT_COLUMNS + i]);
     return WB_OK;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "analysis/first_guess_private.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "first guess"

@@ -6,6 +6,7 @@
 
 #include "analysis/markers_private.h"
 #include "base/units.h"
+#include "base/vec3.h"
 
 #define WB_LOG_DOMAIN "markers"
 
@@ -23,6 +24,18 @@
 #define CARRIED_BY_ONE 0.3
 /* A link that is off by four tolerances is a wrong marker. */
 #define BROKEN_LINK_COST 16.0
+/* What a chain may cost: a missing marker costs as much as a link at three tolerances. */
+#define MISSING_COST 9.0
+#define LARGEST_LINK_COST 16.0
+/* Two links in a row turn by less than this (60 degrees). */
+#define LEAST_COSINE 0.5
+/* A hostile cloud must not take forever. */
+#define MOST_VISITS 20000
+/* Markers sit on the wire to this, m, whatever the cameras resolve. */
+#define PLACEMENT (0.3 * WB_MM)
+/* A bent wire's chord is shorter than its arc, by at most this part (and by what the marker's
+ * offset towards the inside of the bend takes, PLACEMENT's order). */
+#define CHORD_SHORTFALL 0.03
 
 /* --- the cloud --- */
 
@@ -83,6 +96,136 @@ void wb_point_cloud_release(struct wb_point_cloud *cloud)
     memset(cloud, 0, sizeof *cloud);
 }
 
+/* --- the best chain of points: which are our markers, in order along the wire --- */
+
+/* Cost of two points as markers `i` < `j`: square of the distance's error over its tolerance. */
+static double link_cost(const struct wb_specimen *specimen, double noise, int i, int j,
+                        const double *a, const double *b)
+{
+    const double arc = specimen->markers[j] - specimen->markers[i];
+    const double error = wb_vec3_distance(a, b) - arc;
+    double tolerance = sqrt(2.0 * (noise * noise + PLACEMENT * PLACEMENT));
+    if (error < 0.0)
+        tolerance += CHORD_SHORTFALL * arc;
+    return error * error / (tolerance * tolerance);
+}
+
+/* What a chain is sought among, and how far the search has come: zeros at first. */
+struct search {
+    const double (*points)[3];
+    int n;
+    const struct wb_specimen *specimen;
+    double noise;
+    int least;      /* markers that must be in the chain, 2 in any case */
+    bool need_ends; /* the first and the last marker must be in the chain */
+    int visits;
+    int chain[WB_SPECIMEN_MAX_MARKERS]; /* being built */
+    int best[WB_SPECIMEN_MAX_MARKERS];
+    int best_length;
+    double best_cost;
+};
+
+static bool is_used(const struct search *search, int marker, int point)
+{
+    for (int i = 0; i < marker; i++) {
+        if (search->chain[i] == point)
+            return true;
+    }
+    return false;
+}
+
+/* Bend between the links to the two markers last chosen; 1 is straight on. */
+static double cosine(const struct search *search, int second_last, int last, int point)
+{
+    const double *const a = search->points[second_last];
+    const double *const b = search->points[last];
+    const double *const c = search->points[point];
+    double dot = 0.0;
+    for (int k = 0; k < 3; k++)
+        dot += (b[k] - a[k]) * (c[k] - b[k]);
+    const double lengths = wb_vec3_distance(a, b) * wb_vec3_distance(b, c);
+    return lengths > 0.0 ? dot / lengths : -1.0;
+}
+
+/* The last two markers that have a point, before `marker`; -1 when there is none. */
+static void find_last_two(const struct search *search, int marker, int *last, int *second_last)
+{
+    *last = *second_last = -1;
+    for (int i = marker - 1; i >= 0; i--) {
+        if (search->chain[i] < 0)
+            continue;
+        if (*last < 0) {
+            *last = i;
+        } else {
+            *second_last = i;
+            return;
+        }
+    }
+}
+
+/* Depth first over the markers; branches that already cost more than the best are cut. */
+static void extend(struct search *search, int marker, int length, double cost)
+{
+    const int n_markers = search->specimen->n_markers;
+    const int missing = marker - length;
+    if (cost >= search->best_cost || missing > n_markers - search->least ||
+        search->visits++ > MOST_VISITS)
+        return;
+    if (marker == n_markers) {
+        search->best_cost = cost;
+        search->best_length = length;
+        memcpy(search->best, search->chain, sizeof search->best);
+        return;
+    }
+    int last, second_last;
+    find_last_two(search, marker, &last, &second_last);
+    for (int point = 0; point < search->n; point++) {
+        if (is_used(search, marker, point))
+            continue;
+        double link = 0.0;
+        if (last >= 0)
+            link = link_cost(search->specimen, search->noise, last, marker,
+                             search->points[search->chain[last]], search->points[point]);
+        if (!(link <= LARGEST_LINK_COST))
+            continue;
+        if (second_last >= 0) {
+            const double straight =
+                cosine(search, search->chain[second_last], search->chain[last], point);
+            if (!(straight >= LEAST_COSINE))
+                continue;
+            link += 4.0 * (1.0 - straight);
+        }
+        search->chain[marker] = point;
+        extend(search, marker + 1, length + 1, cost + link);
+    }
+    if (search->need_ends && (marker == 0 || marker == n_markers - 1))
+        return;
+    search->chain[marker] = -1;
+    extend(search, marker + 1, length, cost + MISSING_COST);
+}
+
+/* The number of markers in the best chain, which is search->best at search->best_cost then; 0:
+ * there is none. */
+static int find_chain(struct search *search)
+{
+    if (search->least < 2)
+        search->least = 2;
+    search->best_cost = HUGE_VAL;
+    if (search->n >= search->least)
+        extend(search, 0, 0, 0.0);
+    return search->best_length;
+}
+
+int wb_markers_chain(const double (*points)[3], int n, const struct wb_specimen *specimen,
+                     double noise, int least, int *chosen)
+{
+    struct search search = {
+        .points = points, .n = n, .specimen = specimen, .noise = noise, .least = least};
+    if (find_chain(&search) > 0)
+        memcpy(chosen, search.best, (size_t)specimen->n_markers * sizeof *chosen);
+    return search.best_length;
+}
+
 /* --- following --- */
 
 struct tracker {
@@ -131,8 +274,7 @@ static void assign_nearest(const struct tracker *tracker, size_t frame, int *cho
                 continue;
             const double gate = gate_of(tracker, marker);
             for (int point = 0; point < n; point++) {
-                const double distance =
-                    wb_markers_distance(tracker->predicted[marker], points[point]);
+                const double distance = wb_vec3_distance(tracker->predicted[marker], points[point]);
                 if (!taken[point] && distance < gate && distance < nearest) {
                     nearest = distance;
                     best_marker = marker;
@@ -158,10 +300,10 @@ static int drop_broken_links(const struct tracker *tracker, size_t frame, int *c
             continue;
         if (last >= 0) {
             const double *const a = points[chosen[last]], *const b = points[chosen[marker]];
-            if (wb_markers_link_cost(tracker->specimen, tracker->settings.noise, last, marker, a,
-                                     b) > BROKEN_LINK_COST) {
-                const bool drop_last = wb_markers_distance(tracker->predicted[last], a) >
-                                       wb_markers_distance(tracker->predicted[marker], b);
+            if (link_cost(tracker->specimen, tracker->settings.noise, last, marker, a, b) >
+                BROKEN_LINK_COST) {
+                const bool drop_last = wb_vec3_distance(tracker->predicted[last], a) >
+                                       wb_vec3_distance(tracker->predicted[marker], b);
                 chosen[drop_last ? last : marker] = -1;
                 dropped++;
                 if (!drop_last)
@@ -191,7 +333,7 @@ static double chain_distance(const struct tracker *tracker, size_t frame, const 
     for (int i = 0; i < n; i++) {
         const int point = chosen[reversed ? n - 1 - i : i];
         if (point >= 0)
-            sum += wb_markers_distance(tracker->predicted[i], points[point]);
+            sum += wb_vec3_distance(tracker->predicted[i], points[point]);
     }
     return sum;
 }
@@ -205,10 +347,10 @@ static void reverse(int *chosen, int n)
     }
 }
 
-static struct wb_markers_search search_in(const struct tracker *tracker, size_t frame, int least,
-                                          bool need_ends)
+static struct search search_in(const struct tracker *tracker, size_t frame, int least,
+                               bool need_ends)
 {
-    return (struct wb_markers_search){
+    return (struct search){
         .points = points_of(tracker->cloud, frame),
         .n = tracker->cloud->frames[frame].n,
         .specimen = tracker->specimen,
@@ -225,18 +367,17 @@ static void search_again(struct tracker *tracker, size_t frame, int *chosen)
     const int n = tracker->cloud->frames[frame].n;
     const int least = n_markers > 4 ? n_markers - 2 : n_markers;
     const int seen = count_chosen(chosen, n_markers);
-    int found[WB_SPECIMEN_MAX_MARKERS];
-    double cost;
     if (n < least || seen >= least)
         return;
     tracker->tracks->n_searches++;
-    const struct wb_markers_search wanted = search_in(tracker, frame, least, false);
-    if (wb_markers_find_chain(&wanted, found, &cost) <= seen)
+    struct search search = search_in(tracker, frame, least, false);
+    if (find_chain(&search) <= seen)
         return;
+    int *const found = search.best;
     if (tracker->tracks->symmetric &&
         chain_distance(tracker, frame, found, true) < chain_distance(tracker, frame, found, false))
         reverse(found, n_markers);
-    memcpy(chosen, found, sizeof found);
+    memcpy(chosen, found, sizeof search.best);
 }
 
 /* A marker that is not seen is carried along by its seen neighbours. */
@@ -319,16 +460,14 @@ static bool find_start(const struct tracker *tracker, int least, size_t *start, 
     int n_found = 0;
     const size_t stride = 1 + cloud->n_frames / LOOKED_AT;
     for (size_t frame = 0; frame < cloud->n_frames && n_found < START_FRAMES; frame += stride) {
-        int found[WB_SPECIMEN_MAX_MARKERS];
-        double cost;
-        const struct wb_markers_search wanted = search_in(tracker, frame, least, true);
-        if (wanted.n < least || wb_markers_find_chain(&wanted, found, &cost) == 0)
+        struct search search = search_in(tracker, frame, least, true);
+        if (search.n < least || find_chain(&search) == 0)
             continue;
         n_found++;
-        if (cost < best) {
-            best = cost;
+        if (search.best_cost < best) {
+            best = search.best_cost;
             *start = frame;
-            memcpy(chosen, found, sizeof found);
+            memcpy(chosen, search.best, sizeof search.best);
         }
     }
     return n_found > 0;

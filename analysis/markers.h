@@ -76,9 +76,4 @@ void wb_markers_reverse(struct wb_marker_tracks *tracks);
 const double *wb_markers_position(const struct wb_marker_tracks *tracks,
                                   const struct wb_point_cloud *cloud, size_t frame, int marker);
 
-/* The best chain through one frame's points: `chosen` (n_markers) receives indices into `points`
- * or -1. Returns the number of markers in it, 0 when there is no chain of at least `least`. */
-int wb_markers_chain(const double (*points)[3], int n, const struct wb_specimen *specimen,
-                     double noise, int least, int *chosen);
-
 #endif

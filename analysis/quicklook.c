@@ -201,7 +201,7 @@ static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, 
         line->y[line->n++] = shown ? row->force / WB_MN : (double)NAN;
         n_shown += shown;
     }
-    snprintf(label, sizeof label, "cycle %d, %sing", cycle, wb_phase_name(phase));
+    snprintf(label, sizeof label, "cycle %d, %sing", cycle, wb_trial_phase_name(phase));
     if (n_shown > 1)
         wb_figure_add_line(panel, label, line->n, line->x, line->y, &style);
 }

@@ -9,19 +9,6 @@
 static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
 static const double shortest_row = 1e-3; /* s */
 
-enum wb_phase wb_simulated_phase(enum wb_history_phase phase)
-{
-    switch (phase) {
-    case WB_HISTORY_LOAD:
-        return WB_PHASE_LOAD;
-    case WB_HISTORY_UNLOAD:
-        return WB_PHASE_UNLOAD;
-    case WB_HISTORY_SLACK:
-        return WB_PHASE_SLACK;
-    }
-    return WB_PHASE_LOAD;
-}
-
 double wb_simulated_time(const double from[3], const double to[3])
 {
     const double way = hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
@@ -54,19 +41,19 @@ void wb_simulated_describe_tool(struct wb_json *document)
     wb_json_set_text(tool, "revision", wb_version_revision());
 }
 
-static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_history *history,
+static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *loading,
                                const double *shape_s)
 {
     double travelled = 0.0;
 
-    for (int i = 0; i < history->n_rows; i++) {
-        const struct wb_history_row *row = &history->rows[i];
+    for (int i = 0; i < loading->n_rows; i++) {
+        const struct wb_loading_steps_row *row = &loading->rows[i];
         if (i > 0)
-            travelled += fabs(row->point.control - history->rows[i - 1].point.control);
+            travelled += fabs(row->point.control - loading->rows[i - 1].point.control);
         const struct wb_row out = {
             .t = travelled / stage_speed,
             .cycle = row->cycle,
-            .phase = wb_simulated_phase(row->phase),
+            .phase = row->phase,
             .deflection = row->point.deflection,
             .tension = row->point.tension,
             .force = row->force,
@@ -76,15 +63,15 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_histo
         };
         WB_TRY(wb_dataset_add_row(dataset, &out));
 
-        for (int k = 0; k < history->n_shape; k++) {
-            const size_t at = (size_t)i * (size_t)history->n_shape + (size_t)k;
+        for (int k = 0; k < loading->n_shape; k++) {
+            const size_t at = (size_t)i * (size_t)loading->n_shape + (size_t)k;
             const struct wb_shape_row shape = {
                 .t = out.t,
                 .deflection = out.deflection,
                 .marker = k,
                 .s = shape_s[k],
-                .x = history->shape_x[at],
-                .y = history->shape_y[at],
+                .x = loading->shape_x[at],
+                .y = loading->shape_y[at],
             };
             WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
         }
@@ -93,7 +80,8 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_histo
 }
 
 static void describe(struct wb_json *document, const struct wb_test_info *info,
-                     const struct wb_history *history, const struct wb_simulated_origin *origin)
+                     const struct wb_loading_steps *loading,
+                     const struct wb_simulated_origin *origin)
 {
     char name[128];
     snprintf(name, sizeof name, "%s, simulated %s", info->wire, origin->model);
@@ -111,8 +99,8 @@ static void describe(struct wb_json *document, const struct wb_test_info *info,
                            origin->material->strength_coefficient / WB_MPA);
         wb_json_set_number(simulation, "hardening_exponent", origin->material->hardening_exponent);
     }
-    wb_json_set_boolean(simulation, "converged", history->converged);
-    wb_json_set_number(simulation, "zero_force_N", history->zero_force);
+    wb_json_set_boolean(simulation, "converged", loading->converged);
+    wb_json_set_number(simulation, "zero_force_N", loading->zero_force);
     wb_json_set_number(simulation, "wall_s", origin->wall);
     wb_json_set_number(simulation, "cpu_s", origin->cpu);
 
@@ -120,12 +108,12 @@ static void describe(struct wb_json *document, const struct wb_test_info *info,
 }
 
 enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,
-                                 const struct wb_history *history, const double *shape_s,
+                                 const struct wb_loading_steps *loading, const double *shape_s,
                                  const struct wb_simulated_origin *origin)
 {
     dataset->info = *info;
     dataset->info.is_simulation = true;
-    WB_TRY(add_rows(dataset, history, shape_s));
-    describe(dataset->document, info, history, origin);
+    WB_TRY(add_rows(dataset, loading, shape_s));
+    describe(dataset->document, info, loading, origin);
     return WB_OK;
 }

@@ -1,7 +1,7 @@
 /* A simulated test as a dataset: the same rows and shapes as a measured one.
  *
  * Bench time is the time in which a stage at 1 mm/s would have made the way. Shapes hold as many
- * equally spaced positions as the history recorded, as if they were markers.
+ * equally spaced positions as the computation recorded, as if they were markers.
  */
 #ifndef WB_ANALYSIS_SIMULATED_H
 #define WB_ANALYSIS_SIMULATED_H
@@ -9,7 +9,7 @@
 #include "analysis/dataset.h"
 #include "base/status.h"
 #include "fe/model/wire_model.h"
-#include "fe/trial/history.h"
+#include "fe/trial/loading_steps.h"
 #include "fe/trial/wire3d.h"
 #include "fe/trial/wire_run.h"
 
@@ -22,15 +22,12 @@ struct wb_simulated_origin {
     double wall, cpu; /* s */
 };
 
-/* Fills an initialised dataset. `shape_s` are the arc lengths of the history's plan, m. */
+/* Fills an initialised dataset. `shape_s` are the arc lengths of the plan, m. */
 WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
                                                const struct wb_test_info *info,
-                                               const struct wb_history *history,
+                                               const struct wb_loading_steps *loading,
                                                const double *shape_s,
                                                const struct wb_simulated_origin *origin);
-
-/* A history's phase as a dataset's. */
-enum wb_phase wb_simulated_phase(enum wb_history_phase phase);
 
 /* Bench time, s, in which a free tip goes from one place to the next, m: at least 1 ms. */
 double wb_simulated_time(const double from[3], const double to[3]);

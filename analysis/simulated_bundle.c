@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/dataset_csv.h"
+#include "analysis/csv_table.h"
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -12,9 +12,6 @@
 
 #define WB_LOG_DOMAIN "dataset"
 
-static const double pa_per_m = 1e9;       /* of one N/mm3 */
-static const double s_per_m = 1e3;        /* of one s/mm */
-static const double j_per_m2 = 1e3;       /* of one N/mm */
 static const double poissons_ratio = 0.3; /* of the homogenised beam, as the paper has it */
 
 /* --- rows --- */
@@ -30,7 +27,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundl
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
-            .phase = wb_simulated_phase(row->phase),
+            .phase = row->phase,
             .deflection = row->deflection,
             .tension = row->tension,
             .force = row->force,
@@ -65,21 +62,20 @@ static void describe_interface(struct wb_json *simulation, const struct wb_bundl
 {
     const struct wb_bundle_interface *interface = &model->interface;
 
-    struct wb_json *const friction = wb_json_set_object(simulation, "friction");
-    wb_json_set_number(friction, "static", interface->friction_static);
-    wb_json_set_number(friction, "kinetic", interface->friction_kinetic);
-    wb_json_set_number(friction, "decay_s_mm", interface->friction_decay / s_per_m);
+    wb_setting_set_json(wb_bundle_model_friction_setting, interface, simulation);
     if (!model->has_tape)
         return;
     struct wb_json *const cohesion = wb_json_set_object(simulation, "cohesion");
-    wb_json_set_number(cohesion, "normal_stiffness_N_mm3", interface->normal_stiffness / pa_per_m);
-    wb_json_set_number(cohesion, "shear_stiffness_N_mm3", interface->shear_stiffness / pa_per_m);
+    wb_json_set_number(cohesion, "normal_stiffness_N_mm3",
+                       interface->normal_stiffness / WB_N_PER_MM3);
+    wb_json_set_number(cohesion, "shear_stiffness_N_mm3",
+                       interface->shear_stiffness / WB_N_PER_MM3);
     if (!interface->has_damage)
         return;
     wb_json_set_number(cohesion, "strength_MPa", interface->damage.strength / WB_MPA);
     wb_json_set_number(cohesion, "shear_strength_MPa", interface->damage.shear_strength / WB_MPA);
     wb_json_set_number(cohesion, "fracture_energy_N_mm",
-                       interface->damage.fracture_energy / j_per_m2);
+                       interface->damage.fracture_energy / WB_N_PER_MM);
 }
 
 static void describe_mesh(struct wb_json *object, const struct wb_simulated_bundle *bundle)
@@ -121,6 +117,12 @@ static void describe_largest(struct wb_json *object, const struct wb_simulated_b
     wb_json_set_boolean(largest, "beyond_strain_limit", h->largest.beyond);
 }
 
+/* A setting of the run, by its place in wb_bundle_model_run_settings. */
+static void describe_setting(struct wb_json *object, const struct wb_bundle_model *model, int row)
+{
+    wb_setting_set_json(&wb_bundle_model_run_settings[row], &model->run, object);
+}
+
 void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simulated_bundle *bundle)
 {
     const struct wb_bundle_result *h = bundle->result;
@@ -135,12 +137,11 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
     wb_json_set_number(object, "duration_s", h->duration);
     wb_json_set_boolean(object, "duration_chosen", h->chosen);
     wb_json_set_integer(object, "attempts", h->attempts);
-    wb_json_set_number(object, "kinetic_energy_limit", bundle->model->run.kinetic_limit);
+    describe_setting(object, bundle->model, WB_BUNDLE_MODEL_KINETIC_LIMIT);
     wb_json_set_boolean(object, "limit_kept", !h->exceeded);
-    wb_json_set_number(object, "mass_scaling", bundle->model->run.mass_scaling);
-    wb_json_set_number(object, "selective_mass_scaling", bundle->model->run.selective);
-    wb_json_set_text(object, "precision",
-                     bundle->model->run.double_precision ? "double" : "single");
+    describe_setting(object, bundle->model, WB_BUNDLE_MODEL_MASS_SCALING);
+    describe_setting(object, bundle->model, WB_BUNDLE_MODEL_SELECTIVE);
+    describe_setting(object, bundle->model, WB_BUNDLE_MODEL_PRECISION);
     if (h->n_rows > 0)
         describe_energies(wb_json_set_object(object, "energy"), &h->rows[h->n_rows - 1].energies);
     describe_largest(object, bundle);
@@ -163,26 +164,14 @@ static void describe_override(struct wb_json *simulation, const struct wb_bundle
         return;
     struct wb_json *const out = wb_json_set_object(simulation, "overridden");
 
-    if (o->mesh)
-        wb_json_set_text(out, "mesh", o->mesh);
-    if (o->dead_force)
-        wb_json_set_boolean(out, "dead_force", true);
-    if (o->no_weight)
-        wb_json_set_boolean(out, "no_weight", true);
-    if (o->duration > 0.0)
-        wb_json_set_number(out, "duration_s", o->duration);
-    if (o->mass_scaling > 0.0)
-        wb_json_set_number(out, "mass_scaling", o->mass_scaling);
-    if (o->selective > 0.0)
-        wb_json_set_number(out, "selective_mass_scaling", o->selective);
-    if (o->has_friction) {
-        struct wb_json *const friction = wb_json_set_object(out, "friction");
-        wb_json_set_number(friction, "static", o->friction_static);
-        wb_json_set_number(friction, "kinetic", o->friction_kinetic);
-        wb_json_set_number(friction, "decay_s_mm", o->friction_decay / s_per_m);
+    for (int t = 0; t < WB_BUNDLE_OVERRIDE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_bundle_override_tables[t];
+        const char *const settings = (const char *)o + table->offset;
+        for (size_t i = 0; i < table->n; i++) {
+            if (wb_setting_is_given(&table->rows[i], settings))
+                wb_setting_set_json(&table->rows[i], settings, out);
+        }
     }
-    if (o->cohesive_stiffness > 0.0)
-        wb_json_set_number(out, "cohesive_stiffness_N_mm3", o->cohesive_stiffness / pa_per_m);
 }
 
 static void describe(struct wb_json *document, const struct wb_simulated_bundle *bundle)
@@ -254,9 +243,9 @@ static void append_row(struct wb_text *text, double t, const struct wb_bundle_ro
                               wb_bundle_imbalance(e)};
 
     for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
-        char number[WB_DATASET_CSV_NUMBER] = "";
+        char number[WB_CSV_TABLE_NUMBER] = "";
         if (isfinite(columns[i]))
-            wb_dataset_csv_format_number(columns[i], i == 1 ? MM_SHIFT : 0, number);
+            wb_csv_table_format_number(columns[i], i == 1 ? MM_SHIFT : 0, number);
         wb_text_append(text, "%s%s", i == 0 ? "" : ",", number);
     }
     wb_text_append(text, "\n");

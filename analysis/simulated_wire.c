@@ -8,7 +8,6 @@
 #include "base/units.h"
 
 static const double megabyte = 1e6; /* bytes */
-static const double pa_per_m = 1e9; /* of one N/mm3 */
 
 static const char *const kind_names[] = {
     [WB_WIRE_STEP_LOADS] = "loads",
@@ -26,7 +25,7 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_wire_
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
-            .phase = wb_simulated_phase(row->phase),
+            .phase = row->phase,
             .deflection = row->tip[1],
             .tension = row->tension,
             .force = row->force,
@@ -118,9 +117,9 @@ static void describe_solid(struct wb_json *simulation, const struct wb_wire_mode
     struct wb_json *const interface = wb_json_set_object(simulation, "interface");
     wb_json_set_text(interface, "kind", model->has_contact ? "contact" : "bonded");
     if (model->has_contact) {
-        wb_json_set_number(interface, "friction", model->interface.friction);
+        wb_json_set_number(interface, "friction", model->jacket_contact.friction);
         wb_json_set_number(interface, "normal_stiffness_N_mm3",
-                           model->interface.normal_stiffness / pa_per_m);
+                           model->jacket_contact.normal_stiffness / WB_N_PER_MM3);
         wb_json_set_number(interface, "penetration_mm", balance->penetration / WB_MM);
         wb_json_set_number(interface, "opening_mm", balance->opening / WB_MM);
         wb_json_set_number(interface, "slip_mm", balance->slip / WB_MM);
@@ -131,7 +130,7 @@ static void describe_solid(struct wb_json *simulation, const struct wb_wire_mode
     wb_json_set_integer(mesh, "elements_along", model->elements_along);
     wb_json_set_integer(mesh, "section_density", model->section_density);
     wb_json_set_text(mesh, "integration",
-                     model->integration == WB_HEX20_REDUCED ? "reduced" : "selective");
+                     model->integration == WB_INTEGRATION_REDUCED ? "reduced" : "selective");
     struct wb_json *const energy = wb_json_set_object(simulation, "energy");
     wb_json_set_number(energy, "work_J", balance->work);
     wb_json_set_number(energy, "elastic_J", balance->elastic);

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "analysis/csv_table.h"
-#include "analysis/dataset_csv.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "surface"
@@ -107,7 +106,7 @@ enum wb_status wb_surface_take(struct wb_surface *surface, const struct wb_bundl
 
 static enum wb_status append_node(struct wb_text *text, const struct wb_surface_node *node)
 {
-    char rounded[WB_DATASET_CSV_NUMBER], number[WB_DATASET_CSV_NUMBER];
+    char rounded[WB_CSV_TABLE_NUMBER], number[WB_CSV_TABLE_NUMBER];
 
     for (int i = 0; i < VALUES; i++) {
         const double exact = i < 3 ? node->position[i] : node->von_mises;
@@ -116,7 +115,7 @@ static enum wb_status append_node(struct wb_text *text, const struct wb_surface_
                            column_names[INTEGERS + i]);
         snprintf(rounded, sizeof rounded, i < 3 ? "%.6f" : "%.3e", exact);
         const double value = strtod(rounded, NULL);
-        wb_dataset_csv_format_number(value == 0.0 ? 0.0 : value, value_shifts[i], number);
+        wb_csv_table_format_number(value == 0.0 ? 0.0 : value, value_shifts[i], number);
         wb_text_append(text, ",%s", number);
     }
     wb_text_append(text, "\n");
@@ -182,7 +181,7 @@ static enum wb_status parse_row(const struct wb_csv_table *table, char *const *f
     row->is_tape = !is_wire;
     row->closed = is_wire || is_tape;
     for (int i = 0; i < VALUES; i++)
-        if (!wb_dataset_csv_parse_number(fields[INTEGERS + i], value_shifts[i], &values[i]) ||
+        if (!wb_csv_table_parse_number(fields[INTEGERS + i], value_shifts[i], &values[i]) ||
             !(fabs(values[i]) <= most_values[i]))
             return wb_csv_table_refuse(table, INTEGERS + i, expected_values[i],
                                        fields[INTEGERS + i]);

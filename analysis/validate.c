@@ -8,8 +8,9 @@
 
 #include "analysis/computed.h"
 #include "analysis/errors.h"
+#include "analysis/marker_distance.h"
 #include "analysis/scatter.h"
-#include "analysis/shapes.h"
+#include "analysis/validate_private.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/progress.h"
@@ -127,24 +128,25 @@ static enum wb_status check_reached(const struct wb_validate_result *result)
 static enum wb_status validate_curve(struct wb_validate_result *result,
                                      const struct wb_properties *properties,
                                      const struct wb_dataset *const *datasets, int n,
-                                     const struct wb_validate_settings *settings)
+                                     const struct wb_calibrate_settings *settings)
 {
     struct wb_material elastic = properties->material;
     const struct wb_computed_settings how = {settings->straight, settings->n_elements,
                                              settings->n_fibres};
     struct wb_computed *computed;
-    struct wb_shapes_distance distance;
+    struct wb_marker_distance distance;
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     WB_TRY(wb_computed_create(&computed, &result->info, &properties->material, &how));
     const struct wb_curve *const curve = &result->curve;
-    const struct wb_shapes_range range = {curve->is_follower ? curve->step / FRAMES : curve->step,
-                                          curve->is_follower ? curve->max_force
-                                                             : curve->max_deflection};
+    const struct wb_marker_distance_range range = {
+        curve->is_follower ? curve->step / FRAMES : curve->step,
+        curve->is_follower ? curve->max_force : curve->max_deflection};
     enum wb_status status = predict(&result->elastoplastic, computed, &properties->material, curve);
     if (status == WB_OK)
         status = predict(&result->elastic, computed, &elastic, curve);
     if (status == WB_OK)
-        status = wb_shapes_compare(&distance, computed, &properties->material, datasets, n, &range);
+        status = wb_marker_distance_find(&distance, computed, &properties->material, datasets, n,
+                                         &range);
     if (status == WB_OK)
         status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
                                      &properties->material, &how);
@@ -162,11 +164,12 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
 enum wb_status wb_validate_run(struct wb_validate_result *result,
                                const struct wb_properties *properties,
                                const struct wb_dataset *const *datasets, int n,
-                               const struct wb_validate_settings *settings)
+                               const struct wb_calibrate_settings *settings)
 {
-    const struct wb_validate_settings defaults = {0};
+    struct wb_calibrate_settings defaults;
     const double started = wb_progress_thread_cpu();
     struct wb_validate_result made = {0};
+    wb_calibrate_default_settings(&defaults);
     if (!settings)
         settings = &defaults;
     const struct wb_curve_grid grid = {.step = settings->step,

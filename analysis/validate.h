@@ -46,14 +46,6 @@ struct wb_validate_result {
     double cpu_s;
 };
 
-struct wb_validate_settings {
-    bool straight;             /* ignore the natural shape */
-    double step;               /* m; 0: 0.5 mm */
-    double force_step;         /* N, of follower tests; 0: see analysis/curve.h */
-    double largest_deflection; /* m: what comes later in the loading is left out; 0: nothing */
-    int n_elements, n_fibres;  /* 0: defaults */
-};
-
 /* Predicts the average first loading of n datasets of one kind. `settings` NULL: defaults.
  * WB_ERR_DATA when the properties are another wire's or the datasets cannot serve,
  * WB_ERR_CONVERGENCE when the beam does not get anywhere; stopping on the way is a result, see
@@ -61,7 +53,7 @@ struct wb_validate_settings {
 WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
                                              const struct wb_properties *properties,
                                              const struct wb_dataset *const *datasets, int n,
-                                             const struct wb_validate_settings *settings);
+                                             const struct wb_calibrate_settings *settings);
 /* Measured and computed forces and errors on the grid, as CSV:
  * deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,elastoplastic_error,elastic_N,
  * elastic_error; of a follower test force_N first and deflections in mm. Written atomically over an
@@ -78,19 +70,5 @@ void wb_validate_result_release(struct wb_validate_result *result);
 WB_MUST_CHECK enum wb_status wb_validate_shape(const struct wb_properties *properties,
                                                const struct wb_test_info *info, double deflection,
                                                int n, double *x, double *y);
-
-/* Points at equal arc length from the clamp to the tip, to be filled in. */
-struct wb_validate_points {
-    int n;
-    double *x, *y; /* (n) m */
-    double *angle; /* (n) rad; may be NULL */
-};
-
-/* The same of a follower test under a force (N), whether curled up beyond the largest deflection or
- * not. */
-WB_MUST_CHECK enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
-                                                        const struct wb_test_info *info,
-                                                        double force,
-                                                        const struct wb_validate_points *points);
 
 #endif

@@ -273,7 +273,7 @@ static enum wb_status read_choice(const struct wb_config_node *node,
                             text ? ", not " : "", text ? text : "");
 }
 
-static enum wb_status read_value(const struct wb_config_node *node, const struct wb_config_key *key)
+enum wb_status wb_config_value(const struct wb_config_node *node, const struct wb_config_key *key)
 {
     switch (key->type) {
     case WB_CONFIG_TYPE_NUMBER:
@@ -344,7 +344,7 @@ enum wb_status wb_config_map(const struct wb_config_node *map, const struct wb_c
         if (keys[k].present)
             *keys[k].present = value != NULL;
         if (value)
-            WB_TRY(read_value(value, &keys[k]));
+            WB_TRY(wb_config_value(value, &keys[k]));
         else if (!keys[k].optional)
             return wb_config_refuse(map, keys[k].name, "this key is missing");
         else if (keys[k].type == WB_CONFIG_TYPE_NODE)

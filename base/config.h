@@ -120,6 +120,10 @@ struct wb_config_key {
 WB_MUST_CHECK enum wb_status wb_config_map(const struct wb_config_node *map,
                                            const struct wb_config_key *keys, size_t n_keys);
 
+/* Reads one value by its key, whose name is for messages. */
+WB_MUST_CHECK enum wb_status wb_config_value(const struct wb_config_node *node,
+                                             const struct wb_config_key *key);
+
 /* Sequences: length (-1 when the node is not one), and items. */
 int wb_config_length(const struct wb_config_node *sequence);
 const struct wb_config_node *wb_config_item(const struct wb_config_node *sequence, int index);

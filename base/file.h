@@ -65,7 +65,7 @@ struct wb_file_lock {
 };
 
 /* Takes the lock and writes this process's number into the file. WB_ERR_BUSY when another process
- * holds it: without a message, and *holder receives its number, 0 when it cannot be told. */
+ * holds it: without a message, and *holder receives its number, 0 when that is not known. */
 WB_MUST_CHECK enum wb_status wb_file_lock(struct wb_file_lock *lock, const char *path,
                                           long *holder);
 /* Lets go of the lock and removes its file. */

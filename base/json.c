@@ -1,5 +1,6 @@
 #include "base/json.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,208 +13,317 @@
 
 #define WB_LOG_DOMAIN "json"
 
-/* A handle is jansson's own value under our name; these two casts are the only way between. */
-static json_t *value_of(const struct wb_json *handle)
-{
-    return (json_t *)(uintptr_t)handle;
-}
+enum kind {
+    KIND_NULL,
+    KIND_BOOLEAN,
+    KIND_INTEGER,
+    KIND_NUMBER,
+    KIND_TEXT,
+    KIND_ARRAY,
+    KIND_OBJECT
+};
 
-static struct wb_json *handle_of(json_t *value)
-{
-    return (struct wb_json *)(uintptr_t)value;
-}
+/* A value of a document. jansson parses text and quotes it; the values are our own, because each
+ * must know its document: a failure is remembered there, in the root, which needs no memory. */
+struct wb_json {
+    enum kind kind;
+    bool failed; /* of the root: a value of the document is lost */
+    struct wb_json *root;
+    char *key; /* of a member of an object; owned */
+    union {
+        bool boolean;
+        int64_t integer;
+        double number;
+        char *text;                  /* owned */
+        struct {                     /* of an array or object */
+            struct wb_json **values; /* (n) in the order in which they were set; owned */
+            size_t n, capacity;
+        } list;
+    } as;
+};
 
-/* A handle that could not be made is NULL, and what is set into it is lost: the counter makes
- * that visible when the document is written. Documents are built by one thread at a time each, but
- * several may be built at once. */
-static _Thread_local unsigned lost_values;
+static bool is_list(const struct wb_json *value)
+{
+    return value && (value->kind == KIND_ARRAY || value->kind == KIND_OBJECT);
+}
 
 struct wb_json *wb_json_create(void)
 {
-    lost_values = 0;
-    return handle_of(json_object());
+    struct wb_json *const root = calloc(1, sizeof *root);
+    if (root) {
+        root->kind = KIND_OBJECT;
+        root->root = root;
+    }
+    return root;
+}
+
+/* Leaves a null without what was in it. */
+static void clear(struct wb_json *value)
+{
+    if (is_list(value)) {
+        for (size_t i = 0; i < value->as.list.n; i++)
+            wb_json_destroy(value->as.list.values[i]);
+        free(value->as.list.values);
+    } else if (value->kind == KIND_TEXT) {
+        free(value->as.text);
+    }
+    memset(&value->as, 0, sizeof value->as);
+    value->kind = KIND_NULL;
 }
 
 void wb_json_destroy(struct wb_json *root)
 {
-    json_decref(value_of(root));
+    if (!root)
+        return;
+    clear(root);
+    free(root->key);
+    free(root);
 }
 
-static struct wb_json *set(struct wb_json *object, const char *key, json_t *value)
+static bool reserve_one(struct wb_json *list)
 {
-    if (!object) {
-        json_decref(value);
-        value = NULL;
-    }
-    if (!value || json_object_set_new(value_of(object), key, value) != 0) {
-        lost_values++;
+    if (list->as.list.n < list->as.list.capacity)
+        return true;
+    const size_t capacity = list->as.list.capacity > 0 ? 2 * list->as.list.capacity : 8;
+    struct wb_json **const values =
+        realloc(list->as.list.values, capacity * sizeof *list->as.list.values);
+    if (!values)
+        return false;
+    list->as.list.values = values;
+    list->as.list.capacity = capacity;
+    return true;
+}
+
+/* Appends a null to an array, or to an object, which has no member of that key yet. NULL when that
+ * fails, and then the document remembers it; a list that is NULL is one that could not be made,
+ * which its document remembers already. */
+static struct wb_json *append(struct wb_json *list, const char *key)
+{
+    if (!list)
+        return NULL;
+    struct wb_json *const value = calloc(1, sizeof *value);
+    if (!value || list->kind != (key ? KIND_OBJECT : KIND_ARRAY) || !reserve_one(list) ||
+        (key && !(value->key = strdup(key)))) {
+        wb_json_destroy(value);
+        list->root->failed = true;
         return NULL;
     }
-    return handle_of(value);
-}
-
-static struct wb_json *append(struct wb_json *array, json_t *value)
-{
-    if (!array) {
-        json_decref(value);
-        value = NULL;
-    }
-    if (!value || json_array_append_new(value_of(array), value) != 0) {
-        lost_values++;
-        return NULL;
-    }
-    return handle_of(value);
-}
-
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *string(const char *text)
-{
-    if (!text)
-        return json_null();
-    json_t *value = json_string(text);
-    if (value)
-        return value;
-    /* Not UTF-8 (bytes from a device, say): keep what is ASCII. */
-    char *ascii = strdup(text);
-    if (!ascii)
-        return NULL;
-    for (char *c = ascii; *c; c++) {
-        if ((unsigned char)*c >= 0x80)
-            *c = '?';
-    }
-    value = json_string(ascii);
-    free(ascii);
+    value->root = list->root;
+    list->as.list.values[list->as.list.n++] = value;
     return value;
+}
+
+/* The member of that key as a null: the one there is, in its place, or a new one at the end. */
+static struct wb_json *set(struct wb_json *object, const char *key)
+{
+    struct wb_json *const found = wb_json_get(object, key);
+    if (!found)
+        return append(object, key);
+    clear(found);
+    return found;
+}
+
+static void put_number(struct wb_json *value, double number)
+{
+    if (!value || !isfinite(number))
+        return;
+    value->kind = KIND_NUMBER;
+    value->as.number = number;
+}
+
+static void put_integer(struct wb_json *value, int64_t integer)
+{
+    if (!value)
+        return;
+    value->kind = KIND_INTEGER;
+    value->as.integer = integer;
+}
+
+static void put_boolean(struct wb_json *value, bool boolean)
+{
+    if (!value)
+        return;
+    value->kind = KIND_BOOLEAN;
+    value->as.boolean = boolean;
+}
+
+static bool is_utf8(const char *text)
+{
+    json_t *const quoted = json_string(text);
+    json_decref(quoted);
+    return quoted != NULL;
+}
+
+static void put_text(struct wb_json *value, const char *text)
+{
+    if (!value || !text)
+        return;
+    char *const copy = strdup(text);
+    if (!copy) {
+        value->root->failed = true;
+        return;
+    }
+    /* Not UTF-8 (bytes from a device, say): keep what is ASCII. */
+    if (!is_utf8(copy)) {
+        for (char *c = copy; *c; c++) {
+            if ((unsigned char)*c >= 0x80)
+                *c = '?';
+        }
+    }
+    value->kind = KIND_TEXT;
+    value->as.text = copy;
+}
+
+static struct wb_json *put_list(struct wb_json *value, enum kind kind)
+{
+    if (value)
+        value->kind = kind;
+    return value;
+}
+
+static void put_copy(struct wb_json *value, const struct wb_json *of)
+{
+    if (!value || !of)
+        return;
+    if (of->kind == KIND_TEXT) {
+        put_text(value, of->as.text);
+        return;
+    }
+    value->kind = of->kind;
+    if (!is_list(of)) {
+        value->as = of->as;
+        return;
+    }
+    for (size_t i = 0; i < of->as.list.n; i++)
+        put_copy(append(value, of->as.list.values[i]->key), of->as.list.values[i]);
 }
 
 void wb_json_set_text(struct wb_json *object, const char *key, const char *text)
 {
-    set(object, key, string(text));
+    put_text(set(object, key), text);
 }
 
 void wb_json_set_number(struct wb_json *object, const char *key, double value)
 {
-    set(object, key, number(value));
+    put_number(set(object, key), value);
 }
 
 void wb_json_set_integer(struct wb_json *object, const char *key, int64_t value)
 {
-    set(object, key, json_integer(value));
+    put_integer(set(object, key), value);
 }
 
 void wb_json_set_boolean(struct wb_json *object, const char *key, bool value)
 {
-    set(object, key, json_boolean(value));
+    put_boolean(set(object, key), value);
 }
 
 struct wb_json *wb_json_set_object(struct wb_json *object, const char *key)
 {
-    return set(object, key, json_object());
+    return put_list(set(object, key), KIND_OBJECT);
 }
 
 struct wb_json *wb_json_set_array(struct wb_json *object, const char *key)
 {
-    return set(object, key, json_array());
+    return put_list(set(object, key), KIND_ARRAY);
 }
 
 void wb_json_append_text(struct wb_json *array, const char *text)
 {
-    append(array, string(text));
+    put_text(append(array, NULL), text);
 }
 
 void wb_json_append_number(struct wb_json *array, double value)
 {
-    append(array, number(value));
+    put_number(append(array, NULL), value);
 }
 
 struct wb_json *wb_json_append_object(struct wb_json *array)
 {
-    return append(array, json_object());
+    return put_list(append(array, NULL), KIND_OBJECT);
 }
 
-struct wb_json *wb_json_append_array(struct wb_json *array)
-{
-    return append(array, json_array());
-}
-
+/* Copied before it is set: `value` may be the member that is replaced, or have `object` in it. */
 void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value)
 {
-    set(object, key, value ? json_deep_copy(value_of(value)) : json_null());
+    if (!object)
+        return;
+    struct wb_json copy = {.root = object->root};
+    put_copy(&copy, value);
+    struct wb_json *const place = set(object, key);
+    if (place) {
+        place->kind = copy.kind;
+        place->as = copy.as;
+    } else {
+        clear(&copy);
+    }
 }
 
-/* jansson prints 0.1 with 17 digits as 0.10000000000000001; people read these files, so containers
- * and numbers are laid out here and everything else is left to jansson. */
-static void format_value(struct wb_text *text, const json_t *value, int depth);
-
-static void format_scalar(struct wb_text *text, const json_t *value)
+/* jansson prints 0.1 with 17 digits as 0.10000000000000001; people read these files, so numbers and
+ * lists are laid out here, and only text is quoted by jansson. */
+static void format_text(struct wb_text *text, const char *raw)
 {
-    if (json_is_real(value)) {
-        char number_text[WB_NUMBER_TEXT];
-        wb_text_append(text, "%s", wb_number_format(json_real_value(value), number_text));
-        return;
-    }
-    char *scalar = json_dumps(value, JSON_ENCODE_ANY);
-    if (scalar)
-        wb_text_append(text, "%s", scalar);
+    json_t *const string = json_string(raw);
+    char *const quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
+    if (quoted)
+        wb_text_append(text, "%s", quoted);
     else
         text->failed = true;
-    free(scalar);
+    free(quoted);
+    json_decref(string);
 }
 
-static void start_line(struct wb_text *text, bool first, int depth)
-{
-    wb_text_append(text, "%s\n%*s", first ? "" : ",", 2 * depth, "");
-}
+static void format_value(struct wb_text *text, const struct wb_json *value, int depth);
 
-static void format_object(struct wb_text *text, json_t *object, int depth)
+static void format_list(struct wb_text *text, const struct wb_json *list, int depth)
 {
-    bool first = true;
-    const char *key;
-    json_t *member_value;
-    wb_text_append(text, "{");
-    json_object_foreach(object, key, member_value)
-    {
-        json_t *name = json_string(key);
-        start_line(text, first, depth + 1);
-        format_scalar(text, name);
-        wb_text_append(text, ": ");
-        format_value(text, member_value, depth + 1);
-        json_decref(name);
-        first = false;
+    const bool is_object = list->kind == KIND_OBJECT;
+    wb_text_append(text, is_object ? "{" : "[");
+    for (size_t i = 0; i < list->as.list.n; i++) {
+        const struct wb_json *const value = list->as.list.values[i];
+        wb_text_append(text, "%s\n%*s", i == 0 ? "" : ",", 2 * (depth + 1), "");
+        if (is_object) {
+            format_text(text, value->key);
+            wb_text_append(text, ": ");
+        }
+        format_value(text, value, depth + 1);
     }
-    wb_text_append(text, "%s%*s}", first ? "" : "\n", first ? 0 : 2 * depth, "");
+    if (list->as.list.n > 0)
+        wb_text_append(text, "\n%*s", 2 * depth, "");
+    wb_text_append(text, is_object ? "}" : "]");
 }
 
-static void format_array(struct wb_text *text, const json_t *array, int depth)
+static void format_value(struct wb_text *text, const struct wb_json *value, int depth)
 {
-    wb_text_append(text, "[");
-    for (size_t i = 0; i < json_array_size(array); i++) {
-        start_line(text, i == 0, depth + 1);
-        format_value(text, json_array_get(array, i), depth + 1);
+    char number_text[WB_NUMBER_TEXT];
+    switch (value->kind) {
+    case KIND_NULL:
+        wb_text_append(text, "null");
+        break;
+    case KIND_BOOLEAN:
+        wb_text_append(text, value->as.boolean ? "true" : "false");
+        break;
+    case KIND_INTEGER:
+        wb_text_append(text, "%" PRId64, value->as.integer);
+        break;
+    case KIND_NUMBER:
+        wb_text_append(text, "%s", wb_number_format(value->as.number, number_text));
+        break;
+    case KIND_TEXT:
+        format_text(text, value->as.text);
+        break;
+    case KIND_ARRAY:
+    case KIND_OBJECT:
+        format_list(text, value, depth);
+        break;
     }
-    const bool empty = json_array_size(array) == 0;
-    wb_text_append(text, "%s%*s]", empty ? "" : "\n", empty ? 0 : 2 * depth, "");
-}
-
-static void format_value(struct wb_text *text, const json_t *value, int depth)
-{
-    if (json_is_object(value))
-        format_object(text, (json_t *)(uintptr_t)value, depth);
-    else if (json_is_array(value))
-        format_array(text, value, depth);
-    else
-        format_scalar(text, value);
 }
 
 enum wb_status wb_json_format(const struct wb_json *root, char **text)
 {
     struct wb_text formatted = {0};
-    if (lost_values == 0 && root) {
-        format_value(&formatted, value_of(root), 0);
+    if (root && !root->root->failed) {
+        format_value(&formatted, root, 0);
         wb_text_append(&formatted, "\n");
     }
     if (formatted.length == 0 || formatted.failed) {
@@ -224,18 +334,65 @@ enum wb_status wb_json_format(const struct wb_json *root, char **text)
     return WB_OK;
 }
 
+static void put_parsed(struct wb_json *value, json_t *parsed)
+{
+    const char *key;
+    json_t *child;
+    size_t i;
+    if (!value)
+        return;
+    switch (json_typeof(parsed)) {
+    case JSON_NULL:
+        break;
+    case JSON_TRUE:
+    case JSON_FALSE:
+        put_boolean(value, json_is_true(parsed));
+        break;
+    case JSON_INTEGER:
+        put_integer(value, json_integer_value(parsed));
+        break;
+    case JSON_REAL:
+        put_number(value, json_real_value(parsed));
+        break;
+    case JSON_STRING:
+        put_text(value, json_string_value(parsed));
+        break;
+    case JSON_ARRAY:
+        value->kind = KIND_ARRAY;
+        json_array_foreach(parsed, i, child)
+        {
+            put_parsed(append(value, NULL), child);
+        }
+        break;
+    case JSON_OBJECT:
+        value->kind = KIND_OBJECT;
+        json_object_foreach(parsed, key, child)
+        {
+            put_parsed(append(value, key), child);
+        }
+        break;
+    }
+}
+
 enum wb_status wb_json_parse(struct wb_json **root, const char *text, const char *origin)
 {
     *root = NULL;
     json_error_t error;
-    json_t *value = json_loads(text, JSON_REJECT_DUPLICATES, &error);
-    if (!value)
+    json_t *const parsed = json_loads(text, JSON_REJECT_DUPLICATES, &error);
+    if (!parsed)
         return wb_fail(WB_ERR_FORMAT, "%s:%d: %s", origin, error.line, error.text);
-    if (!json_is_object(value)) {
-        json_decref(value);
+    if (!json_is_object(parsed)) {
+        json_decref(parsed);
         return wb_fail(WB_ERR_FORMAT, "%s: expected a JSON object", origin);
     }
-    *root = handle_of(value);
+    struct wb_json *const made = wb_json_create();
+    put_parsed(made, parsed);
+    json_decref(parsed);
+    if (!made || made->failed) {
+        wb_json_destroy(made);
+        return wb_fail(WB_ERR_MEMORY, "%s: out of memory", origin);
+    }
+    *root = made;
     return WB_OK;
 }
 
@@ -249,68 +406,67 @@ enum wb_status wb_json_read(struct wb_json **root, const char *path)
     return status;
 }
 
-static json_t *member(const struct wb_json *object, const char *key)
+struct wb_json *wb_json_get(const struct wb_json *object, const char *key)
 {
-    return json_object_get(value_of(object), key);
+    if (!object || object->kind != KIND_OBJECT)
+        return NULL;
+    for (size_t i = 0; i < object->as.list.n; i++) {
+        if (strcmp(object->as.list.values[i]->key, key) == 0)
+            return object->as.list.values[i];
+    }
+    return NULL;
 }
 
 bool wb_json_get_text(const struct wb_json *object, const char *key, const char **text)
 {
-    return wb_json_text(handle_of(member(object, key)), text);
+    return wb_json_text(wb_json_get(object, key), text);
 }
 
 bool wb_json_get_number(const struct wb_json *object, const char *key, double *value)
 {
-    return wb_json_number(handle_of(member(object, key)), value);
+    return wb_json_number(wb_json_get(object, key), value);
 }
 
 bool wb_json_get_integer(const struct wb_json *object, const char *key, int64_t *value)
 {
-    const json_t *const found = member(object, key);
-    if (!json_is_integer(found))
+    const struct wb_json *const found = wb_json_get(object, key);
+    if (!found || found->kind != KIND_INTEGER)
         return false;
-    *value = json_integer_value(found);
+    *value = found->as.integer;
     return true;
 }
 
 bool wb_json_get_boolean(const struct wb_json *object, const char *key, bool *value)
 {
-    const json_t *const found = member(object, key);
-    if (!json_is_boolean(found))
+    const struct wb_json *const found = wb_json_get(object, key);
+    if (!found || found->kind != KIND_BOOLEAN)
         return false;
-    *value = json_is_true(found);
+    *value = found->as.boolean;
     return true;
-}
-
-struct wb_json *wb_json_get(const struct wb_json *object, const char *key)
-{
-    return handle_of(member(object, key));
 }
 
 size_t wb_json_length(const struct wb_json *array)
 {
-    return json_array_size(value_of(array));
+    return array && array->kind == KIND_ARRAY ? array->as.list.n : 0;
 }
 
 struct wb_json *wb_json_item(const struct wb_json *array, size_t index)
 {
-    return handle_of(json_array_get(value_of(array), index));
+    return index < wb_json_length(array) ? array->as.list.values[index] : NULL;
 }
 
-bool wb_json_number(const struct wb_json *value, double *number_out)
+bool wb_json_number(const struct wb_json *value, double *number)
 {
-    const json_t *const found = value_of(value);
-    if (!json_is_number(found))
+    if (!value || (value->kind != KIND_NUMBER && value->kind != KIND_INTEGER))
         return false;
-    *number_out = json_number_value(found);
+    *number = value->kind == KIND_NUMBER ? value->as.number : (double)value->as.integer;
     return true;
 }
 
 bool wb_json_text(const struct wb_json *value, const char **text)
 {
-    const json_t *const found = value_of(value);
-    if (!json_is_string(found))
+    if (!value || value->kind != KIND_TEXT)
         return false;
-    *text = json_string_value(found);
+    *text = value->as.text;
     return true;
 }

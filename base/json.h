@@ -1,9 +1,10 @@
 /* JSON values: built to be written, or read from a file. jansson stays behind json.c.
  *
- * Builders return nothing and never fail visibly: running out of memory, or setting into something
- * that is not an object or array, is remembered (by the thread, until its next wb_json_create()),
- * and wb_json_format() reports it. So build one document at a time in a thread. Numbers
- * that are not finite become null. Keys keep the order in which they were set.
+ * Functions that build a document return no status. When memory runs out, or a value is set into
+ * something that is not an object (appended to what is not an array), the document remembers it and
+ * wb_json_format() reports it. Each document remembers its own failures, so that several may be
+ * built at a time. Numbers that are not finite become null. Keys keep the order in which they were
+ * set.
  */
 #ifndef WB_BASE_JSON_H
 #define WB_BASE_JSON_H
@@ -16,7 +17,8 @@
 
 struct wb_json; /* a document or a value in it */
 
-/* A new document whose root is an object; NULL when out of memory (all functions accept NULL). */
+/* A new document whose root is an object; NULL when out of memory. All functions accept NULL: what
+ * is set into it is dropped, and to format it fails. */
 struct wb_json *wb_json_create(void);
 void wb_json_destroy(struct wb_json *root);
 
@@ -34,7 +36,6 @@ struct wb_json *wb_json_set_array(struct wb_json *object, const char *key);
 void wb_json_append_text(struct wb_json *array, const char *text);
 void wb_json_append_number(struct wb_json *array, double value);
 struct wb_json *wb_json_append_object(struct wb_json *array);
-struct wb_json *wb_json_append_array(struct wb_json *array);
 
 /* Sets a deep copy of `value` (any document's) as a member. */
 void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value);

@@ -1,5 +1,5 @@
-/* One live line on a terminal: what, how far, rate and time left. Silent when stderr is not a
- * terminal. Redrawn at most ten times a second. */
+/* A status line on a terminal: the task, its progress, the rate and the time left. Silent when
+ * stderr is not a terminal. Redrawn at most ten times a second. */
 #ifndef WB_BASE_PROGRESS_H
 #define WB_BASE_PROGRESS_H
 
@@ -18,11 +18,11 @@ struct wb_progress {
 void wb_progress_start(struct wb_progress *progress, const char *label, const char *unit,
                        double total);
 
-/* What was done before, when something goes on that was begun earlier: the rate is of what follows.
- * Right after wb_progress_start(). */
+/* For work that was begun earlier and is resumed: `done` of it was done before, and the rate counts
+ * only what follows. To be called right after wb_progress_start(). */
 void wb_progress_resume(struct wb_progress *progress, double done);
 
-/* Tells how much is done; `note` (may be NULL) is put at the end of the line. */
+/* Updates how much is done; `note` (may be NULL) is put at the end of the line. */
 void wb_progress_update(struct wb_progress *progress, double done, const char *note);
 
 /* Clears the line. */

@@ -42,7 +42,7 @@ static enum wb_status take(struct wb_bundle_states *states, int number,
                            const struct wb_bundle_row *row, const struct wb_bundle *bundle)
 {
     /* Later cycles reach the same deflection: the first is kept. */
-    const bool surface = states->wants_surface && row->phase == WB_HISTORY_LOAD &&
+    const bool surface = states->wants_surface && row->phase == WB_PHASE_LOAD &&
                          row->deflection > (1.0 + 1e-3) * states->deflection;
     const bool vtk =
         states->wants_vtk && (number % states->every == 0 || number % states->turn == 0);

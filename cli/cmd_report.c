@@ -5,15 +5,16 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "analysis/report/bundles_report.h"
-#include "analysis/report/comparison_report.h"
-#include "analysis/report/report.h"
+#include "analysis/jobs/jobs.h"
+#include "analysis/report/bench/recordings_report.h"
+#include "analysis/report/bundles/bundles_report.h"
+#include "analysis/report/wires/wires_report.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
 #include "cli/command.h"
-#include "cli/jobs.h"
+#include "cli/job_options.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -50,7 +51,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{&wb_jobs_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {{&wb_job_options_argp, 0, NULL, 0}, {0}};
 
 static const struct argp argp = {
     .options = option_table,
@@ -83,11 +84,12 @@ static int prepare(const struct options *o)
 
 /* --- recordings --- */
 
-static void print_rms(const char *what, enum wb_results_state state, double rms, double limit)
+static void print_rms(const char *what, enum wb_recordings_results_state state, double rms,
+                      double limit)
 {
-    if (state == WB_RESULTS_NOT_WANTED)
+    if (state == WB_RECORDINGS_NOT_WANTED)
         return;
-    if (state != WB_RESULTS_DONE)
+    if (state != WB_RECORDINGS_DONE)
         printf("  %s missing", what);
     else if (limit > 0.0 && !(rms <= limit))
         printf("  %s RMS %.4f (limit %.4g exceeded)", what, rms, limit);
@@ -95,13 +97,13 @@ static void print_rms(const char *what, enum wb_results_state state, double rms,
         printf("  %s RMS %.4f", what, rms);
 }
 
-static void print_summary(const struct wb_results *results)
+static void print_summary(const struct wb_recordings_results *results)
 {
-    const struct wb_campaign *const campaign = results->campaign;
+    const struct wb_recordings *const campaign = results->campaign;
     printf("%s%s: %d of %d recordings used\n", campaign->title,
            results->any_virtual ? " (virtual rig)" : "", results->n_usable, results->n_tests);
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         printf("%-10s", wire->wanted->label);
         print_rms("calibration", wire->calibration_state, wire->calibration.rms,
                   campaign->calibration_limit);
@@ -142,11 +144,11 @@ static int refuse_interrupted(void)
     return WB_EXIT_FAILED;
 }
 
-static int finish(const struct options *o, const struct wb_results *results)
+static int finish(const struct options *o, const struct wb_recordings_results *results)
 {
     if (results->interrupted)
         return refuse_interrupted();
-    if (wb_report_write(results, o->common.output, o->common.force) != WB_OK)
+    if (wb_recordings_report_write(results, o->common.output, o->common.force) != WB_OK)
         return WB_EXIT_FAILED;
     if (!o->common.json)
         print_summary(results);
@@ -155,44 +157,44 @@ static int finish(const struct options *o, const struct wb_results *results)
 
 static int report_recordings(const struct options *o, const char *path)
 {
-    struct wb_campaign campaign;
-    struct wb_results results;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
     struct wb_progress progress;
     int n_missing;
-    if (wb_campaign_read(&campaign, path) != WB_OK)
+    if (wb_recordings_read(&campaign, path) != WB_OK)
         return WB_EXIT_FAILED;
     int code = prepare(o);
     if (code == WB_EXIT_OK) {
         wb_progress_start(&progress, "report", "steps",
-                          wb_campaign_count(&campaign, &n_missing) + 2.0 * campaign.n_wires);
-        code = wb_command_exit(
-            wb_results_compute(&results, &campaign, o->threads, show_progress, &progress));
+                          wb_recordings_count(&campaign, &n_missing) + 2.0 * campaign.n_wires);
+        code = wb_command_exit(wb_recordings_results_compute(&results, &campaign, o->threads,
+                                                             show_progress, &progress));
         wb_progress_finish(&progress);
         if (code == WB_EXIT_OK) {
             code = finish(o, &results);
-            wb_results_release(&results);
+            wb_recordings_results_release(&results);
         }
     }
-    wb_campaign_release(&campaign);
+    wb_recordings_release(&campaign);
     return code;
 }
 
 /* --- comparisons of simulations --- */
 
-static void print_runs(const struct wb_comparison_results *results)
+static void print_runs(const struct wb_wires_results *results)
 {
-    const struct wb_comparison *const comparison = results->comparison;
+    const struct wb_wires *const comparison = results->comparison;
     printf("%s (simulations): %d of %d datasets used\n", comparison->title, results->n_usable,
            results->n_wanted);
     for (int i = 0; i < comparison->n_cases; i++) {
-        for (int k = 0; k < WB_COMPARISON_SOLVERS; k++) {
-            const struct wb_comparison_run *const run = &results->runs[i][k];
-            if (run->state == WB_COMPARISON_MISSING || run->state == WB_COMPARISON_REFUSED)
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
+            const struct wb_wires_run *const run = &results->runs[i][k];
+            if (run->state == WB_WIRES_MISSING || run->state == WB_WIRES_REFUSED)
                 printf("  %s: %s; to make it:\n    %s\n", comparison->cases[i].datasets[k].name,
                        wb_text_string(&run->problem), run->command);
         }
     }
-    if (results->fit_state == WB_COMPARISON_USABLE)
+    if (results->fit_state == WB_WIRES_USABLE)
         printf("  fitted rod: yield stress %.2f MPa, K %.4g MPa, n %.3f, RMS %.4f\n",
                results->fit.material.yield_stress / WB_MPA,
                results->fit.material.strength_coefficient / WB_MPA,
@@ -203,11 +205,11 @@ static void print_runs(const struct wb_comparison_results *results)
         printf("  a limit of the campaign is exceeded\n");
 }
 
-static int finish_comparison(const struct options *o, const struct wb_comparison_results *results)
+static int finish_comparison(const struct options *o, const struct wb_wires_results *results)
 {
     if (results->interrupted)
         return refuse_interrupted();
-    if (wb_comparison_report_write(results, o->common.output, o->common.force) != WB_OK)
+    if (wb_wires_report_write(results, o->common.output, o->common.force) != WB_OK)
         return WB_EXIT_FAILED;
     if (!o->common.json)
         print_runs(results);
@@ -217,28 +219,27 @@ static int finish_comparison(const struct options *o, const struct wb_comparison
 static int report_comparison(const struct options *o, const char *path)
 {
     /* Too large for the stack of a small system. */
-    struct wb_comparison *const comparison = calloc(1, sizeof *comparison);
-    struct wb_comparison_results *const results = calloc(1, sizeof *results);
+    struct wb_wires *const comparison = calloc(1, sizeof *comparison);
+    struct wb_wires_results *const results = calloc(1, sizeof *results);
     struct wb_progress progress;
     int code = comparison && results ? WB_EXIT_OK : WB_EXIT_FAILED;
     if (code != WB_EXIT_OK)
         wb_error("out of memory");
     else
-        code = wb_command_exit(wb_comparison_read(comparison, path));
+        code = wb_command_exit(wb_wires_read(comparison, path));
     if (code == WB_EXIT_OK)
         code = prepare(o);
     if (code == WB_EXIT_OK) {
-        wb_progress_start(&progress, "report", "steps", wb_comparison_count(comparison));
-        code =
-            wb_command_exit(wb_comparison_compute(results, comparison, show_progress, &progress));
+        wb_progress_start(&progress, "report", "steps", wb_wires_count(comparison));
+        code = wb_command_exit(wb_wires_compute(results, comparison, show_progress, &progress));
         wb_progress_finish(&progress);
         if (code == WB_EXIT_OK)
             code = finish_comparison(o, results);
     }
     if (results)
-        wb_comparison_results_release(results);
+        wb_wires_results_release(results);
     if (comparison)
-        wb_comparison_release(comparison);
+        wb_wires_release(comparison);
     free(results);
     free(comparison);
     return code;

@@ -7,7 +7,7 @@
 
 #define WB_LOG_DOMAIN "command"
 
-static const struct argp_option help_options[] = {
+const struct argp_option wb_command_help_options[] = {
     {"help", 'h', NULL, 0, "Show this help", -1},
     {"usage", 'U', NULL, 0, "Show a short usage message", -1},
     {0},
@@ -42,7 +42,7 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
     setenv("ARGP_HELP_FMT", "no-dup-args-note", 0);
     const struct argp_child children[] = {{.argp = argp}, {0}};
     const struct argp with_help = {
-        .options = help_options,
+        .options = wb_command_help_options,
         .parser = parse_help, /* arguments and text are the child's */
         .children = children,
     };

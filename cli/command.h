@@ -23,6 +23,9 @@ enum {
     WB_EXIT_LIMIT = 4       /* all written, but a limit of the campaign was exceeded */
 };
 
+/* -h, --help and --usage, which every command has. */
+extern const struct argp_option wb_command_help_options[];
+
 /* Parses a command's options. argv[0] is the command's name; -h, --help and --usage are added.
  * Exits with WB_EXIT_USAGE on wrong usage, as argp does. */
 void wb_command_parse(const struct argp *argp, int argc, char **argv, void *input);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/report/figures_bundle.h"
+#include "analysis/report/draw/figures_bundle.h"
 #include "base/units.h"
 #include "cli/info.h"
 #include "fe/model/bundle_model.h"

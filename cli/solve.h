@@ -1,5 +1,5 @@
-/* What `wirebench solve` asks for, and how its models answer: cmd_solve.c parses, solve_*.c
- * compute, write and print.
+/* What `wirebench solve` asks for, and what its kinds share: cmd_solve.c knows the kinds and
+ * parses, solve_*.c compute, write and print by the means of solve.c.
  */
 #ifndef WB_CLI_SOLVE_H
 #define WB_CLI_SOLVE_H
@@ -7,39 +7,47 @@
 #include <stdbool.h>
 
 #include "base/json.h"
+#include "base/setting.h"
 #include "cli/command.h"
+#include "fe/linear/trial.h"
 #include "fe/model/bundle_override.h"
-#include "fe/trial/history.h"
 
-enum wb_solve_kind {
-    WB_SOLVE_NONE,
-    WB_SOLVE_CANTILEVER,
-    WB_SOLVE_WIRE3D,
-    WB_SOLVE_WIRE1D,
-    WB_SOLVE_BUNDLE
+/* Kinds, as bits of the settings that apply to them. */
+enum {
+    WB_SOLVE_CANTILEVER = 1,
+    WB_SOLVE_WIRE3D = 2,
+    WB_SOLVE_WIRE1D = 4,
+    WB_SOLVE_BUNDLE = 8
 };
 
+enum {
+    WB_SOLVE_ELASTOPLASTIC,
+    WB_SOLVE_ELASTIC
+};
+
+/* Rows: wb_solve_settings, and those of the override. */
 struct wb_solve_options {
     struct wb_command_common common;
-    enum wb_solve_kind kind;
+    unsigned kind;         /* its bit; 0: none was named */
     const char *kind_name; /* "cantilever", "wire3d", "wire1d", "bundle" */
     /* Of the cantilever. */
     const char *wire;                  /* name or file */
-    double length, deflection, strand; /* m */
+    double length, deflection, strand; /* m; strand 0: a vertical force */
+    int law;                           /* WB_SOLVE_ELASTOPLASTIC or WB_SOLVE_ELASTIC */
     int cycles, points;
-    bool elastic, weight;
-    const char *cantilever_option; /* one of these that was given; NULL: none */
+    bool weight;
     /* Of the wires, and of bundles. */
     const char *model; /* name or file */
     const char *vtk;   /* folder; NULL: none; not of wire1d */
     /* Of bundles. */
     struct wb_bundle_override override;
-    int vtk_every;              /* rows */
-    int threads;                /* 0: 1 */
+    int vtk_every; /* rows; 0: 1 */
+    int threads;
     const char *checkpoint;     /* file; NULL: none */
-    double checkpoint_interval; /* s; 0: 600 */
-    const char *bundle_option;  /* one of its options that was given; NULL: none */
+    double checkpoint_interval; /* s */
 };
+
+extern const struct wb_setting_table wb_solve_settings;
 
 /* Each returns an exit code. */
 int wb_solve_cantilever(const struct wb_solve_options *options);
@@ -49,7 +57,7 @@ int wb_solve_bundle(const struct wb_solve_options *options);
 /* A row of any model, as it is printed. */
 struct wb_solve_point {
     int cycle;
-    enum wb_history_phase phase;
+    enum wb_phase phase;
     double deflection, tension, force, tip_x, tip_angle;
 };
 

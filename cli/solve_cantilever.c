@@ -23,7 +23,7 @@ struct run {
     struct wb_material material;
     struct wb_section section;
     struct wb_cantilever *cantilever;
-    struct wb_history history;
+    struct wb_loading_steps loading;
     struct wb_progress progress;
     double done; /* rows */
     double marker[MARKERS];
@@ -40,7 +40,7 @@ static enum wb_status prepare(struct run *run)
     if (!run->wire.has_properties)
         return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);
     run->material = run->wire.material;
-    if (o->elastic)
+    if (o->law == WB_SOLVE_ELASTIC)
         run->material.hardening = WB_HARDENING_NONE_ELASTIC;
 
     struct wb_cantilever_model model;
@@ -65,7 +65,7 @@ static bool report_progress(void *context)
 
 static enum wb_status compute(struct run *run)
 {
-    const struct wb_history_plan plan = {
+    const struct wb_loading_steps_plan plan = {
         .control = WB_CONTROL_DEFLECTION,
         .maximum = run->options->deflection,
         .steps = run->options->points,
@@ -75,11 +75,11 @@ static enum wb_status compute(struct run *run)
         .stop = report_progress,
         .stop_context = run,
     };
-    WB_TRY(wb_history_init(&run->history, &plan));
+    WB_TRY(wb_loading_steps_init(&run->loading, &plan));
 
     const struct wb_solve_time start = wb_solve_now();
-    wb_progress_start(&run->progress, "solve", "rows", wb_history_planned_rows(&plan));
-    const enum wb_status status = wb_history_run(&run->history, &plan, run->cantilever);
+    wb_progress_start(&run->progress, "solve", "rows", wb_loading_steps_planned_rows(&plan));
+    const enum wb_status status = wb_loading_steps_run(&run->loading, &plan, run->cantilever);
     wb_progress_finish(&run->progress);
     const struct wb_solve_time end = wb_solve_now();
     run->wall = end.wall - start.wall;
@@ -102,7 +102,7 @@ static enum wb_status write_dataset(const struct run *run)
     };
     const struct wb_simulated_origin origin = {
         .model = o->kind_name,
-        .law = o->elastic ? "elastic" : "elastoplastic",
+        .law = o->law == WB_SOLVE_ELASTIC ? "elastic" : "elastoplastic",
         .source = run->wire.source,
         .material = &run->material,
         .wall = run->wall,
@@ -112,14 +112,14 @@ static enum wb_status write_dataset(const struct run *run)
 
     snprintf(info.wire, sizeof info.wire, "%s", run->wire.name);
     WB_TRY(wb_dataset_init(&dataset));
-    enum wb_status status = wb_simulated_fill(&dataset, &info, &run->history, run->marker, &origin);
+    enum wb_status status = wb_simulated_fill(&dataset, &info, &run->loading, run->marker, &origin);
     if (status == WB_OK)
         status = wb_dataset_write(&dataset, o->common.output, o->common.force);
     wb_dataset_release(&dataset);
     return status;
 }
 
-static struct wb_solve_point point_of(const struct wb_history_row *row)
+static struct wb_solve_point point_of(const struct wb_loading_steps_row *row)
 {
     return (struct wb_solve_point){
         .cycle = row->cycle,
@@ -137,11 +137,11 @@ static int print_json(const struct run *run)
     struct wb_json *root = wb_json_create();
     struct wb_json *points = wb_json_set_array(root, "points");
 
-    for (int i = 0; i < run->history.n_rows; i++) {
-        const struct wb_solve_point point = point_of(&run->history.rows[i]);
+    for (int i = 0; i < run->loading.n_rows; i++) {
+        const struct wb_solve_point point = point_of(&run->loading.rows[i]);
         wb_solve_set_point(wb_json_append_object(points), &point);
     }
-    wb_json_set_boolean(root, "converged", run->history.converged);
+    wb_json_set_boolean(root, "converged", run->loading.converged);
     wb_json_set_number(root, "wall_s", run->wall);
     wb_json_set_number(root, "cpu_s", run->cpu);
     return wb_command_print_json(root);
@@ -150,8 +150,8 @@ static int print_json(const struct run *run)
 static void print_csv(const struct run *run)
 {
     wb_solve_print_header();
-    for (int i = 0; i < run->history.n_rows; i++) {
-        const struct wb_solve_point point = point_of(&run->history.rows[i]);
+    for (int i = 0; i < run->loading.n_rows; i++) {
+        const struct wb_solve_point point = point_of(&run->loading.rows[i]);
         wb_solve_print_point(&point);
     }
 }
@@ -170,13 +170,13 @@ static int deliver(const struct run *run)
     } else if (!run->options->common.output) {
         print_csv(run);
     }
-    if (!run->history.converged)
+    if (!run->loading.converged)
         wb_warn("the solver did not converge beyond a deflection of %.4g mm; the curve ends at "
                 "row %d",
-                run->history.end.deflection / WB_MM, run->history.n_rows);
-    if (run->history.stopped)
-        wb_warn("stopped after %d rows", run->history.n_rows);
-    return run->history.converged && !run->history.stopped ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+                run->loading.end.deflection / WB_MM, run->loading.n_rows);
+    if (run->loading.stopped)
+        wb_warn("stopped after %d rows", run->loading.n_rows);
+    return run->loading.converged && !run->loading.stopped ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
 int wb_solve_cantilever(const struct wb_solve_options *options)
@@ -187,7 +187,7 @@ int wb_solve_cantilever(const struct wb_solve_options *options)
         status = compute(&run);
     const int code = status == WB_OK ? deliver(&run) : wb_command_exit(status);
 
-    wb_history_release(&run.history);
+    wb_loading_steps_release(&run.loading);
     wb_cantilever_destroy(run.cantilever);
     wb_section_release(&run.section);
     return code;

@@ -1,4 +1,4 @@
-#include "daq/acquisition_private.h"
+#include "daq/acquisition.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -13,6 +13,9 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/drivers.h"
+#include "daq/remark_gate.h"
+#include "daq/stream.h"
 
 #define WB_LOG_DOMAIN "acquisition"
 
@@ -24,8 +27,45 @@
 #define STALL_NS (30 * WB_NS_PER_MS)
 #define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
 
-void wb_acquisition_push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind,
-                               const char *text)
+/* One open stream with its driver. */
+struct line {
+    struct wb_acquisition *owner;
+    enum wb_role role;
+    const struct wb_driver *driver;
+    void *state;
+    struct wb_stream *stream;
+    int id; /* in the recording */
+    bool reported_lost;
+    int64_t write_again_ns; /* after a port that took no bytes: not before */
+    uint64_t counted;       /* valid samples so far */
+    uint64_t rate_from;     /* counted at rate_ns */
+    int64_t rate_ns;
+    bool has_rate;
+    struct wb_remark_gate gate;
+    uint64_t kernel_drops; /* datagrams the kernel lost, as far as told */
+};
+
+struct wb_acquisition {
+    struct wb_rig rig;
+    struct wb_sink user;
+    struct wb_writer *writer;
+    int n_lines;
+    struct line lines[WB_INTERLOCK_ROLES];
+    struct line *by_role[WB_INTERLOCK_ROLES];
+    struct wb_interlock interlock;
+    struct wb_stop stop;
+    bool moving, started, hold_sent;
+    enum wb_stop_state reported_stop;
+    struct wb_acquisition_latest latest;
+    int64_t next_tick_ns;
+    int64_t woken_ns; /* end of the last wait for bytes */
+    int64_t deaf_ns;  /* of all time since the start: nobody listened */
+    struct wb_outbox outbox;
+    uint8_t buffer[WB_STREAM_READ_MAX];
+};
+
+/* An event for the recording, if there is one. */
+static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *text)
 {
     if (a->writer)
         wb_writer_push_event(a->writer, t_ns, kind, text);
@@ -56,17 +96,254 @@ void wb_acquisition_event(struct wb_acquisition *a, const char *kind, const char
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    wb_acquisition_push_event(a, wb_acquisition_now_ns(), kind, text);
+    push_event(a, wb_acquisition_now_ns(), kind, text);
+}
+
+/* --- sending --- */
+
+/* A device that went away is not asked again; its silence is then known, not waited for. */
+static void lose_device(struct line *line)
+{
+    struct wb_acquisition *const a = line->owner;
+    a->latest.stream[line->role].gone = true;
+    a->interlock.lost[line->role] = true;
+}
+
+/* False when a write would have to wait: asked before all writes that are not urgent, because
+ * waiting for one instrument must not delay the hold byte to another. */
+static bool takes_bytes(const struct line *line)
+{
+    int descriptors[2];
+    if (wb_stream_descriptors(line->stream, descriptors) == 0)
+        return true;
+    struct pollfd polled = {.fd = descriptors[0], .events = POLLOUT};
+    return poll(&polled, 1, 0) > 0;
+}
+
+/* Writes what a driver put into the outbox, and empties it. A port that takes no bytes is left
+ * alone for a second, so that waiting for it cannot hold up the others; urgent bytes are always
+ * tried. */
+static enum wb_status send_outbox(struct line *line, bool urgent)
+{
+    struct wb_acquisition *const a = line->owner;
+    struct wb_outbox *const outbox = &a->outbox;
+    enum wb_status status = WB_OK;
+    const int64_t now_ns = wb_acquisition_now_ns();
+    size_t begin = 0;
+    if (a->latest.stream[line->role].gone)
+        status = WB_ERR_IO;
+    else if (!urgent && now_ns < line->write_again_ns)
+        status = WB_ERR_TIMEOUT;
+    else if (!urgent && outbox->n_entries > 0 && !takes_bytes(line)) {
+        line->write_again_ns = now_ns + WB_NS_PER_S;
+        status = WB_ERR_TIMEOUT;
+    }
+    for (size_t i = 0; status == WB_OK && i < outbox->n_entries; i++) {
+        status = wb_stream_write(line->stream, outbox->bytes + begin, outbox->ends[i] - begin);
+        begin = outbox->ends[i];
+        if (status == WB_ERR_TIMEOUT)
+            line->write_again_ns = now_ns + WB_NS_PER_S;
+        /* A datagram that finds no listener is not the end of a network stream. */
+        else if (status != WB_OK && line->role != WB_ROLE_MOCAP)
+            lose_device(line);
+    }
+    wb_outbox_clear(outbox);
+    return status;
+}
+
+static enum wb_status send_command(struct line *line, enum wb_stage_command command,
+                                   double distance, double speed)
+{
+    struct wb_acquisition *const a = line->owner;
+    wb_outbox_clear(&a->outbox);
+    const enum wb_status status =
+        line->driver->command(line->state, command, distance, speed, &a->outbox);
+    if (status != WB_OK) {
+        wb_outbox_clear(&a->outbox);
+        return status;
+    }
+    const bool urgent = command == WB_STAGE_COMMAND_HOLD || command == WB_STAGE_COMMAND_SOFT_RESET;
+    return send_outbox(line, urgent);
+}
+
+/* --- stopping --- */
+
+/* The interlock has just tripped: the hold byte goes out before anything else. */
+static void hold_now(struct wb_acquisition *a)
+{
+    if (a->stop.state != WB_STOP_NONE)
+        return;
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    enum wb_status status = WB_OK;
+    if (stage && a->moving)
+        status = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
+    a->hold_sent = status == WB_OK;
+    const int64_t now_ns = wb_acquisition_now_ns();
+    if (!stage || !a->moving)
+        wb_stop_settle(&a->stop, WB_STOP_STANDING, now_ns);
+    else
+        wb_stop_begin(&a->stop, now_ns);
+    if (stage && a->latest.stream[WB_ROLE_STAGE].gone && a->moving)
+        wb_stop_settle(&a->stop, WB_STOP_FAILED, now_ns);
+    if (a->interlock.reason != WB_INTERLOCK_INTERRUPT)
+        push_event(a, a->interlock.t_ns, "limit", a->interlock.text);
+    char text[200];
+    if (stage && a->moving && status == WB_OK) {
+        snprintf(text, sizeof text, "{\"reason\": \"%s\", \"latency_ms\": %.3f}",
+                 wb_interlock_reason_name(a->interlock.reason),
+                 (double)(now_ns - a->interlock.t_ns) / 1e6);
+        push_event(a, now_ns, "hold", text);
+    } else if (stage && a->moving) {
+        push_event(a, now_ns, "hold", "the hold byte could not be sent to the stage");
+    }
+}
+
+/* Once, when the stop is over: what came of it. */
+static void report_stop(struct wb_acquisition *a)
+{
+    if (!wb_stop_over(&a->stop) || a->reported_stop == a->stop.state)
+        return;
+    a->reported_stop = a->stop.state;
+    if (!a->moving)
+        return;
+    char text[200];
+    if (a->stop.state == WB_STOP_STANDING) {
+        snprintf(text, sizeof text, "{\"confirmed_ms\": %.3f, \"soft_reset\": %s}",
+                 (double)(a->stop.confirmed_ns - a->stop.hold_ns) / 1e6,
+                 a->stop.reset_ns ? "true" : "false");
+        a->moving = false;
+        push_event(a, a->stop.confirmed_ns, "stopped", text);
+    } else {
+        push_event(a, a->stop.confirmed_ns, "stopped",
+                   "not confirmed: the stage may still be moving");
+    }
+}
+
+/* What is due of a stop that is under way. */
+static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
+{
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    if (!stage || a->stop.state == WB_STOP_NONE)
+        return;
+    const bool was_over = wb_stop_over(&a->stop);
+    enum wb_status status = WB_OK;
+    switch (wb_stop_tick(&a->stop, now_ns)) {
+    case WB_STOP_DO_ASK:
+        if (a->stop.state == WB_STOP_HOLDING && !a->hold_sent)
+            a->hold_sent = send_command(stage, WB_STAGE_COMMAND_HOLD, 0.0, 0.0) == WB_OK;
+        status = send_command(stage, WB_STAGE_COMMAND_STATUS, 0.0, 0.0);
+        break;
+    case WB_STOP_DO_RESET:
+        status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
+        wb_warn("the stage did not confirm the hold within %d ms: soft reset",
+                (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
+        push_event(a, wb_acquisition_now_ns(), "reset",
+                   status == WB_OK ? "hold not confirmed in time: soft reset sent"
+                                   : "the soft reset could not be sent");
+        break;
+    case WB_STOP_DO_NOTHING:
+        break;
+    }
+    if (!was_over && a->latest.stream[WB_ROLE_STAGE].gone)
+        wb_stop_settle(&a->stop, WB_STOP_FAILED, now_ns);
+    report_stop(a);
+}
+
+void wb_acquisition_stop(struct wb_acquisition *a, enum wb_interlock_reason reason,
+                         const char *text)
+{
+    if (wb_interlock_trip(&a->interlock, reason, wb_acquisition_now_ns(), text))
+        hold_now(a);
+}
+
+void wb_acquisition_clear_stop(struct wb_acquisition *a)
+{
+    const struct wb_interlock_settings settings = a->interlock.settings;
+    bool lost[WB_INTERLOCK_ROLES];
+    memcpy(lost, a->interlock.lost, sizeof lost);
+    wb_interlock_init(&a->interlock, &settings, wb_acquisition_now_ns());
+    memcpy(a->interlock.lost, lost, sizeof lost);
+    memset(&a->stop, 0, sizeof a->stop);
+    a->reported_stop = WB_STOP_NONE;
+}
+
+/* --- the caller's side of stage and interlock --- */
+
+void wb_acquisition_arm(struct wb_acquisition *a, const struct wb_interlock_settings *settings,
+                        double start_position)
+{
+    const enum wb_interlock_reason reason = a->interlock.reason;
+    if (reason != WB_INTERLOCK_NONE)
+        return;
+    wb_interlock_init(&a->interlock, settings, wb_acquisition_now_ns());
+    a->interlock.armed = true;
+    if (!isfinite(start_position) && a->latest.has_stage)
+        start_position = a->latest.stage.position;
+    a->interlock.start_position = start_position;
+    /* Streams that were not opened send nothing. */
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
+        if (!a->by_role[role])
+            a->interlock.settings.stream_lost_ns[role] = 0;
+}
+
+void wb_acquisition_disarm(struct wb_acquisition *a)
+{
+    a->interlock.armed = false;
+}
+
+void wb_acquisition_set_tare(struct wb_acquisition *a, double tare)
+{
+    a->interlock.tare = tare;
+}
+
+const struct wb_interlock *wb_acquisition_interlock(const struct wb_acquisition *a)
+{
+    return &a->interlock;
+}
+
+enum wb_status wb_acquisition_command(struct wb_acquisition *a, enum wb_stage_command command,
+                                      double distance, double speed)
+{
+    struct line *const stage = a->by_role[WB_ROLE_STAGE];
+    if (!stage)
+        return wb_fail(WB_ERR_UNSUPPORTED, "no stage is open");
+    if (a->stop.state != WB_STOP_NONE && command != WB_STAGE_COMMAND_STATUS)
+        return WB_ERR_ARGUMENT;
+    const bool moves = command == WB_STAGE_COMMAND_JOG || command == WB_STAGE_COMMAND_HOME;
+    const bool was_moving = a->moving;
+    if (command != WB_STAGE_COMMAND_STATUS)
+        a->latest.stage_error[0] = '\0';
+    /* Set first: a command that may have left in part counts as moving. */
+    a->moving = a->moving || moves;
+    const enum wb_status status = send_command(stage, command, distance, speed);
+    if (status == WB_ERR_BUSY)
+        a->moving = was_moving;
+    return status;
+}
+
+void wb_acquisition_motion_ended(struct wb_acquisition *a)
+{
+    a->moving = false;
+}
+
+bool wb_acquisition_moving(const struct wb_acquisition *a)
+{
+    return a->moving;
+}
+
+const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *a)
+{
+    return &a->stop;
 }
 
 /* --- receiving: what the drivers deliver --- */
 
 static void on_load(void *context, const struct wb_load_sample *sample)
 {
-    struct wb_acquisition_line *const line = context;
+    struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
     if (wb_interlock_load(&a->interlock, sample))
-        wb_acquisition_hold_now(a);
+        hold_now(a);
     a->latest.stream[WB_ROLE_LOAD].samples++;
     if (sample->valid) {
         line->counted++;
@@ -79,10 +356,10 @@ static void on_load(void *context, const struct wb_load_sample *sample)
 
 static void on_mocap(void *context, const struct wb_mocap_frame *frame)
 {
-    struct wb_acquisition_line *const line = context;
+    struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
     if (wb_interlock_mocap(&a->interlock, frame->t_ns))
-        wb_acquisition_hold_now(a);
+        hold_now(a);
     a->latest.stream[WB_ROLE_MOCAP].samples++;
     line->counted++;
     a->latest.has_mocap = true;
@@ -97,10 +374,10 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
 
 static void on_stage(void *context, const struct wb_stage_report *report)
 {
-    struct wb_acquisition_line *const line = context;
+    struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
     if (wb_interlock_stage(&a->interlock, report))
-        wb_acquisition_hold_now(a);
+        hold_now(a);
     wb_stop_report(&a->stop, report);
     a->latest.stream[WB_ROLE_STAGE].samples++;
     line->counted++;
@@ -113,7 +390,7 @@ static void on_stage(void *context, const struct wb_stage_report *report)
 
 static void on_probe(void *context, const struct wb_clock_probe *probe)
 {
-    struct wb_acquisition_line *const line = context;
+    struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
     const int64_t rtt_ns = probe->t_received_ns - probe->t_sent_ns;
     if (a->writer)
@@ -126,7 +403,7 @@ static void on_probe(void *context, const struct wb_clock_probe *probe)
 static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
                       const char *text)
 {
-    struct wb_acquisition_line *const line = context;
+    struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
     if (line->role == WB_ROLE_STAGE && level <= WB_LOG_WARNING)
         snprintf(a->latest.stage_error, sizeof a->latest.stage_error, "%s", text);
@@ -136,10 +413,10 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
         char more[96];
         snprintf(more, sizeof more, "%u more remarks of the %s stream within a second", held,
                  wb_role_name(line->role));
-        wb_acquisition_push_event(a, t_ns, "remarks", more);
+        push_event(a, t_ns, "remarks", more);
     }
     if (store)
-        wb_acquisition_push_event(a, t_ns, kind, text);
+        push_event(a, t_ns, kind, text);
     /* Chatter is for the recording; what hints at trouble is for the operator too. */
     if (level > WB_LOG_WARNING)
         wb_debug("%s: %s", wb_role_name(line->role), text);
@@ -150,7 +427,7 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
 }
 
 /* Datagrams that the kernel threw away never reached us: the recording says so. */
-static void note_kernel_drops(struct wb_acquisition_line *line, int64_t t_ns)
+static void note_kernel_drops(struct line *line, int64_t t_ns)
 {
     const uint64_t drops = wb_stream_kernel_drops(line->stream);
     if (drops == line->kernel_drops)
@@ -160,11 +437,11 @@ static void note_kernel_drops(struct wb_acquisition_line *line, int64_t t_ns)
              "%s stream lost %" PRIu64 " datagrams in the kernel: they were not read in time",
              wb_role_name(line->role), drops - line->kernel_drops);
     line->kernel_drops = drops;
-    wb_acquisition_push_event(line->owner, t_ns, "drop", text);
+    push_event(line->owner, t_ns, "drop", text);
     wb_warn("%s", text);
 }
 
-static void read_line(struct wb_acquisition_line *line)
+static void read_line(struct line *line)
 {
     struct wb_acquisition *const a = line->owner;
     struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
@@ -174,7 +451,7 @@ static void read_line(struct wb_acquisition_line *line)
         const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);
         if (status != WB_OK) {
             if (line->role != WB_ROLE_MOCAP)
-                wb_acquisition_lose_device(line);
+                lose_device(line);
             return;
         }
         if (n == 0)
@@ -195,16 +472,16 @@ static void read_line(struct wb_acquisition_line *line)
 
 /* Questions and greetings: what became of them shows in what comes back. A failed write was told,
  * and a device that went away is noted. */
-static void send_or_note(struct wb_acquisition_line *line)
+static void send_or_note(struct line *line)
 {
-    if (wb_acquisition_send(line, false) != WB_OK)
+    if (send_outbox(line, false) != WB_OK)
         wb_debug("the %s took no bytes", wb_role_name(line->role));
 }
 
 static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
-        struct wb_acquisition_line *const line = &a->lines[i];
+        struct line *const line = &a->lines[i];
         if (a->latest.stream[line->role].gone || !line->driver->tick)
             continue;
         wb_outbox_clear(&a->outbox);
@@ -220,12 +497,11 @@ static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
 static void note_losses(struct wb_acquisition *a, int64_t now_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
-        struct wb_acquisition_line *const line = &a->lines[i];
+        struct line *const line = &a->lines[i];
         struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
         const bool lost = a->interlock.lost[line->role] || state->gone;
         if (lost != line->reported_lost) {
-            wb_acquisition_push_event(a, now_ns, lost ? "stream_lost" : "stream_found",
-                                      wb_role_name(line->role));
+            push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
             /* A device that went away has been told already. */
             if (lost && !state->gone)
                 wb_warn("stream lost: %s (%s)", wb_role_name(line->role),
@@ -245,7 +521,7 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
 static void note_rates(struct wb_acquisition *a, int64_t now_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
-        struct wb_acquisition_line *const line = &a->lines[i];
+        struct line *const line = &a->lines[i];
         const int64_t lasted_ns = now_ns - line->rate_ns;
         if (lasted_ns < RATE_PERIOD_NS)
             continue;
@@ -288,12 +564,12 @@ static void check_rest(struct wb_acquisition *a)
 static void judge_silence(struct wb_acquisition *a, int64_t heard_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
-        struct wb_acquisition_line *const line = &a->lines[i];
+        struct line *const line = &a->lines[i];
         if (wb_interlock_expires(&a->interlock, line->role, heard_ns))
             read_line(line);
     }
     if (wb_interlock_tick(&a->interlock, heard_ns))
-        wb_acquisition_hold_now(a);
+        hold_now(a);
 }
 
 /* Time in which this process was kept from running, or from waiting for bytes, says nothing about
@@ -301,8 +577,10 @@ static void judge_silence(struct wb_acquisition *a, int64_t heard_ns)
  * their silence. */
 static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
 {
-    if (stalled_ns >= STALL_NS)
-        wb_interlock_forgive(&a->interlock, stalled_ns);
+    if (stalled_ns < STALL_NS)
+        return;
+    a->deaf_ns += stalled_ns;
+    wb_interlock_forgive(&a->interlock, stalled_ns);
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -365,7 +643,7 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
     check_rest(a);
     judge_silence(a, woken_ns);
     const int64_t now_ns = wb_acquisition_now_ns();
-    wb_acquisition_follow_stop(a, now_ns);
+    follow_stop(a, now_ns);
     if (now_ns >= a->next_tick_ns)
         tick_lines(a, now_ns);
     note_losses(a, now_ns);
@@ -381,11 +659,11 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
 static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, const char *address,
                                 const char *protocol)
 {
-    struct wb_acquisition_line *const line = &a->lines[a->n_lines];
+    struct line *const line = &a->lines[a->n_lines];
     line->owner = a;
     line->role = role;
     line->id = a->n_lines;
-    line->driver = wb_driver_find(role, protocol);
+    line->driver = wb_drivers_find(role, protocol);
     if (!line->driver)
         return wb_fail(WB_ERR_UNSUPPORTED, "no %s protocol '%s'", wb_role_name(role), protocol);
     line->state = calloc(1, line->driver->state_size);
@@ -439,7 +717,7 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
     a->woken_ns = now_ns;
     wb_interlock_init(&a->interlock, &unwatched, now_ns);
     for (int i = 0; i < a->n_lines; i++) {
-        struct wb_acquisition_line *const line = &a->lines[i];
+        struct line *const line = &a->lines[i];
         line->rate_ns = now_ns;
         if (!line->driver->start)
             continue;
@@ -454,7 +732,7 @@ void wb_acquisition_close(struct wb_acquisition *a)
     if (!a)
         return;
     for (int i = 0; i < a->n_lines; i++) {
-        struct wb_acquisition_line *const line = &a->lines[i];
+        struct line *const line = &a->lines[i];
         if (a->started && line->driver->stop && !a->latest.stream[line->role].gone) {
             wb_outbox_clear(&a->outbox);
             line->driver->stop(line->state, &a->outbox);
@@ -464,6 +742,11 @@ void wb_acquisition_close(struct wb_acquisition *a)
         free(line->state);
     }
     free(a);
+}
+
+int64_t wb_acquisition_heard_ns(const struct wb_acquisition *a)
+{
+    return a->woken_ns - a->deaf_ns;
 }
 
 const struct wb_acquisition_latest *wb_acquisition_latest(const struct wb_acquisition *a)

@@ -1,10 +1,10 @@
 /* Instrument drivers: protocols as state machines over bytes, without ports or clocks.
  *
- * A driver turns received bytes into samples (`receive`), and tells what to send (`start`, `tick`,
- * `command`). It never reads a port or a clock: times come in as arguments, so the same driver
- * decodes live bytes and recorded ones and gives the same samples bit for bit. The core allocates
- * `state_size` zeroed bytes and calls `init` with the instrument's settings. A NULL operation is
- * not supported by the instrument.
+ * A driver turns received bytes into samples (`receive`), and gives the bytes to send (`start`,
+ * `tick`, `command`). It never reads a port or a clock: times come in as arguments, so the same
+ * driver decodes live bytes and recorded ones and gives the same samples bit for bit. The core
+ * allocates `state_size` zeroed bytes and calls `init` with the instrument's settings. A NULL
+ * operation is not supported by the instrument.
  */
 #ifndef WB_DAQ_DRIVER_H
 #define WB_DAQ_DRIVER_H
@@ -41,7 +41,7 @@ bool wb_outbox_add(struct wb_outbox *outbox, const void *bytes, size_t n);
 bool wb_outbox_add_text(struct wb_outbox *outbox, const char *text);
 void wb_outbox_clear(struct wb_outbox *outbox);
 
-/* What a stage can be told. */
+/* Commands of a stage. */
 enum wb_stage_command {
     WB_STAGE_COMMAND_JOG,        /* relative move by `distance` (m, positive raises the deflection:
                                     the clamp goes down) at `speed` (m/s) */
@@ -92,17 +92,8 @@ void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64
                       const char *kind, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* True for the 1st, 2nd, 3rd, 10th, 20th, 30th, 100th, ... of many: what repeats is said rarely. */
+/* True for the 1st, 2nd, 3rd, 10th, 20th, 30th, 100th, ... of many: a repeated remark is logged
+ * more and more rarely. */
 bool wb_driver_worth_saying(uint64_t n);
-
-/* All drivers, and lookup by role and protocol name (NULL when there is none). */
-extern const struct wb_driver *const wb_drivers[];
-extern const int wb_n_drivers;
-const struct wb_driver *wb_driver_find(enum wb_role role, const char *protocol);
-
-extern const struct wb_driver wb_driver_generic;
-extern const struct wb_driver wb_driver_mtsics;
-extern const struct wb_driver wb_driver_natnet;
-extern const struct wb_driver wb_driver_grbl;
 
 #endif

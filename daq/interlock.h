@@ -37,7 +37,7 @@ enum wb_interlock_reason {
     WB_INTERLOCK_UNIT,        /* the cell's unit changed in mid-stream */
     WB_INTERLOCK_TRAVEL,      /* the stage is beyond the travel limit */
     WB_INTERLOCK_ALARM,       /* the stage raised an alarm */
-    WB_INTERLOCK_STAGE,       /* the stage does not do what it was told */
+    WB_INTERLOCK_STAGE,       /* the stage does not obey a command */
     WB_INTERLOCK_STREAM_LOST, /* an instrument fell silent for too long or went away */
     WB_INTERLOCK_DISK,        /* the recording can no longer be written */
     WB_INTERLOCK_INTERRUPT    /* Ctrl-C or the operator's stop key */
@@ -93,8 +93,8 @@ bool wb_interlock_mocap(struct wb_interlock *interlock, int64_t t_ns);
 bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_report *report);
 /* Looks at the silences: all that arrived before now_ns has been handed over. */
 bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns);
-/* True when the next tick at now_ns would call this stream lost, which it is not yet: the moment to
- * look once more at what waits to be read. */
+/* True when the next tick at now_ns would be the first to call this stream lost: the moment to look
+ * once more at what waits to be read. */
 bool wb_interlock_expires(const struct wb_interlock *interlock, enum wb_role role, int64_t now_ns);
 /* Nobody listened or asked for so long: it does not count as silence of any stream. At most
  * WB_INTERLOCK_FORGIVEN_NS are forgiven between two samples of a stream, so that a stream that is
@@ -133,7 +133,7 @@ struct wb_stop {
 
 /* The hold byte just left. */
 void wb_stop_begin(struct wb_stop *stop, int64_t now_ns);
-/* There was nothing to stop, or nobody to tell. */
+/* There was nothing to stop, or no stage to send a command to. */
 void wb_stop_settle(struct wb_stop *stop, enum wb_stop_state state, int64_t now_ns);
 /* Takes a report. Hold and Alarm confirm at once; Idle only the second time, because the first may
  * have been under way before the hold byte, and a line sent just before may still start. */

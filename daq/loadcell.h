@@ -1,5 +1,5 @@
-/* What every load-cell driver does with a decoded line: count it, watch its unit, turn it into a
- * sample, and remark upon what is wrong without flooding. */
+/* What every load-cell driver does with a decoded line: it counts the line, checks its unit, turns
+ * it into a sample, and remarks on faults without flooding the recording. */
 #ifndef WB_DAQ_LOADCELL_H
 #define WB_DAQ_LOADCELL_H
 

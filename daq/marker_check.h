@@ -1,6 +1,6 @@
-/* Are all markers of a specimen seen? Told by geometry, because the ids of bare markers change: on
- * the unloaded, nearly straight wire the markers lie on a line at their arc lengths. A stray
- * reflection therefore cannot stand in for a missing marker.
+/* Checks whether all markers of a specimen are seen. Markers are identified by geometry, because
+ * the ids of bare markers change: on the unloaded, nearly straight wire they lie on a line at their
+ * arc lengths. A stray reflection is therefore not mistaken for a missing marker.
  */
 #ifndef WB_DAQ_MARKER_CHECK_H
 #define WB_DAQ_MARKER_CHECK_H
@@ -17,8 +17,8 @@ struct wb_marker_places {
 
 /* Looks for the specimen's markers among the measured ones of a frame of the unloaded wire. A
  * marker may lie off the line by 0.4 of the smallest spacing: the wire's bow, its sag and the
- * markers' height. Which end is the clamp cannot be told when the spacing is symmetric; the count
- * does not need it. Frames with more than 32 measured markers are searched among the first 32. */
+ * markers' height. With symmetric spacing the two ends cannot be distinguished; the count does not
+ * need it. Frames with more than 32 measured markers are searched among the first 32. */
 void wb_marker_check_frame(const struct wb_mocap_frame *frame, const struct wb_specimen *specimen,
                            struct wb_marker_places *places);
 

@@ -64,7 +64,7 @@ struct wb_natnet_packet {
     size_t n_payload;
 };
 
-/* What the server says of itself. */
+/* What the server says about itself. */
 struct wb_natnet_server {
     char name[256];
     uint8_t app_version[4];

@@ -20,7 +20,7 @@
 size_t wb_natnet_encode_connect(uint8_t *buffer, size_t size, const char *name, bool extended);
 size_t wb_natnet_encode_keepalive(uint8_t *buffer, size_t size);
 size_t wb_natnet_encode_disconnect(uint8_t *buffer, size_t size);
-/* The stamp comes back verbatim in the response: give it the client's clock. */
+/* The response repeats the stamp verbatim: pass the client's clock. */
 size_t wb_natnet_encode_echo_request(uint8_t *buffer, size_t size, uint64_t stamp);
 /* "FrameRate", "UnitsToMillimeters", ... */
 size_t wb_natnet_encode_request(uint8_t *buffer, size_t size, const char *text);

@@ -68,9 +68,9 @@ WB_MUST_CHECK enum wb_status wb_recording_close(struct wb_recording *recording);
 WB_MUST_CHECK enum wb_status wb_recording_open(struct wb_recording **out, const char *path);
 /* The same without the warning that a file is cut short, for one that is opened again. */
 WB_MUST_CHECK enum wb_status wb_recording_open_quietly(struct wb_recording **out, const char *path);
-/* True when the file is shorter than its own header says. That is told once, on opening; tables of
- * such a file break off (WB_ERR_DATA) without further messages. Of other files, each table that
- * breaks off is told once. */
+/* True when the file is shorter than its own header says. This is logged once, on opening; tables
+ * of such a file break off (WB_ERR_DATA) without further messages. For other files, each table that
+ * breaks off is logged once. */
 bool wb_recording_is_cut_short(const struct wb_recording *recording);
 
 /* False when the recording was not closed properly (crash, full disk) or the file is cut short. */

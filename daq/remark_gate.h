@@ -21,7 +21,7 @@ struct wb_remark_gate {
 };
 
 /* True when a remark at t_ns may be stored; those beyond the allowance are counted. With the first
- * one of a new second *held tells how many the second before held back, 0 otherwise. */
+ * one of a new second *held is the number held back in the second before, 0 otherwise. */
 bool wb_remark_gate_store(struct wb_remark_gate *gate, int64_t t_ns, unsigned *held);
 
 /* True when a remark of this kind may be shown: once in 10 s. */

@@ -77,7 +77,7 @@ struct wb_rig_load_cell {
     /* Generic line protocol. */
     char delimiter;        /* 0: whole line is one value */
     int column;            /* from 1, with a delimiter */
-    char unit[16];         /* wins over the line's unit; "" takes the line's */
+    char unit[16];         /* overrides the line's unit; "" takes the line's */
     double scale, offset;  /* force = sign (scale value + offset) unit: both in the line's unit */
     int sign;              /* +1: tension reads positive */
     char terminator[8];    /* "cr", "lf", "crlf", "idle"; "any" or "": CR or LF */

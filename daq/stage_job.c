@@ -9,6 +9,7 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/release.h"
 
 #define WB_LOG_DOMAIN "stage"
 
@@ -21,16 +22,11 @@
 #define SEND_NS (4 * WB_NS_PER_S)
 #define HOMING_NS (180 * WB_NS_PER_S)
 
-/* Release: it goes in steps, so that the end of the machine's travel is met with a small one. */
-#define STEP (2.0 * WB_MM)
-#define LEAST_STEP (0.1 * WB_MM)
-/* The reading is averaged over pieces of the way; the strand is slack when so many in a row agree.
- */
-#define PIECE (0.25 * WB_MM)
-#define PIECES_APART 3
-#define LEVEL_SHARE 1e-3  /* of the capacity: the pieces agree */
-#define SLACK_SHARE 0.25  /* of the capacity: what may hang on the cell when the strand is slack */
-#define GROWTH_SHARE 0.05 /* of the capacity: it goes the wrong way */
+/* Release: at the end of the machine's travel steps become smaller, down to this; it keeps so far
+ * away from it at most. */
+#define LEAST_STEP (0.25 * WB_MM)
+#define REST_NS (10 * WB_NS_PER_S) /* readings enough for one rest come within */
+#define GROWTH_SHARE 0.05          /* of the capacity: it goes the wrong way */
 
 enum phase {
     PHASE_CONNECT,
@@ -38,35 +34,31 @@ enum phase {
     PHASE_UNLOCK,
     PHASE_HOME,
     PHASE_MOVE,
-    PHASE_CANCEL, /* release: slack was seen, the jog is being ended */
+    PHASE_REST, /* release: the stage stands and the load cell is read */
     PHASE_STOP,
     PHASE_END
 };
 
 static const char *const phase_names[] = {"connecting", "resetting", "unlocking", "homing",
-                                          "moving",     "moving",    "stopping",  "end"};
-
-struct piece {
-    int number; /* of PIECE from the start */
-    int n;
-    double sum; /* N */
-};
+                                          "moving",     "reading",   "stopping",  "end"};
 
 struct wb_stage_job {
     struct wb_rig rig;
     struct wb_stage_job_request request;
     struct wb_acquisition *acquisition;
     enum phase phase;
-    int64_t phase_ns, deadline_ns;
-    bool unsent; /* the command of this phase is not taken yet */
+    int64_t phase_ns;
+    int64_t heard_ns;   /* when the phase began, on the clock that stands while nobody listens */
+    int64_t allowed_ns; /* for a motion, on that clock */
+    bool unsent;        /* the command of this phase is not taken yet */
     enum wb_stage_command command;
     double distance;               /* m, of the command */
     double start_position, target; /* m, machine; m travel from the start, down positive */
-    double step, reach;            /* m, release: of one step, and of all of them */
+    double most, reach;            /* m, release: of one step, and of all of them */
     double first_force;            /* N; NaN before the first reading */
     uint64_t reports_seen;
     int idle_reports;
-    struct piece pieces[PIECES_APART + 1]; /* the newest first */
+    struct wb_release release;
     bool standing;
     enum wb_stage_job_end end;
     char text[WB_INTERLOCK_TEXT];
@@ -81,8 +73,16 @@ static void enter(struct wb_stage_job *job, enum phase phase)
 {
     job->phase = phase;
     job->phase_ns = wb_acquisition_now_ns();
+    job->heard_ns = wb_acquisition_heard_ns(job->acquisition);
     job->reports_seen = wb_acquisition_latest(job->acquisition)->stage_reports;
     job->idle_reports = 0;
+}
+
+/* How long the phase lasts, without the time in which this process was kept from listening: an
+ * instrument is not blamed for that. */
+static int64_t lasts_ns(const struct wb_stage_job *job)
+{
+    return wb_acquisition_heard_ns(job->acquisition) - job->heard_ns;
 }
 
 static void set_end(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format, ...)
@@ -124,48 +124,13 @@ static void give_up(struct wb_stage_job *job, enum wb_interlock_reason reason, c
     enter(job, PHASE_STOP);
 }
 
-/* --- release: seeing the strand go slack --- */
-
-static void note_force(struct wb_stage_job *job, double force)
-{
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
-    if (!isfinite(job->first_force))
-        job->first_force = force;
-    if (job->phase != PHASE_MOVE || !latest->has_stage || !isfinite(latest->stage.position))
-        return;
-    const int number = (int)floor(fabs(travel_of(job, latest->stage.position)) / PIECE);
-    if (number != job->pieces[0].number) {
-        memmove(&job->pieces[1], &job->pieces[0], PIECES_APART * sizeof job->pieces[0]);
-        job->pieces[0] = (struct piece){.number = number};
-    }
-    job->pieces[0].n++;
-    job->pieces[0].sum += force;
-}
-
-/* True when the last complete pieces say that the reading no longer changes on the way up. */
-static bool strand_is_slack(const struct wb_stage_job *job)
-{
-    double low = (double)INFINITY, high = -(double)INFINITY;
-    for (int i = 1; i <= PIECES_APART; i++) {
-        const struct piece *const piece = &job->pieces[i];
-        if (piece->n == 0 || piece->number != job->pieces[0].number - i)
-            return false;
-        const double mean = piece->sum / piece->n;
-        /* The piece's own noise, as far as it is known. */
-        const double blur = 4.0 * job->rig.load_cell.noise / sqrt(piece->n);
-        low = fmin(low, mean - blur);
-        high = fmax(high, mean + blur);
-        if (!(fabs(mean) <= SLACK_SHARE * job->rig.load_cell.capacity))
-            return false;
-    }
-    const double blurs = 8.0 * job->rig.load_cell.noise / sqrt(job->pieces[1].n);
-    return high - low <= blurs + LEVEL_SHARE * job->rig.load_cell.capacity;
-}
-
 static void on_load(void *context, const struct wb_load_sample *sample)
 {
-    if (sample->valid)
-        note_force(context, sample->force);
+    struct wb_stage_job *const job = context;
+    if (sample->valid && !isfinite(job->first_force))
+        job->first_force = sample->force;
+    if (job->phase == PHASE_REST)
+        wb_release_add(&job->release, sample);
 }
 
 /* --- opening --- */
@@ -209,7 +174,7 @@ enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig 
         return status;
     }
     wb_acquisition_start(job->acquisition, NULL);
-    job->phase_ns = wb_acquisition_now_ns();
+    enter(job, PHASE_CONNECT);
     *out = job;
     return WB_OK;
 }
@@ -225,14 +190,13 @@ static void try_to_send(struct wb_stage_job *job)
     job->unsent = status == WB_ERR_BUSY;
     if (status == WB_OK) {
         enter(job, job->phase);
-        job->deadline_ns =
-            job->phase_ns + 5 * WB_NS_PER_S + wb_ns_from_seconds(1.5 * fabs(job->distance) / speed);
+        job->allowed_ns = 5 * WB_NS_PER_S + wb_ns_from_seconds(1.5 * fabs(job->distance) / speed);
     } else if (!job->unsent) {
         give_up(job, WB_INTERLOCK_STAGE,
                 "the command could not be sent to the stage at %s: check its cable and power, then "
                 "run 'unlock'",
                 job->rig.stage.address);
-    } else if (wb_acquisition_now_ns() - job->phase_ns > SEND_NS) {
+    } else if (lasts_ns(job) > SEND_NS) {
         job->unsent = false;
         give_up(job, WB_INTERLOCK_STAGE,
                 "the stage at %s does not answer an earlier command: check its cable, then run "
@@ -283,26 +247,54 @@ static void jog_to(struct wb_stage_job *job, double target)
     send(job, WB_STAGE_COMMAND_JOG, distance, PHASE_MOVE);
 }
 
+/* Release: the stage stands; the readings from now on tell whether the strand is slack. */
+static void rest(struct wb_stage_job *job, double travel)
+{
+    wb_acquisition_motion_ended(job->acquisition);
+    enter(job, PHASE_REST);
+    wb_release_rest(&job->release, travel, job->phase_ns);
+}
+
+static void end_release(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format,
+                        ...) __attribute__((format(printf, 3, 4)));
+
+static void end_release(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format,
+                        ...)
+{
+    char text[WB_INTERLOCK_TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    wb_acquisition_motion_ended(job->acquisition);
+    set_end(job, end, "%s", text);
+    finish(job);
+}
+
 /* Release: the next step up, or the end of them. */
 static void step_up(struct wb_stage_job *job, double travel)
 {
     const double left = job->reach + travel;
-    if (left > POSITION_TOLERANCE && job->step >= LEAST_STEP) {
-        jog_to(job, travel - fmin(job->step, left));
-        return;
-    }
-    wb_acquisition_motion_ended(job->acquisition);
-    set_end(job, WB_STAGE_JOB_STILL_LOADED,
-            "went up by %.2f mm%s, but the reading did not level off: look at the strand, then "
-            "release again or jog",
-            -travel / WB_MM, left > POSITION_TOLERANCE ? " to the end of the machine" : "");
-    finish(job);
+    const double step = fmin(wb_release_step(&job->release), job->most);
+    const double force = wb_release_force(&job->release) / WB_MN;
+    if (left <= POSITION_TOLERANCE)
+        end_release(job, WB_STAGE_JOB_STILL_LOADED,
+                    "went up by %.2f mm, but the reading did not level off (%.2f mN now): look at "
+                    "the strand, then release again or jog",
+                    -travel / WB_MM, force);
+    else if (job->most < LEAST_STEP)
+        end_release(job, WB_STAGE_JOB_STILL_LOADED,
+                    "went up by %.2f mm to the end of the machine, but the reading did not level "
+                    "off (%.2f mN now): look at the strand; the stage is free to jog down",
+                    -travel / WB_MM, force);
+    else
+        jog_to(job, travel - fmin(step, left));
 }
 
 static void begin_motion(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
-    double distance = job->request.distance;
+    const double distance = job->request.distance;
     if (job->request.kind == WB_STAGE_JOB_UNLOCK) {
         set_end(job, WB_STAGE_JOB_DONE, "the stage is unlocked");
         finish(job);
@@ -321,18 +313,20 @@ static void begin_motion(struct wb_stage_job *job)
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
         job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->rig.stage.travel)
                                           : job->rig.stage.travel;
-        job->step = STEP;
-        distance = -fmin(job->step, job->reach);
+        job->most = job->rig.stage.travel;
+        wb_release_init(&job->release, &job->rig);
+        rest(job, 0.0);
+        return;
     }
-    jog_to(job, distance);
+    jog_to(job, job->request.distance);
 }
 
-static void step_connect(struct wb_stage_job *job, int64_t now_ns)
+static void step_connect(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
     const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
     const bool load_speaks = !load->open || load->samples > 0;
-    if (latest->has_stage && load_speaks && now_ns - job->phase_ns > STALE_NS) {
+    if (latest->has_stage && load_speaks && lasts_ns(job) > STALE_NS) {
         const enum wb_stage_state state = latest->stage.state;
         const bool frees =
             job->request.kind == WB_STAGE_JOB_UNLOCK || job->request.kind == WB_STAGE_JOB_RELEASE;
@@ -369,11 +363,11 @@ static void step_connect(struct wb_stage_job *job, int64_t now_ns)
     else if (load->gone)
         give_up(job, WB_INTERLOCK_STREAM_LOST, "the load cell's port %s went away",
                 job->rig.load_cell.address);
-    else if (now_ns - job->phase_ns > allowed_ns && !latest->has_stage)
+    else if (lasts_ns(job) > allowed_ns && !latest->has_stage)
         give_up(job, WB_INTERLOCK_STREAM_LOST,
                 "the stage at %s gave no status within %g s: check power, cable and stage.protocol",
                 job->rig.stage.address, job->request.connect_timeout);
-    else if (now_ns - job->phase_ns > allowed_ns)
+    else if (lasts_ns(job) > allowed_ns)
         give_up(job, WB_INTERLOCK_STREAM_LOST,
                 "the load cell at %s sent no reading within %g s: check it, or move blindly with "
                 "--without-load-cell",
@@ -390,7 +384,7 @@ static bool fresh_report(struct wb_stage_job *job, int64_t stale_ns)
     return latest->stage.t_ns > job->phase_ns + stale_ns;
 }
 
-static void step_reset(struct wb_stage_job *job, int64_t now_ns)
+static void step_reset(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
     if (fresh_report(job, STALE_NS)) {
@@ -403,21 +397,21 @@ static void step_reset(struct wb_stage_job *job, int64_t now_ns)
             return;
         }
     }
-    if (now_ns - job->phase_ns > RESET_NS)
+    if (lasts_ns(job) > RESET_NS)
         give_up(job, WB_INTERLOCK_STAGE, "the stage does not come back from its reset");
 }
 
-static void step_unlock(struct wb_stage_job *job, int64_t now_ns)
+static void step_unlock(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
     if (fresh_report(job, STALE_NS) && latest->stage.state == WB_STAGE_IDLE)
         begin_motion(job);
-    else if (now_ns - job->phase_ns > RESET_NS)
+    else if (lasts_ns(job) > RESET_NS)
         give_up(job, WB_INTERLOCK_STAGE, "the stage does not unlock%s%s",
                 latest->stage_error[0] ? ": " : "", latest->stage_error);
 }
 
-static void step_home(struct wb_stage_job *job, int64_t now_ns)
+static void step_home(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
     if (latest->stage_error[0] && latest->stage.state != WB_STAGE_HOME) {
@@ -436,26 +430,22 @@ static void step_home(struct wb_stage_job *job, int64_t now_ns)
             return;
         }
     }
-    if (now_ns - job->phase_ns > HOMING_NS)
+    if (lasts_ns(job) > HOMING_NS)
         give_up(job, WB_INTERLOCK_STAGE, "homing did not end within %d s",
                 (int)(HOMING_NS / WB_NS_PER_S));
 }
 
-static void step_move(struct wb_stage_job *job, int64_t now_ns)
+static void step_move(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
-    if (job->request.kind == WB_STAGE_JOB_RELEASE && strand_is_slack(job)) {
-        send(job, WB_STAGE_COMMAND_JOG_CANCEL, 0.0, PHASE_CANCEL);
-        return;
-    }
-    if (now_ns > job->deadline_ns)
+    if (lasts_ns(job) > job->allowed_ns)
         give_up(job, WB_INTERLOCK_STAGE, "the stage did not arrive in time");
     if (!fresh_report(job, 0) || latest->stage.state != WB_STAGE_IDLE)
         return;
     const double travel = travel_of(job, latest->stage.position);
     const bool releases = job->request.kind == WB_STAGE_JOB_RELEASE;
     if (fabs(travel - job->target) <= POSITION_TOLERANCE && releases) {
-        step_up(job, travel);
+        rest(job, travel);
         return;
     }
     if (fabs(travel - job->target) <= POSITION_TOLERANCE) {
@@ -466,7 +456,7 @@ static void step_move(struct wb_stage_job *job, int64_t now_ns)
     }
     job->idle_reports++;
     if (job->idle_reports >= 2 && releases && strncmp(latest->stage_error, "error:15", 8) == 0) {
-        job->step *= 0.5;
+        job->most = 0.5 * fmin(wb_release_step(&job->release), job->most);
         step_up(job, travel);
         return;
     }
@@ -475,27 +465,38 @@ static void step_move(struct wb_stage_job *job, int64_t now_ns)
         wb_acquisition_motion_ended(job->acquisition);
         give_up(job, WB_INTERLOCK_STAGE, "the stage stopped after %.2f mm: %s", travel / WB_MM,
                 latest->stage_error);
-    } else if (job->idle_reports >= 5 && now_ns - job->phase_ns > WB_NS_PER_S) {
+    } else if (job->idle_reports >= 5 && lasts_ns(job) > WB_NS_PER_S) {
         wb_acquisition_motion_ended(job->acquisition);
         give_up(job, WB_INTERLOCK_STAGE, "the stage stands after %.2f mm of %.2f mm",
                 travel / WB_MM, job->target / WB_MM);
     }
 }
 
-static void step_cancel(struct wb_stage_job *job, int64_t now_ns)
+static void step_rest(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
-    if (fresh_report(job, 0)) {
-        job->idle_reports = latest->stage.state == WB_STAGE_IDLE ? job->idle_reports + 1 : 0;
-        if (job->idle_reports >= 2) {
-            wb_acquisition_motion_ended(job->acquisition);
-            set_end(job, WB_STAGE_JOB_DONE, "the strand is slack: the specimen is free");
-            finish(job);
-            return;
-        }
+    switch (wb_release_judge(&job->release)) {
+    case WB_RELEASE_LISTEN:
+        if (lasts_ns(job) > REST_NS)
+            give_up(job, WB_INTERLOCK_STREAM_LOST,
+                    "the load cell at %s sends too few readings to see the strand go slack",
+                    job->rig.load_cell.address);
+        break;
+    case WB_RELEASE_GO_UP:
+        step_up(job, travel_of(job, latest->stage.position));
+        break;
+    case WB_RELEASE_SLACK:
+        end_release(job, WB_STAGE_JOB_DONE, "the strand is slack: the specimen is free");
+        break;
+    case WB_RELEASE_STUCK:
+        end_release(job, WB_STAGE_JOB_STILL_LOADED,
+                    "went up by %.2f mm, but the reading stays at %.2f mN, more than a slack "
+                    "strand leaves on the load cell: look at the strand and what hangs on the "
+                    "cell, then jog",
+                    -travel_of(job, latest->stage.position) / WB_MM,
+                    wb_release_force(&job->release) / WB_MN);
+        break;
     }
-    if (now_ns - job->phase_ns > 2 * WB_NS_PER_S)
-        give_up(job, WB_INTERLOCK_STAGE, "the stage does not end its jog");
 }
 
 static void note_trip(struct wb_stage_job *job)
@@ -534,25 +535,24 @@ enum wb_stage_job_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeou
         try_to_send(job);
         return WB_STAGE_JOB_RUNNING;
     }
-    const int64_t now_ns = wb_acquisition_now_ns();
     switch (job->phase) {
     case PHASE_CONNECT:
-        step_connect(job, now_ns);
+        step_connect(job);
         break;
     case PHASE_RESET:
-        step_reset(job, now_ns);
+        step_reset(job);
         break;
     case PHASE_UNLOCK:
-        step_unlock(job, now_ns);
+        step_unlock(job);
         break;
     case PHASE_HOME:
-        step_home(job, now_ns);
+        step_home(job);
         break;
     case PHASE_MOVE:
-        step_move(job, now_ns);
+        step_move(job);
         break;
-    case PHASE_CANCEL:
-        step_cancel(job, now_ns);
+    case PHASE_REST:
+        step_rest(job);
         break;
     case PHASE_STOP:
         step_stop(job);

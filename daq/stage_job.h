@@ -21,8 +21,8 @@ enum wb_stage_job_kind {
     WB_STAGE_JOB_JOG,    /* by `distance` */
     WB_STAGE_JOB_UNLOCK, /* to idle without a motion, whatever it does: a reset, which also stops a
                             motion of somebody else's, then $X */
-    /* Out of hold or alarm, then slowly up (half the rig's speed) until the strand is slack: the
-     * reading stays level over 0.75 mm near zero. */
+    /* Out of hold or alarm, then slowly up (half the rig's speed), step by step, until the strand
+     * is slack: the reading of the standing stage stays level over 0.75 mm near zero. */
     WB_STAGE_JOB_RELEASE
 };
 
@@ -40,7 +40,8 @@ enum wb_stage_job_end {
     WB_STAGE_JOB_DONE,
     WB_STAGE_JOB_LIMIT,        /* a limit stopped it */
     WB_STAGE_JOB_INTERRUPTED,  /* Ctrl-C */
-    WB_STAGE_JOB_STILL_LOADED, /* release: went as far as it may, the strand is not seen slack */
+    WB_STAGE_JOB_STILL_LOADED, /* release: went as far as it may or as helps, the strand is not seen
+                                  slack; the stage is idle */
     WB_STAGE_JOB_FAILED
 };
 
@@ -51,7 +52,8 @@ WB_MUST_CHECK enum wb_status wb_stage_job_open(struct wb_stage_job **out, const 
 enum wb_stage_job_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeout_ns);
 
 struct wb_stage_job_status {
-    const char *phase; /* "connecting", "resetting", "unlocking", "moving", "stopping", "end" */
+    const char *phase; /* "connecting", "resetting", "unlocking", "moving", "reading", "stopping",
+                          "end" */
     bool has_force, has_position;
     double force;    /* N, as read */
     double position; /* m, machine */

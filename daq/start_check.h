@@ -1,5 +1,6 @@
-/* The start check of a test: is the stage ready, are all markers seen, is the zero of the load cell
- * a zero? Pure judgement on what was gathered; the reason of a refusal is written for the operator.
+/* The start check of a test: the stage is ready, all markers are seen, and the unloaded load cell
+ * reads zero. Pure functions on gathered samples; the reason of a refusal is written for the
+ * operator.
  */
 #ifndef WB_DAQ_START_CHECK_H
 #define WB_DAQ_START_CHECK_H
@@ -32,8 +33,8 @@ bool wb_start_check_enough(const struct wb_start_check *check);
  * mends it for the rig file at `rig_path`.
  * A marker counts as seen when it is there in half of the frames: cameras lose one now and then. A
  * zero is within a tenth of the capacity, with noise up to 5 times the rig's own (up to 1 % of the
- * capacity where the rig file does not tell it). Where the tare is taken with the counterweight
- * (rig.h), its weight is expected instead of zero, and to half of it. */
+ * capacity if the rig file has no noise). If the tare is taken with the counterweight (rig.h), its
+ * weight is expected instead of zero, within half of that weight. */
 bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_path,
                           char text[WB_START_CHECK_TEXT]);
 bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_specimen *specimen,

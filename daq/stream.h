@@ -51,8 +51,8 @@ WB_MUST_CHECK enum wb_status wb_stream_write(struct wb_stream *stream, const voi
  * streams that cannot tell. Known after the read that follows the loss. */
 uint64_t wb_stream_kernel_drops(const struct wb_stream *stream);
 
-/* Memory streams only: appends one run of bytes to be read by wb_stream_read(), one run a call,
- * as datagrams are. */
+/* Memory streams only: appends one block of bytes. wb_stream_read() reads one block a call, as it
+ * does with datagrams. */
 WB_MUST_CHECK enum wb_status wb_stream_memory_push(struct wb_stream *stream, const void *bytes,
                                                    size_t n);
 

@@ -1,4 +1,4 @@
-/* A look at a whole recording: what it holds, and what is missing or damaged. */
+/* A survey of a whole recording: what it holds, and what is missing or damaged. */
 #ifndef WB_DAQ_SURVEY_H
 #define WB_DAQ_SURVEY_H
 
@@ -45,9 +45,9 @@ struct wb_survey {
     bool is_virtual;            /* recorded from a virtual rig */
 };
 
-/* Walks everything; with `decode` the bytes go through the drivers too, and samples are counted.
- * What is wrong with the recording is no failure: it is in *survey (tables that break off are
- * logged besides). */
+/* Reads all tables; with `decode` the bytes also go through the drivers, and samples are counted.
+ * Faults of the recording are not failures of this function: they are in *survey (tables that break
+ * off are also logged). */
 WB_MUST_CHECK enum wb_status wb_survey_run(struct wb_recording *recording, bool decode,
                                            struct wb_survey *survey);
 
@@ -60,8 +60,8 @@ double wb_survey_duration(const struct wb_survey *survey);
 /* Seconds from one stamp to a later one, of any values (a damaged file may hold any). */
 double wb_survey_seconds(int64_t from_ns, int64_t to_ns);
 
-/* Describes the next thing that is wrong, one line, beginning with *at = 0; false when there is
- * none any more. `text` receives for example "mocap stream 1: 12 chunks missing in 2 places". */
+/* Describes the next fault in one line, beginning with *at = 0; false when there is no further
+ * one. `text` receives for example "mocap stream 1: 12 chunks missing in 2 places". */
 bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size);
 
 #endif

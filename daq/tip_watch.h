@@ -1,6 +1,6 @@
-/* The deflection for the operator's eye while a test runs: how much higher the tip's marker has
- * come above the clamp's, followed from frame to frame. The analysis does it properly later, from
- * the recording; this is only for the live line.
+/* An approximate deflection for the status line of a running test: the rise of the tip's marker
+ * above the clamp's, followed from frame to frame. The analysis later computes the exact one from
+ * the recording.
  */
 #ifndef WB_DAQ_TIP_WATCH_H
 #define WB_DAQ_TIP_WATCH_H

@@ -1,26 +1,29 @@
 #!/bin/sh
-# The layering, read off the includes: base sees nothing of ours; daq and fe see base; the virtual
-# rig sees daq and fe; analysis sees base, daq and fe; the cli sees all; nobody sees the cli.
-# Foreign libraries stay behind the files that design says. Usage: layers.sh SOURCE_ROOT
+# The layering. Includes: base sees nothing of ours; daq and fe see base; the virtual rig sees daq
+# and fe; analysis sees base, daq and fe; the cli sees all; nobody sees the cli; within fe and
+# within the report a room sees those below it. Foreign libraries stay behind the files that design
+# says. No files include or call each other in a circle. Usage:
+#     layers.sh SOURCE_ROOT [ARCHIVE_OR_FOLDER...]
+# where archives and folders hold the objects of the product; without them calls are not looked at.
 set -eu
 cd "$1"
+shift
+objects=$(for place in "$@"; do [ -d "$place" ] && ls "$place"/*.c.o || echo "$place"; done)
 bad=0
+complain() { # TITLE LINES
+    [ -z "$2" ] && return
+    echo "$1"
+    echo "$2" | sed 's/^/    /'
+    bad=1
+}
 check() { # FOLDER FORBIDDEN-REGEX
-    found=$(grep -rnE "^#include \"($2)" --include='*.[ch]' "$1" || true)
-    if [ -n "$found" ]; then
-        echo "$1 may not include these:"
-        echo "$found" | sed 's/^/    /'
-        bad=1
-    fi
+    complain "$1 may not include these:" \
+        "$(grep -rnE "^#include \"($2)" --include='*.[ch]' "$1" || true)"
 }
 only() { # HEADER ALLOWED-FILES-REGEX
-    found=$(grep -rlE "^#include <$1>" --include='*.[ch]' base daq fe fixtures analysis cli |
-        grep -vE "^($2)\$" || true)
-    if [ -n "$found" ]; then
-        echo "<$1> is included outside its file:"
-        echo "$found" | sed 's/^/    /'
-        bad=1
-    fi
+    complain "<$1> is included outside its file:" \
+        "$(grep -rlE "^#include <$1>" --include='*.[ch]' base daq fe fixtures analysis cli |
+            grep -vE "^($2)\$" || true)"
 }
 check base '(daq|fe|fixtures|analysis|cli|tests)/'
 check daq '(fe|fixtures|analysis|cli|tests)/'
@@ -36,34 +39,74 @@ only 'yaml\.h' 'base/config\.c'
 only 'jansson\.h' 'base/json\.c'
 only 'glib\.h' 'base/hash\.c'
 only 'lapacke\.h' 'fe/[a-z]*/[a-z0-9_]*\.c'
-only 'mpi\.h' 'fe/team/team_mpi\.c'
-only 'cairo.*' 'analysis/(plot|report)/[a-z_]*\.[ch]'
-only 'pango/.*' 'analysis/(plot|report)/[a-z_]*\.[ch]'
+only 'mpi\.h' 'fe/team/[a-z_]*mpi\.c'
+only 'cairo.*' 'analysis/(plot|report)/[a-z_/]*\.[ch]'
+only 'pango/.*' 'analysis/(plot|report)/[a-z_/]*\.[ch]'
 only 'argp\.h' 'cli/[a-z_]*\.[ch]'
-# The rooms of fe, lowest first: a file sees its own room and those before it.
-rooms='team linear material swept solid model rod trial bundle output'
-for folder in fe/*/; do
-    case " $rooms " in
-    *" $(basename "$folder") "*) ;;
-    *)
-        echo "$folder has no place in the order of rooms (tests/layers.sh)"
-        bad=1
-        ;;
-    esac
-done
-# shellcheck disable=SC2086 # the rooms are words
-set -- $rooms
-while [ $# -gt 1 ]; do
-    room=$1
+
+# Rooms, lowest first: a file sees its own room and those before it.
+rooms() { # FOLDER ROOM...
+    folder=$1
     shift
-    check "fe/$room" "fe/($(echo "$*" | tr ' ' '|'))/"
-done
+    for path in "$folder"/*/; do
+        case " $* " in
+        *" $(basename "$path") "*) ;;
+        *) complain "no place in the order of rooms (tests/layers.sh):" "$path" ;;
+        esac
+    done
+    while [ $# -gt 1 ]; do
+        room=$1
+        shift
+        check "$folder/$room" "$folder/($(echo "$*" | tr ' ' '|'))/"
+    done
+}
+rooms fe team linear material swept solid model rod trial bundle output
+
 # One file, one noun: a subject that needs 900 lines keeps them, none needs more than 1200.
-long=$(find base daq fe fixtures analysis cli -name '*.[ch]' -exec wc -l {} + |
-    awk '$2 != "total" && $1 > 1200')
-if [ -n "$long" ]; then
-    echo "longer than 1200 lines:"
-    echo "$long"
-    bad=1
-fi
+complain 'longer than 1200 lines:' \
+    "$(find base daq fe fixtures analysis cli -name '*.[ch]' -exec wc -l {} + |
+        awk '$2 != "total" && $1 > 1200')"
+
+# Pairs "USER USED" on standard input; prints every circle in a line.
+circles() {
+    tsort 2>&1 >/dev/null | sed -n 's/^tsort: //p' | awk '
+        /input contains a loop/ { if (line) print line; line = ""; next }
+        { line = line (line ? " -> " : "") $0 }
+        END { if (line) print line }'
+}
+complain 'headers include each other in a circle:' \
+    "$(grep -rE '^#include "' --include='*.h' base daq fe fixtures analysis cli |
+        sed -n 's/^\([^:]*\):#include "\(.*\)".*/\1 \2/p' | circles)"
+
+# Pairs of objects that may call each other, one way of which is let be, with the reason.
+#     USER USED  # why
+allowed=''
+# shellcheck disable=SC2086 # the objects are words
+[ -z "$objects" ] || complain 'files call each other in a circle (each names a symbol of the next):' \
+    "$(nm -A --extern-only $objects | awk -v allowed="$allowed" '
+        # "ARCHIVE:FOLDER/TARGET.p/FILE.c.o: ..." or without archive: the object is FOLDER/FILE.
+        NF >= 3 {
+            object = $1
+            sub(/:[0-9a-f]*$/, "", object)
+            sub(/^.*:/, "", object)
+            sub(/[^\/]*\.p\//, "", object)
+            sub(/\.c\.o$/, "", object)
+            if ($(NF - 1) == "U")
+                uses[object, $NF] = 1
+            else
+                home[$NF] = object
+        }
+        END {
+            n = split(allowed, pairs, "\n")
+            for (i = 1; i <= n; i++) {
+                split(pairs[i], words, " ")
+                spared[words[1], words[2]] = 1
+            }
+            for (use in uses) {
+                split(use, part, SUBSEP)
+                if (part[2] in home && home[part[2]] != part[1] &&
+                    !((part[1], home[part[2]]) in spared))
+                    print part[1], home[part[2]]
+            }
+        }' | LC_ALL=C sort -u | circles)"
 exit $bad

@@ -14,18 +14,13 @@ for archive in "$@"; do
     foreign=$(echo "$names" | awk '
         BEGIN {
             # Files that own another noun as well: its symbols are the noun or begin with it.
-            others["dataset"] = "phase"
-            others["driver"] = "drivers n_drivers outbox role"
+            others["driver"] = "outbox role"
             others["grbl_decode"] = "grbl"
             others["interlock"] = "stop"
             others["interrupt"] = "interrupted"
-            others["loadcell_generic"] = "driver_generic"
             others["loadcell_line"] = "line"
-            others["loadcell_mtsics"] = "driver_mtsics"
             others["markers"] = "marker point_cloud"
-            others["natnet_client"] = "driver_natnet"
             others["output"] = "figure"
-            others["stage_grbl"] = "driver_grbl"
         }
         function begins(symbol, noun) {
             return symbol == "wb_" noun || index(symbol, "wb_" noun "_") == 1
@@ -49,7 +44,7 @@ for archive in "$@"; do
             sub(/\.c\.o$/, "", stem)
             inner = stem
             # Meson writes the folder before the name.
-            sub(/^(plot|report)_/, "", inner)
+            sub(/^(plot|report|draw|bench)_/, "", inner)
             if (!belongs(stem, $2) && !(inner != stem && belongs(inner, $2)))
                 print $1 " " $2
         }' | sort -u)

@@ -1,47 +1,84 @@
-/* The report's figures, after the paper's Figs. 9, 10, 13, 14 and 15. A figure whose data are
- * missing is NULL.
+/* The figures of a report, drawn from a table: a figure is a function that draws it, one that
+ * writes its caption, and a row. Files, and places in the document, follow from the table.
+ *
+ *     static const struct wb_figures_row rows[] = {
+ *         {.place = "overview", .draw = draw_errors, .caption = tell_errors},
+ *         {.place = "wire", .count = count_wires, .draw = draw_cycles, .caption = tell_cycles},
+ *     };
+ *     WB_TRY(wb_figures_create(&figures, rows, WB_COUNT(rows), results));
+ *     ... wb_figures_put(&figures, document, "overview", 0);
  */
 #ifndef WB_ANALYSIS_REPORT_FIGURES_H
 #define WB_ANALYSIS_REPORT_FIGURES_H
 
-#include "analysis/plot/figure.h"
-#include "analysis/report/results.h"
-#include "base/status.h"
+#include <stdbool.h>
 
-struct wb_figures_wire {
-    struct wb_figure *cycles;      /* Fig. 9a: all cycles of the sample with the most */
-    struct wb_figure *samples;     /* Fig. 9b: loading of each sample, mean and range */
-    struct wb_figure *shapes;      /* Fig. 10: marker shapes in time */
-    struct wb_figure *calibration; /* Fig. 13, with shapes in the inset */
-    struct wb_figure *validation;  /* Fig. 14, with the linear elastic curve */
-    struct wb_figure *error;       /* Fig. 15 */
-    struct wb_figure *optimiser;   /* path of the Nelder-Mead search */
-    const struct wb_results_test *cycles_test, *shapes_test; /* shown in the first and third */
+#include "analysis/curve.h"
+#include "analysis/plot/figure.h"
+#include "analysis/report/document.h"
+#include "base/status.h"
+#include "base/text.h"
+
+struct wb_figures_row {
+    const char *place; /* in the document: a name that wb_figures_put() is called with */
+    /* How many figures the row stands for (of every wire, of every group); NULL: one. Rows that
+     * follow each other and count with the same function take turns: all of the first wire, then
+     * all of the second. */
+    int (*count)(const void *results);
+    /* Leaves *figure NULL where data are missing: then there is no such figure. */
+    enum wb_status (*draw)(struct wb_figure **figure, const void *results, int index);
+    /* Appends the caption, markup; called only of a figure that was drawn. */
+    void (*caption)(struct wb_text *text, const void *results, int index);
+    bool half; /* of half the width: two such rows that follow each other stand side by side */
 };
 
+struct wb_figures_item {
+    const struct wb_figures_row *row;
+    int index;
+    struct wb_figure *figure;
+};
+
+/* The figures that were drawn, in the order of the table. */
 struct wb_figures {
-    struct wb_figure *bench;                             /* the test, to scale */
-    struct wb_figure *calibration, *validation, *errors; /* all wires */
-    int n_wires;
-    struct wb_figures_wire *wires; /* (n_wires), owned */
+    const void *results; /* borrowed, as the rows */
+    int n;
+    struct wb_figures_item *items; /* (n), owned */
 };
 
 /* Draws all figures that the results give; on a failure nothing needs a release. */
 WB_MUST_CHECK enum wb_status wb_figures_create(struct wb_figures *figures,
-                                               const struct wb_results *results);
+                                               const struct wb_figures_row *rows, size_t n_rows,
+                                               const void *results);
 void wb_figures_release(struct wb_figures *figures); /* accepts a zeroed one */
 
-/* All figures there are, in the report's order, into `list`; returns how many. `list` NULL only
- * counts. */
-int wb_figures_list(const struct wb_figures *figures, const struct wb_figure **list);
+/* Whether there is any figure of a place and index. */
+bool wb_figures_has(const struct wb_figures *figures, const char *place, int index);
 
-/* "measured (virtual rig)" or "measured", after where the used recordings come from. */
-const char *wb_figures_measured(const struct wb_results *results);
+/* Adds the figures of a place and index to the document, with their captions. The document borrows
+ * them. */
+void wb_figures_put(const struct wb_figures *figures, struct wb_document *document,
+                    const char *place, int index);
 
-/* Largest deflection of the first loading, m, and when it was reached, s (infinite without one). */
-double wb_figures_turn(const struct wb_dataset *dataset, double *t);
+/* --- what functions that draw share --- */
 
-/* A wire's name as part of file names, anchors and figure names: other characters become '-'. */
-void wb_figures_slug(char slug[64], const char *name);
+/* Starts a figure of the text's width that says that it shows simulations. */
+WB_MUST_CHECK enum wb_status wb_figures_start_simulation(struct wb_figure **figure,
+                                                         const char *name, double height);
+
+/* A title of plain text. */
+void wb_figures_set_title(struct wb_panel *panel, const char *plain);
+
+/* Copies in another unit; the deflections of a curve in mm. NULL when out of memory. */
+double *wb_figures_scaled(const double *values, int n, double unit);
+double *wb_figures_deflections(const struct wb_curve *curve);
+
+/* A line of `values` on the curve's deflections, and the range of its samples. */
+WB_MUST_CHECK enum wb_status wb_figures_add_curve(struct wb_panel *panel, const char *label,
+                                                  const struct wb_curve *curve,
+                                                  const double *values, double unit,
+                                                  const struct wb_figure_style *style);
+WB_MUST_CHECK enum wb_status wb_figures_add_range(struct wb_panel *panel, const char *label,
+                                                  const struct wb_curve *curve,
+                                                  struct wb_colour colour);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/report/pages_private.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "base/version.h"
 
@@ -26,6 +26,14 @@ double wb_pages_value(const struct wb_material *material, int property)
 const char *wb_pages_plural(int n, const char *one, const char *many)
 {
     return n == 1 ? one : many;
+}
+
+const char *wb_pages_paper_figure(char text[48], const char *number)
+{
+    text[0] = '\0';
+    if (number[0])
+        snprintf(text, 48, " (the paper's Fig. %s)", number);
+    return text;
 }
 
 char *wb_pages_escape(char *buffer, size_t size, const char *raw)
@@ -94,78 +102,20 @@ void wb_pages_put_row(struct wb_document *document, struct wb_document_table *ta
     row->n = 0;
 }
 
-int wb_pages_missing(struct wb_document *document, const struct wb_results_tests *tests)
+void wb_pages_put_origin(struct wb_document *document, const char *campaign, const char *sha256,
+                         const char *notes, const char *same)
 {
-    int n = 0;
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_results_test *const test = &tests->items[i];
-        if (test->usable)
-            continue;
-        char name[400], problem[1200], item[1800];
-        wb_pages_escape(name, sizeof name, test->wanted->name);
-        wb_pages_escape(problem, sizeof problem, wb_text_string(&test->problem));
-        snprintf(item, sizeof item, "<b>%s</b>: %s", name, problem);
-        wb_document_item(document, WB_TONE_WARNING, item);
-        n++;
-    }
-    return n;
-}
-
-static void add_overview(struct wb_document *document, const struct wb_results *results,
-                         const struct wb_figures *figures)
-{
-    if (!figures->calibration && !figures->validation)
-        return;
-    const struct wb_campaign *const campaign = results->campaign;
-    const char *const measured = wb_figures_measured(results);
-    char caption[600];
-    wb_document_heading(document, 1, "overview", "All wires");
-    if (figures->calibration) {
-        snprintf(caption, sizeof caption,
-                 "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
-                 "against them. Bands: range of the samples.",
-                 campaign->calibration_length / WB_MM, measured);
-        wb_document_figures(document, figures->calibration, caption, NULL, NULL);
-    }
-    if (figures->validation) {
-        snprintf(caption, sizeof caption,
-                 "The same wires at %g mm, %s, and the prediction of the beams calibrated at %g "
-                 "mm.",
-                 campaign->validation_length / WB_MM, measured,
-                 campaign->calibration_length / WB_MM);
-        wb_document_figures(document, figures->validation, caption, NULL, NULL);
-    }
-    if (figures->errors) {
-        snprintf(caption, sizeof caption,
-                 "Error of the prediction at %g mm (eq. 18): distance of mean force, %s, and "
-                 "computed force over the largest mean force of the wire.",
-                 campaign->validation_length / WB_MM, measured);
-        wb_document_figures(document, figures->errors, caption, NULL, NULL);
-    }
-}
-
-void wb_pages_build(struct wb_document *document, const struct wb_results *results,
-                    const struct wb_figures *figures)
-{
-    char subtitle[300], footer[300];
-    snprintf(footer, sizeof footer, "wirebench %s, revision %s%s", wb_version(),
-             wb_version_revision(), results->any_virtual ? " \xc2\xb7 virtual rig" : "");
-    snprintf(subtitle, sizeof subtitle,
-             "%d of %d recordings, the latest of %.10s \xc2\xb7 wirebench %s, revision %s",
-             results->n_usable, results->n_tests,
-             results->latest_utc[0] ? results->latest_utc : "an unknown date", wb_version(),
-             wb_version_revision());
-    if (results->n_usable == 0)
-        snprintf(subtitle, sizeof subtitle,
-                 "none of %d recordings \xc2\xb7 wirebench %s, revision "
-                 "%s",
-                 results->n_tests, wb_version(), wb_version_revision());
-    wb_document_init(document, "Calibration report", results->campaign->title, subtitle, footer,
-                     results->latest_utc);
-    wb_pages_summary(document, results);
-    wb_pages_bench(document, results, figures);
-    add_overview(document, results, figures);
-    for (int i = 0; i < results->n_wires; i++)
-        wb_pages_wire(document, results, i, &figures->wires[i]);
-    wb_pages_provenance(document, results);
+    char text[2600], name[600], escaped[2200], command[400];
+    wb_document_new_page(document);
+    wb_document_heading(document, 1, "provenance", "Provenance");
+    snprintf(text, sizeof text,
+             "Campaign <tt>%s</tt>, SHA-256 <tt>%s</tt>. Written by wirebench %s, revision "
+             "<tt>%s</tt>. The same %s and the same revision give the same bytes:",
+             wb_pages_escape(name, sizeof name, campaign), sha256, wb_version(),
+             wb_version_revision(), same);
+    wb_document_paragraph(document, text);
+    snprintf(command, sizeof command, "wirebench report %s -o DIR", campaign);
+    wb_document_code(document, command);
+    if (notes[0])
+        wb_document_paragraph(document, wb_pages_escape(escaped, sizeof escaped, notes));
 }

@@ -156,19 +156,10 @@ static void take_time(struct run *r)
 static void identify(const struct run *r, char text[MOST_IDENTITY])
 {
     const struct wb_bundle_model *m = r->model;
-    const struct wb_bundle_interface *i = &m->interface;
     const char *mesh = r->options.mesh ? r->options.mesh : m->run.mesh;
-    char settings[1024], hash[WB_SHA256_TEXT];
+    char hash[WB_SHA256_TEXT];
 
-    snprintf(settings, sizeof settings,
-             "%s %d %d %d %d %.17g %.17g %.17g %.17g %.17g %.17g %d %.17g %.17g %.17g %d %.17g "
-             "%.17g %.17g %.17g %.17g %.17g",
-             m->sha256, m->has_tape, (int)m->tip, m->run.rows, m->run.cycles, m->run.deflection,
-             m->run.duration, m->run.mass_scaling, m->run.selective, m->run.kinetic_limit,
-             m->loads.strand_length, m->loads.weight, m->length, i->normal_stiffness,
-             i->shear_stiffness, i->has_damage, i->damage.strength, i->damage.shear_strength,
-             i->damage.fracture_energy, i->friction_static, i->friction_kinetic, i->friction_decay);
-    wb_hash_bytes(settings, strlen(settings), hash);
+    wb_bundle_model_identify(m, hash);
     snprintf(text, MOST_IDENTITY,
              "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
              "%s precision, %s, wirebench %s, program %.12s",
@@ -495,9 +486,9 @@ static double value_at(const struct line *line, double x, double *deviation)
     return mean + slope * (x - at);
 }
 
-static enum wb_history_phase phase_of(const struct run *r)
+static enum wb_phase phase_of(const struct run *r)
 {
-    return r->branch % 2 == 0 ? WB_HISTORY_LOAD : WB_HISTORY_UNLOAD;
+    return r->branch % 2 == 0 ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
 }
 
 static void take_place(struct run *r)
@@ -511,7 +502,7 @@ static void take_place(struct run *r)
     *row = (struct wb_bundle_row){
         .time = r->state.time - r->begin,
         .cycle = 1 + r->branch / 2,
-        .phase = r->state.slack ? WB_HISTORY_SLACK : phase_of(r),
+        .phase = r->state.slack ? WB_PHASE_SLACK : phase_of(r),
         .deflection = r->state.deflection,
         .tip = {ends[1][0], ends[1][1], ends[1][2]},
         .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
@@ -547,13 +538,13 @@ static void finish_row(struct run *r)
     /* A strand that swings about zero is slack for a step and taut for the next. Where the tip
      * hangs there are no samples: it was slack there, whatever comes after. */
     if (!r->hangs && r->samples_before)
-        row->phase = r->slack_samples > r->vertical.n ? WB_HISTORY_SLACK : phase_of(r);
+        row->phase = r->slack_samples > r->vertical.n ? WB_PHASE_SLACK : phase_of(r);
     if (r->vertical.n == 0.0)
         sample(r);
     if (r->vertical.n == 0.0)
-        row->phase = WB_HISTORY_SLACK;
+        row->phase = WB_PHASE_SLACK;
     /* Where the strand is taut the target is the deflection. */
-    if (row->phase != WB_HISTORY_SLACK) {
+    if (row->phase != WB_PHASE_SLACK) {
         row->vertical_force = value_at(&r->vertical, row->deflection, &row->standard_deviation);
         row->tension = value_at(&r->tension, row->deflection, &ignored);
     }

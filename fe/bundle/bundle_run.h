@@ -33,8 +33,8 @@
 #include "base/reason.h"
 #include "base/status.h"
 #include "fe/bundle/bundle.h"
+#include "fe/linear/trial.h"
 #include "fe/model/bundle_model.h"
-#include "fe/trial/history.h"
 
 enum {
     WB_BUNDLE_RUN_ATTEMPTS = 5
@@ -43,7 +43,7 @@ enum {
 struct wb_bundle_row {
     double time; /* s, of the model, since the loading began */
     int cycle;   /* from 1 */
-    enum wb_history_phase phase;
+    enum wb_phase phase;
     double deflection;         /* m */
     double tip[3];             /* m, mean of the wires' ends, from the bundle's axis */
     double tip_angle;          /* rad, of the last elements' secant */

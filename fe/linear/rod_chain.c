@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "fe/linear/inertia.h"
+#include "fe/linear/signature.h"
 
 enum {
     B = WB_ROD_CHAIN_BLOCK,
@@ -78,7 +78,7 @@ void wb_rod_chain_condense(struct wb_rod_chain *chain)
     chain->negative = 0;
     for (int i = 0; i + 1 < chain->n; i++) {
         double rows[B][W] = {{0}};
-        chain->negative += wb_inertia_negative(B, B, chain->diagonal[i]);
+        chain->negative += wb_signature_negative(B, B, chain->diagonal[i]);
         for (int r = 0; r < B; r++) {
             memcpy(rows[r], chain->diagonal[i] + B * r, B * sizeof(double));
             memcpy(rows[r] + B, chain->upper[i] + B * r, B * sizeof(double));

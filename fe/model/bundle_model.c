@@ -1,15 +1,239 @@
 #include "fe/model/bundle_model.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/config.h"
+#include "base/file.h"
+#include "base/text.h"
 #include "base/units.h"
-#include "fe/model/bundle_model_private.h"
+
+#define WB_LOG_DOMAIN "bundle"
 
 static const double pi = 3.14159265358979323846;
 static const double n_mm2 = 1e-6;    /* N m2 of one N mm2 */
 static const double g_per_m = 1e-3;  /* kg/m of one g/m */
-static const double touching = 1e-9; /* m */
+static const double touching = 1e-9; /* m: wires so near to the tape touch it */
+static const double largest_poisson = 0.499;
+
+static const char *const length_sources[] = {"own", "printed", "inferred", NULL};
+static const char *const tips[] = {"free", "capped", NULL};
+static const char *const formulations[] = {"2x2x1", "one-point", NULL};
+static const char *const precisions[] = {"single", "double", NULL};
+
+/* --- settings --- */
+
+const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTINGS] = {
+    [WB_BUNDLE_MODEL_MESH] = {.name = "mesh",
+                              .type = WB_SETTING_TEXT,
+                              .offset = offsetof(struct wb_bundle_run, mesh),
+                              .size = sizeof((struct wb_bundle_run *)NULL)->mesh,
+                              .otherwise = "engineering",
+                              .option = "mesh",
+                              .argument = "NAME",
+                              .help = "Mesh: engineering, paper, or one of the file"},
+    [WB_BUNDLE_MODEL_DURATION] = {.name = "duration_s",
+                                  .title = "duration",
+                                  .unit = "s",
+                                  .type = WB_SETTING_NUMBER,
+                                  .offset = offsetof(struct wb_bundle_run, duration),
+                                  .least = 1e-6,
+                                  .largest = 1e6,
+                                  .otherwise = "chosen",
+                                  .option = "duration-s",
+                                  .argument = "T",
+                                  .help = "Duration of a loading; given neither here nor in the "
+                                          "file, it is chosen so that kinetic energy stays small"},
+    [WB_BUNDLE_MODEL_MASS_SCALING] = {.name = "mass_scaling",
+                                      .title = "mass scaling",
+                                      .type = WB_SETTING_NUMBER,
+                                      .offset = offsetof(struct wb_bundle_run, mass_scaling),
+                                      .least = 1.0,
+                                      .largest = 1e6,
+                                      .fallback = 25.0,
+                                      .option = "mass-scaling",
+                                      .argument = "F",
+                                      .help = "Factor on all masses"},
+    [WB_BUNDLE_MODEL_SELECTIVE] = {.name = "selective_mass_scaling",
+                                   .title = "selective mass scaling",
+                                   .type = WB_SETTING_NUMBER,
+                                   .offset = offsetof(struct wb_bundle_run, selective),
+                                   .least = 1.0,
+                                   .largest = 1e6,
+                                   .fallback = 1.0,
+                                   .option = "selective",
+                                   .argument = "B",
+                                   .help = "Selective mass scaling of sections"},
+    [WB_BUNDLE_MODEL_DEFLECTION] = {.name = "deflection_mm",
+                                    .title = "deflection",
+                                    .unit = "mm",
+                                    .type = WB_SETTING_NUMBER,
+                                    .offset = offsetof(struct wb_bundle_run, deflection),
+                                    .scale = WB_MM,
+                                    .least = 1e-6,
+                                    .largest = 1e6,
+                                    .fallback = 53.0},
+    [WB_BUNDLE_MODEL_ROWS] = {.name = "rows",
+                              .type = WB_SETTING_INTEGER,
+                              .offset = offsetof(struct wb_bundle_run, rows),
+                              .least = 1,
+                              .largest = 10000,
+                              .fallback = 53},
+    [WB_BUNDLE_MODEL_CYCLES] = {.name = "cycles",
+                                .type = WB_SETTING_INTEGER,
+                                .offset = offsetof(struct wb_bundle_run, cycles),
+                                .least = 0,
+                                .largest = 1000},
+    [WB_BUNDLE_MODEL_KINETIC_LIMIT] = {.name = "kinetic_energy_limit",
+                                       .title = "limit of kinetic energy",
+                                       .type = WB_SETTING_NUMBER,
+                                       .offset = offsetof(struct wb_bundle_run, kinetic_limit),
+                                       .least = 1e-6,
+                                       .largest = 1.0,
+                                       .fallback = 0.05},
+    [WB_BUNDLE_MODEL_PRECISION] = {.name = "precision",
+                                   .type = WB_SETTING_CHOICE,
+                                   .offset = offsetof(struct wb_bundle_run, double_precision),
+                                   .choices = precisions},
+};
+
+static const struct wb_setting_table run_table = {.rows = wb_bundle_model_run_settings,
+                                                  .n = WB_BUNDLE_MODEL_RUN_SETTINGS};
+
+static const struct wb_setting friction_rows[] = {
+    {.name = "static",
+     .title = "static friction",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, friction_static),
+     .least = 0.0,
+     .largest = 10.0,
+     .required = true},
+    {.name = "kinetic",
+     .title = "kinetic friction",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, friction_kinetic),
+     .least = 0.0,
+     .largest = 10.0,
+     .required = true},
+    {.name = "decay_s_mm",
+     .title = "decay of friction",
+     .unit = "s/mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, friction_decay),
+     .scale = WB_S_PER_MM,
+     .least = 1e-9,
+     .largest = 1e9,
+     .required = true},
+};
+
+static const struct wb_setting_table friction_table = {.rows = friction_rows,
+                                                       .n = WB_COUNT(friction_rows)};
+
+/* A coefficient alone is constant. */
+static int complete_friction(void *members, int n, char *problem, size_t size)
+{
+    struct wb_bundle_interface *const interface = members;
+    if (n == 1) {
+        interface->friction_kinetic = interface->friction_static;
+        interface->friction_decay = 0.0;
+    }
+    if (!(interface->friction_kinetic > interface->friction_static))
+        return -1;
+    snprintf(problem, size, "%g is more than the static one, %g", interface->friction_kinetic,
+             interface->friction_static);
+    return 1;
+}
+
+const struct wb_setting wb_bundle_model_friction_setting[1] = {
+    {.name = "friction",
+     .type = WB_SETTING_LIST,
+     .required = true,
+     .option = "friction",
+     .argument = "S[,K,D]",
+     .help = "Friction: constant, or static and kinetic with the decay between them in s/mm",
+     .members = &friction_table,
+     .given = offsetof(struct wb_bundle_interface, has_friction),
+     .complete = complete_friction},
+};
+
+const struct wb_setting wb_bundle_model_cohesion_setting[1] = {
+    {.name = "cohesive_stiffness_N_mm3",
+     .title = "cohesive stiffness",
+     .unit = "N/mm3",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_interface, normal_stiffness),
+     .scale = WB_N_PER_MM3,
+     .least = 1e-6,
+     .largest = 1e9,
+     .required = true,
+     .option = "cohesive-stiffness",
+     .argument = "K",
+     .help = "Normal stiffness between tape and wires; the shear stiffness keeps its ratio to it"},
+};
+
+static const struct wb_setting_table cohesion_table = {.rows = wb_bundle_model_cohesion_setting,
+                                                       .n = 1};
+
+static const struct wb_setting loads_rows[] = {
+    {.name = "strand_mm",
+     .title = "strand's length",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bundle_loads, strand_length),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e9,
+     .otherwise = "none"},
+    {.name = "weight",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_bundle_loads, weight),
+     .required = true},
+};
+
+static const struct wb_setting_table loads_table = {.rows = loads_rows, .n = WB_COUNT(loads_rows)};
+
+void wb_bundle_model_identify(const struct wb_bundle_model *model, char sha256[WB_SHA256_TEXT])
+{
+    const struct wb_bundle_interface *const i = &model->interface;
+    struct wb_text text = {0};
+    wb_text_append(&text, "%s;%d;%d;%.17g;", model->sha256, model->has_tape, (int)model->tip,
+                   model->length);
+    wb_setting_identify(&run_table, &model->run, &text);
+    wb_setting_identify(&loads_table, &model->loads, &text);
+    wb_setting_identify(&friction_table, i, &text);
+    wb_setting_identify(&cohesion_table, i, &text);
+    wb_text_append(&text, "%.17g;%d;%.17g;%.17g;%.17g;", i->shear_stiffness, i->has_damage,
+                   i->damage.strength, i->damage.shear_strength, i->damage.fracture_energy);
+    /* Without memory for all of it the sum is that of a part, and of no other run. */
+    wb_hash_bytes(wb_text_string(&text), text.length, sha256);
+    wb_text_release(&text);
+}
+
+static const struct wb_bundle_mesh own_meshes[2] = {
+    {.name = "engineering",
+     .core_quads = 2,
+     .rings = 1,
+     .elements_along = 80,
+     .formulation = WB_BUNDLE_FOUR_POINTS},
+    {.name = "paper",
+     .core_quads = 6,
+     .rings = 2,
+     .elements_along = 384,
+     .formulation = WB_BUNDLE_ONE_POINT},
+};
+
+/* Of a tape whose material says none. With 0.39 for the wires and voids that count as zero it gives
+ * the bundles of Table 4 the 0.3 on average that section 5.5 takes by the rule of mixtures. */
+static const double tape_poisson = 0.35;
+
+static const char *const packings[] = {"hexagon", "triangle", "densest", "places", NULL};
+static const char *const layouts[] = {"sleeve", "helix", NULL};
+static const char *const outlines[] = {"hull", "circle", NULL};
+static const char *const hands[] = {"right", "left", NULL};
 
 enum {
     OUTLINE = 20000 /* places looked at round a tape */
@@ -32,7 +256,7 @@ static const struct wb_wire *wire_of(const struct wb_bundle_model *model, int wi
 
 const char *wb_bundle_model_arrangement(const struct wb_bundle_model *model)
 {
-    return wb_bundle_model_packings[model->arrangement];
+    return packings[model->arrangement];
 }
 
 int wb_bundle_model_count(const struct wb_bundle_model *model, int type)
@@ -312,4 +536,638 @@ int wb_bundle_model_facts(const struct wb_bundle_model *model,
     if (model->has_published)
         tell_published(&list, model);
     return list.n;
+}
+
+/* A model while it is read. */
+struct reader {
+    struct wb_bundle_model *model;
+    const struct wb_config_node *root;
+    char folder[WB_PATH]; /* of the model's file */
+    struct wb_text texts; /* of all files, for the checksum */
+};
+
+/* Values of a file's top level that the section is made of. */
+struct section_nodes {
+    const struct wb_config_node *wires, *places, *search, *gaps, *taping;
+    bool has_settled;
+    char tape[64]; /* "": none */
+};
+
+/* --- names and files --- */
+
+/* Names go into file names and into tables without quotes. */
+static enum wb_status check_name(const struct wb_config_node *map, const char *name)
+{
+    const char *c = name;
+    while (isalnum((unsigned char)*c) || (*c && strchr("-_.+", *c)))
+        c++;
+    if (*name == '\0' || *c != '\0')
+        return wb_config_refuse(map, "name", "expected letters, digits, '-', '_', '.', '+' only");
+    return WB_OK;
+}
+
+/* A part of the checksum, to be counted up whenever files that stay as they are come to mean
+ * something else: by defaults, or by what is computed of them. */
+static const char meaning[] = "# wirebench bundle files, 2\n";
+
+static enum wb_status keep_text(struct reader *reader, const char *path)
+{
+    char *bytes;
+    size_t size;
+    WB_TRY(wb_file_read(path, &bytes, &size));
+    wb_text_append_bytes(&reader->texts, bytes, size);
+    free(bytes);
+    return WB_OK;
+}
+
+/* The file that the value of `key` in `map` names. */
+static enum wb_status find_file(struct reader *reader, const struct wb_config_node *map,
+                                const char *key, const char *kind, const char *name,
+                                char path[WB_PATH])
+{
+    char named_in[WB_PATH + 64];
+    snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(map),
+             wb_config_line(wb_config_find(map, key)), key);
+    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in));
+    return keep_text(reader, path);
+}
+
+static enum wb_status find_wire(struct reader *reader, const struct wb_config_node *map,
+                                const char *key, const char *name, struct wb_wire *wire)
+{
+    char path[WB_PATH];
+    WB_TRY(find_file(reader, map, key, "wires", name, path));
+    WB_TRY(wb_wire_read(path, wire));
+    if (!wire->has_properties)
+        return wb_config_refuse(map, key, "wire %s has no properties", wire->name);
+    if (wire->material.poissons_ratio > largest_poisson)
+        return wb_config_refuse(map, key, "wire %s has poissons_ratio %g, expected at most %g",
+                                wire->name, wire->material.poissons_ratio, largest_poisson);
+    return WB_OK;
+}
+
+/* --- wires --- */
+
+static bool are_same(const struct wb_wire *a, const struct wb_wire *b)
+{
+    const struct wb_material *const p = &a->material, *const q = &b->material;
+    return a->conductor_diameter == b->conductor_diameter &&
+           a->outer_diameter == b->outer_diameter && a->density == b->density &&
+           p->youngs_modulus == q->youngs_modulus && p->poissons_ratio == q->poissons_ratio &&
+           p->yield_stress == q->yield_stress &&
+           p->strength_coefficient == q->strength_coefficient &&
+           p->hardening_exponent == q->hardening_exponent;
+}
+
+/* The type of that file's wire: one there is, or a new one. */
+static enum wb_status take_type(struct reader *reader, const struct wb_config_node *map,
+                                const char *name, int *type)
+{
+    struct wb_bundle_model *const m = reader->model;
+    struct wb_wire wire;
+    WB_TRY(find_wire(reader, map, "wire", name, &wire));
+    for (*type = 0; *type < m->n_types; (*type)++) {
+        if (strcmp(m->type[*type].name, wire.name) != 0)
+            continue;
+        if (!are_same(&m->type[*type], &wire))
+            return wb_config_refuse(map, "wire", "another, different wire is called %s, too",
+                                    wire.name);
+        return WB_OK;
+    }
+    if (m->n_types == WB_BUNDLE_MODEL_TYPES)
+        return wb_config_refuse(map, "wire", "more than %d different wires", WB_BUNDLE_MODEL_TYPES);
+    m->type[m->n_types++] = wire;
+    return WB_OK;
+}
+
+static enum wb_status read_wires(struct reader *reader, const struct wb_config_node *list)
+{
+    struct wb_bundle_model *const m = reader->model;
+    const int n = wb_config_length(list);
+    if (n < 1)
+        return wb_config_refuse(reader->root, "wires", "expected a list of wires");
+    for (int i = 0; i < n; i++) {
+        const struct wb_config_node *const map = wb_config_item(list, i);
+        char name[64];
+        int count = 1, type;
+        const struct wb_config_key keys[] = {
+            WB_CONFIG_TEXT("wire", name),
+            WB_CONFIG_OPTIONAL_INTEGER("count", &count, 1, WB_PACKING_MOST),
+        };
+        WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+        WB_TRY(take_type(reader, map, name, &type));
+        if (m->packing.n + count > WB_PACKING_MOST)
+            return wb_config_refuse(map, "count", "more than %d wires", WB_PACKING_MOST);
+        while (count-- > 0)
+            m->type_of[m->packing.n++] = type;
+    }
+    return WB_OK;
+}
+
+/* --- packing --- */
+
+static enum wb_status read_search(struct wb_bundle_model *model, const struct wb_config_node *map)
+{
+    int seed = 1, trials = 0;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_INTEGER("seed", &seed, 0, 1000000000),
+        WB_CONFIG_OPTIONAL_INTEGER("trials", &trials, 1, 1000000),
+    };
+    if (map)
+        WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    model->search = (struct wb_packing_search){.seed = (unsigned int)seed, .trials = trials};
+    return WB_OK;
+}
+
+static enum wb_status read_gaps(struct wb_bundle_model *model, const struct wb_config_node *map)
+{
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_NUMBER("wires_mm", &model->wire_gap, WB_MM, 0.0, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("tape_mm", &model->tape.gap, WB_MM, 0.0, 10.0),
+    };
+    return wb_config_map(map, keys, WB_COUNT(keys));
+}
+
+/* The listed places, [y, z] each. */
+static enum wb_status read_places(struct reader *reader, const struct wb_config_node *list,
+                                  struct wb_packing *packing)
+{
+    const struct wb_config_key key = {
+        .name = "places_mm", .factor = WB_MM, .minimum = -1e3, .maximum = 1e3};
+    const int n = wb_config_length(list);
+    if (n != packing->n)
+        return wb_config_refuse(reader->root, "places_mm", "expected a list of %d places [y, z]",
+                                packing->n);
+    for (int i = 0; i < n; i++) {
+        double place[2];
+        int two;
+        WB_TRY(wb_config_numbers(wb_config_item(list, i), &key, 2, 2, place, &two));
+        packing->wire[i].y = place[0];
+        packing->wire[i].z = place[1];
+    }
+    return WB_OK;
+}
+
+static enum wb_status check_lattice(const struct reader *reader, enum wb_packing_lattice lattice)
+{
+    const int n = reader->model->packing.n;
+    int less;
+    const int whole = wb_packing_whole(lattice, n, &less);
+    if (whole == n)
+        return WB_OK;
+    if (less == 0)
+        return wb_config_refuse(reader->root, "packing", "%d wires are no %s; the smallest has %d",
+                                n, packings[lattice], whole);
+    return wb_config_refuse(reader->root, "packing", "%d wires are no %s; %d or %d are", n,
+                            packings[lattice], less, whole);
+}
+
+static enum wb_status check_keys(const struct reader *reader, const struct section_nodes *section)
+{
+    const struct wb_bundle_model *const m = reader->model;
+    const bool is_places = m->arrangement == WB_BUNDLE_PLACES;
+    const bool is_densest = m->arrangement == WB_BUNDLE_DENSEST;
+    if (is_places && !section->places)
+        return wb_config_refuse(reader->root, "places_mm",
+                                "this key is missing: packing places needs it");
+    if (!is_places && section->places)
+        return wb_config_refuse(reader->root, "places_mm", "only with packing: places");
+    if (!is_densest && section->search)
+        return wb_config_refuse(reader->root, "search", "only with packing: densest");
+    if (is_densest && section->has_settled)
+        return wb_config_refuse(reader->root, "settled", "the densest packing is settled");
+    if (is_places && !m->settled && m->wire_gap > 0.0)
+        return wb_config_refuse(section->gaps, "wires_mm",
+                                "the places say how far wires are apart");
+    return WB_OK;
+}
+
+/* Wires packed with their gap as part of them. */
+static enum wb_status pack(struct reader *reader, const struct section_nodes *section)
+{
+    struct wb_bundle_model *const m = reader->model;
+    double diameter[WB_PACKING_MOST];
+    struct wb_packing packing = {.n = m->packing.n};
+    for (int i = 0; i < packing.n; i++) {
+        diameter[i] = m->type[m->type_of[i]].outer_diameter + m->wire_gap;
+        packing.wire[i].radius = 0.5 * diameter[i];
+    }
+    switch (m->arrangement) {
+    case WB_BUNDLE_HEXAGON:
+    case WB_BUNDLE_TRIANGLE: {
+        const enum wb_packing_lattice lattice =
+            m->arrangement == WB_BUNDLE_HEXAGON ? WB_PACKING_HEXAGON : WB_PACKING_TRIANGLE;
+        WB_TRY(check_lattice(reader, lattice));
+        WB_TRY(wb_packing_on_lattice(&packing, packing.n, diameter, lattice));
+        break;
+    }
+    case WB_BUNDLE_DENSEST:
+        WB_TRY(wb_packing_densest(&packing, packing.n, diameter, &m->search));
+        break;
+    case WB_BUNDLE_PLACES:
+        WB_TRY(read_places(reader, section->places, &packing));
+        break;
+    }
+    if (m->settled)
+        WB_TRY(wb_packing_settle(&packing));
+    m->packing = packing;
+    return WB_OK;
+}
+
+/* Takes the gap off the wires again and puts the axis where it belongs. */
+static enum wb_status place_axis(struct reader *reader)
+{
+    struct wb_bundle_model *const m = reader->model;
+    struct wb_packing *const packing = &m->packing;
+    for (int i = 0; i < packing->n; i++)
+        packing->wire[i].radius = 0.5 * m->type[m->type_of[i]].outer_diameter;
+    const struct wb_packing_circle circle = wb_packing_enclosing(packing->n, packing->wire);
+    for (int i = 0; i < packing->n; i++) {
+        packing->wire[i].y -= circle.y;
+        packing->wire[i].z -= circle.z;
+    }
+    const double gap = wb_packing_smallest_gap(packing);
+    if (gap < -touching)
+        return wb_config_refuse(reader->root, "places_mm",
+                                "two wires overlap by %g mm (settled: true moves them apart)",
+                                -gap / WB_MM);
+    return WB_OK;
+}
+
+static enum wb_status read_packing(struct reader *reader, const struct section_nodes *section)
+{
+    if (section->gaps)
+        WB_TRY(read_gaps(reader->model, section->gaps));
+    WB_TRY(check_keys(reader, section));
+    WB_TRY(read_search(reader->model, section->search));
+    WB_TRY(pack(reader, section));
+    return place_axis(reader);
+}
+
+/* --- tape --- */
+
+struct taping_settings {
+    int layout, layers, hand, outline;
+    double width, lap, poissons_ratio, reach;
+    bool has_layers, has_width, has_lap, has_hand, has_poisson, has_reach;
+};
+
+static enum wb_status check_taping(const struct wb_config_node *map,
+                                   const struct taping_settings *settings)
+{
+    const bool is_helix = settings->layout == 1;
+    if (is_helix && settings->has_layers)
+        return wb_config_refuse(map, "layers", "the layers of a helix follow from lap_percent");
+    if (is_helix && !settings->has_width)
+        return wb_config_refuse(map, "width_mm", "this key is missing: a helix needs it");
+    if (!is_helix && (settings->has_width || settings->has_lap || settings->has_hand))
+        return wb_config_refuse(map,
+                                settings->has_width ? "width_mm"
+                                : settings->has_lap ? "lap_percent"
+                                                    : "hand",
+                                "only with layout: helix");
+    if (settings->outline == 1 && !settings->has_reach)
+        return wb_config_refuse(map, "bond_reach_mm",
+                                "this key is missing: a tape on a circle touches wires along lines "
+                                "only; say how far it may be off a wire where it is bonded "
+                                "(0: it is bonded nowhere)");
+    return WB_OK;
+}
+
+static enum wb_status read_taping(const struct wb_config_node *map,
+                                  struct taping_settings *settings)
+{
+    struct wb_config_key keys[] = {
+        WB_CONFIG_CHOICE("layout", &settings->layout, layouts),
+        WB_CONFIG_OPTIONAL_INTEGER("layers", &settings->layers, 1, 20),
+        WB_CONFIG_OPTIONAL_NUMBER("width_mm", &settings->width, WB_MM, 0.1, 1e3),
+        WB_CONFIG_OPTIONAL_NUMBER("lap_percent", &settings->lap, WB_PERCENT, 0.0, 95.0),
+        WB_CONFIG_OPTIONAL_CHOICE("hand", &settings->hand, hands),
+        WB_CONFIG_OPTIONAL_NUMBER("poissons_ratio", &settings->poissons_ratio, 1.0, -0.99,
+                                  largest_poisson),
+        WB_CONFIG_OPTIONAL_CHOICE("outline", &settings->outline, outlines),
+        WB_CONFIG_OPTIONAL_NUMBER("bond_reach_mm", &settings->reach, WB_MM, 0.0, 1.0),
+    };
+    keys[1].present = &settings->has_layers;
+    keys[2].present = &settings->has_width;
+    keys[3].present = &settings->has_lap;
+    keys[4].present = &settings->has_hand;
+    keys[5].present = &settings->has_poisson;
+    keys[7].present = &settings->has_reach;
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    return check_taping(map, settings);
+}
+
+static enum wb_status read_tape_material(struct reader *reader, const char *name)
+{
+    struct wb_material_file *const file = &reader->model->tape.material;
+    char path[WB_PATH];
+    WB_TRY(find_file(reader, reader->root, "tape", "materials", name, path));
+    WB_TRY(wb_material_file_read(file, path));
+    if (!(file->thickness > 0.0))
+        return wb_config_refuse(reader->root, "tape",
+                                "material %s has no thickness_of_two_layers_mm", file->name);
+    if (file->material.hardening == WB_HARDENING_KINEMATIC_LINEAR)
+        return wb_config_refuse(reader->root, "tape", "material %s hardens kinematically",
+                                file->name);
+    return WB_OK;
+}
+
+static enum wb_status lay_tape(struct reader *reader, const struct wb_config_node *map,
+                               const struct taping_settings *settings)
+{
+    struct wb_bundle_tape *const tape = &reader->model->tape;
+    const double layer = 0.5 * tape->material.thickness;
+    const double layers = settings->layout == 0 ? settings->layers : 1.0 / (1.0 - settings->lap);
+    struct wb_packing circle = {.n = 1};
+    tape->round = settings->outline == 1;
+    tape->reach = settings->reach;
+    circle.wire[0] = wb_packing_enclosing(reader->model->packing.n, reader->model->packing.wire);
+    WB_TRY(wb_hull_find(&tape->hull, tape->round ? &circle : &reader->model->packing, touching));
+    const double round = wb_hull_length(&tape->hull, tape->gap + 0.5 * layers * layer);
+    if (settings->layout == 0)
+        return wb_taping_sleeve(&tape->taping, round, layer, settings->layers);
+    if (!((1.0 - settings->lap) * settings->width < round))
+        return wb_config_refuse(map, "width_mm",
+                                "a tape %g mm wide with a lap of %g %% cannot be wound round %g mm",
+                                settings->width / WB_MM, settings->lap / WB_PERCENT, round / WB_MM);
+    const struct wb_taping_helix helix = {settings->width, settings->lap,
+                                          settings->hand == 0 ? 1 : -1};
+    return wb_taping_wind(&tape->taping, round, layer, &helix);
+}
+
+static enum wb_status read_tape(struct reader *reader, const char *name,
+                                const struct wb_config_node *map)
+{
+    struct taping_settings settings = {.layers = 2, .lap = 0.5};
+    if (*name == '\0') {
+        if (map)
+            return wb_config_refuse(reader->root, "taping", "there is no tape");
+        return reader->model->tape.gap > 0.0
+                   ? wb_config_refuse(reader->root, "gaps", "there is no tape for tape_mm")
+                   : WB_OK;
+    }
+    if (map)
+        WB_TRY(read_taping(map, &settings));
+    WB_TRY(read_tape_material(reader, name));
+    double *const poisson = &reader->model->tape.material.material.poissons_ratio;
+    if (settings.has_poisson)
+        *poisson = settings.poissons_ratio;
+    else if (!isfinite(*poisson))
+        *poisson = tape_poisson;
+    reader->model->has_tape = true;
+    return lay_tape(reader, map, &settings);
+}
+
+/* --- section --- */
+
+static enum wb_status read_section(struct reader *reader, const struct section_nodes *section)
+{
+    WB_TRY(read_wires(reader, section->wires));
+    WB_TRY(read_packing(reader, section));
+    return read_tape(reader, section->tape, section->taping);
+}
+
+/* --- interface --- */
+
+/* The law has to soften after it reaches its strength. */
+static enum wb_status check_energy(const struct wb_config_node *map, double strength,
+                                   double stiffness, const struct wb_bundle_damage *damage)
+{
+    const double least = 0.5 * strength * strength / stiffness;
+    if (!(damage->fracture_energy > least))
+        return wb_config_refuse(map, "fracture_energy_N_mm",
+                                "%g N/mm is not more than the %g N/mm it takes to reach %g MPa",
+                                damage->fracture_energy / WB_N_PER_MM, least / WB_N_PER_MM,
+                                strength / WB_MPA);
+    return WB_OK;
+}
+
+static enum wb_status read_damage(struct wb_bundle_interface *interface,
+                                  const struct wb_config_node *map)
+{
+    struct wb_bundle_damage *const damage = &interface->damage;
+    bool has_shear = false;
+    struct wb_config_key keys[] = {
+        WB_CONFIG_NUMBER("strength_MPa", &damage->strength, WB_MPA, 1e-6, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("shear_strength_MPa", &damage->shear_strength, WB_MPA, 1e-6, 1e6),
+        WB_CONFIG_NUMBER("fracture_energy_N_mm", &damage->fracture_energy, WB_N_PER_MM, 1e-9, 1e6),
+    };
+    keys[1].present = &has_shear;
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    if (!has_shear)
+        damage->shear_strength = damage->strength;
+    interface->has_damage = true;
+    WB_TRY(check_energy(map, damage->strength, interface->normal_stiffness, damage));
+    return check_energy(map, damage->shear_strength, interface->shear_stiffness, damage);
+}
+
+static enum wb_status read_interface(struct wb_bundle_model *model,
+                                     const struct wb_config_node *map)
+{
+    struct wb_bundle_interface *const interface = &model->interface;
+    const struct wb_config_node *friction, *damage;
+    double share = 1.0 / 3.0;
+    struct wb_config_key keys[4] = {
+        WB_CONFIG_OPTIONAL_NUMBER("shear_to_normal_stiffness", &share, 1.0, 1e-6, 1e3),
+        WB_CONFIG_OPTIONAL_NODE("damage", &damage),
+        WB_CONFIG_NODE("friction", &friction),
+    };
+    (void)wb_setting_keys(&cohesion_table, 0, interface, keys + 3);
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    interface->shear_stiffness = share * interface->normal_stiffness;
+    WB_TRY(wb_setting_read_list(wb_bundle_model_friction_setting, friction, interface));
+    return damage ? read_damage(interface, damage) : WB_OK;
+}
+
+/* --- ends, meshes, run, loads --- */
+
+static enum wb_status read_ends(struct wb_bundle_model *model, const struct wb_config_node *map)
+{
+    int tip = 0;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_NUMBER("potted_mm", &model->potted_length, WB_MM, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_CHOICE("tip", &tip, tips),
+    };
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    model->tip = tip == 1 ? WB_BUNDLE_TIP_CAPPED : WB_BUNDLE_TIP_FREE;
+    if (!(model->potted_length < 0.5 * model->length))
+        return wb_config_refuse(map, "potted_mm", "%g mm is not less than half of length_mm, %g mm",
+                                model->potted_length / WB_MM, model->length / WB_MM);
+    return WB_OK;
+}
+
+static enum wb_status read_mesh(struct wb_bundle_model *model, const struct wb_config_node *map)
+{
+    struct wb_bundle_mesh *const mesh = &model->mesh[model->n_meshes];
+    int formulation = 0;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("name", mesh->name),
+        WB_CONFIG_INTEGER("core_quads", &mesh->core_quads, 2, 32),
+        WB_CONFIG_INTEGER("rings", &mesh->rings, 0, 32),
+        WB_CONFIG_INTEGER("elements_along", &mesh->elements_along, 2, 100000),
+        WB_CONFIG_OPTIONAL_INTEGER("tape_quads", &mesh->tape_quads, 6, 100000),
+        WB_CONFIG_OPTIONAL_CHOICE("formulation", &formulation, formulations),
+    };
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    WB_TRY(check_name(map, mesh->name));
+    mesh->formulation = formulation == 1 ? WB_BUNDLE_ONE_POINT : WB_BUNDLE_FOUR_POINTS;
+    if (wb_bundle_model_mesh(model, mesh->name))
+        return wb_config_refuse(map, "name", "another mesh is called %s, too", mesh->name);
+    if (mesh->core_quads % 2 != 0)
+        return wb_config_refuse(map, "core_quads", "%d is not even", mesh->core_quads);
+    model->n_meshes++;
+    return WB_OK;
+}
+
+static enum wb_status read_meshes(struct reader *reader, const struct wb_config_node *list)
+{
+    const int n = wb_config_length(list);
+    if (n < 1 || n > WB_BUNDLE_MODEL_MESHES)
+        return wb_config_refuse(reader->root, "meshes", "expected a list of 1 to %d meshes",
+                                WB_BUNDLE_MODEL_MESHES);
+    for (int i = 0; i < n; i++)
+        WB_TRY(read_mesh(reader->model, wb_config_item(list, i)));
+    return WB_OK;
+}
+
+static enum wb_status read_run(struct reader *reader, const struct wb_config_node *map)
+{
+    struct wb_bundle_model *const m = reader->model;
+    struct wb_bundle_run *const run = &m->run;
+    struct wb_config_key keys[WB_BUNDLE_MODEL_RUN_SETTINGS];
+    const size_t n = wb_setting_keys(&run_table, 0, run, keys);
+    if (map)
+        WB_TRY(wb_config_map(map, keys, n));
+    if (!wb_bundle_model_mesh(m, run->mesh))
+        return wb_config_refuse(map, "mesh", "there is no mesh %s", run->mesh);
+    if (run->deflection < m->length)
+        return WB_OK;
+    return wb_config_refuse(map ? map : reader->root, "deflection_mm",
+                            "%g mm cannot be reached by a bundle of %g mm", run->deflection / WB_MM,
+                            m->length / WB_MM);
+}
+
+static enum wb_status read_loads(struct wb_bundle_loads *loads, const struct wb_config_node *map)
+{
+    struct wb_config_key keys[WB_COUNT(loads_rows)];
+    return wb_config_map(map, keys, wb_setting_keys(&loads_table, 0, loads, keys));
+}
+
+static enum wb_status read_published(struct reader *reader, const struct wb_config_node *map)
+{
+    struct wb_bundle_published *const published = &reader->model->published;
+    char beam[64] = "";
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_NUMBER("outer_diameter_mm", &published->outer_diameter, WB_MM, 1e-3, 1e3),
+        WB_CONFIG_NUMBER("density_g_cm3", &published->density, WB_G_PER_CM3, 1e-3, 30.0),
+        WB_CONFIG_OPTIONAL_TEXT("beam", beam),
+    };
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    reader->model->has_published = true;
+    if (*beam == '\0')
+        return WB_OK;
+    WB_TRY(find_wire(reader, map, "beam", beam, &published->beam));
+    published->has_beam = true;
+    return WB_OK;
+}
+
+/* --- the whole --- */
+
+/* Values that are nodes until the others are known. */
+struct root_nodes {
+    const struct wb_config_node *interface, *ends, *meshes, *run, *loads, *published;
+};
+
+static enum wb_status read_nodes(struct reader *reader, const struct root_nodes *nodes)
+{
+    struct wb_bundle_model *const m = reader->model;
+    WB_TRY(read_interface(m, nodes->interface));
+    if (nodes->ends)
+        WB_TRY(read_ends(m, nodes->ends));
+    if (nodes->meshes)
+        WB_TRY(read_meshes(reader, nodes->meshes));
+    WB_TRY(read_run(reader, nodes->run));
+    WB_TRY(read_loads(&m->loads, nodes->loads));
+    return nodes->published ? read_published(reader, nodes->published) : WB_OK;
+}
+
+static enum wb_status read_root(struct reader *reader)
+{
+    struct wb_bundle_model *const m = reader->model;
+    struct section_nodes section = {0};
+    struct root_nodes nodes = {0};
+    int packing, length_source = 0;
+    struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_BOOLEAN("settled", &m->settled),
+        WB_CONFIG_TEXT("name", m->name),
+        WB_CONFIG_OPTIONAL_TEXT("title", m->title),
+        WB_CONFIG_OPTIONAL_TEXT("notes", m->notes),
+        WB_CONFIG_NODE("wires", &section.wires),
+        WB_CONFIG_CHOICE("packing", &packing, packings),
+        WB_CONFIG_OPTIONAL_NODE("places_mm", &section.places),
+        WB_CONFIG_OPTIONAL_NODE("search", &section.search),
+        WB_CONFIG_OPTIONAL_NODE("gaps", &section.gaps),
+        WB_CONFIG_OPTIONAL_TEXT("tape", section.tape),
+        WB_CONFIG_OPTIONAL_NODE("taping", &section.taping),
+        WB_CONFIG_NUMBER("length_mm", &m->length, WB_MM, 1e-3, 1e6),
+        WB_CONFIG_OPTIONAL_CHOICE("length_source", &length_source, length_sources),
+        WB_CONFIG_NODE("interface", &nodes.interface),
+        WB_CONFIG_OPTIONAL_NODE("ends", &nodes.ends),
+        WB_CONFIG_OPTIONAL_NODE("meshes", &nodes.meshes),
+        WB_CONFIG_OPTIONAL_NODE("run", &nodes.run),
+        WB_CONFIG_NODE("loads", &nodes.loads),
+        WB_CONFIG_OPTIONAL_NODE("published", &nodes.published),
+    };
+    keys[0].present = &section.has_settled;
+
+    WB_TRY(wb_config_map(reader->root, keys, WB_COUNT(keys)));
+    WB_TRY(check_name(reader->root, m->name));
+    m->arrangement = (enum wb_bundle_packing)packing;
+    m->length_source = (enum wb_bundle_length_source)length_source;
+    WB_TRY(read_section(reader, &section));
+    return read_nodes(reader, &nodes);
+}
+
+static void set_defaults(struct wb_bundle_model *model)
+{
+    memcpy(model->mesh, own_meshes, sizeof own_meshes);
+    model->n_meshes = (int)WB_COUNT(own_meshes);
+    wb_setting_fill(&run_table, &model->run);
+    strcpy(model->run.mesh, own_meshes[0].name);
+}
+
+static enum wb_status read_all(struct reader *reader, const char *path)
+{
+    struct wb_bundle_model *const m = reader->model;
+    struct wb_config *config;
+    set_defaults(m);
+    WB_TRY(wb_file_join(m->path, "", path));
+    wb_file_folder(reader->folder, path);
+    WB_TRY(wb_config_read(&config, path));
+    reader->root = wb_config_root(config);
+    enum wb_status status = keep_text(reader, path);
+    if (status == WB_OK)
+        status = read_root(reader);
+    wb_config_destroy(config);
+    WB_TRY(status);
+    wb_text_append(&reader->texts, "%s", meaning);
+    if (reader->texts.failed)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
+    wb_hash_bytes(wb_text_string(&reader->texts), reader->texts.length, m->sha256);
+    return WB_OK;
+}
+
+enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path)
+{
+    struct wb_bundle_model *const read = calloc(1, sizeof *read);
+    if (!read)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
+    struct reader reader = {.model = read};
+    const enum wb_status status = read_all(&reader, path);
+    wb_text_release(&reader.texts);
+    if (status == WB_OK)
+        *model = *read;
+    free(read);
+    return status;
 }

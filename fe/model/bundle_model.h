@@ -24,6 +24,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/setting.h"
 #include "base/status.h"
 #include "fe/material/material_file.h"
 #include "fe/model/hull.h"
@@ -72,6 +73,7 @@ struct wb_bundle_interface {
     struct wb_bundle_damage damage;
     /* Between wires, and between tape and wires that are not bonded (any more). Eq. 20:
      * mu_k + (mu_s - mu_k) exp(-decay slip rate), the rate in the model's own time. */
+    bool has_friction; /* whether it was given */
     double friction_static, friction_kinetic;
     double friction_decay; /* s/m; 0: mu_s at any rate */
 };
@@ -98,15 +100,16 @@ struct wb_bundle_mesh {
 };
 
 struct wb_bundle_run {
-    char mesh[32];         /* its name */
-    double deflection;     /* m, of the tip */
-    int rows;              /* of the dataset, in equal steps of a loading */
-    int cycles;            /* down and back; 0: once up to the deflection */
-    double duration;       /* s, of a loading; 0: chosen by the limit below */
-    double mass_scaling;   /* f_m of eq. 29, at least 1; weight is not scaled */
-    double selective;      /* beta of the selective mass scaling, at least 1; 1: none */
-    double kinetic_limit;  /* largest kinetic over internal energy */
-    bool double_precision; /* of forces and histories; positions are always double */
+    char mesh[32];        /* its name */
+    double deflection;    /* m, of the tip */
+    int rows;             /* of the dataset, in equal steps of a loading */
+    int cycles;           /* down and back; 0: once up to the deflection */
+    double duration;      /* s, of a loading; 0: chosen by the limit below */
+    double mass_scaling;  /* f_m of eq. 29, at least 1; weight is not scaled */
+    double selective;     /* beta of the selective mass scaling, at least 1; 1: none */
+    double kinetic_limit; /* largest kinetic over internal energy */
+    int double_precision; /* 1: of forces and histories, too; positions are always double. 0: single
+                             precision */
 };
 
 struct wb_bundle_loads {
@@ -158,6 +161,28 @@ struct wb_bundle_model {
     bool has_published;
     struct wb_bundle_published published;
 };
+
+/* Rows of the settings of struct wb_bundle_run, in the order of this enumeration; of friction (a
+ * list of struct wb_bundle_interface's members) and of the cohesive stiffness in that struct. */
+enum {
+    WB_BUNDLE_MODEL_MESH,
+    WB_BUNDLE_MODEL_DURATION,
+    WB_BUNDLE_MODEL_MASS_SCALING,
+    WB_BUNDLE_MODEL_SELECTIVE,
+    WB_BUNDLE_MODEL_DEFLECTION,
+    WB_BUNDLE_MODEL_ROWS,
+    WB_BUNDLE_MODEL_CYCLES,
+    WB_BUNDLE_MODEL_KINETIC_LIMIT,
+    WB_BUNDLE_MODEL_PRECISION,
+    WB_BUNDLE_MODEL_RUN_SETTINGS /* how many */
+};
+extern const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTINGS];
+extern const struct wb_setting wb_bundle_model_friction_setting[1];
+extern const struct wb_setting wb_bundle_model_cohesion_setting[1];
+
+/* SHA-256 of all that decides the numbers which are computed of a model: its files, and its
+ * settings as they are now. */
+void wb_bundle_model_identify(const struct wb_bundle_model *model, char sha256[WB_SHA256_TEXT]);
 
 /* Reads a bundle with its wires and its tape. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path);

@@ -1,65 +1,96 @@
 #include "fe/model/bundle_override.h"
 
-#include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 
+#include "base/config.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
-static const double pa_per_m = 1e9; /* of one N/mm3 */
-static const double j_per_m2 = 1e3; /* of one N/mm */
-static const double most_friction = 10.0;
+static const struct wb_setting load_rows[] = {
+    {.name = "dead_force",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_bundle_override, dead_force),
+     .option = "dead-force",
+     .help = "Raise the tip by a vertical force, not by a strand"},
+    {.name = "no_weight",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_bundle_override, no_weight),
+     .option = "no-weight",
+     .help = "Leave the weight out"},
+};
 
-bool wb_bundle_override_is_empty(const struct wb_bundle_override *o)
+#define RUN_AT offsetof(struct wb_bundle_override, run)
+#define INTERFACE_AT offsetof(struct wb_bundle_override, interface)
+#define FILES "the file's"
+
+const struct wb_setting_table wb_bundle_override_tables[WB_BUNDLE_OVERRIDE_TABLES] = {
+    [WB_BUNDLE_OVERRIDE_MESH] = {&wb_bundle_model_run_settings[WB_BUNDLE_MODEL_MESH], 1, RUN_AT,
+                                 FILES},
+    [WB_BUNDLE_OVERRIDE_LOADS] = {load_rows, WB_COUNT(load_rows), 0, NULL},
+    [WB_BUNDLE_OVERRIDE_RUN] = {&wb_bundle_model_run_settings[WB_BUNDLE_MODEL_DURATION], 3, RUN_AT,
+                                FILES},
+    [WB_BUNDLE_OVERRIDE_FRICTION] = {wb_bundle_model_friction_setting, 1, INTERFACE_AT, FILES},
+    [WB_BUNDLE_OVERRIDE_COHESION] = {wb_bundle_model_cohesion_setting, 1, INTERFACE_AT, FILES},
+};
+
+bool wb_bundle_override_is_empty(const struct wb_bundle_override *override)
 {
-    return !o->mesh && !o->dead_force && !o->no_weight && o->duration == 0.0 &&
-           o->mass_scaling == 0.0 && o->selective == 0.0 && !o->has_friction &&
-           o->cohesive_stiffness == 0.0;
+    for (int t = 0; t < WB_BUNDLE_OVERRIDE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_bundle_override_tables[t];
+        for (size_t i = 0; i < table->n; i++) {
+            if (wb_setting_is_given(&table->rows[i], (const char *) override + table->offset))
+                return false;
+        }
+    }
+    return true;
 }
 
-static enum wb_status override_run(const struct wb_bundle_override *o,
-                                   struct wb_bundle_model *model)
+/* What is given must be in its row's range. */
+static enum wb_status check(const struct wb_bundle_override *override)
 {
-    struct wb_bundle_run *run = &model->run;
-
-    if (o->mesh && !wb_bundle_model_mesh(model, o->mesh))
-        return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", model->path, o->mesh);
-    if (o->mesh)
-        snprintf(run->mesh, sizeof run->mesh, "%s", o->mesh);
-    if (!(o->duration >= 0.0 && isfinite(o->duration)))
-        return wb_fail(WB_ERR_ARGUMENT, "a duration of %g s: expected above 0", o->duration);
-    if (o->duration > 0.0)
-        run->duration = o->duration;
-    const double factor[2] = {o->mass_scaling, o->selective};
-    double *const place[2] = {&run->mass_scaling, &run->selective};
-    for (int i = 0; i < 2; i++) {
-        if (factor[i] == 0.0)
-            continue;
-        if (!(factor[i] >= 1.0 && isfinite(factor[i])))
-            return wb_fail(WB_ERR_ARGUMENT, "a mass scaling of %g: expected at least 1", factor[i]);
-        *place[i] = factor[i];
+    for (int t = 0; t < WB_BUNDLE_OVERRIDE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_bundle_override_tables[t];
+        const char *const settings = (const char *) override + table->offset;
+        for (size_t i = 0; i < table->n; i++) {
+            if (wb_setting_is_given(&table->rows[i], settings))
+                WB_TRY(wb_setting_check_row(&table->rows[i], settings));
+        }
     }
     return WB_OK;
 }
 
-static enum wb_status override_friction(const struct wb_bundle_override *o,
+static enum wb_status override_run(const struct wb_bundle_run *given, struct wb_bundle_model *model)
+{
+    struct wb_bundle_run *const run = &model->run;
+
+    if (given->mesh[0] && !wb_bundle_model_mesh(model, given->mesh))
+        return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", model->path, given->mesh);
+    if (given->mesh[0])
+        snprintf(run->mesh, sizeof run->mesh, "%s", given->mesh);
+    if (given->duration > 0.0)
+        run->duration = given->duration;
+    if (given->mass_scaling > 0.0)
+        run->mass_scaling = given->mass_scaling;
+    if (given->selective > 0.0)
+        run->selective = given->selective;
+    return WB_OK;
+}
+
+static enum wb_status override_friction(const struct wb_bundle_interface *given,
                                         struct wb_bundle_interface *interface)
 {
-    if (!o->has_friction)
+    if (!given->has_friction)
         return WB_OK;
-    if (!(o->friction_static >= 0.0 && o->friction_static <= most_friction) ||
-        !(o->friction_kinetic >= 0.0 && o->friction_kinetic <= o->friction_static))
+    if (given->friction_kinetic > given->friction_static)
         return wb_fail(WB_ERR_ARGUMENT,
-                       "friction %g (static), %g (kinetic): expected 0 to %g, the kinetic one not "
-                       "above the static one",
-                       o->friction_static, o->friction_kinetic, most_friction);
-    if (!(o->friction_decay >= 0.0 && isfinite(o->friction_decay)))
-        return wb_fail(WB_ERR_ARGUMENT, "a decay of friction of %g s/m: expected 0 or more",
-                       o->friction_decay);
-    interface->friction_static = o->friction_static;
-    interface->friction_kinetic = o->friction_kinetic;
-    interface->friction_decay = o->friction_decay;
+                       "friction: the kinetic coefficient %g is more than the "
+                       "static one, %g",
+                       given->friction_kinetic, given->friction_static);
+    interface->friction_static = given->friction_static;
+    interface->friction_kinetic = given->friction_kinetic;
+    interface->friction_decay = given->friction_decay;
     return WB_OK;
 }
 
@@ -73,20 +104,16 @@ static enum wb_status check_softening(double strength, double stiffness, double 
         WB_ERR_ARGUMENT,
         "with a cohesive stiffness of %g N/mm3 the fracture energy, %g N/mm, is not more "
         "than the %g N/mm it takes to reach %g MPa",
-        stiffness / pa_per_m, fracture_energy / j_per_m2, least / j_per_m2, strength / WB_MPA);
+        stiffness / WB_N_PER_MM3, fracture_energy / WB_N_PER_MM, least / WB_N_PER_MM,
+        strength / WB_MPA);
 }
 
-static enum wb_status override_cohesion(const struct wb_bundle_override *o,
-                                        struct wb_bundle_interface *interface)
+static enum wb_status override_cohesion(double stiffness, struct wb_bundle_interface *interface)
 {
-    const double stiffness = o->cohesive_stiffness;
     const struct wb_bundle_damage *damage = &interface->damage;
 
     if (stiffness == 0.0)
         return WB_OK;
-    if (!(stiffness > 0.0 && isfinite(stiffness)))
-        return wb_fail(WB_ERR_ARGUMENT, "a cohesive stiffness of %g N/mm3: expected above 0",
-                       stiffness / pa_per_m);
     interface->shear_stiffness *= stiffness / interface->normal_stiffness;
     interface->normal_stiffness = stiffness;
     if (!interface->has_damage)
@@ -102,9 +129,10 @@ enum wb_status wb_bundle_override_apply(const struct wb_bundle_override *overrid
     struct wb_bundle_interface interface = model->interface;
     const struct wb_bundle_run before = model->run;
 
-    WB_TRY(override_friction(override, &interface));
-    WB_TRY(override_cohesion(override, &interface));
-    const enum wb_status status = override_run(override, model);
+    WB_TRY(check(override));
+    WB_TRY(override_friction(&override->interface, &interface));
+    WB_TRY(override_cohesion(override->interface.normal_stiffness, &interface));
+    const enum wb_status status = override_run(&override->run, model);
     if (status != WB_OK) {
         model->run = before;
         return status;

@@ -1,7 +1,6 @@
 /* What a run has in place of values of its bundle's file (fe/model/bundle_model.h).
  *
- * A zeroed one changes nothing. Ranges are those of the file: friction coefficients 0 to 10, the
- * kinetic one at most the static one; stiffness, duration and decay above 0; factors at least 1.
+ * A zeroed one changes nothing. Rows and ranges of the settings are those of the file.
  */
 #ifndef WB_FE_MODEL_BUNDLE_OVERRIDE_H
 #define WB_FE_MODEL_BUNDLE_OVERRIDE_H
@@ -12,17 +11,25 @@
 #include "fe/model/bundle_model.h"
 
 struct wb_bundle_override {
-    const char *mesh; /* name, borrowed; NULL: the file's, as 0 below */
-    bool dead_force;  /* a vertical force at the tip, no strand */
+    bool dead_force; /* a vertical force at the tip, no strand */
     bool no_weight;
-    double duration;                /* s, of a loading */
-    double mass_scaling, selective; /* f_m and beta */
-    bool has_friction;              /* these three, between all that touches */
-    double friction_static;         /* 1 */
-    double friction_kinetic;        /* 1 */
-    double friction_decay;          /* s/m; 0: the static one at any rate */
-    double cohesive_stiffness;      /* Pa/m, normal; the shear stiffness keeps its ratio */
+    struct wb_bundle_run run;             /* of it mesh, duration, mass scaling and selective mass
+                                             scaling; "" and 0: the file's */
+    struct wb_bundle_interface interface; /* of it the friction if has_friction, and the normal
+                                             stiffness, with which the shear stiffness keeps its
+                                             ratio; 0: the file's */
 };
+
+/* The rows of all of it, in the order in which a dataset names them. */
+enum {
+    WB_BUNDLE_OVERRIDE_MESH,
+    WB_BUNDLE_OVERRIDE_LOADS, /* of struct wb_bundle_override itself */
+    WB_BUNDLE_OVERRIDE_RUN,   /* but the mesh */
+    WB_BUNDLE_OVERRIDE_FRICTION,
+    WB_BUNDLE_OVERRIDE_COHESION,
+    WB_BUNDLE_OVERRIDE_TABLES /* how many */
+};
+extern const struct wb_setting_table wb_bundle_override_tables[WB_BUNDLE_OVERRIDE_TABLES];
 
 /* Whether it changes anything. */
 bool wb_bundle_override_is_empty(const struct wb_bundle_override *override);

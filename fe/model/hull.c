@@ -191,20 +191,6 @@ double wb_hull_length(const struct wb_hull *hull, double offset)
 }
 
 /* Half of the integral of the support over the outline. */
-double wb_hull_area(const struct wb_hull *hull, double offset)
-{
-    double sum = 0.0;
-    for (int k = 0; k < hull->n_arcs; k++) {
-        const struct wb_hull_arc *const arc = &hull->arc[k];
-        const struct wb_packing_circle *const wire = &hull->packing.wire[arc->wire];
-        const double R = wire->radius + offset;
-        sum += R * (wire->z * (sin(arc->to) - sin(arc->from)) -
-                    wire->y * (cos(arc->to) - cos(arc->from)) + R * (arc->to - arc->from));
-        sum += (support(wire, arc->to) + offset) * arc->straight;
-    }
-    return 0.5 * sum;
-}
-
 static void add_arc_moments(struct wb_hull_moments *sum, const struct wb_packing_circle *centre,
                             double R, const struct wb_hull_arc *arc)
 {

@@ -1,6 +1,483 @@
 #include "fe/model/wire_model.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/config.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "base/vec3.h"
+#include "fe/material/material_file.h"
+
+#define WB_LOG_DOMAIN "model"
+
+enum {
+    DEFAULT_ELEMENTS = 60,
+    DEFAULT_DENSITY = 1,
+    DEFAULT_ROWS = 10,
+    MOST_ROWS = 10000
+};
+
+/* Beyond this a solid is as good as incompressible. */
+static const double largest_poisson = 0.499;
+
+static const char *const laws[] = {"elastic", "elastoplastic", NULL};
+static const char *const clamps[] = {"plane", "fixed", NULL};
+static const char *const integrations[] = {"selective", "reduced", NULL};
+
+/* A model while it is read. */
+struct reader {
+    struct wb_wire_model *model;
+    const struct wb_config_node *root;
+    char folder[WB_PATH]; /* of the model's file */
+    struct wb_text texts; /* of all files, for the checksum */
+};
+
+/* --- names and files --- */
+
+/* Names go into file names and into tables without quotes. */
+static enum wb_status check_name(const struct wb_config_node *map, const char *name)
+{
+    const char *c = name;
+    while (isalnum((unsigned char)*c) || (*c && strchr("-_.+", *c)))
+        c++;
+    if (*name == '\0' || *c != '\0')
+        return wb_config_refuse(map, "name", "expected letters, digits, '-', '_', '.', '+' only");
+    return WB_OK;
+}
+
+static enum wb_status keep_text(struct reader *reader, const char *path)
+{
+    char *bytes;
+    size_t size;
+    WB_TRY(wb_file_read(path, &bytes, &size));
+    wb_text_append_bytes(&reader->texts, bytes, size);
+    free(bytes);
+    return WB_OK;
+}
+
+/* The file that the value of `key` in `map` names. */
+static enum wb_status find(struct reader *reader, const struct wb_config_node *map, const char *key,
+                           const char *kind, const char *name, char path[WB_PATH])
+{
+    char named_in[WB_PATH + 64];
+    snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(map),
+             wb_config_line(wb_config_find(map, key)), key);
+    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in));
+    return keep_text(reader, path);
+}
+
+static enum wb_status read_triple(const struct wb_config_node *sequence, const char *name,
+                                  double limit, double values[3])
+{
+    const struct wb_config_key key = {
+        .name = name, .factor = 1.0, .minimum = -limit, .maximum = limit};
+    int n;
+    return wb_config_numbers(sequence, &key, 3, 3, values, &n);
+}
+
+/* --- parts --- */
+
+static enum wb_status check_material(const struct reader *reader, const struct wb_config_node *map,
+                                     const char *key, const struct wb_material_file *file)
+{
+    if (!isfinite(file->material.poissons_ratio))
+        return wb_config_refuse(map, key, "material %s has no poissons_ratio", file->name);
+    if (!reader->model->is_elastic && file->material.hardening == WB_HARDENING_NONE_ELASTIC)
+        return wb_config_refuse(map, key,
+                                "material %s has no yield_stress_MPa, which law elastoplastic "
+                                "needs",
+                                file->name);
+    return WB_OK;
+}
+
+static enum wb_status read_part(struct reader *reader, const struct wb_config_node *map, int index)
+{
+    struct wb_wire_model_part *const part = &reader->model->part[index];
+    char material[WB_PATH], path[WB_PATH]; /* a name, or the way to a file */
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("name", part->name),
+        WB_CONFIG_NUMBER("outer_diameter_mm", &part->outer_diameter, WB_MM, 1e-3, 1e3),
+        WB_CONFIG_TEXT("material", material),
+    };
+    struct wb_material_file file;
+
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    WB_TRY(check_name(map, part->name));
+    part->inner_diameter = index == 0 ? 0.0 : reader->model->part[index - 1].outer_diameter;
+    if (!(part->outer_diameter > part->inner_diameter))
+        return wb_config_refuse(map, "outer_diameter_mm",
+                                "expected more than the %g mm of the part before",
+                                part->inner_diameter / WB_MM);
+    for (int i = 0; i < index; i++)
+        if (strcmp(part->name, reader->model->part[i].name) == 0)
+            return wb_config_refuse(map, "name", "another part is called %s, too", part->name);
+
+    WB_TRY(find(reader, map, "material", "materials", material, path));
+    WB_TRY(wb_material_file_read(&file, path));
+    WB_TRY(check_material(reader, map, "material", &file));
+    part->material = file.material;
+    part->density = file.density;
+    part->is_substitute = file.is_substitute;
+    snprintf(part->material_name, sizeof part->material_name, "%s", file.name);
+    snprintf(part->source, sizeof part->source, "%s", file.source);
+    return WB_OK;
+}
+
+static enum wb_status read_parts(struct reader *reader, const struct wb_config_node *parts)
+{
+    struct wb_wire_model *const m = reader->model;
+    const int n = wb_config_length(parts);
+    if (n < 1 || n > WB_WIRE_MODEL_PARTS)
+        return wb_config_refuse(reader->root, "parts", "expected a list of 1 to %d parts",
+                                WB_WIRE_MODEL_PARTS);
+    for (int i = 0; i < n; i++)
+        WB_TRY(read_part(reader, wb_config_item(parts, i), i));
+    m->n_parts = n;
+    if (!(fabs(m->part[n - 1].outer_diameter - m->wire.outer_diameter) <=
+          1e-9 * m->wire.outer_diameter))
+        return wb_config_refuse(wb_config_item(parts, n - 1), "outer_diameter_mm",
+                                "%g mm is the outermost part's, but wire %s has %g mm",
+                                m->part[n - 1].outer_diameter / WB_MM, m->wire.name,
+                                m->wire.outer_diameter / WB_MM);
+    return WB_OK;
+}
+
+/* One full circle with the wire's own properties. */
+static enum wb_status take_homogenised(struct reader *reader)
+{
+    struct wb_wire_model *const m = reader->model;
+    struct wb_wire_model_part *const part = &m->part[0];
+    if (!m->wire.has_properties)
+        return wb_config_refuse(reader->root, "wire",
+                                "wire %s has no properties, and the model has no parts",
+                                m->wire.name);
+    if (m->wire.material.poissons_ratio > largest_poisson)
+        return wb_config_refuse(reader->root, "wire",
+                                "wire %s has poissons_ratio %g, expected at most %g", m->wire.name,
+                                m->wire.material.poissons_ratio, largest_poisson);
+    m->is_homogenised = true;
+    m->n_parts = 1;
+    part->outer_diameter = m->wire.outer_diameter;
+    part->material = m->wire.material;
+    part->density = m->wire.density;
+    snprintf(part->name, sizeof part->name, "wire");
+    snprintf(part->material_name, sizeof part->material_name, "%s", m->wire.name);
+    snprintf(part->source, sizeof part->source, "%s", m->wire.source);
+    return WB_OK;
+}
+
+static enum wb_status read_jacket_contact(struct reader *reader, const struct wb_config_node *map)
+{
+    struct wb_wire_model *const m = reader->model;
+    double friction = 0.0, normal_stiffness = 0.0;
+    bool has_stiffness = false;
+    struct wb_config_key keys[] = {
+        WB_CONFIG_NUMBER("friction", &friction, 1.0, 0.0, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("normal_stiffness_N_mm3", &normal_stiffness, WB_N_PER_MM3, 1e-3,
+                                  1e9),
+    };
+    keys[1].present = &has_stiffness;
+
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    if (m->n_parts != 2)
+        return wb_config_refuse(reader->root, "interface", "there is none in a wire of one part");
+    const struct wb_wire_model_part *const jacket = &m->part[1];
+    wb_trial_default_jacket_contact(
+        &m->jacket_contact, jacket->material.youngs_modulus, jacket->material.poissons_ratio,
+        0.5 * (jacket->outer_diameter - jacket->inner_diameter), friction);
+    if (has_stiffness) {
+        m->jacket_contact.tangential_stiffness *=
+            normal_stiffness / m->jacket_contact.normal_stiffness;
+        m->jacket_contact.normal_stiffness = normal_stiffness;
+    }
+    m->has_contact = true;
+    return WB_OK;
+}
+
+static enum wb_status read_mesh(struct wb_wire_model *model, const struct wb_config_node *map)
+{
+    int integration = model->integration;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_INTEGER("elements_along", &model->elements_along, 1, 10000),
+        WB_CONFIG_OPTIONAL_INTEGER("section_density", &model->section_density, 1, 16),
+        WB_CONFIG_OPTIONAL_CHOICE("integration", &integration, integrations),
+    };
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    model->integration = integration == 1 ? WB_INTEGRATION_REDUCED : WB_INTEGRATION_SELECTIVE;
+    return WB_OK;
+}
+
+static enum wb_status read_sections(struct wb_wire_model *model, const struct wb_config_node *list)
+{
+    const struct wb_config_key key = {
+        .name = "fields_at_mm", .factor = WB_MM, .minimum = 0.0, .maximum = model->length / WB_MM};
+    WB_TRY(wb_config_numbers(list, &key, 1, WB_WIRE_MODEL_SECTIONS, model->section,
+                             &model->n_sections));
+    for (int i = 1; i < model->n_sections; i++)
+        if (!(model->section[i] > model->section[i - 1]))
+            return wb_config_refuse(list, "fields_at_mm", "expected ascending positions");
+    return WB_OK;
+}
+
+/* --- loading steps --- */
+
+/* What a loading step starts from. */
+struct standing {
+    struct wb_tip_loads loads;
+    bool held;         /* at a deflection */
+    double deflection; /* m, when held */
+};
+
+/* +1 where a load grows, -1 where it becomes smaller or is reversed, 0 where it stays. */
+static int growth(const double from[3], const double to[3])
+{
+    if (from[0] == to[0] && from[1] == to[1] && from[2] == to[2])
+        return 0;
+    return wb_vec3_dot(to, to) < wb_vec3_dot(from, from) || wb_vec3_dot(from, to) < 0.0 ? -1 : 1;
+}
+
+static bool loads_unload(const struct wb_tip_loads *from, const struct wb_tip_loads *to)
+{
+    const int change[] = {growth(from->force, to->force), growth(from->moment, to->moment),
+                          growth(from->follower, to->follower)};
+    bool less = false;
+    for (int i = 0; i < 3; i++) {
+        if (change[i] > 0)
+            return false;
+        less = less || change[i] < 0;
+    }
+    return less;
+}
+
+/* The keys of a step that say what it does. */
+struct action {
+    const struct wb_config_node *force, *moment, *follower;
+    bool unload, release;
+    bool has_unload, has_release, has_deflection;
+    double deflection;
+};
+
+static enum wb_status refuse_false(const struct wb_config_node *map, const char *key, bool value)
+{
+    if (!value)
+        return wb_config_refuse(map, key, "expected true, or no such key");
+    return WB_OK;
+}
+
+static enum wb_status check_action(const struct wb_config_node *map, const struct action *action)
+{
+    const int n = (action->force != NULL) + (action->moment != NULL) + (action->follower != NULL) +
+                  action->has_unload + action->has_release + action->has_deflection;
+    if (n != 1)
+        return wb_config_refuse(map, NULL,
+                                "a step has exactly one of force_N, moment_Nm, follower_N, unload, "
+                                "deflection_mm, release; this one has %d",
+                                n);
+    if (action->has_unload)
+        WB_TRY(refuse_false(map, "unload", action->unload));
+    if (action->has_release)
+        WB_TRY(refuse_false(map, "release", action->release));
+    return WB_OK;
+}
+
+static enum wb_status take_loads(const struct wb_config_node *map, const struct action *action,
+                                 const struct standing *standing, struct wb_wire_step *step)
+{
+    const struct wb_tip_loads none = {0}, *const before = &standing->loads;
+    if (standing->held)
+        return wb_config_refuse(map, NULL,
+                                "a deflection is held; only another one or release can follow");
+    step->kind = WB_WIRE_STEP_LOADS;
+    if (action->force)
+        WB_TRY(read_triple(action->force, "force_N", 1e6, step->loads.force));
+    if (action->moment)
+        WB_TRY(read_triple(action->moment, "moment_Nm", 1e6, step->loads.moment));
+    if (action->follower)
+        WB_TRY(read_triple(action->follower, "follower_N", 1e6, step->loads.follower));
+    if (action->has_unload) {
+        if (wb_vec3_dot(before->force, before->force) == 0.0 &&
+            wb_vec3_dot(before->moment, before->moment) == 0.0 &&
+            wb_vec3_dot(before->follower, before->follower) == 0.0)
+            return wb_config_refuse(map, "unload", "nothing acts at the tip before this step");
+        step->loads = none;
+    }
+    step->unloads = loads_unload(before, &step->loads);
+    return WB_OK;
+}
+
+static enum wb_status take_deflection(const struct wb_config_node *map,
+                                      const struct wb_wire_model *model,
+                                      const struct action *action, struct standing *standing,
+                                      struct wb_wire_step *step)
+{
+    step->kind = WB_WIRE_STEP_DEFLECTION;
+    step->deflection = action->deflection;
+    if (!(fabs(step->deflection) < model->length))
+        return wb_config_refuse(map, "deflection_mm", "%g mm cannot be reached by a wire of %g mm",
+                                step->deflection / WB_MM, model->length / WB_MM);
+    const double before = standing->held ? standing->deflection : 0.0;
+    step->unloads = fabs(step->deflection) < fabs(before) || before * step->deflection < 0.0;
+    standing->held = true;
+    standing->deflection = step->deflection;
+    return WB_OK;
+}
+
+static enum wb_status take_release(const struct wb_config_node *map, struct standing *standing,
+                                   struct wb_wire_step *step)
+{
+    if (!standing->held)
+        return wb_config_refuse(map, "release", "no deflection is held before this step");
+    step->kind = WB_WIRE_STEP_RELEASE;
+    step->unloads = true;
+    standing->held = false;
+    return WB_OK;
+}
+
+static enum wb_status read_step(struct wb_wire_model *model, const struct wb_config_node *map,
+                                struct standing *standing, struct wb_wire_step *step)
+{
+    struct action action = {0};
+    struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("name", step->name),
+        WB_CONFIG_OPTIONAL_NODE("force_N", &action.force),
+        WB_CONFIG_OPTIONAL_NODE("moment_Nm", &action.moment),
+        WB_CONFIG_OPTIONAL_NODE("follower_N", &action.follower),
+        WB_CONFIG_OPTIONAL_BOOLEAN("unload", &action.unload),
+        WB_CONFIG_OPTIONAL_NUMBER("deflection_mm", &action.deflection, WB_MM, -1e6, 1e6),
+        WB_CONFIG_OPTIONAL_BOOLEAN("release", &action.release),
+        WB_CONFIG_OPTIONAL_INTEGER("rows", &step->rows, 1, MOST_ROWS),
+        WB_CONFIG_OPTIONAL_BOOLEAN("fields", &step->fields),
+    };
+    keys[4].present = &action.has_unload;
+    keys[5].present = &action.has_deflection;
+    keys[6].present = &action.has_release;
+    step->rows = DEFAULT_ROWS;
+    step->loads = standing->loads;
+
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    WB_TRY(check_name(map, step->name));
+    WB_TRY(check_action(map, &action));
+    if (action.has_deflection)
+        WB_TRY(take_deflection(map, model, &action, standing, step));
+    else if (action.has_release)
+        WB_TRY(take_release(map, standing, step));
+    else
+        WB_TRY(take_loads(map, &action, standing, step));
+    standing->loads = step->loads;
+    return WB_OK;
+}
+
+static enum wb_status read_loading_steps(struct reader *reader, const struct wb_config_node *list)
+{
+    struct wb_wire_model *const m = reader->model;
+    struct standing standing = {0};
+    bool deflects = false;
+    const int n = wb_config_length(list);
+    if (n < 1 || n > WB_WIRE_MODEL_STEPS)
+        return wb_config_refuse(reader->root, "history", "expected a list of 1 to %d steps",
+                                WB_WIRE_MODEL_STEPS);
+    for (int i = 0; i < n; i++) {
+        const struct wb_config_node *const map = wb_config_item(list, i);
+        WB_TRY(read_step(m, map, &standing, &m->step[i]));
+        for (int k = 0; k < i; k++)
+            if (strcmp(m->step[i].name, m->step[k].name) == 0)
+                return wb_config_refuse(map, "name", "another step is called %s, too",
+                                        m->step[i].name);
+        deflects = deflects || m->step[i].kind == WB_WIRE_STEP_DEFLECTION;
+    }
+    m->n_steps = n;
+    if (m->strand_length > 0.0 && !deflects)
+        return wb_config_refuse(reader->root, "strand_mm",
+                                "no step of the history makes a deflection");
+    return WB_OK;
+}
+
+/* --- the whole --- */
+
+static enum wb_status read_root(struct reader *reader)
+{
+    struct wb_wire_model *const m = reader->model;
+    const struct wb_config_node *parts, *interface, *gravity, *mesh, *sections, *history;
+    char wire[WB_PATH], path[WB_PATH]; /* a name, or the way to a file */
+    int law, clamp = 0;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("name", m->name),
+        WB_CONFIG_TEXT("title", m->title),
+        WB_CONFIG_OPTIONAL_TEXT("notes", m->notes),
+        WB_CONFIG_TEXT("wire", wire),
+        WB_CONFIG_NUMBER("length_mm", &m->length, WB_MM, 1e-3, 1e6),
+        WB_CONFIG_CHOICE("law", &law, laws),
+        WB_CONFIG_OPTIONAL_NODE("parts", &parts),
+        WB_CONFIG_OPTIONAL_NODE("interface", &interface),
+        WB_CONFIG_OPTIONAL_CHOICE("clamp", &clamp, clamps),
+        WB_CONFIG_NODE("gravity", &gravity),
+        WB_CONFIG_OPTIONAL_NUMBER("strand_mm", &m->strand_length, WB_MM, 1e-3, 1e9),
+        WB_CONFIG_OPTIONAL_NODE("mesh", &mesh),
+        WB_CONFIG_OPTIONAL_NODE("fields_at_mm", &sections),
+        WB_CONFIG_NODE("history", &history),
+    };
+
+    WB_TRY(wb_config_map(reader->root, keys, WB_COUNT(keys)));
+    WB_TRY(check_name(reader->root, m->name));
+    m->is_elastic = law == 0;
+    m->clamp = clamp == 1 ? WB_WIRE_CLAMP_FIXED : WB_WIRE_CLAMP_PLANE;
+    WB_TRY(find(reader, reader->root, "wire", "wires", wire, path));
+    WB_TRY(wb_wire_read(path, &m->wire));
+    if (parts)
+        WB_TRY(read_parts(reader, parts));
+    else
+        WB_TRY(take_homogenised(reader));
+    if (interface)
+        WB_TRY(read_jacket_contact(reader, interface));
+    WB_TRY(read_triple(gravity, "gravity", 1e4, m->gravity));
+    if (mesh)
+        WB_TRY(read_mesh(m, mesh));
+    if (sections)
+        WB_TRY(read_sections(m, sections));
+    return read_loading_steps(reader, history);
+}
+
+static enum wb_status read_all(struct reader *reader, const char *path)
+{
+    struct wb_wire_model *const m = reader->model;
+    struct wb_config *config;
+    m->elements_along = DEFAULT_ELEMENTS;
+    m->section_density = DEFAULT_DENSITY;
+    WB_TRY(wb_file_join(m->path, "", path));
+    wb_file_folder(reader->folder, path);
+    WB_TRY(wb_config_read(&config, path));
+    reader->root = wb_config_root(config);
+    enum wb_status status = keep_text(reader, path);
+    if (status == WB_OK)
+        status = read_root(reader);
+    wb_config_destroy(config);
+    WB_TRY(status);
+
+    if (reader->texts.failed)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
+    wb_hash_bytes(wb_text_string(&reader->texts), reader->texts.length, m->sha256);
+    for (int i = 0; i < m->n_parts && m->is_elastic; i++)
+        m->part[i].material.hardening = WB_HARDENING_NONE_ELASTIC;
+    return WB_OK;
+}
+
+enum wb_status wb_wire_model_read(struct wb_wire_model *model, const char *path)
+{
+    struct wb_wire_model read = {0};
+    struct reader reader = {.model = &read};
+    const enum wb_status status = read_all(&reader, path);
+    wb_text_release(&reader.texts);
+    if (status == WB_OK)
+        *model = read;
+    return status;
+}
+
+/* --- what follows from a model --- */
 
 static bool is_zero(const double vector[3])
 {
@@ -72,7 +549,8 @@ static double outer_diameter(const struct wb_wire_model *model)
     return model->part[model->n_parts - 1].outer_diameter;
 }
 
-double wb_wire_model_flexural_rigidity(const struct wb_wire_model *model)
+/* Sum of E I over the parts, N m2. */
+static double flexural_rigidity(const struct wb_wire_model *model)
 {
     double sum = 0.0;
     for (int i = 0; i < model->n_parts; i++) {
@@ -85,7 +563,7 @@ double wb_wire_model_flexural_rigidity(const struct wb_wire_model *model)
 
 double wb_wire_model_youngs_modulus(const struct wb_wire_model *model)
 {
-    return wb_wire_model_flexural_rigidity(model) / second_moment(outer_diameter(model));
+    return flexural_rigidity(model) / second_moment(outer_diameter(model));
 }
 
 double wb_wire_model_poissons_ratio(const struct wb_wire_model *model)

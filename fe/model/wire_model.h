@@ -1,5 +1,5 @@
 /* A wire to be computed, from its YAML file in fixtures/models: geometry, parts with their
- * materials, mesh, loads in the order of their history.
+ * materials, mesh, loading steps in their order.
  *
  *     name: residual-1-8awg
  *     title: Residual 1 of section 2.4
@@ -54,10 +54,9 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
+#include "fe/linear/trial.h"
 #include "fe/material/material.h"
 #include "fe/model/wire.h"
-#include "fe/solid/hex20.h"
-#include "fe/solid/interface.h"
 
 enum {
     WB_WIRE_MODEL_PARTS = 2,
@@ -73,13 +72,6 @@ struct wb_wire_model_part {
     bool is_substitute; /* its values stand in for those that the paper lost */
     struct wb_material material;
     double density; /* kg/m3 */
-};
-
-/* What acts at the tip. Global axes: x along the straight wire, y up. */
-struct wb_tip_loads {
-    double force[3];    /* N, dead */
-    double moment[3];   /* N m, dead axes */
-    double follower[3]; /* N, in the frame of the tip's section: along the wire, its y, its z */
 };
 
 enum wb_wire_step_kind {
@@ -115,12 +107,12 @@ struct wb_wire_model {
     int n_parts;
     struct wb_wire_model_part part[WB_WIRE_MODEL_PARTS];
     bool has_contact;
-    struct wb_interface_law interface;
+    struct wb_jacket_contact_law jacket_contact;
     enum wb_wire_clamp clamp;
     double gravity[3];    /* m/s2 */
     double strand_length; /* m; 0: vertical force */
     int elements_along, section_density;
-    enum wb_hex20_integration integration;
+    enum wb_integration integration;
     int n_sections;
     double section[WB_WIRE_MODEL_SECTIONS]; /* m */
     int n_steps;
@@ -138,10 +130,9 @@ bool wb_wire_model_is_follower(const struct wb_wire_model *model);
  * gravity upright. */
 bool wb_wire_model_is_bending_test(const struct wb_wire_model *model);
 
-/* Mass per length of all parts, kg/m. Flexural rigidity sum E I (N m2) and the homogenised
- * Young's modulus (eq. 8) and Poisson's ratio (eq. 9) over the outer diameter. */
+/* Mass per length of all parts, kg/m; homogenised Young's modulus (eq. 8 of the paper) and
+ * Poisson's ratio (eq. 9) over the outer diameter. */
 double wb_wire_model_mass_per_length(const struct wb_wire_model *model);
-double wb_wire_model_flexural_rigidity(const struct wb_wire_model *model);
 double wb_wire_model_youngs_modulus(const struct wb_wire_model *model);
 double wb_wire_model_poissons_ratio(const struct wb_wire_model *model);
 

@@ -7,8 +7,6 @@
 
 #include "fe/bundle/bundle_part.h"
 #include "fe/swept/swept_hex_stress.h"
-#include "fe/swept/swept_tape_private.h"
-#include "fe/swept/swept_tape_stress.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -124,7 +122,8 @@ static void mesh_tape(struct wb_bundle_fields *f, const struct wb_bundle_bodies 
     const int n = body->n_nodes, around = wb_swept_tape_elements(bodies->tape);
     int cell = 0;
 
-    read_points(body, bodies->ring.layout.stride, bodies->tape->position, f->reference);
+    read_points(body, bodies->ring.layout.stride, wb_swept_tape_get_model(bodies->tape)->position,
+                f->reference);
     for (int j = 0; j < body->n_stations - 1; j++)
         for (int k = 0; k < around; k++, cell++) {
             const int here = body->first + j * n, next = (k + 1) % n;
@@ -196,14 +195,6 @@ void wb_bundle_fields_release(struct wb_bundle_fields *fields)
 
 /* --- the state --- */
 
-/* What a plastic strain's hardening lets a stress reach. */
-static double flow_stress(const struct wb_material *m, double plastic)
-{
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
-        return (double)INFINITY;
-    return m->yield_stress + m->strength_coefficient * pow(plastic, m->hardening_exponent);
-}
-
 static void sum_up_wire(const struct wb_bundle_bodies *bodies, int w, struct sum *sums)
 {
     const struct wb_swept_hex *hex = bodies->type[bodies->model->type_of[w]].hex;
@@ -243,7 +234,7 @@ static void take_wire(struct wb_bundle_fields *f, const struct wb_bundle_bodies 
             mean[k] = sums[i].stress[k] / sums[i].n;
         const double plastic = fmax(0.0, sums[i].plastic / sums[i].n);
         const double stress = wb_swept_hex_stress_von_mises(mean);
-        const double most = flow_stress(law, plastic);
+        const double most = wb_material_flow_stress(law, plastic);
         f->plastic[body->first + i] = plastic;
         f->von_mises[body->first + i] = stress > most ? most : stress;
     }

@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fe/linear/inertia.h"
 #include "fe/linear/rod_chain.h"
+#include "fe/linear/signature.h"
+#include "fe/rod/rod_private.h"
 
 #define WB_LOG_DOMAIN "rod"
 
@@ -297,7 +298,7 @@ static void condense_element(struct wb_rod *rod, int e)
     double rows[U][WB_ROD_CHAIN_WIDTH] = {{0}};
 
     wb_rod_element_stiffness(&rod->shape, &rod->points[e * POINTS], &s);
-    rod->negative += wb_inertia_negative(U, U, s.K[1][1]);
+    rod->negative += wb_signature_negative(U, U, s.K[1][1]);
     for (int r = 0; r < U; r++) {
         memcpy(rows[r], s.K[1][1] + U * r, U * sizeof(double));
         memcpy(rows[r] + U, s.K[1][2] + U * r, U * sizeof(double));

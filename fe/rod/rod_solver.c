@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "fe/linear/banded.h"
-#include "fe/linear/inertia.h"
+#include "fe/linear/signature.h"
 
 #define WB_LOG_DOMAIN "rod solver"
 
@@ -428,8 +428,8 @@ static bool can_stand(struct wb_rod_solver *s, const struct step *step)
         }
     }
     const bool stands = is_conservative(s, step)
-                            ? inner + wb_inertia_negative(n, TIP, own[0]) == 0
-                            : (inner % 2 != 0) == wb_inertia_is_odd(n, TIP, own[0]);
+                            ? inner + wb_signature_negative(n, TIP, own[0]) == 0
+                            : (inner % 2 != 0) == wb_signature_is_odd(n, TIP, own[0]);
     if (!stands)
         s->failure = CRITICAL;
     return stands;

@@ -20,7 +20,7 @@
 #include <stdbool.h>
 
 #include "base/status.h"
-#include "fe/model/wire_model.h"
+#include "fe/linear/trial.h"
 #include "fe/rod/rod.h"
 
 struct wb_rod_solver_model {

@@ -4,15 +4,346 @@
 #include <string.h>
 
 #include "fe/solid/hex20_kernel.h"
-#include "fe/solid/hex20_points.h"
-#include "fe/solid/solid_point.h"
 
 enum {
     NODES = WB_HEX20_NODES,
     UNKNOWNS = WB_HEX20_UNKNOWNS,
     CORNERS = WB_HEX20_CORNER_POINTS,
+    FACE = 8,
+    MOST_RULE = 4, /* points along a line */
     ALL_POINTS = WB_HEX20_MOST_POINTS + WB_HEX20_CORNER_POINTS
 };
+
+/* --- the reference shape: shape functions and integrals --- */
+
+/* Gauss' rules of 2, 3 and 4 points. */
+struct rule {
+    int n;
+    double place[MOST_RULE], weight[MOST_RULE];
+};
+
+static const struct rule two = {2, {-0.57735026918962576451, 0.57735026918962576451}, {1.0, 1.0}};
+static const struct rule three = {
+    3, {-0.77459666924148337704, 0.0, 0.77459666924148337704}, {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0}};
+/* Exact for the volume and face integrals of any shape: their integrands are of degree 7 along each
+ * parent coordinate. */
+static const struct rule four = {4,
+                                 {-0.86113631159405257522, -0.33998104358485626480,
+                                  0.33998104358485626480, 0.86113631159405257522},
+                                 {0.34785484513745385737, 0.65214515486254614263,
+                                  0.65214515486254614263, 0.34785484513745385737}};
+
+/* Parent coordinates of the nodes. */
+static const double node_place[NODES][3] = {
+    {-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
+    {-1, 1, 1},   {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
+    {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0},  {1, 1, 0},   {-1, 1, 0},
+};
+static const double face_place[FACE][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1},
+                                           {0, -1},  {1, 0},  {0, 1}, {-1, 0}};
+
+/* Shares of corner points' values at a node that are too large to trust; of a box they are at most
+ * 2.55. */
+static const double large_share = 8.0;
+
+/* Serendipity shape functions and derivatives (at [3], [0..2]) at parent coordinates x. */
+static void find_shapes(const double x[3], double shape[4][NODES])
+{
+    for (int a = 0; a < NODES; a++) {
+        const double *p = node_place[a];
+        double f[3], d[3]; /* factors along each coordinate, and their slopes */
+        int middle = -1;
+        for (int i = 0; i < 3; i++) {
+            if (p[i] == 0.0)
+                middle = i;
+            f[i] = p[i] == 0.0 ? 1.0 - x[i] * x[i] : 1.0 + p[i] * x[i];
+            d[i] = p[i] == 0.0 ? -2.0 * x[i] : p[i];
+        }
+        const double scale = middle >= 0 ? 0.25 : 0.125;
+        /* At corners a further factor, p . x - 2. */
+        const double sum = middle >= 0 ? 1.0 : p[0] * x[0] + p[1] * x[1] + p[2] * x[2] - 2.0;
+        for (int i = 0; i < 3; i++) {
+            const double others = f[(i + 1) % 3] * f[(i + 2) % 3];
+            const double rest = middle >= 0 ? 0.0 : f[i] * others * p[i];
+            shape[i][a] = scale * (d[i] * others * sum + rest);
+        }
+        shape[3][a] = scale * f[0] * f[1] * f[2] * sum;
+    }
+}
+
+/* The cofactors of a 3 x 3 matrix, and its determinant. */
+static double find_cofactors(const double matrix[3][3], double cofactor[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        const double *u = matrix[(i + 1) % 3], *v = matrix[(i + 2) % 3];
+        for (int j = 0; j < 3; j++) {
+            const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            cofactor[i][j] = u[j1] * v[j2] - u[j2] * v[j1];
+        }
+    }
+    return matrix[0][0] * cofactor[0][0] + matrix[0][1] * cofactor[0][1] +
+           matrix[0][2] * cofactor[0][2];
+}
+
+/* The Jacobian's determinant at x; gradient (3 x 20, per metre) unless NULL. */
+static double find_gradient(const double x[3], const double position[NODES][3],
+                            double shape[4][NODES], double gradient[3][NODES])
+{
+    double jacobian[3][3] = {{0.0}}, cofactor[3][3]; /* dX_j / dx_i */
+
+    find_shapes(x, shape);
+    for (int a = 1; a < NODES; a++) {
+        for (int i = 0; i < 3; i++) {
+            /* Relative to node 0: far from the origin, too, the digits are those of the shape. */
+            for (int j = 0; j < 3; j++)
+                jacobian[i][j] += shape[i][a] * (position[a][j] - position[0][j]);
+        }
+    }
+    const double determinant = find_cofactors((const double(*)[3])jacobian, cofactor);
+    if (!gradient)
+        return determinant;
+    for (int j = 0; j < 3; j++) {
+        for (int a = 0; a < NODES; a++) {
+            gradient[j][a] = (cofactor[0][j] * shape[0][a] + cofactor[1][j] * shape[1][a] +
+                              cofactor[2][j] * shape[2][a]) /
+                             determinant;
+        }
+    }
+    return determinant;
+}
+
+/* Gradients and weights at the points of a rule. */
+static bool fill_points(const struct rule *rule, const double position[NODES][3],
+                        double gradient[][3][NODES], double *weight)
+{
+    double shape[4][NODES];
+    int point = 0;
+
+    for (int k = 0; k < rule->n; k++) {
+        for (int j = 0; j < rule->n; j++) {
+            for (int i = 0; i < rule->n; i++, point++) {
+                const double x[3] = {rule->place[i], rule->place[j], rule->place[k]};
+                const double parent = rule->weight[i] * rule->weight[j] * rule->weight[k];
+                const double determinant = find_gradient(x, position, shape, gradient[point]);
+                weight[point] = parent * determinant;
+                if (!(weight[point] > 0.0) || !isfinite(weight[point]))
+                    return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Position relative to node 0 at parent coordinates x, and dX_j / dx_i. */
+static void find_place(const double x[3], const double position[NODES][3], double place[3],
+                       double jacobian[3][3])
+{
+    double shape[4][NODES];
+
+    find_shapes(x, shape);
+    memset(place, 0, 3 * sizeof *place);
+    memset(jacobian, 0, 3 * sizeof *jacobian);
+    for (int a = 1; a < NODES; a++) {
+        for (int j = 0; j < 3; j++) {
+            const double away = position[a][j] - position[0][j];
+            place[j] += shape[3][a] * away;
+            for (int i = 0; i < 3; i++)
+                jacobian[i][j] += shape[i][a] * away;
+        }
+    }
+}
+
+/* The eight functions 1, x, y, z, xy, yz, zx, xyz. */
+static void find_trilinear(const double x[3], double value[CORNERS])
+{
+    const double all[CORNERS] = {1.0,         x[0],        x[1],        x[2],
+                                 x[0] * x[1], x[1] * x[2], x[2] * x[0], x[0] * x[1] * x[2]};
+    memcpy(value, all, sizeof all);
+}
+
+/* Replaces the rows b by A^-1 b; false where A is singular. */
+static bool solve_corners(double A[CORNERS][CORNERS], double b[CORNERS][NODES])
+{
+    for (int k = 0; k < CORNERS; k++) {
+        int best = k;
+        for (int r = k + 1; r < CORNERS; r++) {
+            if (fabs(A[r][k]) > fabs(A[best][k]))
+                best = r;
+        }
+        if (!(fabs(A[best][k]) > 0.0))
+            return false;
+        for (int c = 0; c < CORNERS; c++) {
+            const double kept = A[k][c];
+            A[k][c] = A[best][c];
+            A[best][c] = kept;
+        }
+        for (int a = 0; a < NODES; a++) {
+            const double kept = b[k][a];
+            b[k][a] = b[best][a];
+            b[best][a] = kept;
+        }
+        for (int r = 0; r < CORNERS; r++) {
+            const double factor = r == k ? 0.0 : A[r][k] / A[k][k];
+            for (int c = k; factor != 0.0 && c < CORNERS; c++)
+                A[r][c] -= factor * A[k][c];
+            for (int a = 0; factor != 0.0 && a < NODES; a++)
+                b[r][a] -= factor * b[k][a];
+        }
+    }
+    for (int k = 0; k < CORNERS; k++) {
+        for (int a = 0; a < NODES; a++)
+            b[k][a] /= A[k][k];
+    }
+    return true;
+}
+
+/* Trilinear functions through the corner points' values, at the nodes: functions of the affine
+ * coordinates at the centre, so that what is linear in X stays so however the edges are curved.
+ * False where an element is so distorted that they grow far beyond the points' values. */
+static bool find_affine_shares(const double position[NODES][3], double share[NODES][CORNERS])
+{
+    double centre[3], at[3], jacobian[3][3], unused[3][3], cofactor[3][3];
+    double A[CORNERS][CORNERS], b[CORNERS][NODES]; /* function by point, function by node */
+
+    find_place((const double[3]){0.0}, position, centre, jacobian);
+    const double determinant = find_cofactors((const double(*)[3])jacobian, cofactor);
+    for (int k = 0; k < CORNERS + NODES; k++) {
+        const int a = k - CORNERS;
+        double x[3], affine[3] = {0.0}, value[CORNERS];
+        for (int i = 0; i < 3; i++)
+            x[i] = k < CORNERS ? two.place[k >> i & 1] : node_place[a][i];
+        find_place(x, position, at, unused);
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++)
+                affine[i] += (at[j] - centre[j]) * cofactor[i][j] / determinant;
+        }
+        find_trilinear(affine, value);
+        for (int m = 0; m < CORNERS; m++)
+            *(k < CORNERS ? &A[m][k] : &b[m][a]) = value[m];
+    }
+    if (!solve_corners(A, b))
+        return false;
+    for (int a = 0; a < NODES; a++) {
+        for (int c = 0; c < CORNERS; c++) {
+            share[a][c] = b[c][a];
+            if (!(fabs(share[a][c]) <= large_share))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* The same in parent coordinates, which any shape has. */
+static void find_parent_shares(double share[NODES][CORNERS])
+{
+    for (int a = 0; a < NODES; a++) {
+        for (int c = 0; c < CORNERS; c++) {
+            share[a][c] = 1.0;
+            for (int i = 0; i < 3; i++) {
+                const double sign = c >> i & 1 ? 1.0 : -1.0;
+                share[a][c] *= 0.5 * (1.0 + sqrt(3.0) * sign * node_place[a][i]);
+            }
+        }
+    }
+}
+
+int wb_hex20_points(enum wb_integration integration)
+{
+    return integration == WB_INTEGRATION_SELECTIVE ? WB_HEX20_MOST_POINTS : WB_HEX20_CORNER_POINTS;
+}
+
+bool wb_hex20_geometry_init(struct wb_hex20_geometry *geometry, enum wb_integration integration,
+                            const double position[NODES][3])
+{
+    const struct rule *rule = integration == WB_INTEGRATION_SELECTIVE ? &three : &two;
+
+    memset(geometry, 0, sizeof *geometry);
+    if (!fill_points(rule, position, geometry->gradient, geometry->weight) ||
+        !fill_points(&two, position, geometry->corner_gradient, geometry->corner_weight))
+        return false;
+    for (int p = 0; p < wb_hex20_points(integration); p++)
+        geometry->volume += geometry->weight[p];
+    if (!find_affine_shares(position, geometry->nodal_share))
+        find_parent_shares(geometry->nodal_share);
+    return true;
+}
+
+void wb_hex20_volume_weights(const double position[NODES][3], double weight[NODES])
+{
+    double shape[4][NODES];
+
+    for (int a = 0; a < NODES; a++)
+        weight[a] = 0.0;
+    for (int k = 0; k < four.n; k++) {
+        for (int j = 0; j < four.n; j++) {
+            for (int i = 0; i < four.n; i++) {
+                const double x[3] = {four.place[i], four.place[j], four.place[k]};
+                const double parent = four.weight[i] * four.weight[j] * four.weight[k];
+                const double volume = parent * find_gradient(x, position, shape, NULL);
+                for (int a = 0; a < NODES; a++)
+                    weight[a] += volume * shape[3][a];
+            }
+        }
+    }
+}
+
+/* Serendipity shape functions (at [2]) and derivatives of a face. */
+static void find_face_shapes(const double x[2], double shape[3][FACE])
+{
+    for (int a = 0; a < FACE; a++) {
+        const double *p = face_place[a];
+        double f[2], d[2];
+        bool corner = true;
+        for (int i = 0; i < 2; i++) {
+            corner = corner && p[i] != 0.0;
+            f[i] = p[i] == 0.0 ? 1.0 - x[i] * x[i] : 1.0 + p[i] * x[i];
+            d[i] = p[i] == 0.0 ? -2.0 * x[i] : p[i];
+        }
+        const double scale = corner ? 0.25 : 0.5;
+        const double sum = corner ? p[0] * x[0] + p[1] * x[1] - 1.0 : 1.0;
+        for (int i = 0; i < 2; i++) {
+            const double rest = corner ? f[0] * f[1] * p[i] : 0.0;
+            shape[i][a] = scale * (d[i] * f[1 - i] * sum + rest);
+        }
+        shape[2][a] = scale * f[0] * f[1] * sum;
+    }
+}
+
+void wb_hex20_face_integrals(const double position[FACE][3], struct wb_hex20_face *face)
+{
+    memset(face, 0, sizeof *face);
+    for (int j = 0; j < four.n; j++) {
+        for (int i = 0; i < four.n; i++) {
+            const double x[2] = {four.place[i], four.place[j]};
+            double shape[3][FACE], at[3] = {0.0}, along[2][3] = {{0.0}};
+            find_face_shapes(x, shape);
+            for (int a = 0; a < FACE; a++) {
+                for (int k = 0; k < 3; k++) {
+                    at[k] += shape[2][a] * position[a][k];
+                    along[0][k] += shape[0][a] * position[a][k];
+                    along[1][k] += shape[1][a] * position[a][k];
+                }
+            }
+            double square = 0.0;
+            for (int k = 0; k < 3; k++) {
+                const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+                const double n = along[0][k1] * along[1][k2] - along[0][k2] * along[1][k1];
+                square += n * n;
+            }
+            const double area = four.weight[i] * four.weight[j] * sqrt(square);
+            for (int a = 0; a < FACE; a++) {
+                face->one[a] += area * shape[2][a];
+                face->y[a] += area * at[1] * shape[2][a];
+                face->z[a] += area * at[2] * shape[2][a];
+            }
+            face->area += area;
+            face->yy += area * at[1] * at[1];
+            face->zz += area * at[2] * at[2];
+        }
+    }
+}
+
+/* --- evaluation --- */
 
 /* Of an element under evaluation: the deviatoric points, then the volumetric ones where those are
  * others. */
@@ -25,7 +356,7 @@ struct points {
 
 /* Motions of all points; false when J <= 0 at one. */
 static bool find_motions(struct points *points, const struct wb_hex20_geometry *geometry,
-                         enum wb_hex20_integration integration, const double *restrict u)
+                         enum wb_integration integration, const double *restrict u)
 {
     double relative[3][NODES], h[ALL_POINTS][9];
     const int n = wb_hex20_points(integration);
@@ -37,7 +368,7 @@ static bool find_motions(struct points *points, const struct wb_hex20_geometry *
     }
     points->n = points->n_deviatoric = n;
     wb_hex20_points_gradients(n, geometry->gradient[0][0], relative[0], h[0]);
-    if (integration == WB_HEX20_SELECTIVE) {
+    if (integration == WB_INTEGRATION_SELECTIVE) {
         wb_hex20_points_gradients(CORNERS, geometry->corner_gradient[0][0], relative[0], h[n]);
         points->n += CORNERS;
     }
@@ -69,8 +400,9 @@ static void take_response(struct points *points, int p, double weight, bool tang
 
 /* Stresses, histories and tangents at all points. */
 static void respond(struct points *points, const struct wb_hex20_geometry *geometry,
-                    const struct wb_material *material, const struct wb_hex20_state *before,
-                    struct wb_hex20_state *after, bool tangent, struct wb_hex20_result *result)
+                    const struct wb_material *material, const struct wb_solid_point_state *before,
+                    struct wb_solid_point_state *after, bool tangent,
+                    struct wb_hex20_result *result)
 {
     struct wb_solid_point_law law;
     struct wb_solid_point_response response;
@@ -102,10 +434,10 @@ static bool all_finite(const double *x, int n)
     return sum == 0.0;
 }
 
-bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
-                       enum wb_hex20_integration integration, const struct wb_material *material,
-                       const double *restrict u, const struct wb_hex20_state *before,
-                       struct wb_hex20_state *after, double *restrict force,
+bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
+                       const struct wb_material *material, const double *restrict u,
+                       const struct wb_solid_point_state *before,
+                       struct wb_solid_point_state *after, double *restrict force,
                        double *restrict stiffness, struct wb_hex20_result *result)
 {
     struct points points;
@@ -153,7 +485,7 @@ static double point_share(int points, int p, int c)
 
 /* Cauchy stress and equivalent plastic strain at the corner points. */
 static void find_corner_values(const struct points *points, const struct wb_material *material,
-                               const struct wb_hex20_state *state, double value[CORNERS][7])
+                               const struct wb_solid_point_state *state, double value[CORNERS][7])
 {
     struct wb_solid_point_law law;
     const int n = points->n_deviatoric;
@@ -170,7 +502,7 @@ static void find_corner_values(const struct points *points, const struct wb_mate
     for (int p = 0; p < n; p++) {
         const struct wb_solid_point_motion *motion = &points->motion[p];
         struct wb_solid_point_response response;
-        struct wb_hex20_state after;
+        struct wb_solid_point_state after;
         wb_solid_point_deviatoric(&law, motion, &state[p], &after, false, &response);
         for (int c = 0; c < CORNERS; c++) {
             const double share = point_share(n, p, c);
@@ -182,10 +514,9 @@ static void find_corner_values(const struct points *points, const struct wb_mate
 }
 
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
-                           enum wb_hex20_integration integration,
-                           const struct wb_material *material, const double *restrict u,
-                           const struct wb_hex20_state *state, double stress[WB_HEX20_NODES][6],
-                           double plastic[WB_HEX20_NODES])
+                           enum wb_integration integration, const struct wb_material *material,
+                           const double *restrict u, const struct wb_solid_point_state *state,
+                           double stress[WB_HEX20_NODES][6], double plastic[WB_HEX20_NODES])
 {
     struct points points;
     double value[CORNERS][7];

@@ -2,7 +2,7 @@
  *
  * The stored energy splits into a volumetric part in J = det F and a deviatoric one in the
  * logarithmic strain E = 1/2 ln(F^T F), so selective reduced integration is simply two sums:
- * volumetric on 2 x 2 x 2 points, deviatoric on 3 x 3 x 3. With WB_HEX20_REDUCED both are on
+ * volumetric on 2 x 2 x 2 points, deviatoric on 3 x 3 x 3. With WB_INTEGRATION_REDUCED both are on
  * 2 x 2 x 2. The stiffness is symmetric in both. Stresses inside are Kirchhoff's, tau = J sigma;
  * the yield stress bounds tau (J differs from 1 by the elastic change of volume only).
  * Source: C. Miehe, N. Apel, M. Lambrecht, CMAME 191 (2002) 5383 (additive plasticity in the
@@ -16,26 +16,10 @@
 
 #include <stdbool.h>
 
+#include "fe/linear/trial.h"
 #include "fe/material/material.h"
-
-enum {
-    WB_HEX20_NODES = 20,
-    WB_HEX20_UNKNOWNS = 60,
-    WB_HEX20_MOST_POINTS = 27,
-    WB_HEX20_CORNER_POINTS = 8 /* 2 x 2 x 2 */
-};
-
-enum wb_hex20_integration {
-    WB_HEX20_SELECTIVE, /* volumetric 2 x 2 x 2, deviatoric 3 x 3 x 3 */
-    WB_HEX20_REDUCED    /* both 2 x 2 x 2 */
-};
-
-/* History of a material point; all zero is virgin. Symmetric tensors here are xx, yy, zz, xy, yz,
- * zx, tensor (not engineering) components. */
-struct wb_hex20_state {
-    double plastic_strain[6]; /* logarithmic, deviatoric, in the reference frame */
-    double accumulated;       /* equivalent plastic strain, never decreases */
-};
+#include "fe/solid/hex20_points.h"
+#include "fe/solid/solid_point.h"
 
 /* Gradients with respect to the reference position, and weights, at all points of one element. A
  * gradient is stored as three rows: the derivatives of the 20 shape functions along x, y and z. */
@@ -56,25 +40,21 @@ struct wb_hex20_result {
     int yielding;             /* points that yield in this step */
 };
 
-/* Parent coordinates of the nodes. */
-extern const double wb_hex20_node_place[WB_HEX20_NODES][3];
-
 /* States of an element: 27 or 8. */
-int wb_hex20_points(enum wb_hex20_integration integration);
+int wb_hex20_points(enum wb_integration integration);
 
 /* From the nodes' reference positions. False when the Jacobian is not positive at every point. */
-bool wb_hex20_geometry_init(struct wb_hex20_geometry *geometry,
-                            enum wb_hex20_integration integration,
+bool wb_hex20_geometry_init(struct wb_hex20_geometry *geometry, enum wb_integration integration,
                             const double position[WB_HEX20_NODES][3]);
 
 /* Internal forces `force` (60, N) and, unless NULL, tangent stiffness (60 x 60, symmetric, all of
  * it filled, N/m) for displacements u (60, m), from the histories `before`; `after` receives those
  * at the end of the step (both as many as wb_hex20_points()). False when an element is inverted
  * (J <= 0 at a point) or anything is not finite: outputs are then of no meaning. Pure. */
-bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
-                       enum wb_hex20_integration integration, const struct wb_material *material,
-                       const double *restrict u, const struct wb_hex20_state *before,
-                       struct wb_hex20_state *after, double *restrict force,
+bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
+                       const struct wb_material *material, const double *restrict u,
+                       const struct wb_solid_point_state *before,
+                       struct wb_solid_point_state *after, double *restrict force,
                        double *restrict stiffness, struct wb_hex20_result *result);
 
 /* Cauchy stress (Pa, global frame) and equivalent plastic strain at the nodes, of a converged state
@@ -82,10 +62,9 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry,
  * the reference position stays so, on curved elements too.
  * Not a number where an element is inverted. */
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
-                           enum wb_hex20_integration integration,
-                           const struct wb_material *material, const double *restrict u,
-                           const struct wb_hex20_state *state, double stress[WB_HEX20_NODES][6],
-                           double plastic[WB_HEX20_NODES]);
+                           enum wb_integration integration, const struct wb_material *material,
+                           const double *restrict u, const struct wb_solid_point_state *state,
+                           double stress[WB_HEX20_NODES][6], double plastic[WB_HEX20_NODES]);
 
 /* Consistent nodal weights of a body force: integrals of the 20 shape functions over the reference
  * volume, m3. */

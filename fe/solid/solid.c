@@ -1,28 +1,92 @@
 #include "fe/solid/solid.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/units.h"
+#include "fe/solid/solid_body.h"
 #include "fe/solid/solid_private.h"
+#include "fe/solid/solid_tip.h"
+#include "fe/solid/solid_update.h"
 
 #define WB_LOG_DOMAIN "solid"
 
-/* Iterations that an increment should take: it grows below, shrinks above. */
-static const double wanted_iterations = 6.0;
+enum {
+    Z = WB_SOLID_TIP_UNKNOWNS,
+    TENSION = Z, /* unknowns and equations beside z */
+    SHARE = Z + 1,
+    ALL = Z + 2
+};
 
-/* Share of the largest force at any node below which a strand's tension is none. */
-static const double no_tension = 1e-6;
+/* Columns of the right-hand sides. */
+enum {
+    COLUMN_RESIDUAL,
+    COLUMN_LOADS, /* change of the body's loads with the share, for the arc length */
+    COLUMN_TIP,
+    COLUMNS = COLUMN_TIP + Z
+};
 
-/* Arcs shorter than this share of the wanted length lead nowhere. */
-static const double shortest_arc = 1.0 / 256.0;
+/* What drives an increment, as numbers, to tell whether it continues the one before. */
+enum {
+    DRIVES = 3 + 9 + 2 /* factors, tip loads, deflection, tension */
+};
 
-/* Share of a move that an arc may go beyond its end. */
-static const double most_overshoot = 1e-3;
+/* One equilibrium to be found: a share of a move. */
+struct increment {
+    const struct wb_solid_move *move;
+    struct wb_solid_loads start;  /* of the move */
+    double start_deflection;      /* m, of the move */
+    double from, share;           /* of the move: last equilibrium's, the one wanted */
+    double arc_length;            /* m; with WB_SOLID_ARC */
+    const double *last_direction; /* (9) change of z in the increment before; NULL: none */
+    double change[Z];             /* out: of z */
+};
 
-/* Arc increments allowed in a move that names no number. */
-static const int usual_arc_increments = 1;
+struct wb_solid {
+    struct wb_solid_settings settings;
+    struct wb_solid_body body;
+    struct wb_solid_tip_section tip;
+    struct wb_solid_update update;
+    struct wb_solid_tip_strand strand;
+    int n_supports;
+    struct wb_solid_support *supports;
+    double *nodal_force; /* (3 n_nodes); NULL: none */
+
+    /* Displacements: trial, of the last equilibrium, of the one before. */
+    double *u, *committed, *before;
+    struct wb_solid_loads loads, committed_loads, before_loads;
+    double *committed_force; /* (3 n_nodes) */
+    double drive[DRIVES];
+    bool can_continue;     /* `before` and `drive` belong to the last equilibrium's own increment */
+    double last_change[Z]; /* of z, in the last increment */
+    bool on_arc;           /* the last increment was one of an arc towards arc_target */
+    double arc_pace;       /* m: that increment's length */
+    struct wb_solid_loads arc_target;
+    double largest_force; /* N: ever met at a node */
+    double pace;          /* share of a move that the last increment took */
+    struct wb_solid_balance balance;
+
+    /* Workspace of Newton's method. */
+    double *right; /* (n_equations x COLUMNS) */
+    double *step;  /* (3 n_nodes) */
+    double *base;  /* (3 n_nodes) u before the step */
+    double *held;  /* (3 n_nodes) */
+    double *held_force;
+    double compliance[Z * Z];
+    double tip_derivative[Z * Z];
+    struct wb_solid_body_result found;
+    double residual; /* relative */
+    int worst_node;
+    int iterations;
+    int negative_pivots;
+    bool unstable; /* of the last equilibrium */
+    char problem[240];
+};
+
+/* --- creation --- */
 
 static struct wb_solid_settings complete_settings(const struct wb_solid_settings *given)
 {
@@ -67,7 +131,7 @@ static enum wb_status take_memory(struct wb_solid *solid)
         if (!*vectors[i])
             return wb_fail(WB_ERR_MEMORY, "out of memory for %zu displacements", n);
     }
-    solid->right = calloc((size_t)solid->body.n_equations * WB_SOLID_COLUMNS, sizeof *solid->right);
+    solid->right = calloc((size_t)solid->body.n_equations * COLUMNS, sizeof *solid->right);
     return solid->right
                ? WB_OK
                : wb_fail(WB_ERR_MEMORY, "out of memory for %d equations", solid->body.n_equations);
@@ -125,6 +189,532 @@ void wb_solid_destroy(struct wb_solid *solid)
     free(solid);
 }
 
+/* --- one equilibrium, by Newton's method --- */
+
+/* A relative residual below which the last factorisation is used again, and what it must bring. */
+static const double close_by = 1e-2;
+static const double good_reduction = 0.2;
+
+/* Share of the tolerance that a state is within before the first iteration. */
+static const double at_start = 1e-3;
+
+/* An iteration turns the tip by no more than this. */
+static const double most_turn = 0.5;
+
+/* Forces below this share of the largest ever met count as none. */
+static const double small_force = 1e-3;
+
+/* What a Newton step changes besides the displacements. */
+struct step {
+    double z[Z];
+    double tension, share;
+};
+
+/* Loads of a move at a share of it; the tension is that of `now` where it is an unknown. */
+static struct wb_solid_loads loads_at(const struct increment *increment, double share,
+                                      double tension)
+{
+    const struct wb_solid_loads *a = &increment->start, *b = &increment->move->target;
+    struct wb_solid_loads at = {
+        .weight = a->weight + share * (b->weight - a->weight),
+        .supports = a->supports + share * (b->supports - a->supports),
+        .nodal = a->nodal + share * (b->nodal - a->nodal),
+        .tension = a->tension + share * (b->tension - a->tension),
+    };
+    for (int i = 0; i < 3; i++) {
+        at.tip.force[i] = a->tip.force[i] + share * (b->tip.force[i] - a->tip.force[i]);
+        at.tip.moment[i] = a->tip.moment[i] + share * (b->tip.moment[i] - a->tip.moment[i]);
+        at.tip.follower[i] = a->tip.follower[i] + share * (b->tip.follower[i] - a->tip.follower[i]);
+    }
+    if (increment->move->control == WB_SOLID_DEFLECTION)
+        at.tension = tension;
+    return at;
+}
+
+/* How the loads grow with the share. */
+static struct wb_solid_loads rate_of_loads(const struct increment *increment)
+{
+    const struct wb_solid_loads a = loads_at(increment, 0.0, 0.0);
+    struct wb_solid_loads rate = loads_at(increment, 1.0, 0.0);
+
+    rate.weight -= a.weight;
+    rate.supports -= a.supports;
+    rate.nodal -= a.nodal;
+    rate.tension -= a.tension;
+    for (int i = 0; i < 3; i++) {
+        rate.tip.force[i] -= a.tip.force[i];
+        rate.tip.moment[i] -= a.tip.moment[i];
+        rate.tip.follower[i] -= a.tip.follower[i];
+    }
+    return rate;
+}
+
+static double *column(const struct wb_solid *solid, int c)
+{
+    return solid->right + (size_t)c * (size_t)solid->body.n_equations;
+}
+
+/* Puts the forces of the body (weight, nodal forces) times factors into a column, or adds them. */
+static void add_body_loads(const struct wb_solid *solid, double weight, double nodal, double *right)
+{
+    for (int i = 0; i < 3 * solid->body.mesh->n_nodes; i++) {
+        const int q = solid->body.equation[i];
+        if (q >= 0)
+            right[q] += weight * solid->body.weight[i] +
+                        (solid->nodal_force ? nodal * solid->nodal_force[i] : 0.0);
+    }
+}
+
+static void add_tip_loads(const struct wb_solid *solid, const double phi[Z], double *right)
+{
+    for (int a = 0; a < solid->tip.n_nodes; a++)
+        for (int i = 0; i < 3; i++) {
+            const int q = solid->body.equation[3 * solid->tip.node[a] + i];
+            for (int k = 0; q >= 0 && k < WB_SOLID_TIP_PATTERNS; k++)
+                right[q] += solid->tip.pattern[a][k] * phi[3 * k + i];
+        }
+}
+
+/* z's rate for a column of displacements (equations): the patterns' transpose. */
+static void tip_motion_of(const struct wb_solid *solid, const double *x, double z[Z])
+{
+    memset(z, 0, Z * sizeof *z);
+    for (int a = 0; a < solid->tip.n_nodes; a++)
+        for (int i = 0; i < 3; i++) {
+            const int q = solid->body.equation[3 * solid->tip.node[a] + i];
+            for (int k = 0; q >= 0 && k < WB_SOLID_TIP_PATTERNS; k++)
+                z[3 * k + i] += solid->tip.pattern[a][k] * x[q];
+        }
+}
+
+/* Loads less internal forces of the trial state into the first column; the relative residual. */
+static void unbalance(struct wb_solid *solid)
+{
+    const struct wb_solid_body *body = &solid->body;
+    double *right = column(solid, COLUMN_RESIDUAL);
+    double z[Z], phi[Z];
+
+    memset(right, 0, (size_t)body->n_equations * sizeof *right);
+    add_body_loads(solid, solid->loads.weight, solid->loads.nodal, right);
+    if (solid->tip.n_nodes > 0) {
+        wb_solid_tip_motion(&solid->tip, body->mesh, solid->u, z);
+        wb_solid_tip_forces(z, &solid->loads.tip, &solid->strand, solid->loads.tension, phi,
+                            solid->tip_derivative);
+        add_tip_loads(solid, phi, right);
+    }
+
+    double largest = 0.0, worst = 0.0;
+    for (int i = 0; i < 3 * body->mesh->n_nodes; i++) {
+        const int q = body->equation[i];
+        largest = fmax(largest, fabs(body->force[i]));
+        if (q < 0)
+            continue;
+        largest = fmax(largest, fabs(right[q])); /* a first step's loads, not yet carried */
+        right[q] -= body->force[i];
+        if (!(fabs(right[q]) <= worst) && !isnan(worst)) {
+            worst = fabs(right[q]);
+            solid->worst_node = i / 3;
+        }
+    }
+    const double scale = fmax(largest, small_force * solid->largest_force);
+    solid->residual = scale > 0.0 ? worst / scale : 0.0;
+}
+
+/* Forces, and with `stiffness` the factored tangent with its answers to the tip's loads. */
+static bool evaluate(struct wb_solid *solid, const struct increment *increment, bool stiffness,
+                     bool change_supports)
+{
+    struct wb_solid_body *body = &solid->body;
+
+    if (change_supports) {
+        memset(solid->held_force, 0, 3 * (size_t)body->mesh->n_nodes * sizeof *solid->held_force);
+        wb_solid_body_evaluate_held(body, solid->u, solid->held, solid->held_force, &solid->found);
+    } else {
+        wb_solid_body_evaluate(body, solid->u, stiffness, &solid->found);
+    }
+    if (!solid->found.possible)
+        return false;
+    unbalance(solid);
+    for (int i = 0; change_supports && i < 3 * body->mesh->n_nodes; i++)
+        if (body->equation[i] >= 0)
+            column(solid, COLUMN_RESIDUAL)[body->equation[i]] -= solid->held_force[i];
+    if (!stiffness)
+        return isfinite(solid->residual);
+
+    struct wb_layered_pivots pivots;
+    wb_layered_factor(body->tangent, &pivots);
+    solid->negative_pivots = pivots.negative;
+    if (pivots.singular)
+        return false;
+    if (increment->move->control == WB_SOLID_ARC) {
+        const struct wb_solid_loads rate = rate_of_loads(increment);
+        double *right = column(solid, COLUMN_LOADS);
+        memset(right, 0, (size_t)body->n_equations * sizeof *right);
+        add_body_loads(solid, rate.weight, rate.nodal, right);
+        wb_layered_solve(body->tangent, 1, right);
+    }
+    if (solid->tip.n_nodes > 0) {
+        double *right = column(solid, COLUMN_TIP);
+        memset(right, 0, Z * (size_t)body->n_equations * sizeof *right);
+        for (int k = 0; k < Z; k++) {
+            double unit[Z] = {0};
+            unit[k] = 1.0;
+            add_tip_loads(solid, unit, column(solid, COLUMN_TIP + k));
+        }
+        wb_layered_solve_last(body->tangent, Z, right);
+        for (int k = 0; k < Z; k++)
+            tip_motion_of(solid, column(solid, COLUMN_TIP + k), solid->compliance + Z * k);
+    }
+    return isfinite(solid->residual);
+}
+
+/* Length of a change of z, m: the way of the tip and the turning of its frame. */
+static double length_of(const struct wb_solid *solid, const double change[Z])
+{
+    double sum = 0.0;
+    for (int i = 0; i < Z; i++) {
+        const double part = i < 3 ? change[i] : solid->tip.radius * change[i];
+        sum += part * part;
+    }
+    return sqrt(sum);
+}
+
+/* The equations of z, tension and share in one small matrix. `A` is column-major. */
+static void tip_equations(const struct wb_solid *solid, const struct increment *increment,
+                          double *A, double *b)
+{
+    const double *C = solid->compliance; /* symmetric but for friction; row k: answer to load k */
+    const enum wb_solid_control control = increment->move->control;
+    double z[Z], along[Z], rate_phi[Z] = {0}, rate_body[Z] = {0};
+
+    wb_solid_tip_motion(&solid->tip, solid->body.mesh, solid->u, z);
+    wb_solid_tip_tension(z, &solid->strand, along);
+    if (control == WB_SOLID_ARC) {
+        const struct wb_solid_loads rate = rate_of_loads(increment);
+        wb_solid_tip_forces(z, &rate.tip, &solid->strand, rate.tension, rate_phi, NULL);
+        tip_motion_of(solid, column(solid, COLUMN_LOADS), rate_body);
+    }
+    tip_motion_of(solid, column(solid, COLUMN_RESIDUAL), b);
+    memset(A, 0, ALL * ALL * sizeof *A);
+    for (int i = 0; i < Z; i++) {
+        A[ALL * i + i] = 1.0;
+        for (int k = 0; k < Z; k++) {
+            const double answer = C[Z * k + i];
+            for (int j = 0; j < Z; j++)
+                A[ALL * j + i] -= answer * solid->tip_derivative[Z * k + j];
+            A[ALL * TENSION + i] -= answer * along[k];
+            A[ALL * SHARE + i] -= answer * rate_phi[k];
+        }
+        A[ALL * SHARE + i] -= rate_body[i];
+    }
+
+    b[TENSION] = 0.0;
+    A[ALL * TENSION + TENSION] = 1.0;
+    if (control == WB_SOLID_DEFLECTION) {
+        A[ALL * TENSION + TENSION] = 0.0;
+        A[ALL * 1 + TENSION] = 1.0;
+        b[TENSION] =
+            increment->start_deflection +
+            increment->share * (increment->move->deflection - increment->start_deflection) - z[1];
+    }
+    A[ALL * SHARE + SHARE] = 1.0;
+    b[SHARE] = 0.0;
+}
+
+/* The arc's equation: a first step of unit share, to be scaled, then its linearised length. */
+static void arc_equation(const struct wb_solid *solid, const struct increment *increment,
+                         bool first, double *A, double *b)
+{
+    if (first) {
+        b[SHARE] = 1.0;
+        return;
+    }
+    const double length = length_of(solid, increment->change);
+    const double radius2 = solid->tip.radius * solid->tip.radius;
+    A[ALL * SHARE + SHARE] = 0.0;
+    for (int i = 0; i < Z; i++)
+        A[ALL * i + SHARE] = 2.0 * (i < 3 ? 1.0 : radius2) * increment->change[i];
+    b[SHARE] = increment->arc_length * increment->arc_length - length * length;
+}
+
+/* Scales the first step of an arc to its length, forwards. */
+static void scale_first(const struct wb_solid *solid, const struct increment *increment, double *x)
+{
+    double sign = 1.0;
+    if (increment->last_direction) {
+        double forwards = 0.0;
+        for (int i = 0; i < Z; i++)
+            forwards += x[i] * increment->last_direction[i] *
+                        (i < 3 ? 1.0 : solid->tip.radius * solid->tip.radius);
+        sign = forwards < 0.0 ? -1.0 : 1.0;
+    }
+    const double scale = sign * increment->arc_length / length_of(solid, x);
+    for (int i = 0; i < ALL; i++)
+        x[i] *= scale;
+}
+
+/* The Newton step of the whole system; the displacements' into solid->step. */
+static bool solve_step(struct wb_solid *solid, const struct increment *increment, bool first,
+                       struct step *step)
+{
+    const struct wb_solid_body *body = &solid->body;
+    double *x = column(solid, COLUMN_RESIDUAL);
+    double coefficient[COLUMNS] = {1.0};
+
+    /* An arc sets out along the path alone: next to a critical point what is left of the residual
+     * would lead far away, and it is not scaled to the arc's length. */
+    if (increment->move->control == WB_SOLID_ARC && first)
+        memset(x, 0, (size_t)body->n_equations * sizeof *x);
+    else
+        wb_layered_solve(body->tangent, 1, x);
+    *step = (struct step){0};
+    if (solid->tip.n_nodes > 0) {
+        double A[ALL * ALL], b[ALL];
+        lapack_int pivot[ALL];
+        tip_equations(solid, increment, A, b);
+        if (increment->move->control == WB_SOLID_ARC)
+            arc_equation(solid, increment, first, A, b);
+        if (LAPACKE_dgesv(LAPACK_COL_MAJOR, ALL, 1, A, ALL, pivot, b, ALL) != 0)
+            return false;
+        if (increment->move->control == WB_SOLID_ARC && first)
+            scale_first(solid, increment, b);
+        memcpy(step->z, b, sizeof step->z);
+        step->tension = b[TENSION];
+        step->share = b[SHARE];
+
+        double z[Z], along[Z], rate_phi[Z] = {0};
+        wb_solid_tip_motion(&solid->tip, body->mesh, solid->u, z);
+        wb_solid_tip_tension(z, &solid->strand, along);
+        if (increment->move->control == WB_SOLID_ARC) {
+            const struct wb_solid_loads rate = rate_of_loads(increment);
+            wb_solid_tip_forces(z, &rate.tip, &solid->strand, rate.tension, rate_phi, NULL);
+            coefficient[COLUMN_LOADS] = step->share;
+        }
+        for (int k = 0; k < Z; k++) {
+            double *c = &coefficient[COLUMN_TIP + k];
+            *c = along[k] * step->tension + rate_phi[k] * step->share;
+            for (int j = 0; j < Z; j++)
+                *c += solid->tip_derivative[Z * k + j] * step->z[j];
+        }
+    }
+
+    memset(solid->step, 0, 3 * (size_t)body->mesh->n_nodes * sizeof *solid->step);
+    for (int c = 0; c < COLUMNS; c++) {
+        const double *part = column(solid, c);
+        for (int i = 0; coefficient[c] != 0.0 && i < 3 * body->mesh->n_nodes; i++)
+            if (body->equation[i] >= 0)
+                solid->step[i] += coefficient[c] * part[body->equation[i]];
+    }
+    return true;
+}
+
+static void set_supports(struct wb_solid *solid)
+{
+    for (int i = 0; i < solid->n_supports; i++) {
+        const struct wb_solid_support *s = &solid->supports[i];
+        solid->u[3 * s->node + s->axis] = solid->loads.supports * s->displacement;
+    }
+}
+
+/* The trial state at `scale` times the step from solid->base. */
+static void take_step(struct wb_solid *solid, struct increment *increment, const struct step *step,
+                      const struct wb_solid_loads *loads, double share, double scale)
+{
+    const size_t bytes = 3 * (size_t)solid->body.mesh->n_nodes * sizeof *solid->u;
+
+    memcpy(solid->u, solid->base, bytes);
+    wb_solid_update_advance(&solid->update, solid->u, solid->step, scale);
+    if (increment->move->control == WB_SOLID_ARC)
+        increment->share = share + scale * step->share;
+    solid->loads = loads_at(increment, increment->share, loads->tension + scale * step->tension);
+    set_supports(solid);
+    if (solid->tip.n_nodes > 0) {
+        double before[Z], now[Z];
+        wb_solid_tip_motion(&solid->tip, solid->body.mesh, solid->committed, before);
+        wb_solid_tip_motion(&solid->tip, solid->body.mesh, solid->u, now);
+        for (int i = 0; i < Z; i++)
+            increment->change[i] = now[i] - before[i];
+    }
+}
+
+/* Whether the equilibrium just found is unstable under its control (with an arc: under its loads).
+ * Of conservative loads by the signature of the tangent; of loads that turn with the tip, and with
+ * contact, by the sign of its determinant, which two critical points at once leave as it is. */
+static bool is_unstable(const struct wb_solid *solid, const struct increment *increment)
+{
+    const struct wb_tip_loads *tip = &solid->loads.tip;
+    const bool odd = solid->negative_pivots % 2 != 0;
+    double A[ALL * ALL], b[ALL], turning = 0.0;
+    lapack_int pivot[ALL];
+
+    if (solid->tip.n_nodes == 0)
+        return solid->body.has_contact ? odd : solid->negative_pivots > 0;
+    tip_equations(solid, increment, A, b);
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, ALL, ALL, A, ALL, pivot) != 0)
+        return true;
+    bool negative = false;
+    for (int i = 0; i < ALL; i++)
+        negative ^= (A[ALL * i + i] < 0.0) ^ (pivot[i] != i + 1);
+    for (int i = 0; i < 3; i++)
+        turning += fabs(tip->follower[i]) + fabs(tip->moment[i]);
+    if (solid->body.has_contact || turning > 0.0)
+        return odd ^ negative;
+    return solid->negative_pivots > (negative ? 1 : 0);
+}
+
+static double first_scale(const struct step *step)
+{
+    double turn = 0.0;
+    for (int i = 3; i < Z; i++)
+        turn += step->z[i] * step->z[i];
+    turn = sqrt(turn);
+    return turn > most_turn ? most_turn / turn : 1.0;
+}
+
+/* Takes the step, shortened where it leads to an impossible state or, past the first iteration, to
+ * a much larger residual. */
+static bool search_line(struct wb_solid *solid, struct increment *increment,
+                        const struct step *step, bool stiffness, bool guard)
+{
+    const struct wb_solid_loads loads = solid->loads;
+    const double share = increment->share, before = solid->residual;
+    double scale = first_scale(step);
+
+    memcpy(solid->base, solid->u, 3 * (size_t)solid->body.mesh->n_nodes * sizeof *solid->u);
+    for (int attempt = 0; attempt < 5; attempt++, scale *= 0.5) {
+        take_step(solid, increment, step, &loads, share, scale);
+        if (!evaluate(solid, increment, stiffness, false))
+            continue;
+        if (guard && attempt < 4 && solid->residual > 4.0 * before)
+            continue;
+        return true;
+    }
+    return false;
+}
+
+/* Where the imbalance is largest, in words. */
+static void describe(struct wb_solid *solid, const char *what)
+{
+    const double *X = solid->body.mesh->node[solid->worst_node];
+
+    if (!solid->found.possible && solid->found.worst_element >= 0) {
+        const int node = solid->body.mesh->element[solid->found.worst_element][0];
+        snprintf(solid->problem, sizeof solid->problem,
+                 "element %d at %.4g mm along the wire is turned inside out (after %d iterations)",
+                 solid->found.worst_element, solid->body.mesh->node[node][0] / WB_MM,
+                 solid->iterations);
+        return;
+    }
+    snprintf(solid->problem, sizeof solid->problem,
+             "%s: after %d iterations the relative residual is %.2g, largest at (%.4g, %.4g, %.4g) "
+             "mm",
+             what, solid->iterations, solid->residual, X[0] / WB_MM, X[1] / WB_MM, X[2] / WB_MM);
+}
+
+static bool has_converged(const struct wb_solid *solid, const struct increment *increment)
+{
+    if (!(solid->residual <= solid->settings.force_tolerance))
+        return false;
+    if (increment->move->control != WB_SOLID_DEFLECTION)
+        return true;
+    double z[Z];
+    wb_solid_tip_motion(&solid->tip, solid->body.mesh, solid->u, z);
+    const double wanted =
+        increment->start_deflection +
+        increment->share * (increment->move->deflection - increment->start_deflection);
+    return fabs(z[1] - wanted) <=
+           1e-4 * solid->settings.force_tolerance * solid->tip.radius + 1e-12 * fabs(wanted);
+}
+
+/* Prepares solid->held: how the held components must still move. */
+static bool supports_change(struct wb_solid *solid)
+{
+    bool any = false;
+
+    memset(solid->held, 0, 3 * (size_t)solid->body.mesh->n_nodes * sizeof *solid->held);
+    for (int i = 0; i < solid->n_supports; i++) {
+        const struct wb_solid_support *s = &solid->supports[i];
+        const int at = 3 * s->node + s->axis;
+        solid->held[at] = solid->loads.supports * s->displacement - solid->u[at];
+        any = any || solid->held[at] != 0.0;
+    }
+    return any;
+}
+
+/* Finds the equilibrium, from the trial state that the caller has set: solid->u and solid->loads.
+ * `predicted` says that the trial state already holds the new supports. True when it converged: the
+ * trial state, histories and solid->found are then those of the equilibrium, and increment->share
+ * the share that was reached. Otherwise solid->problem says why. */
+static bool find_equilibrium(struct wb_solid *solid, struct increment *increment, bool predicted)
+{
+    const bool arc = increment->move->control == WB_SOLID_ARC;
+    bool fresh = true;
+
+    solid->iterations = 0;
+    memset(increment->change, 0, sizeof increment->change);
+    const bool move_supports = !predicted && supports_change(solid);
+    if (!evaluate(solid, increment, true, move_supports)) {
+        describe(solid, "the tangent stiffness is singular");
+        return false;
+    }
+    /* Many small imbalances of one sign are a load: a start is not taken for the end unless it is
+     * far below the tolerance, as an iteration is cheap there. */
+    const bool at_once =
+        !arc && !move_supports && solid->residual <= at_start * solid->settings.force_tolerance;
+    while (!has_converged(solid, increment) || (solid->iterations == 0 && !at_once)) {
+        struct step step;
+        const double before = solid->residual;
+        if (solid->iterations++ == solid->settings.max_iterations) {
+            describe(solid, "no convergence");
+            return false;
+        }
+        const bool first = solid->iterations == 1;
+        if (!solve_step(solid, increment, first, &step)) {
+            describe(solid, "the tip's equations are singular");
+            return false;
+        }
+        if (first && move_supports)
+            for (int i = 0; i < 3 * solid->body.mesh->n_nodes; i++)
+                solid->step[i] += solid->held[i];
+
+        /* Near the end forces alone may show that it is there, and the old tangent still serves. */
+        const bool near = before < close_by && !first;
+        if (!search_line(solid, increment, &step, !near, !first)) {
+            describe(solid, "no convergence");
+            return false;
+        }
+        if (has_converged(solid, increment))
+            break;
+        if (near && (!fresh || solid->residual > good_reduction * before)) {
+            if (!evaluate(solid, increment, true, false)) {
+                describe(solid, "the tangent stiffness is singular");
+                return false;
+            }
+            fresh = true;
+        } else {
+            fresh = !near;
+        }
+    }
+    return true;
+}
+
+/* --- moves, in increments --- */
+
+/* Iterations that an increment should take: it grows below, shrinks above. */
+static const double wanted_iterations = 6.0;
+
+/* Share of the largest force at any node below which a strand's tension is none. */
+static const double no_tension = 1e-6;
+
+/* Arcs shorter than this share of the wanted length lead nowhere. */
+static const double shortest_arc = 1.0 / 256.0;
+
+/* Share of a move that an arc may go beyond its end. */
+static const double most_overshoot = 1e-3;
+
+/* Arc increments allowed in a move that names no number. */
+static const int usual_arc_increments = 1;
+
 static size_t vector_bytes(const struct wb_solid *solid)
 {
     return 3 * (size_t)solid->body.mesh->n_nodes * sizeof(double);
@@ -132,7 +722,7 @@ static size_t vector_bytes(const struct wb_solid *solid)
 
 static double deflection_of(const struct wb_solid *solid, const double *u)
 {
-    double z[WB_SOLID_TIP_UNKNOWNS];
+    double z[Z];
     if (solid->tip.n_nodes == 0)
         return 0.0;
     wb_solid_tip_motion(&solid->tip, solid->body.mesh, u, z);
@@ -140,11 +730,11 @@ static double deflection_of(const struct wb_solid *solid, const double *u)
 }
 
 /* What drives an increment, as one vector. */
-static void drive_of(const struct wb_solid *solid, const struct wb_solid_increment *increment,
-                     double drive[WB_SOLID_DRIVES])
+static void drive_of(const struct wb_solid *solid, const struct increment *increment,
+                     double drive[DRIVES])
 {
-    const struct wb_solid_loads a = wb_solid_loads_at(increment, increment->from, 0.0);
-    const struct wb_solid_loads b = wb_solid_loads_at(increment, increment->share, 0.0);
+    const struct wb_solid_loads a = loads_at(increment, increment->from, 0.0);
+    const struct wb_solid_loads b = loads_at(increment, increment->share, 0.0);
     const bool deflection = increment->move->control == WB_SOLID_DEFLECTION;
     int n = 0;
 
@@ -168,7 +758,7 @@ static void drive_of(const struct wb_solid *solid, const struct wb_solid_increme
 static double ratio_of(const double *last, const double *now)
 {
     double ll = 0.0, ln = 0.0, nn = 0.0;
-    for (int i = 0; i < WB_SOLID_DRIVES; i++) {
+    for (int i = 0; i < DRIVES; i++) {
         ll += last[i] * last[i];
         ln += last[i] * now[i];
         nn += now[i] * now[i];
@@ -178,18 +768,10 @@ static double ratio_of(const double *last, const double *now)
     return parallel && ratio <= 3.0 ? ratio : 0.0;
 }
 
-static void impose_supports(struct wb_solid *solid)
-{
-    for (int i = 0; i < solid->n_supports; i++) {
-        const struct wb_solid_support *s = &solid->supports[i];
-        solid->u[3 * s->node + s->axis] = solid->loads.supports * s->displacement;
-    }
-}
-
 /* Sets the trial state of an increment; true where it is the last increment's continuation. */
-static bool predict(struct wb_solid *solid, const struct wb_solid_increment *increment)
+static bool predict(struct wb_solid *solid, const struct increment *increment)
 {
-    double drive[WB_SOLID_DRIVES];
+    double drive[DRIVES];
     double tension = solid->committed_loads.tension;
 
     drive_of(solid, increment, drive);
@@ -203,14 +785,14 @@ static bool predict(struct wb_solid *solid, const struct wb_solid_increment *inc
     } else {
         memcpy(solid->u, solid->committed, vector_bytes(solid));
     }
-    solid->loads = wb_solid_loads_at(increment, increment->share, tension);
+    solid->loads = loads_at(increment, increment->share, tension);
     if (ratio > 0.0)
-        impose_supports(solid);
+        set_supports(solid);
     return ratio > 0.0;
 }
 
 /* The trial state becomes the last equilibrium. */
-static void accept(struct wb_solid *solid, const struct wb_solid_increment *increment)
+static void accept(struct wb_solid *solid, const struct increment *increment)
 {
     const struct wb_solid_body *body = &solid->body;
 
@@ -222,7 +804,7 @@ static void accept(struct wb_solid *solid, const struct wb_solid_increment *incr
     solid->balance.elastic = solid->found.elastic;
     solid->balance.dissipated += solid->found.dissipated;
     solid->balance.friction += solid->found.friction;
-    solid->balance.interface = solid->found.interface;
+    solid->balance.jacket_contact = solid->found.jacket_contact;
 
     double *oldest = solid->before;
     solid->before = solid->committed;
@@ -241,9 +823,9 @@ static void accept(struct wb_solid *solid, const struct wb_solid_increment *incr
 
 /* A stable equilibrium has no business to become an unstable one by growing loads: the increment
  * stepped over a critical point, perhaps to another branch. */
-static bool steps_over(struct wb_solid *solid, const struct wb_solid_increment *increment)
+static bool steps_over(struct wb_solid *solid, const struct increment *increment)
 {
-    const bool unstable = wb_solid_newton_unstable(solid, increment);
+    const bool unstable = is_unstable(solid, increment);
 
     if (!unstable || solid->unstable) {
         solid->unstable = unstable;
@@ -261,16 +843,16 @@ static void revert(struct wb_solid *solid)
     solid->loads = solid->committed_loads;
 }
 
-static double turned(const struct wb_solid_increment *increment)
+static double turned(const struct increment *increment)
 {
     double sum = 0.0;
-    for (int i = 3; i < WB_SOLID_TIP_UNKNOWNS; i++)
+    for (int i = 3; i < Z; i++)
         sum += increment->change[i] * increment->change[i];
     return sqrt(0.5 * sum);
 }
 
 /* The next increment's share from how the last one went. */
-static double next_pace(const struct wb_solid *solid, const struct wb_solid_increment *increment)
+static double next_pace(const struct wb_solid *solid, const struct increment *increment)
 {
     const double pace = increment->share - increment->from;
     double growth = sqrt(wanted_iterations / fmax(1.0, solid->iterations));
@@ -298,7 +880,7 @@ static void finish(const struct wb_solid *solid, struct wb_solid_point *point,
 }
 
 /* Whether a strand would have to push at the equilibrium just found. */
-static bool pushes(const struct wb_solid *solid, const struct wb_solid_increment *increment)
+static bool pushes(const struct wb_solid *solid, const struct increment *increment)
 {
     double largest = solid->largest_force;
 
@@ -312,14 +894,13 @@ static bool pushes(const struct wb_solid *solid, const struct wb_solid_increment
 
 /* The increment after which the strand would carry nothing, by the straight line through the
  * tensions of both ends. */
-static double pace_to_slack(const struct wb_solid *solid,
-                            const struct wb_solid_increment *increment)
+static double pace_to_slack(const struct wb_solid *solid, const struct increment *increment)
 {
     const double from = fmax(0.0, solid->committed_loads.tension), to = solid->loads.tension;
     return (increment->share - increment->from) * from / (from - to);
 }
 
-static void move_by_shares(struct wb_solid *solid, struct wb_solid_increment *increment,
+static void move_by_shares(struct wb_solid *solid, struct increment *increment,
                            struct wb_solid_point *point)
 {
     const double smallest = solid->settings.smallest_increment;
@@ -331,13 +912,13 @@ static void move_by_shares(struct wb_solid *solid, struct wb_solid_increment *in
         increment->from = point->fraction;
         increment->share = rest <= pace * 1.01 ? 1.0 : point->fraction + fmin(pace, 0.5 * rest);
         const bool predicted = predict(solid, increment);
-        bool converged = wb_solid_newton(solid, increment, predicted);
+        bool converged = find_equilibrium(solid, increment, predicted);
         point->iterations += solid->iterations;
         if (!converged && predicted) {
             /* Once more from the equilibrium itself. */
             solid->can_continue = false;
             (void)predict(solid, increment);
-            converged = wb_solid_newton(solid, increment, false);
+            converged = find_equilibrium(solid, increment, false);
             point->iterations += solid->iterations;
         }
         if (!converged || steps_over(solid, increment)) {
@@ -388,7 +969,7 @@ static void move_by_shares(struct wb_solid *solid, struct wb_solid_increment *in
     finish(solid, point, WB_SOLID_CONVERGED);
 }
 
-static void move_by_arc(struct wb_solid *solid, struct wb_solid_increment *increment,
+static void move_by_arc(struct wb_solid *solid, struct increment *increment,
                         struct wb_solid_point *point)
 {
     const struct wb_solid_move *move = increment->move;
@@ -405,7 +986,7 @@ static void move_by_arc(struct wb_solid *solid, struct wb_solid_increment *incre
         increment->arc_length = length;
         memcpy(solid->u, solid->committed, vector_bytes(solid));
         solid->loads = solid->committed_loads;
-        const bool converged = wb_solid_newton(solid, increment, true);
+        const bool converged = find_equilibrium(solid, increment, true);
         point->iterations += solid->iterations;
         if (!converged) {
             revert(solid);
@@ -417,7 +998,7 @@ static void move_by_arc(struct wb_solid *solid, struct wb_solid_increment *incre
             }
             continue;
         }
-        const bool unstable = wb_solid_newton_unstable(solid, increment);
+        const bool unstable = is_unstable(solid, increment);
         if (!unstable && increment->share > 1.0 + most_overshoot &&
             length >= shortest_arc * move->arc_length) {
             /* Not past the loads that are wanted, from which a plastic body would return otherwise.
@@ -464,7 +1045,7 @@ enum wb_status wb_solid_move(struct wb_solid *solid, const struct wb_solid_move 
         !(move->arc_length > 0.0 && move->target.supports == solid->committed_loads.supports))
         return wb_fail(WB_ERR_ARGUMENT, "an arc needs a length above 0 and supports at rest");
 
-    struct wb_solid_increment increment = {
+    struct increment increment = {
         .move = move,
         .start = solid->committed_loads,
         .start_deflection = deflection_of(solid, solid->committed),
@@ -483,12 +1064,6 @@ int wb_solid_unknowns(const struct wb_solid *solid)
     return solid->body.n_equations;
 }
 
-size_t wb_solid_memory(const struct wb_solid *solid)
-{
-    return wb_solid_body_memory(&solid->body) + 8 * vector_bytes(solid) +
-           (size_t)solid->body.n_equations * WB_SOLID_COLUMNS * sizeof *solid->right;
-}
-
 const struct wb_solid_loads *wb_solid_loads(const struct wb_solid *solid)
 {
     return &solid->committed_loads;
@@ -496,7 +1071,7 @@ const struct wb_solid_loads *wb_solid_loads(const struct wb_solid *solid)
 
 void wb_solid_tip(const struct wb_solid *solid, struct wb_solid_tip *tip)
 {
-    double z[WB_SOLID_TIP_UNKNOWNS];
+    double z[Z];
 
     *tip = (struct wb_solid_tip){0};
     if (solid->tip.n_nodes == 0)

@@ -11,21 +11,23 @@
 
 #include "base/status.h"
 #include "fe/linear/layered.h"
-#include "fe/solid/solid.h"
+#include "fe/solid/hex20.h"
+#include "fe/solid/jacket_contact.h"
+#include "fe/solid/solid_model.h"
 
 struct wb_solid_body {
     const struct wb_solid_mesh *mesh; /* borrowed */
-    enum wb_hex20_integration integration;
+    enum wb_integration integration;
     int n_points; /* of an element */
     struct wb_solid_part *parts;
     struct wb_hex20_geometry *geometry; /* (n_elements) */
     int *equation;                      /* (3 n_nodes); -1: held */
     int n_equations;
-    struct wb_hex20_state *committed, *trial; /* (n_elements x n_points) */
-    bool has_contact;                         /* its tangent is unsymmetric */
-    struct wb_interface_law interface;
-    struct wb_interface_state *committed_pairs, *trial_pairs; /* (n_pairs x 9) */
-    double *weight;                                           /* (3 n_nodes) N: forces of gravity */
+    struct wb_solid_point_state *committed, *trial; /* (n_elements x n_points) */
+    bool has_contact;                               /* its tangent is unsymmetric */
+    struct wb_jacket_contact_law jacket_contact;
+    struct wb_jacket_contact_state *committed_pairs, *trial_pairs; /* (n_pairs x 9) */
+    double *weight;             /* (3 n_nodes) N: forces of gravity */
     struct wb_layered *tangent; /* of the last evaluation with stiffness */
     double *force;              /* (3 n_nodes) N: internal, of the last evaluation */
     double *element_stiffness;  /* workspace */
@@ -36,7 +38,7 @@ struct wb_solid_body_result {
     bool possible;     /* false: an element is inverted or a number is not finite */
     int worst_element; /* where it is impossible */
     double elastic, dissipated, friction; /* J; the latter two of the step */
-    struct wb_interface_result interface;
+    struct wb_jacket_contact_result jacket_contact;
 };
 
 WB_MUST_CHECK enum wb_status wb_solid_body_init(struct wb_solid_body *body,
@@ -54,7 +56,5 @@ void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
 
 /* Committed histories = trial ones. */
 void wb_solid_body_commit(struct wb_solid_body *body);
-
-size_t wb_solid_body_memory(const struct wb_solid_body *body); /* bytes */
 
 #endif

@@ -1,9 +1,12 @@
 #include "fe/solid/solid_mesh.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "fe/solid/solid_mesh_private.h"
 
 #define WB_LOG_DOMAIN "mesh"
 
@@ -133,4 +136,472 @@ enum wb_status wb_solid_mesh_section(const struct wb_solid_mesh *mesh, double x,
     *faces = list;
     *n = in_slice;
     return WB_OK;
+}
+
+/* --- sections of 8-node quadrilaterals swept along x --- */
+
+enum {
+    MOST_DENSITY = 64,
+    MOST_ALONG = 100000,
+    PARTS = 2
+};
+
+/* The inner square of a circle of radius 1: half its side, and how far the sides bulge. Its corners
+ * have angles of 117 degrees inside and 121 degrees in the ring. */
+static const double square_side = 0.495;
+static const double square_bulge = 0.12;
+
+/* Nodes of a section, numbered as they are added; those at corners of quadrilaterals have a node
+ * halfway to the next section too. */
+struct section {
+    int n, n_corners;
+    double (*at)[2]; /* (n), first and second coordinate of the section */
+    int *halfway;    /* (n), number among the corners, or -1 */
+    int n_quads;
+    int (*quad)[8]; /* (n_quads): corners, counter-clockwise from first to second coordinate, then
+                       midside nodes */
+    int *part;      /* (n_quads) */
+    int n_edges;
+    int (*edge)[2][3]; /* (n_edges), inner and outer: corner, next corner, node between */
+};
+
+/* Node numbers on a grid of half element steps; -1 in the middle of elements, where these elements
+ * have no node. A ring closes in j. */
+struct lattice {
+    int ni, nj;
+    int *id; /* (ni x nj) */
+};
+
+static int *lattice_at(const struct lattice *lattice, int i, int j)
+{
+    return &lattice->id[i * lattice->nj + j % lattice->nj];
+}
+
+static void section_release(struct section *s)
+{
+    free(s->at);
+    free(s->halfway);
+    free(s->quad);
+    free(s->part);
+    free(s->edge);
+}
+
+static enum wb_status section_init(struct section *s, int most_nodes, int most_quads,
+                                   int most_edges)
+{
+    *s = (struct section){0};
+    s->at = calloc((size_t)most_nodes, sizeof *s->at);
+    s->halfway = calloc((size_t)most_nodes, sizeof *s->halfway);
+    s->quad = calloc((size_t)most_quads, sizeof *s->quad);
+    s->part = calloc((size_t)most_quads, sizeof *s->part);
+    s->edge = calloc((size_t)most_edges + 1, sizeof *s->edge);
+    if (!s->at || !s->halfway || !s->quad || !s->part || !s->edge) {
+        section_release(s);
+        return wb_fail(WB_ERR_MEMORY, "no memory for a section of %d elements", most_quads);
+    }
+    return WB_OK;
+}
+
+static enum wb_status lattice_init(struct lattice *lattice, int ni, int nj)
+{
+    lattice->ni = ni;
+    lattice->nj = nj;
+    lattice->id = calloc((size_t)ni * (size_t)nj, sizeof *lattice->id);
+    return lattice->id ? WB_OK : wb_fail(WB_ERR_MEMORY, "no memory for %d x %d nodes", ni, nj);
+}
+
+/* Adds the node at grid point (i, j), if elements have one there, and returns its number. */
+static int add_node(struct section *s, int i, int j, double first, double second)
+{
+    const bool is_corner = i % 2 == 0 && j % 2 == 0;
+    if (i % 2 && j % 2)
+        return -1;
+    s->at[s->n][0] = first;
+    s->at[s->n][1] = second;
+    s->halfway[s->n] = is_corner ? s->n_corners++ : -1;
+    return s->n++;
+}
+
+static void add_quads(struct section *s, const struct lattice *lattice, int cells_i, int cells_j,
+                      int part)
+{
+    static const int step[8][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}};
+    for (int i = 0; i < cells_i; i++) {
+        for (int j = 0; j < cells_j; j++) {
+            for (int k = 0; k < 8; k++)
+                s->quad[s->n_quads][k] =
+                    *lattice_at(lattice, 2 * i + step[k][0], 2 * j + step[k][1]);
+            s->part[s->n_quads++] = part;
+        }
+    }
+}
+
+/* Turns (y, z) by `quarters` of a turn, exactly: mesh lines on y = 0 and z = 0 stay there. */
+static void turn(double at[2], int quarters)
+{
+    for (int k = 0; k < quarters; k++) {
+        const double y = at[0];
+        at[0] = 0.0 - at[1]; /* no negative zeros */
+        at[1] = y;
+    }
+}
+
+/* A point of the square, coordinates from -1 to 1, in a circle of radius 1. */
+static void square_point(double at[2], double s, double t)
+{
+    at[0] = square_side * s * (1.0 + square_bulge * (1.0 - t * t));
+    at[1] = square_side * t * (1.0 + square_bulge * (1.0 - s * s));
+}
+
+static void add_square(struct section *s, const struct lattice *square, int m, double radius)
+{
+    for (int i = 0; i <= 4 * m; i++) {
+        for (int j = 0; j <= 4 * m; j++) {
+            double at[2];
+            square_point(at, (double)(i - 2 * m) / (2 * m), (double)(j - 2 * m) / (2 * m));
+            *lattice_at(square, i, j) = add_node(s, i, j, radius * at[0], radius * at[1]);
+        }
+    }
+    add_quads(s, square, 2 * m, 2 * m, 0);
+}
+
+/* Node of the square's outline; j runs around from the corner at -45 degrees. */
+static int outline(const struct lattice *square, int m, int j)
+{
+    const int most = 4 * m, k = j % most;
+    switch (j / most) {
+    case 0:
+        return *lattice_at(square, most, k);
+    case 1:
+        return *lattice_at(square, most - k, most);
+    case 2:
+        return *lattice_at(square, 0, most - k);
+    default:
+        return *lattice_at(square, k, 0);
+    }
+}
+
+struct ring {
+    int part, m;
+    double inner, outer; /* radii; inner 0: from the outline of the square */
+};
+
+static void ring_point(double at[2], const struct ring *ring, int i, int j)
+{
+    const int m = ring->m, side = j / (4 * m);
+    const double t = (double)(j % (4 * m) - 2 * m) / (2 * m); /* -1 to 1 along a side */
+    const double w = (double)i / (2 * m);
+    double from[2] = {ring->inner * cos(0.25 * M_PI * t), ring->inner * sin(0.25 * M_PI * t)};
+    if (ring->inner == 0.0) {
+        square_point(from, 1.0, t);
+        from[0] *= ring->outer;
+        from[1] *= ring->outer;
+    }
+    at[0] = (1.0 - w) * from[0] + w * ring->outer * cos(0.25 * M_PI * t);
+    at[1] = (1.0 - w) * from[1] + w * ring->outer * sin(0.25 * M_PI * t);
+    turn(at, side);
+}
+
+/* The row i = 0 of the lattice is there already where the ring shares nodes; -1 where not. */
+static void add_ring(struct section *s, const struct lattice *lattice, const struct ring *ring)
+{
+    for (int i = 0; i <= 2 * ring->m; i++) {
+        for (int j = 0; j < 16 * ring->m; j++) {
+            double at[2];
+            if (i == 0 && *lattice_at(lattice, 0, j) >= 0)
+                continue;
+            ring_point(at, ring, i, j);
+            *lattice_at(lattice, i, j) = add_node(s, i, j, at[0], at[1]);
+        }
+    }
+    add_quads(s, lattice, ring->m, 8 * ring->m, ring->part);
+}
+
+static void add_edges(struct section *s, const struct lattice *inner, const struct lattice *outer)
+{
+    for (int j = 0; j < inner->nj; j += 2) {
+        static const int step[3] = {0, 2, 1};
+        for (int k = 0; k < 3; k++) {
+            s->edge[s->n_edges][0][k] = *lattice_at(inner, inner->ni - 1, j + step[k]);
+            s->edge[s->n_edges][1][k] = *lattice_at(outer, 0, j + step[k]);
+        }
+        s->n_edges++;
+    }
+}
+
+static void fill_wire_section(struct section *s, const struct wb_solid_mesh_wire *wire,
+                              const struct lattice *square, const struct lattice ring[PARTS])
+{
+    const int m = wire->section_density;
+
+    add_square(s, square, m, 0.5 * wire->outer_diameter[0]);
+    for (int p = 0; p < wire->n_parts; p++) {
+        const struct ring around = {
+            .part = p,
+            .m = m,
+            .inner = p > 0 ? 0.5 * wire->outer_diameter[p - 1] : 0.0,
+            .outer = 0.5 * wire->outer_diameter[p],
+        };
+        for (int j = 0; j < 16 * m; j++) {
+            const int inside = p > 0 ? *lattice_at(&ring[p - 1], 2 * m, j) : outline(square, m, j);
+            *lattice_at(&ring[p], 0, j) = p > 0 && wire->split ? -1 : inside;
+        }
+        add_ring(s, &ring[p], &around);
+        if (p > 0 && wire->split)
+            add_edges(s, &ring[p - 1], &ring[p]);
+    }
+}
+
+static enum wb_status wire_section(struct section *s, const struct wb_solid_mesh_wire *wire)
+{
+    const int m = wire->section_density;
+    struct lattice square = {0}, ring[PARTS] = {{0}};
+    const int nodes = 12 * m * m + 8 * m + 1 + wire->n_parts * (24 * m * m + 16 * m);
+
+    WB_TRY(section_init(s, nodes, 4 * m * m + wire->n_parts * 8 * m * m, 8 * m));
+    enum wb_status status = lattice_init(&square, 4 * m + 1, 4 * m + 1);
+    for (int p = 0; p < wire->n_parts && status == WB_OK; p++)
+        status = lattice_init(&ring[p], 2 * m + 1, 16 * m);
+    if (status == WB_OK)
+        fill_wire_section(s, wire, &square, ring);
+    else
+        section_release(s);
+    free(square.id);
+    for (int p = 0; p < PARTS; p++)
+        free(ring[p].id);
+    return status;
+}
+
+static enum wb_status block_section(struct section *s, int ny, int nz)
+{
+    struct lattice lattice;
+    WB_TRY(section_init(s, (2 * ny + 1) * (2 * nz + 1), ny * nz, 0));
+    const enum wb_status status = lattice_init(&lattice, 2 * ny + 1, 2 * nz + 1);
+    if (status != WB_OK) {
+        section_release(s);
+        return status;
+    }
+    for (int i = 0; i <= 2 * ny; i++) {
+        for (int j = 0; j <= 2 * nz; j++)
+            *lattice_at(&lattice, i, j) =
+                add_node(s, i, j, (double)i / (2 * ny), (double)j / (2 * nz));
+    }
+    add_quads(s, &lattice, ny, nz, 0);
+    free(lattice.id);
+    return WB_OK;
+}
+
+/* Node numbers in the sweep: node i of section l, and halfway between section l - 1 and l. */
+static int section_node(const struct section *s, int l, int i)
+{
+    return l * (s->n + s->n_corners) + i;
+}
+
+static int halfway_node(const struct section *s, int l, int i)
+{
+    return s->n + (l - 1) * (s->n + s->n_corners) + s->halfway[i];
+}
+
+static void fill_elements(struct wb_solid_mesh *mesh, const struct section *s, int slices)
+{
+    for (int l = 0; l < slices; l++) {
+        for (int q = 0; q < s->n_quads; q++) {
+            const int e = l * s->n_quads + q;
+            const int *quad = s->quad[q];
+            for (int k = 0; k < 4; k++) {
+                mesh->element[e][k] = section_node(s, l, quad[k]);
+                mesh->element[e][4 + k] = section_node(s, l + 1, quad[k]);
+                mesh->element[e][8 + k] = section_node(s, l, quad[4 + k]);
+                mesh->element[e][12 + k] = section_node(s, l + 1, quad[4 + k]);
+                mesh->element[e][16 + k] = halfway_node(s, l + 1, quad[k]);
+            }
+            mesh->part[e] = s->part[q];
+        }
+    }
+}
+
+static void side_face(int face[WB_SOLID_MESH_FACE], const struct section *s, int l,
+                      const int edge[3])
+{
+    face[0] = section_node(s, l, edge[0]);
+    face[1] = section_node(s, l, edge[1]);
+    face[2] = section_node(s, l + 1, edge[1]);
+    face[3] = section_node(s, l + 1, edge[0]);
+    face[4] = section_node(s, l, edge[2]);
+    face[5] = halfway_node(s, l + 1, edge[1]);
+    face[6] = section_node(s, l + 1, edge[2]);
+    face[7] = halfway_node(s, l + 1, edge[0]);
+}
+
+/* Where a point of the unit length times the section lies. */
+struct placement {
+    void (*place)(void *context, const double unit[3], double position[3]);
+    void *context;
+};
+
+static bool fill_nodes(struct wb_solid_mesh *mesh, const struct section *s, int slices,
+                       const struct placement *to)
+{
+    bool finite = true;
+    for (int l = 0; l <= slices; l++) {
+        for (int i = 0; i < s->n; i++) {
+            double *node = mesh->node[section_node(s, l, i)];
+            const double here[3] = {(double)l / slices, s->at[i][0], s->at[i][1]};
+            to->place(to->context, here, node);
+            finite = finite && isfinite(node[0] + node[1] + node[2]);
+            if (l == 0 || s->halfway[i] < 0)
+                continue;
+            node = mesh->node[halfway_node(s, l, i)];
+            const double before[3] = {(2 * l - 1) / (2.0 * slices), here[1], here[2]};
+            to->place(to->context, before, node);
+            finite = finite && isfinite(node[0] + node[1] + node[2]);
+        }
+    }
+    return finite;
+}
+
+static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s, int slices,
+                            const struct placement *to)
+{
+    const long long nodes = s->n + (long long)slices * (s->n + s->n_corners);
+    const long long elements = (long long)slices * s->n_quads;
+    if (nodes > INT_MAX)
+        return wb_fail(WB_ERR_ARGUMENT, "a mesh of %lld elements is too large", elements);
+
+    struct wb_solid_mesh made;
+    WB_TRY(wb_solid_mesh_init(&made, (int)nodes, (int)elements));
+    free(made.layer);
+    free(made.link);
+    made.n_layers = slices + 1;
+    made.layer = calloc((size_t)slices + 2, sizeof *made.layer);
+    made.link = calloc((size_t)slices + 1, sizeof *made.link);
+    made.n_pairs = slices * s->n_edges;
+    made.pair = s->n_edges > 0 ? calloc((size_t)made.n_pairs, sizeof *made.pair) : NULL;
+    if (!made.layer || !made.link || (s->n_edges > 0 && !made.pair)) {
+        wb_solid_mesh_release(&made);
+        return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %lld elements", elements);
+    }
+
+    fill_elements(&made, s, slices);
+    for (int l = 0; l <= slices; l++) {
+        made.link[l] = section_node(s, l, 0);
+        made.layer[l + 1] = section_node(s, l, s->n);
+    }
+    for (int i = 0; i < made.n_pairs; i++) {
+        const int l = i / s->n_edges, k = i % s->n_edges;
+        side_face(made.pair[i].inner, s, l, s->edge[k][0]);
+        side_face(made.pair[i].outer, s, l, s->edge[k][1]);
+    }
+    if (!fill_nodes(&made, s, slices, to)) {
+        wb_solid_mesh_release(&made);
+        return wb_fail(WB_ERR_ARGUMENT, "a mesh has nodes at positions that are not finite");
+    }
+    *mesh = made;
+    return WB_OK;
+}
+
+/* Clamp, tip faces and axis of a swept wire; `centre` is the axis' node in the section. */
+static enum wb_status mark_wire(struct wb_solid_mesh *mesh, const struct section *s, int slices,
+                                int centre)
+{
+    mesh->clamp = calloc((size_t)s->n, sizeof *mesh->clamp);
+    mesh->tip_face = calloc((size_t)s->n_quads, sizeof *mesh->tip_face);
+    mesh->axis = calloc(2 * (size_t)slices + 1, sizeof *mesh->axis);
+    if (!mesh->clamp || !mesh->tip_face || !mesh->axis)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %d elements", mesh->n_elements);
+
+    mesh->n_clamp = s->n;
+    for (int i = 0; i < s->n; i++)
+        mesh->clamp[i] = section_node(s, 0, i);
+    mesh->n_tip_faces = s->n_quads;
+    for (int q = 0; q < s->n_quads; q++) {
+        mesh->tip_face[q].element = (slices - 1) * s->n_quads + q;
+        for (int k = 0; k < WB_SOLID_MESH_FACE; k++)
+            mesh->tip_face[q].node[k] = section_node(s, slices, s->quad[q][k]);
+    }
+    mesh->n_axis = 2 * slices + 1;
+    for (int l = 0; l <= slices; l++) {
+        mesh->axis[2 * l] = section_node(s, l, centre);
+        if (l > 0)
+            mesh->axis[2 * l - 1] = halfway_node(s, l, centre);
+    }
+    return WB_OK;
+}
+
+static void place_along(void *context, const double unit[3], double position[3])
+{
+    const double *length = context;
+    position[0] = unit[0] * *length;
+    position[1] = unit[1];
+    position[2] = unit[2];
+}
+
+static enum wb_status check_wire(const struct wb_solid_mesh_wire *wire)
+{
+    if (!(wire->length > 0.0) || !isfinite(wire->length))
+        return wb_fail(WB_ERR_ARGUMENT, "a wire of length %g m has no mesh", wire->length);
+    if (wire->n_parts < 1 || wire->n_parts > PARTS)
+        return wb_fail(WB_ERR_ARGUMENT, "a wire has 1 or 2 parts, not %d", wire->n_parts);
+    for (int p = 0; p < wire->n_parts; p++) {
+        const double inside = p > 0 ? wire->outer_diameter[p - 1] : 0.0;
+        if (!(wire->outer_diameter[p] > inside) || !isfinite(wire->outer_diameter[p]))
+            return wb_fail(WB_ERR_ARGUMENT, "part %d of diameter %g m around %g m has no mesh", p,
+                           wire->outer_diameter[p], inside);
+    }
+    if (wire->elements_along < 1 || wire->elements_along > MOST_ALONG)
+        return wb_fail(WB_ERR_ARGUMENT, "a mesh has 1 to %d elements along the wire, not %d",
+                       MOST_ALONG, wire->elements_along);
+    if (wire->section_density < 1 || wire->section_density > MOST_DENSITY)
+        return wb_fail(WB_ERR_ARGUMENT, "the density of a section is 1 to %d, not %d", MOST_DENSITY,
+                       wire->section_density);
+    return WB_OK;
+}
+
+enum wb_status wb_solid_mesh_sweep(struct wb_solid_mesh *mesh,
+                                   const struct wb_solid_mesh_wire *wire)
+{
+    struct section section;
+    struct wb_solid_mesh made;
+    double length = wire->length;
+    WB_TRY(check_wire(wire));
+    WB_TRY(wire_section(&section, wire));
+
+    const struct placement along = {place_along, &length};
+    enum wb_status status = sweep(&made, &section, wire->elements_along, &along);
+    if (status == WB_OK) {
+        made.n_parts = wire->n_parts;
+        int centre = 0;
+        while (section.at[centre][0] != 0.0 || section.at[centre][1] != 0.0)
+            centre++;
+        status = mark_wire(&made, &section, wire->elements_along, centre);
+        if (status == WB_OK)
+            *mesh = made;
+        else
+            wb_solid_mesh_release(&made);
+    }
+    section_release(&section);
+    return status;
+}
+
+static void place_unit(void *context, const double unit[3], double position[3])
+{
+    (void)context;
+    for (int k = 0; k < 3; k++)
+        position[k] = unit[k];
+}
+
+enum wb_status wb_solid_mesh_block(struct wb_solid_mesh *mesh, int nx, int ny, int nz,
+                                   void (*map)(void *context, const double unit[3],
+                                               double position[3]),
+                                   void *context)
+{
+    const int most = 1000;
+    struct section section;
+    if (nx < 1 || ny < 1 || nz < 1 || nx > MOST_ALONG || ny > most || nz > most)
+        return wb_fail(WB_ERR_ARGUMENT, "no block of %d x %d x %d elements", nx, ny, nz);
+    WB_TRY(block_section(&section, ny, nz));
+    const struct placement to = {map ? map : place_unit, context};
+    const enum wb_status status = sweep(mesh, &section, nx, &to);
+    section_release(&section);
+    return status;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/swept/swept_kernel.h"
+
 #define WB_LOG_DOMAIN "swept"
 
 struct wb_swept_layout wb_swept_layout(int n_nodes, int n_stations)
@@ -23,6 +25,50 @@ struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n)
     return (struct wb_swept_range){range.first < end ? range.first : end, end};
 }
 
+static bool is_supported(enum wb_swept_instructions instructions)
+{
+    switch (instructions) {
+    case WB_SWEPT_BASELINE:
+        return true;
+#ifdef __x86_64__
+    case WB_SWEPT_AVX2:
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case WB_SWEPT_AVX512:
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512vl") && is_supported(WB_SWEPT_AVX2);
+#endif
+    default:
+        return false;
+    }
+}
+
+static enum wb_swept_instructions best_supported(void)
+{
+    enum wb_swept_instructions best = WB_SWEPT_AVX512;
+
+    while (!is_supported(best))
+        best--;
+    return best;
+}
+
+enum wb_status wb_swept_choose_instructions(enum wb_swept_instructions *chosen,
+                                            enum wb_swept_instructions wanted)
+{
+    const enum wb_swept_instructions set = wanted == WB_SWEPT_BEST ? best_supported() : wanted;
+    if (!is_supported(set))
+        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    *chosen = set;
+    return WB_OK;
+}
+
+const char *wb_swept_instructions_name(enum wb_swept_instructions instructions)
+{
+    static const char *const names[] = {
+        [WB_SWEPT_BASELINE] = "baseline", [WB_SWEPT_AVX2] = "avx2", [WB_SWEPT_AVX512] = "avx512"};
+
+    return names[instructions == WB_SWEPT_BEST ? best_supported() : instructions];
+}
+
 enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)
 {
     *out = NULL;
@@ -35,5 +81,14 @@ enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)
         return wb_fail(WB_ERR_MEMORY, "out of memory for %zu values", count);
     memset(memory, 0, bytes);
     *out = memory;
+    return WB_OK;
+}
+
+enum wb_status wb_swept_kernel_convert(void **out, bool is_double, const double *numbers,
+                                       size_t count)
+{
+    WB_TRY(wb_swept_allocate(out, count, wb_swept_kernel_real_size(is_double)));
+    for (size_t i = 0; i < count; i++)
+        wb_swept_kernel_put(is_double, *out, (ptrdiff_t)i, numbers[i]);
     return WB_OK;
 }

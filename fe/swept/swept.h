@@ -26,6 +26,14 @@ enum {
     WB_SWEPT_ALIGNMENT = 64
 };
 
+/* Instructions of the processor that kernels use. */
+enum wb_swept_instructions {
+    WB_SWEPT_BEST, /* of what this processor has */
+    WB_SWEPT_BASELINE,
+    WB_SWEPT_AVX2,
+    WB_SWEPT_AVX512
+};
+
 struct wb_swept_layout {
     int n_nodes;    /* of the section */
     int n_stations; /* one more than elements along */
@@ -44,6 +52,14 @@ size_t wb_swept_size(const struct wb_swept_layout *layout);
 
 /* The part of a range that lies in 0 to n - 1. */
 struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n);
+
+/* The instructions to use where these are wanted: never WB_SWEPT_BEST. WB_ERR_UNSUPPORTED when this
+ * processor does not have them. */
+WB_MUST_CHECK enum wb_status wb_swept_choose_instructions(enum wb_swept_instructions *chosen,
+                                                          enum wb_swept_instructions wanted);
+
+/* "baseline", "avx2", "avx512"; of WB_SWEPT_BEST, of what this processor has. */
+const char *wb_swept_instructions_name(enum wb_swept_instructions instructions);
 
 /* Zeroed, aligned memory for `count` values of `size` bytes; free() it. */
 WB_MUST_CHECK enum wb_status wb_swept_allocate(void **out, size_t count, size_t size);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "fe/swept/swept_cohesion_kernel.h"
-#include "fe/swept/swept_tape_private.h"
+#include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
 
@@ -14,8 +14,12 @@ enum {
     ROWS = WB_SWEPT_COHESION_ROWS
 };
 
+static const struct wb_swept_cohesion_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_cohesion_kernel);
+
 struct wb_swept_cohesion {
-    const struct wb_swept_tape *tape; /* borrowed */
+    const struct wb_swept_tape *tape;             /* borrowed */
+    const struct wb_swept_tape_model *tape_model; /* the tape's */
     struct wb_swept_cohesion_settings settings;
     const struct wb_swept_cohesion_kernel *kernel;
     struct wb_swept_cohesion_kernel_model model;
@@ -42,12 +46,7 @@ void wb_swept_cohesion_default_settings(struct wb_swept_cohesion_settings *setti
 
 static const struct wb_swept_layout *layout_of(const struct wb_swept_cohesion *c)
 {
-    return &c->tape->model.layout;
-}
-
-static size_t real_size(const struct wb_swept_cohesion *c)
-{
-    return c->tape->model.double_precision ? sizeof(double) : sizeof(float);
+    return &c->tape_model->layout;
 }
 
 /* --- places --- */
@@ -60,7 +59,7 @@ struct ray {
 static struct ray ray_of(const struct wb_swept_cohesion *c, int k, int j)
 {
     const size_t stride = (size_t)layout_of(c)->stride, at = 3 * (size_t)k * stride + (size_t)j;
-    const double *x = c->tape->position + at, *d = c->tape->director + at;
+    const double *x = c->tape_model->position + at, *d = wb_swept_tape_directors(c->tape) + at;
     return (struct ray){x[stride], x[2 * stride], d[stride], d[2 * stride]};
 }
 
@@ -99,7 +98,7 @@ static void face_wire(const struct ray *ray, const struct wb_swept_cohesion_wire
 static void face_tape(const struct wb_swept_cohesion *c, int k, int j, const struct ray *ray,
                       struct facing *best)
 {
-    const int n = layout_of(c)->n_nodes, last = c->tape->model.closed ? n : n - 1;
+    const int n = layout_of(c)->n_nodes, last = c->tape_model->closed ? n : n - 1;
 
     for (int i = 0; i < last; i++) {
         const int nodes[2] = {i, (i + 1) % n};
@@ -208,20 +207,6 @@ static enum wb_status make_strips(struct wb_swept_cohesion *c,
     return WB_OK;
 }
 
-static enum wb_status take_over(struct wb_swept_cohesion *c)
-{
-    const size_t count = (size_t)c->n_strips * ROWS * LANES;
-
-    WB_TRY(wb_swept_allocate(&c->rows, count, real_size(c)));
-    for (size_t i = 0; i < count; i++) {
-        if (c->tape->model.double_precision)
-            ((double *)c->rows)[i] = c->numbers[i];
-        else
-            ((float *)c->rows)[i] = (float)c->numbers[i];
-    }
-    return wb_swept_allocate(&c->damage, (size_t)c->n_strips * LANES, real_size(c));
-}
-
 /* --- creation --- */
 
 static enum wb_status check(const struct wb_swept_cohesion_settings *s)
@@ -247,43 +232,25 @@ static enum wb_status check(const struct wb_swept_cohesion_settings *s)
     return WB_OK;
 }
 
-static const struct wb_swept_cohesion_kernel *find_kernel(const struct wb_swept_tape *tape)
-{
-    static const struct wb_swept_cohesion_kernel *const kernels[] = {
-#ifdef __x86_64__
-        &wb_swept_cohesion_kernel_float_avx512,   &wb_swept_cohesion_kernel_double_avx512,
-        &wb_swept_cohesion_kernel_float_avx2,     &wb_swept_cohesion_kernel_double_avx2,
-#endif
-        &wb_swept_cohesion_kernel_float_baseline, &wb_swept_cohesion_kernel_double_baseline,
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = 0; i < n; i++) {
-        if (kernels[i]->is_double == tape->model.double_precision &&
-            strcmp(kernels[i]->name, tape->kernel->name) == 0)
-            return kernels[i];
-    }
-    return NULL;
-}
-
 static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_cohesion_wire *wires,
                            const struct wb_swept_cohesion_bond *bond)
 {
     const struct wb_swept_layout *layout = layout_of(c);
     const struct wb_swept_cohesion_settings *s = &c->settings;
     const size_t n_blocks = (size_t)layout->stride / LANES;
-    const bool breaks = s->strength > 0.0;
+    const bool breaks = s->strength > 0.0, is_double = c->tape_model->double_precision;
 
     WB_TRY(check(s));
-    c->kernel = find_kernel(c->tape);
-    if (!c->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "no cohesion for the instructions of the tape");
+    c->kernel = kernels[c->tape_model->instructions][is_double];
     c->first = calloc(n_blocks + 1, sizeof *c->first);
     c->strip_of = calloc((size_t)layout->n_nodes * (size_t)layout->n_stations, sizeof *c->strip_of);
     if (!c->first || !c->strip_of)
         return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     WB_TRY(make_strips(c, wires, bond));
-    WB_TRY(take_over(c));
+    WB_TRY(wb_swept_kernel_convert(&c->rows, is_double, c->numbers,
+                                   (size_t)c->n_strips * ROWS * LANES));
+    WB_TRY(wb_swept_allocate(&c->damage, (size_t)c->n_strips * LANES,
+                             wb_swept_kernel_real_size(is_double)));
     c->model = (struct wb_swept_cohesion_kernel_model){
         .stride = layout->stride,
         .first = c->first,
@@ -295,7 +262,7 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
         .per_strength = breaks ? s->normal_stiffness / s->strength : 0.0,
         .per_shear_strength = breaks ? s->shear_stiffness / s->shear_strength : 0.0,
         .fracture_energy = s->fracture_energy,
-        .counted = wb_swept_range_within(c->tape->model.counted, layout->n_stations),
+        .counted = wb_swept_range_within(c->tape_model->counted, layout->n_stations),
     };
     return WB_OK;
 }
@@ -311,6 +278,7 @@ enum wb_status wb_swept_cohesion_create(struct wb_swept_cohesion **out,
     if (!c)
         return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     c->tape = tape;
+    c->tape_model = wb_swept_tape_get_model(tape);
     c->settings = *settings;
     c->n_wires = n_wires;
     const enum wb_status status = fill(c, wires, bond);
@@ -337,13 +305,16 @@ void wb_swept_cohesion_destroy(struct wb_swept_cohesion *cohesion)
 
 void *wb_swept_cohesion_data(struct wb_swept_cohesion *cohesion, size_t *bytes)
 {
-    *bytes = (size_t)cohesion->n_strips * LANES * real_size(cohesion);
+    *bytes = (size_t)cohesion->n_strips * LANES *
+             wb_swept_kernel_real_size(cohesion->tape_model->double_precision);
     return cohesion->damage;
 }
 
 void wb_swept_cohesion_reset(struct wb_swept_cohesion *cohesion)
 {
-    memset(cohesion->damage, 0, (size_t)cohesion->n_strips * LANES * real_size(cohesion));
+    memset(cohesion->damage, 0,
+           (size_t)cohesion->n_strips * LANES *
+               wb_swept_kernel_real_size(cohesion->tape_model->double_precision));
 }
 
 void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
@@ -387,8 +358,8 @@ double wb_swept_cohesion_damage(const struct wb_swept_cohesion *cohesion, int no
 
     if (s < 0)
         return 1.0;
-    return cohesion->tape->model.double_precision ? ((const double *)cohesion->damage)[at]
-                                                  : (double)((const float *)cohesion->damage)[at];
+    return wb_swept_kernel_get(cohesion->tape_model->double_precision, cohesion->damage,
+                               (ptrdiff_t)at);
 }
 
 static double largest_stiffness(const struct wb_swept_cohesion *c)

@@ -1,5 +1,5 @@
-/* The kernels behind fe/swept/swept_cohesion.h: one source, swept_cohesion_kernel.inc, compiled for
- * float and double and for each instruction set. Lanes are stations.
+/* The kernels behind fe/swept/swept_cohesion.h: the forces of the bonds. Lanes are
+ * stations.
  *
  * A strip is the part of a ring node's bonds in one block of stations that goes to one pair of a
  * surface's nodes; where stations of the block do otherwise, its area is zero.
@@ -9,8 +9,8 @@
 
 #include <stdbool.h>
 
-#include "fe/swept/swept.h"
 #include "fe/swept/swept_cohesion.h"
+#include "fe/swept/swept_kernel.h"
 
 /* Rows of a strip, WB_SWEPT_LANES each. */
 enum {
@@ -48,19 +48,9 @@ struct wb_swept_cohesion_kernel_call {
 };
 
 struct wb_swept_cohesion_kernel {
-    const char *name;
-    bool is_double;
-    bool (*runs_here)(void);
     void (*add_forces)(const struct wb_swept_cohesion_kernel_call *call);
 };
 
-extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_baseline;
-extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_double_baseline;
-#ifdef __x86_64__
-extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_avx2;
-extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_double_avx2;
-extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_avx512;
-extern const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_double_avx512;
-#endif
+WB_SWEPT_KERNEL_DECLARE(wb_swept_cohesion_kernel);
 
 #endif

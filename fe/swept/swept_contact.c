@@ -4,18 +4,110 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fe/swept/swept_contact_private.h"
+#include "fe/swept/swept_contact_kernel.h"
+#include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "contact"
 
 enum {
+    BLOCK = WB_SWEPT_LANES,
+    MOST_ITERATIONS = 60,
+    FEWEST_NEIGHBOURS = 6,
     MOST_WIRES = 1024,
     MOST_STATIONS = 1 << 20,
     MOST_SURFACE = 1 << 16
 };
 
+static const struct wb_swept_contact_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_contact_kernel);
+
 /* Beyond this part of the smallest radius the penalty is no contact any more. */
 static const double deepest_part = 0.5;
+
+/* Shifts are found to this part of a station; the energy is stationary there. Of pairs that are
+ * new as exactly as can be: then it is of no account where one began, so that parts of a bundle
+ * find what the whole does. */
+static const double shift_tolerance = 1e-4, first_tolerance = 1e-12;
+
+/* Neighbours are searched anew when a centre moved by this part of the reach. Two of them then are
+ * nearer by at most twice that, and half of the reach is left for what follows till the next
+ * refresh. */
+static const double moved_part = 0.25;
+
+struct wb_swept_contact {
+    struct wb_swept_contact_settings settings;
+    const struct wb_swept_contact_kernel *kernel;
+    struct wb_swept_contact_model model;
+    int most_pairs;
+    double spacing, smallest_radius;
+    double *radius, *youngs_modulus; /* (n_wires) */
+    double *searched;                /* (n_wires x 3 x n_stations): centres at the last search */
+    long long step;                  /* steps done */
+
+    double *centre_memory, *fixed_memory, *rows_memory; /* of all wires, of all pairs */
+    void *turn_memory, *inverse_memory, *load_memory;   /* in the kernel's type */
+    unsigned char *active_memory;
+    struct wb_swept_contact_window *window_memory;
+    int *node_memory, *side_memory;
+    double (*weight_memory)[3];
+    void *narrow_weight_memory;
+};
+
+/* k of two wires. */
+static double pair_stiffness(const struct wb_swept_contact *contact, int a, int b)
+{
+    const double *E = contact->youngs_modulus;
+    return contact->settings.stiffness * 2.0 * E[a] * E[b] / (E[a] + E[b]);
+}
+
+static size_t real_size(const struct wb_swept_contact *contact)
+{
+    return wb_swept_kernel_real_size(contact->settings.double_precision);
+}
+
+/* Element i of an array of the kernel's type. */
+static void set(const struct wb_swept_contact *contact, void *array, ptrdiff_t i, double value)
+{
+    wb_swept_kernel_put(contact->settings.double_precision, array, i, value);
+}
+
+static double get(const struct wb_swept_contact *contact, const void *array, ptrdiff_t i)
+{
+    return wb_swept_kernel_get(contact->settings.double_precision, array, i);
+}
+
+static void *address(const struct wb_swept_contact *contact, void *array, ptrdiff_t i)
+{
+    return (unsigned char *)array + i * (ptrdiff_t)real_size(contact);
+}
+
+/* Row `i` of a pair, and of a wire's centres and fixed rows. */
+static double *pair_row(const struct wb_swept_contact *contact,
+                        const struct wb_swept_contact_pair_rows *pair, int i)
+{
+    return pair->rows + (ptrdiff_t)i * contact->model.stride;
+}
+
+static double *centre_row(const struct wb_swept_contact *contact, int wire, int i)
+{
+    return contact->model.wire[wire].centre + (ptrdiff_t)i * contact->model.row;
+}
+
+static double *fixed_row(const struct wb_swept_contact *contact, int wire, int i)
+{
+    return contact->model.wire[wire].fixed + (ptrdiff_t)i * contact->model.stride;
+}
+
+/* A row's value at a place between stations. */
+static double value_between(const struct wb_swept_contact *contact, const double *row, double place)
+{
+    const int last = contact->model.n_stations - 2;
+    const int j = place >= last ? last : (int)place;
+    const double f = place - j;
+    return (1.0 - f) * row[j] + f * row[j + 1];
+}
+
+/* --- creation --- */
 
 void wb_swept_contact_default_settings(struct wb_swept_contact_settings *settings)
 {
@@ -68,34 +160,6 @@ static enum wb_status check_wire(const struct wb_swept_contact_wire *wire, int w
     return WB_OK;
 }
 
-static enum wb_status choose_kernel(const struct wb_swept_contact_settings *settings,
-                                    const struct wb_swept_contact_kernel **out)
-{
-    static const struct wb_swept_contact_kernel *const kernels[][2] = {
-        [WB_SWEPT_CONTACT_BASELINE] = {&wb_swept_contact_kernel_float_baseline,
-                                       &wb_swept_contact_kernel_double_baseline},
-#ifdef __x86_64__
-        [WB_SWEPT_CONTACT_AVX2] = {&wb_swept_contact_kernel_float_avx2,
-                                   &wb_swept_contact_kernel_double_avx2},
-        [WB_SWEPT_CONTACT_AVX512] = {&wb_swept_contact_kernel_float_avx512,
-                                     &wb_swept_contact_kernel_double_avx512},
-#endif
-    };
-    const int n = (int)(sizeof kernels / sizeof kernels[0]), type = settings->double_precision;
-    int set = (int)settings->instructions;
-
-    if (set == WB_SWEPT_CONTACT_BEST) {
-        set = n - 1;
-        while (!kernels[set][type]->runs_here())
-            set--;
-    }
-    if (set < 0 || set >= n || !kernels[set][type]->runs_here())
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor lacks the instructions asked for (%d)",
-                       set);
-    *out = kernels[set][type];
-    return WB_OK;
-}
-
 /* Least squares of a linear function of y and z: its value at 0 and its two slopes as weights of
  * the nodes' values. */
 static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int w,
@@ -136,7 +200,7 @@ static enum wb_status allocate_rows(struct wb_swept_contact *c)
 {
     const size_t wires = (size_t)c->model.n_wires, pairs = (size_t)c->most_pairs;
     const size_t stride = (size_t)c->model.stride, row = (size_t)c->model.row;
-    const size_t real = wb_swept_contact_real_size(c);
+    const size_t real = real_size(c);
     void *rows[3] = {NULL, NULL, NULL};
 
     enum wb_status status = wb_swept_allocate(&rows[0], wires * 3 * row, sizeof(double));
@@ -162,7 +226,7 @@ static enum wb_status allocate(struct wb_swept_contact *c, int n_surface)
     const size_t blocks = (size_t)m->n_blocks, surface = (size_t)n_surface;
 
     WB_TRY(allocate_rows(c));
-    WB_TRY(wb_swept_allocate(&c->narrow_weight_memory, 3 * surface, wb_swept_contact_real_size(c)));
+    WB_TRY(wb_swept_allocate(&c->narrow_weight_memory, 3 * surface, real_size(c)));
     m->wire = calloc(wires, sizeof *m->wire);
     m->pair = calloc(pairs, sizeof *m->pair);
     m->sums = calloc(blocks, sizeof *m->sums);
@@ -188,17 +252,14 @@ static void point_at_memory(struct wb_swept_contact *c)
     for (int w = 0; w < m->n_wires; w++) {
         m->wire[w].centre = c->centre_memory + w * 3 * row + stride;
         m->wire[w].fixed = c->fixed_memory + w * WB_SWEPT_CONTACT_FIXED * stride;
-        m->wire[w].turn =
-            wb_swept_contact_at(c, c->turn_memory, w * WB_SWEPT_CONTACT_TURNS * row + stride);
-        m->wire[w].inverse =
-            wb_swept_contact_at(c, c->inverse_memory, w * WB_SWEPT_CONTACT_INVERSES * stride);
+        m->wire[w].turn = address(c, c->turn_memory, w * WB_SWEPT_CONTACT_TURNS * row + stride);
+        m->wire[w].inverse = address(c, c->inverse_memory, w * WB_SWEPT_CONTACT_INVERSES * stride);
     }
     for (int p = 0; p < c->most_pairs; p++) {
         struct wb_swept_contact_pair_rows *pair = &m->pair[p];
         struct wb_swept_contact_window *window = c->window_memory + (ptrdiff_t)p * 4 * m->n_blocks;
         pair->rows = c->rows_memory + p * WB_SWEPT_CONTACT_PAIR * stride;
-        pair->load =
-            wb_swept_contact_at(c, c->load_memory, p * WB_SWEPT_CONTACT_LOAD * row + stride);
+        pair->load = address(c, c->load_memory, p * WB_SWEPT_CONTACT_LOAD * row + stride);
         pair->active = c->active_memory + (ptrdiff_t)p * m->n_blocks;
         for (int side = 0; side < 2; side++, window += 2 * m->n_blocks) {
             pair->from[side] = window;
@@ -221,10 +282,10 @@ static enum wb_status take_wires(struct wb_swept_contact *c,
         out->weight = (const double(*)[3])c->weight_memory + n;
         memcpy(c->node_memory + n, wires[w].surface, sizeof(int) * (size_t)wires[w].n_surface);
         WB_TRY(find_weights(&wires[w], w, c->weight_memory + n));
-        out->narrow_weight = wb_swept_contact_at(c, c->narrow_weight_memory, (ptrdiff_t)3 * n);
+        out->narrow_weight = address(c, c->narrow_weight_memory, (ptrdiff_t)3 * n);
         for (int i = 0; i < 3 * wires[w].n_surface; i++)
-            wb_swept_contact_set(c, c->narrow_weight_memory, (ptrdiff_t)3 * n + i,
-                                 c->weight_memory[n + i / 3][i % 3]);
+            set(c, c->narrow_weight_memory, (ptrdiff_t)3 * n + i,
+                c->weight_memory[n + i / 3][i % 3]);
         n += wires[w].n_surface;
         c->radius[w] = wires[w].radius;
         c->youngs_modulus[w] = wires[w].youngs_modulus;
@@ -258,7 +319,7 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
                                        int n_wires, const struct wb_swept_contact_wire *wires,
                                        int n_stations, double spacing)
 {
-    const struct wb_swept_contact_kernel *kernel;
+    enum wb_swept_instructions instructions;
     int n_surface = 0;
 
     if (n_wires < 1 || n_wires > MOST_WIRES || n_stations < 2 || n_stations > MOST_STATIONS ||
@@ -266,7 +327,7 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
         return wb_fail(WB_ERR_ARGUMENT, "contact of %d wires with %d stations %g m apart", n_wires,
                        n_stations, spacing);
     WB_TRY(check_settings(settings));
-    WB_TRY(choose_kernel(settings, &kernel));
+    WB_TRY(wb_swept_choose_instructions(&instructions, settings->instructions));
     for (int w = 0; w < n_wires; w++) {
         WB_TRY(check_wire(&wires[w], w));
         n_surface += wires[w].n_surface;
@@ -275,7 +336,8 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
     if (!c)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of %d wires", n_wires);
     c->settings = *settings;
-    c->kernel = kernel;
+    c->settings.instructions = instructions;
+    c->kernel = kernels[instructions][settings->double_precision];
     c->spacing = spacing;
     size_model(c, n_wires, n_stations);
     enum wb_status status = allocate(c, n_surface);
@@ -324,8 +386,318 @@ void wb_swept_contact_reset(struct wb_swept_contact *contact)
 
 const char *wb_swept_contact_instructions(const struct wb_swept_contact *contact)
 {
-    return contact->kernel->name;
+    return wb_swept_instructions_name(contact->settings.instructions);
 }
+
+/* --- neighbours, and where they are opposite each other --- */
+
+/* Library functions are calls here. */
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static void find_tangents(const struct wb_swept_contact *contact)
+{
+    const int last = contact->model.n_stations - 1;
+
+    for (int w = 0; w < contact->model.n_wires; w++) {
+        for (int i = 0; i < 3; i++) {
+            const double *c = centre_row(contact, w, i);
+            double *row = fixed_row(contact, w, WB_SWEPT_CONTACT_TANGENT + i);
+            row[0] = c[1] - c[0];
+            row[last] = c[last] - c[last - 1];
+            for (int j = 1; j < last; j++)
+                row[j] = 0.5 * (c[j + 1] - c[j - 1]);
+        }
+    }
+}
+
+/* The places on both wires for a shift: half of it either way from the station, or from as near to
+ * it as both have a place. */
+static void place_of(const struct wb_swept_contact *contact, int j, double shift, double place[2])
+{
+    const double end = contact->model.n_stations - 1, half = 0.5 * fabs(shift);
+    const double middle = larger(half, smaller(end - half, j));
+
+    place[0] = larger(0.0, smaller(end, middle - 0.5 * shift));
+    place[1] = larger(0.0, smaller(end, middle + 0.5 * shift));
+}
+
+/* Newton's method for (c_b - c_a) (t_a + t_b) = 0. */
+static double solve_shift(const struct wb_swept_contact *contact, const int wire[2], int j,
+                          double shift, double tolerance)
+{
+    const double end = contact->model.n_stations - 1;
+
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        double place[2], apart = 0.0, square = 0.0;
+        place_of(contact, j, shift, place);
+        for (int c = 0; c < 3; c++) {
+            double t = 0.0, x[2];
+            for (int side = 0; side < 2; side++) {
+                const int w = wire[side];
+                x[side] = value_between(contact, centre_row(contact, w, c), place[side]);
+                t += value_between(contact, fixed_row(contact, w, WB_SWEPT_CONTACT_TANGENT + c),
+                                   place[side]);
+            }
+            apart += (x[1] - x[0]) * t;
+            square += 0.5 * t * t;
+        }
+        if (!(square > 1e-6 * contact->spacing * contact->spacing))
+            return shift;
+        const double change = larger(-1.0, smaller(1.0, -apart / square));
+        shift = larger(-end, smaller(end, shift + change));
+        if (fabs(change) < tolerance)
+            break;
+    }
+    return shift;
+}
+
+/* Of the station's cell, what both wires have beside each other. */
+static double length_of(const struct wb_swept_contact *contact, int j, double shift)
+{
+    const double half = 0.5 * fabs(shift);
+    const double begin = larger(j - 0.5, half);
+    const double end = smaller(j + 0.5, contact->model.n_stations - 1 - half);
+    return contact->spacing * larger(0.0, end - begin);
+}
+
+/* Sets the vector between the places of the step before. Returns the gap, less what it may close
+ * until the next refresh (with a factor of safety of two). What leaves is as fast as far: before
+ * its block becomes inactive it has been pressed once apart, which left its forces and springs at
+ * 0. */
+static double begin_between(const struct wb_swept_contact *contact,
+                            const struct wb_swept_contact_pair_rows *pair, int j,
+                            const double place[2])
+{
+    double distance = 0.0, closing = 0.0;
+
+    for (int i = 0; i < 3; i++) {
+        double now[2], before[2];
+        for (int side = 0; side < 2; side++) {
+            const int w = pair->wire[side];
+            now[side] = value_between(contact, centre_row(contact, w, i), place[side]);
+            before[side] = value_between(
+                contact, fixed_row(contact, w, WB_SWEPT_CONTACT_BEFORE + i), place[side]);
+        }
+        const double between = now[1] - now[0];
+        const double old = contact->model.started ? before[1] - before[0] : between;
+        pair_row(contact, pair, WB_SWEPT_CONTACT_BETWEEN + i)[j] = old;
+        distance += between * between;
+        closing += (between - old) * (between - old);
+    }
+    return sqrt(distance) - pair->reach - 2.0 * contact->settings.refresh_interval * sqrt(closing);
+}
+
+static double reach_of(const struct wb_swept_contact *contact)
+{
+    return contact->settings.reach * contact->smallest_radius;
+}
+
+static void widen(struct wb_swept_contact_window *window, int low, int high)
+{
+    if (window->first > window->last)
+        *window = (struct wb_swept_contact_window){low, high};
+    window->first = low < window->first ? low : window->first;
+    window->last = high > window->last ? high : window->last;
+}
+
+/* Which whole offsets occur, from a pair's rows. */
+static void find_windows(const struct wb_swept_contact *contact,
+                         struct wb_swept_contact_pair_rows *pair)
+{
+    const ptrdiff_t row = contact->model.row;
+
+    for (int side = 0; side < 2; side++) {
+        const double *offset = pair_row(contact, pair, WB_SWEPT_CONTACT_OFFSET + side);
+        for (int b = 0; b < contact->model.n_blocks; b++)
+            pair->from[side][b] = pair->to[side][b] = (struct wb_swept_contact_window){0, -1};
+        for (int j = 0; j < contact->model.n_stations; j++) {
+            const int toward_zero = (int)offset[j];
+            const int low = toward_zero - (offset[j] < toward_zero);
+            const int high = low + (offset[j] > low);
+            widen(&pair->from[side][j / BLOCK], low, high);
+            set(contact, pair->load,
+                (ptrdiff_t)(WB_SWEPT_CONTACT_SHIFT + side) * contact->model.row + j, offset[j]);
+            if (!pair->active[j / BLOCK] ||
+                get(contact, pair->load, WB_SWEPT_CONTACT_LENGTH * row + j) == 0.0)
+                continue;
+            widen(&pair->to[side][(j + low) / BLOCK], low, low);
+            widen(&pair->to[side][(j + high) / BLOCK], high, high);
+        }
+    }
+}
+
+static void refresh_pair(const struct wb_swept_contact *contact,
+                         struct wb_swept_contact_pair_rows *pair, bool is_new)
+{
+    double *offset[2], shift = 0.0;
+
+    for (int side = 0; side < 2; side++)
+        offset[side] = pair_row(contact, pair, WB_SWEPT_CONTACT_OFFSET + side);
+    memset(pair->active, 0, (size_t)contact->model.n_blocks);
+    for (int j = 0; j < contact->model.n_stations; j++) {
+        double place[2];
+        shift = solve_shift(contact, pair->wire, j, is_new ? shift : offset[1][j] - offset[0][j],
+                            is_new ? first_tolerance : shift_tolerance);
+        place_of(contact, j, shift, place);
+        set(contact, pair->load, WB_SWEPT_CONTACT_LENGTH * (ptrdiff_t)contact->model.row + j,
+            length_of(contact, j, shift));
+        for (int side = 0; side < 2; side++)
+            offset[side][j] = place[side] - j;
+        if (begin_between(contact, pair, j, place) < reach_of(contact))
+            pair->active[j / BLOCK] = 1;
+    }
+    find_windows(contact, pair);
+}
+
+static bool moved_far(const struct wb_swept_contact *contact)
+{
+    const double far = moved_part * reach_of(contact);
+    const int n = contact->model.n_stations;
+
+    for (int w = 0; w < contact->model.n_wires; w++) {
+        const double *old = contact->searched + (ptrdiff_t)w * 3 * n;
+        const double *x = centre_row(contact, w, WB_SWEPT_CONTACT_CENTRE);
+        const double *y = x + contact->model.row, *z = y + contact->model.row;
+        for (int j = 0; j < n; j++) {
+            const double dx = x[j] - old[j], dy = y[j] - old[n + j], dz = z[j] - old[2 * n + j];
+            if (dx * dx + dy * dy + dz * dz > far * far)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Whether the centre lines come so near to each other, across them, at any station. */
+static bool are_neighbours(const struct wb_swept_contact *contact, int a, int b)
+{
+    const double near = contact->radius[a] + contact->radius[b] + reach_of(contact);
+
+    for (int j = 0; j < contact->model.n_stations; j++) {
+        double square = 0.0, along = 0.0, tangent = 0.0;
+        for (int i = 0; i < 3; i++) {
+            const double t = fixed_row(contact, a, WB_SWEPT_CONTACT_TANGENT + i)[j];
+            const double d = centre_row(contact, b, i)[j] - centre_row(contact, a, i)[j];
+            square += d * d;
+            along += d * t;
+            tangent += t * t;
+        }
+        if (!(square - along * along / larger(tangent, 1e-300) > near * near))
+            return true;
+    }
+    return false;
+}
+
+static bool is_known(const struct wb_swept_contact *contact, int a, int b)
+{
+    for (int p = 0; p < contact->model.n_pairs; p++) {
+        if (contact->model.pair[p].wire[0] == a && contact->model.pair[p].wire[1] == b)
+            return true;
+    }
+    return false;
+}
+
+static void drop_pairs(struct wb_swept_contact *contact)
+{
+    struct wb_swept_contact_model *model = &contact->model;
+
+    for (int p = model->n_pairs - 1; p >= 0; p--) {
+        if (memchr(model->pair[p].active, 1, (size_t)model->n_blocks))
+            continue;
+        const struct wb_swept_contact_pair_rows dropped = model->pair[p];
+        model->n_pairs--;
+        model->pair[p] = model->pair[model->n_pairs];
+        model->pair[model->n_pairs] = dropped;
+    }
+}
+
+/* What a pair of two wires has from the start. */
+static void begin_pair(const struct wb_swept_contact *contact,
+                       struct wb_swept_contact_pair_rows *pair, int a, int b)
+{
+    const double *radius = contact->radius;
+
+    pair->wire[0] = a;
+    pair->wire[1] = b;
+    pair->reach = radius[a] + radius[b];
+    pair->share[0] = radius[a] / pair->reach;
+    pair->share[1] = radius[b] / pair->reach;
+    pair->normal = pair_stiffness(contact, a, b);
+    pair->tangential = contact->settings.tangential_ratio * pair->normal;
+    pair->compliance = 1.0 / pair->tangential;
+}
+
+static void add_pair(struct wb_swept_contact *contact, int a, int b)
+{
+    struct wb_swept_contact_pair_rows *pair = &contact->model.pair[contact->model.n_pairs++];
+
+    begin_pair(contact, pair, a, b);
+    memset(pair->rows, 0, sizeof(double) * WB_SWEPT_CONTACT_PAIR * (size_t)contact->model.stride);
+    memset(address(contact, pair->load, -contact->model.stride), 0,
+           real_size(contact) * WB_SWEPT_CONTACT_LOAD * (size_t)contact->model.row);
+    refresh_pair(contact, pair, true);
+}
+
+/* Which pairs each wire has. */
+static void list_sides(struct wb_swept_contact *contact)
+{
+    const struct wb_swept_contact_model *m = &contact->model;
+    int n = 0;
+
+    for (int w = 0; w < m->n_wires; w++) {
+        m->wire[w].side = contact->side_memory + n;
+        m->wire[w].n_sides = 0;
+        for (int p = 0; p < m->n_pairs; p++) {
+            for (int side = 0; side < 2; side++) {
+                if (m->pair[p].wire[side] == w)
+                    m->wire[w].side[m->wire[w].n_sides++] = 2 * p + side;
+            }
+        }
+        n += m->wire[w].n_sides;
+    }
+}
+
+static enum wb_status find_neighbours(struct wb_swept_contact *contact)
+{
+    const int n = contact->model.n_stations;
+
+    drop_pairs(contact);
+    for (int a = 0; a < contact->model.n_wires; a++) {
+        for (int i = 0; i < 3; i++)
+            memcpy(contact->searched + ((ptrdiff_t)a * 3 + i) * n, centre_row(contact, a, i),
+                   sizeof(double) * (size_t)n);
+        for (int b = a + 1; b < contact->model.n_wires; b++) {
+            if (is_known(contact, a, b) || !are_neighbours(contact, a, b))
+                continue;
+            if (contact->model.n_pairs == contact->most_pairs)
+                return wb_fail(WB_ERR_MEMORY, "more than %d pairs of wires beside each other",
+                               contact->most_pairs);
+            add_pair(contact, a, b);
+        }
+    }
+    list_sides(contact);
+    return WB_OK;
+}
+
+/* Neighbours, shifts, lengths and windows at the frames present. */
+static enum wb_status search(struct wb_swept_contact *contact)
+{
+    find_tangents(contact);
+    for (int p = 0; p < contact->model.n_pairs; p++)
+        refresh_pair(contact, &contact->model.pair[p], false);
+    if (!contact->model.started || moved_far(contact))
+        WB_TRY(find_neighbours(contact));
+    return WB_OK;
+}
+
+/* --- a step --- */
 
 int wb_swept_contact_blocks(const struct wb_swept_contact *contact)
 {
@@ -350,7 +722,7 @@ enum wb_status wb_swept_contact_refresh(struct wb_swept_contact *contact)
                           "a wire's surface is nowhere (step %lld)", contact->step);
     if (contact->step % contact->settings.refresh_interval != 0)
         return WB_OK;
-    return wb_swept_contact_search(contact);
+    return search(contact);
 }
 
 void wb_swept_contact_press(struct wb_swept_contact *contact, double time_step, int first, int end)
@@ -406,4 +778,191 @@ enum wb_status wb_swept_contact_add_forces(struct wb_swept_contact *contact,
     wb_swept_contact_press(contact, time_step, 0, n);
     wb_swept_contact_scatter(contact, force, 0, n);
     return wb_swept_contact_finish(contact, energies);
+}
+
+/* --- stable step and neighbours --- */
+
+/* The energy of a pair's springs is at most that of springs of twice the stiffness to either wire:
+ * k (u_a - u_b)^2 <= 2 k u_a^2 + 2 k u_b^2. On a wire, a displacement u = sum w x has u^2 <= |w|^2
+ * sum m x^2 with |w|^2 = sum w^2 / m; selective mass scaling makes it that below. Towards a
+ * neighbour w = a; along the axis w = a + r (b cos + e sin); around it a, and of the turn about the
+ * axis half the square of the slopes' at most. Of n neighbours all round, every direction in the
+ * section takes n / 2. Stiffnesses and masses are per length. */
+double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contact, int wire,
+                                           const double *node_mass, double selective)
+{
+    const struct wb_swept_contact_frames *frames = &contact->model.wire[wire];
+    const double r = contact->radius[wire];
+    double G[3][3] = {{0.0}}, total = 0.0, normal = 0.0;
+    int neighbours = 0;
+
+    for (int k = 0; k < frames->n_nodes; k++) {
+        if (!(node_mass[k] > 0.0))
+            return (double)INFINITY;
+        total += node_mass[k];
+    }
+    for (int k = 0; k < frames->n_surface; k++) {
+        const double *w = frames->weight[k];
+        for (int i = 0; i < 9; i++)
+            G[i / 3][i % 3] += w[i / 3] * w[i % 3] / (selective * node_mass[frames->node[k]]);
+    }
+    G[0][0] += (1.0 - 1.0 / selective) / total;
+    for (int p = 0; p < contact->model.n_pairs; p++) {
+        const struct wb_swept_contact_pair_rows *pair = &contact->model.pair[p];
+        if (pair->wire[0] == wire || pair->wire[1] == wire) {
+            neighbours++;
+            normal = fmax(normal, pair->normal);
+        }
+    }
+    if (neighbours < FEWEST_NEIGHBOURS) {
+        neighbours = FEWEST_NEIGHBOURS;
+        for (int w = 0; w < contact->model.n_wires; w++)
+            normal = fmax(normal, pair_stiffness(contact, wire, w));
+    }
+    const double tangential = contact->settings.tangential_ratio * normal;
+    const double slopes = 0.5 * (G[1][1] + G[2][2]) + hypot(0.5 * (G[1][1] - G[2][2]), G[1][2]);
+    const double cross = hypot(G[0][1], G[0][2]);
+    const double along = tangential * (G[0][0] + 0.5 * r * r * slopes + r * cross);
+    const double across =
+        0.5 * (normal + tangential) * G[0][0] + 0.5 * tangential * (r * r * slopes + r * cross);
+    return 2.0 * neighbours * fmax(along, across);
+}
+
+int wb_swept_contact_pairs(const struct wb_swept_contact *contact)
+{
+    return contact->model.n_pairs;
+}
+
+void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair, int station,
+                                struct wb_swept_contact_point *out)
+{
+    const struct wb_swept_contact_pair_rows *of = &contact->model.pair[pair];
+    const ptrdiff_t row = contact->model.row;
+    double place[2], between[3], square = 0.0;
+
+    for (int side = 0; side < 2; side++)
+        place[side] = station + pair_row(contact, of, WB_SWEPT_CONTACT_OFFSET + side)[station];
+    for (int i = 0; i < 3; i++) {
+        double at[2];
+        for (int side = 0; side < 2; side++)
+            at[side] = value_between(contact, centre_row(contact, of->wire[side], i), place[side]);
+        between[i] = at[1] - at[0];
+        square += between[i] * between[i];
+    }
+    const double distance = sqrt(square);
+    *out = (struct wb_swept_contact_point){
+        .gap = distance - of->reach,
+        .length = get(contact, of->load, WB_SWEPT_CONTACT_LENGTH * row + station),
+        .shift = place[1] - place[0],
+        .normal = of->normal * fmax(0.0, of->reach - distance),
+    };
+    for (int i = 0; i < 3; i++) {
+        out->normal_direction[i] = distance > 0.0 ? between[i] / distance : 0.0;
+        out->friction[i] = get(contact, of->load, (WB_SWEPT_CONTACT_DRAG + i) * row + station);
+    }
+}
+
+void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
+                               struct wb_swept_contact_pair *out)
+{
+    const struct wb_swept_contact_pair_rows *of = &contact->model.pair[pair];
+
+    *out = (struct wb_swept_contact_pair){
+        .wire = {of->wire[0], of->wire[1]},
+        .stiffness = of->normal,
+        .smallest = (double)INFINITY,
+    };
+    for (int j = 0; j < contact->model.n_stations; j++) {
+        struct wb_swept_contact_point point;
+        wb_swept_contact_get_point(contact, pair, j, &point);
+        out->normal += point.length * point.normal;
+        if (point.length > 0.0)
+            out->smallest = fmin(out->smallest, point.gap);
+    }
+}
+
+/* --- checkpoints --- */
+
+enum transfer_kind {
+    TRANSFER_SIZE,
+    TRANSFER_SAVE,
+    TRANSFER_RESTORE
+};
+
+struct transfer {
+    enum transfer_kind what;
+    unsigned char *at;
+    size_t size;
+};
+
+static void carry(struct transfer *t, void *data, size_t size)
+{
+    if (t->what == TRANSFER_SAVE)
+        memcpy(t->at + t->size, data, size);
+    if (t->what == TRANSFER_RESTORE)
+        memcpy(data, t->at + t->size, size);
+    t->size += size;
+}
+
+/* A checkpoint's numbers in their order; all pairs there is room for, so that its size is fixed. */
+static void carry_all(struct wb_swept_contact *c, struct transfer *t)
+{
+    struct wb_swept_contact_model *m = &c->model;
+    const size_t stations = sizeof(double) * (size_t)m->n_stations;
+    const size_t loads =
+        real_size(c) * (WB_SWEPT_CONTACT_LOAD * (size_t)m->row - 2 * (size_t)m->stride);
+
+    carry(t, &c->step, sizeof c->step);
+    carry(t, &m->started, sizeof m->started);
+    carry(t, &m->n_pairs, sizeof m->n_pairs);
+    carry(t, c->searched, 3 * stations * (size_t)m->n_wires);
+    for (int w = 0; w < m->n_wires; w++) {
+        for (int i = 0; i < 3; i++)
+            carry(t, centre_row(c, w, i), stations);
+        for (int i = WB_SWEPT_CONTACT_P; i < WB_SWEPT_CONTACT_TANGENT; i++)
+            carry(t, fixed_row(c, w, i), stations);
+    }
+    for (int p = 0; p < c->most_pairs; p++) {
+        struct wb_swept_contact_pair_rows *pair = &m->pair[p];
+        carry(t, pair->wire, sizeof pair->wire);
+        carry(t, pair->active, (size_t)m->n_blocks);
+        for (int i = 0; i < WB_SWEPT_CONTACT_PAIR; i++)
+            carry(t, pair_row(c, pair, i), stations);
+        carry(t, pair->load, loads);
+    }
+}
+
+/* Sizing and saving change nothing, but share the walk with restoring. */
+static struct wb_swept_contact *as_changeable(const struct wb_swept_contact *contact)
+{
+    struct wb_swept_contact *out;
+    memcpy(&out, &contact, sizeof out);
+    return out;
+}
+
+size_t wb_swept_contact_state_size(const struct wb_swept_contact *contact)
+{
+    struct transfer t = {TRANSFER_SIZE, NULL, 0};
+    carry_all(as_changeable(contact), &t);
+    return t.size;
+}
+
+void wb_swept_contact_save(const struct wb_swept_contact *contact, void *state)
+{
+    struct transfer t = {TRANSFER_SAVE, state, 0};
+    carry_all(as_changeable(contact), &t);
+}
+
+void wb_swept_contact_restore(struct wb_swept_contact *contact, const void *state)
+{
+    struct transfer t = {TRANSFER_RESTORE, NULL, 0};
+
+    memcpy(&t.at, &state, sizeof t.at);
+    carry_all(contact, &t);
+    for (int p = 0; p < contact->model.n_pairs; p++) {
+        struct wb_swept_contact_pair_rows *pair = &contact->model.pair[p];
+        begin_pair(contact, pair, pair->wire[0], pair->wire[1]);
+        find_windows(contact, pair);
+    }
+    list_sides(contact);
 }

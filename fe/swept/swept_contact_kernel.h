@@ -1,5 +1,5 @@
-/* The kernels behind fe/swept/swept_contact.h: one source, swept_contact_kernel.inc, compiled for
- * float and double and for each instruction set. Lanes are stations.
+/* The kernels behind fe/swept/swept_contact.h: frames of wires, and the forces of
+ * contact between them. Lanes are stations.
  *
  * A wire is known to its neighbours by frames, one at each station, linear in its surface nodes:
  *
@@ -27,7 +27,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "fe/swept/swept.h"
+#include "fe/swept/swept_kernel.h"
 
 /* Rows of numbers at stations. Those read between stations have a stride of zeros before and after.
  * Of a wire: */
@@ -122,21 +122,11 @@ struct wb_swept_contact_call {
 };
 
 struct wb_swept_contact_kernel {
-    const char *name;
-    bool is_double;
-    bool (*runs_here)(void);
     void (*gather)(const struct wb_swept_contact_call *call);
     void (*press)(const struct wb_swept_contact_call *call);
     void (*scatter)(const struct wb_swept_contact_call *call);
 };
 
-extern const struct wb_swept_contact_kernel wb_swept_contact_kernel_float_baseline;
-extern const struct wb_swept_contact_kernel wb_swept_contact_kernel_double_baseline;
-#ifdef __x86_64__
-extern const struct wb_swept_contact_kernel wb_swept_contact_kernel_float_avx2;
-extern const struct wb_swept_contact_kernel wb_swept_contact_kernel_double_avx2;
-extern const struct wb_swept_contact_kernel wb_swept_contact_kernel_float_avx512;
-extern const struct wb_swept_contact_kernel wb_swept_contact_kernel_double_avx512;
-#endif
+WB_SWEPT_KERNEL_DECLARE(wb_swept_contact_kernel);
 
 #endif

@@ -7,19 +7,20 @@
 
 #include "fe/material/hardening.h"
 #include "fe/swept/swept_hex_kernel.h"
+#include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
 
 enum {
     CONSTANTS = WB_SWEPT_HEX_KERNEL_CONSTANTS,
     TERMS = WB_SWEPT_HEX_KERNEL_TERMS,
-    OCTAVES = WB_SWEPT_HEX_KERNEL_OCTAVES,
-    LOWEST_OCTAVE = -31,
     MOST_ELEMENTS = 1 << 20
 };
 
 static const double default_hourglass = 0.05;
-static const double table_tolerance = 1e-5;
+
+static const struct wb_swept_hex_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_hex_kernel);
 
 struct wb_swept_hex {
     struct wb_swept_hex_model model;
@@ -45,83 +46,18 @@ static double shear_modulus(const struct wb_material *m)
 
 static size_t real_size(const struct wb_swept_hex *hex)
 {
-    return hex->model.double_precision ? sizeof(double) : sizeof(float);
-}
-
-/* What lies in `from` into aligned memory of the kernel's type. */
-static enum wb_status take_over(void **out, const struct wb_swept_hex *hex, const double *from,
-                                size_t count)
-{
-    WB_TRY(wb_swept_allocate(out, count, real_size(hex)));
-    for (size_t i = 0; i < count; i++) {
-        if (hex->model.double_precision)
-            ((double *)*out)[i] = from[i];
-        else
-            ((float *)*out)[i] = (float)from[i];
-    }
-    return WB_OK;
-}
-
-/* Powers of t = m - 3/2 (m the mantissa, 1 to 2) of p / x in an octave, by Newton's divided
- * differences at the nodes of Chebyshev. */
-static void tabulate_octave(const struct wb_material *radial, double begin, double *coefficient)
-{
-    double t[TERMS], d[TERMS];
-
-    for (int i = 0; i < TERMS; i++) {
-        t[i] = 0.5 * cos(M_PI * (i + 0.5) / TERMS);
-        d[i] = wb_hardening_ratio(radial, begin * (t[i] + 1.5) * radial->youngs_modulus);
-        coefficient[i] = 0.0;
-    }
-    for (int j = 1; j < TERMS; j++) {
-        for (int i = TERMS - 1; i >= j; i--)
-            d[i] = (d[i] - d[i - 1]) / (t[i] - t[i - j]);
-    }
-    for (int i = TERMS - 1; i >= 0; i--) {
-        for (int j = TERMS - 1; j >= 1; j--)
-            coefficient[j] = coefficient[j - 1] - t[i] * coefficient[j];
-        coefficient[0] = d[i] - t[i] * coefficient[0];
-    }
-}
-
-/* Largest error of the stress in an octave, as a part of the stress. */
-static double octave_error(const struct wb_material *radial, double begin,
-                           const double *coefficient)
-{
-    double worst = 0.0;
-
-    for (int i = 0; i <= 16; i++) {
-        const double t = (i - 8) / 16.0, c = begin * (t + 1.5) * radial->youngs_modulus;
-        const double exact = wb_hardening_ratio(radial, c);
-        double r = 0.0;
-        for (int k = TERMS - 1; k >= 0; k--)
-            r = r * t + coefficient[k];
-        const double error = fabs(r - exact) * c / (radial->yield_stress + (1.0 - exact) * c);
-        worst = error <= worst ? worst : error;
-    }
-    return worst;
+    return wb_swept_kernel_real_size(hex->model.double_precision);
 }
 
 static enum wb_status make_table(struct wb_swept_hex *hex)
 {
-    double table[TERMS][OCTAVES] = {{0.0}}, worst = 0.0;
+    double table[TERMS][WB_HARDENING_TABLE_OCTAVES];
     struct wb_material radial = hex->model.material;
 
     radial.youngs_modulus = 3.0 * shear_modulus(&radial);
-    for (int i = 0; radial.hardening == WB_HARDENING_ISOTROPIC_POWER && i < OCTAVES; i++) {
-        const double begin = ldexp(1.0, LOWEST_OCTAVE + i);
-        double coefficient[TERMS];
-        tabulate_octave(&radial, begin, coefficient);
-        const double error = octave_error(&radial, begin, coefficient);
-        worst = error <= worst ? worst : error;
-        for (int k = 0; k < TERMS; k++)
-            table[k][i] = coefficient[k];
-    }
-    if (!(worst <= table_tolerance))
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "the hardening law (K = %g Pa, n = %g) cannot be tabulated: error %.1e",
-                       radial.strength_coefficient, radial.hardening_exponent, worst);
-    return take_over(&hex->table, hex, &table[0][0], TERMS * OCTAVES);
+    WB_TRY(wb_hardening_tabulate_octaves(&radial, TERMS, &table[0][0]));
+    return wb_swept_kernel_convert(&hex->table, hex->model.double_precision, &table[0][0],
+                                   sizeof table / sizeof table[0][0]);
 }
 
 static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
@@ -171,36 +107,13 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
             memcpy(at[a], section->node[section->quad[e][a]], sizeof at[a]);
         fill_row(&hex->model, &quad, (const double(*)[2])at, hex->rows + e * CONSTANTS);
     }
-    return take_over(&hex->constants, hex, hex->rows, count);
-}
-
-static const struct wb_swept_hex_kernel *find_kernel(const struct wb_swept_hex_model *model)
-{
-    static const struct wb_swept_hex_kernel *const kernels[][2] = {
-#ifdef __x86_64__
-        [WB_SWEPT_HEX_AVX512] = {&wb_swept_hex_kernel_float_avx512,
-                                 &wb_swept_hex_kernel_double_avx512},
-        [WB_SWEPT_HEX_AVX2] = {&wb_swept_hex_kernel_float_avx2, &wb_swept_hex_kernel_double_avx2},
-#endif
-        [WB_SWEPT_HEX_BASELINE] = {&wb_swept_hex_kernel_float_baseline,
-                                   &wb_swept_hex_kernel_double_baseline},
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = n - 1; i >= WB_SWEPT_HEX_BASELINE; i--) {
-        const struct wb_swept_hex_kernel *kernel = kernels[i][model->double_precision];
-        const bool wanted =
-            model->instructions == WB_SWEPT_HEX_BEST || (int)model->instructions == i;
-        if (wanted && kernel->runs_here())
-            return kernel;
-    }
-    return NULL;
+    return wb_swept_kernel_convert(&hex->constants, hex->model.double_precision, hex->rows, count);
 }
 
 static enum wb_status check(const struct wb_swept_hex_model *m)
 {
     const struct wb_material *material = &m->material;
-    const bool power = material->hardening == WB_HARDENING_ISOTROPIC_POWER;
+    char why[120];
 
     if (m->n_elements < 1 || m->n_elements > MOST_ELEMENTS)
         return wb_fail(WB_ERR_ARGUMENT, "%d elements along a wire", m->n_elements);
@@ -208,19 +121,14 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
         return wb_fail(WB_ERR_ARGUMENT, "elements of a length of %g m", m->element_length);
     if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
         return wb_fail(WB_ERR_ARGUMENT, "hourglass coefficient %g, not in (0, 1]", m->hourglass);
-    if (!power && material->hardening != WB_HARDENING_NONE_ELASTIC)
+    if (wb_hardening_law(material)->moves)
         return wb_fail(WB_ERR_UNSUPPORTED, "hexahedra do not harden kinematically");
     if (!(material->youngs_modulus > 0.0 && isfinite(material->youngs_modulus)) ||
         !(material->poissons_ratio > -1.0 && material->poissons_ratio < 0.5))
         return wb_fail(WB_ERR_ARGUMENT, "E = %g Pa, nu = %g", material->youngs_modulus,
                        material->poissons_ratio);
-    if (power &&
-        !(material->yield_stress > 0.0 && isfinite(material->yield_stress) &&
-          material->strength_coefficient >= 0.0 && isfinite(material->strength_coefficient) &&
-          material->hardening_exponent > 0.0 && material->hardening_exponent <= 2.0))
-        return wb_fail(WB_ERR_ARGUMENT, "sigma_Y = %g Pa, K = %g Pa, n = %g",
-                       material->yield_stress, material->strength_coefficient,
-                       material->hardening_exponent);
+    if (!wb_hardening_is_possible(material, why, sizeof why))
+        return wb_fail(WB_ERR_ARGUMENT, "%s", why);
     return WB_OK;
 }
 
@@ -244,12 +152,11 @@ static int farthest_node(const struct wb_swept_section *section)
 static enum wb_status fill(struct wb_swept_hex *hex)
 {
     const struct wb_swept_hex_model *m = &hex->model;
-    const bool elastic = m->material.hardening == WB_HARDENING_NONE_ELASTIC;
+    const bool yields = wb_hardening_law(&m->material)->yields;
 
     WB_TRY(check(m));
-    hex->kernel = find_kernel(m);
-    if (!hex->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    WB_TRY(wb_swept_choose_instructions(&hex->model.instructions, m->instructions));
+    hex->kernel = kernels[m->instructions][m->double_precision];
     hex->n_points = m->formulation == WB_SWEPT_HEX_ONE_POINT ? 1 : 4;
     WB_TRY(make_constants(hex));
     WB_TRY(make_table(hex));
@@ -263,8 +170,8 @@ static enum wb_status fill(struct wb_swept_hex *hex)
         .quad = (const int(*)[4])m->section->quad,
         .node = (const double(*)[2])m->section->node,
         .length = m->element_length,
-        .yield_strain = elastic ? (double)INFINITY
-                                : m->material.yield_stress / (3.0 * shear_modulus(&m->material)),
+        .yield_strain = yields ? m->material.yield_stress / (3.0 * shear_modulus(&m->material))
+                               : (double)INFINITY,
         .strain_limit = WB_SWEPT_HEX_STRAIN_LIMIT,
         .constants = hex->constants,
         .table = hex->table};
@@ -331,13 +238,12 @@ int wb_swept_hex_blocks(const struct wb_swept_hex *hex)
 
 const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex)
 {
-    return hex->kernel->name;
+    return wb_swept_instructions_name(hex->model.instructions);
 }
 
 const char *wb_swept_hex_best_instructions(void)
 {
-    const struct wb_swept_hex_model model = {.instructions = WB_SWEPT_HEX_BEST};
-    return find_kernel(&model)->name;
+    return wb_swept_instructions_name(WB_SWEPT_BEST);
 }
 
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4])
@@ -444,8 +350,7 @@ double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int q
     const size_t at = (place * WB_SWEPT_HEX_KERNEL_HISTORY + 5) * WB_SWEPT_LANES +
                       (size_t)(element % WB_SWEPT_LANES);
 
-    return hex->model.double_precision ? ((const double *)state->history)[at]
-                                       : (double)((const float *)state->history)[at];
+    return wb_swept_kernel_get(hex->model.double_precision, state->history, (ptrdiff_t)at);
 }
 
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
@@ -466,9 +371,7 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
             for (int j = hex->numbers.counted.first; j < hex->numbers.counted.end; j++) {
                 const double p = wb_swept_hex_plastic_strain(state, e, j, q);
                 if (p > 0.0)
-                    density += p * (m->yield_stress + m->strength_coefficient *
-                                                          pow(p, m->hardening_exponent) /
-                                                          (m->hardening_exponent + 1.0));
+                    density += p * wb_hardening_mean_stress(m, p);
             }
             work += density * volume;
         }
@@ -495,9 +398,12 @@ static double varying_moment(const struct wb_swept_section *section, int e,
     return (xi * xi + eta * eta) / 3.0 + both * both / 9.0;
 }
 
-double wb_swept_hex_second_moment(const struct wb_swept_section *section,
-                                  enum wb_swept_hex_formulation formulation,
-                                  const struct wb_material *material)
+/* The second moment of area, m4, with which elements of this section bend elastically about the z
+ * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
+ * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
+static double second_moment(const struct wb_swept_section *section,
+                            enum wb_swept_hex_formulation formulation,
+                            const struct wb_material *material)
 {
     const double factor = formulation == WB_SWEPT_HEX_FOUR_POINTS
                               ? 3.0 * shear_modulus(material) / material->youngs_modulus
@@ -522,6 +428,6 @@ void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
 {
     const double wanted = M_PI * pow(diameter, 4) / 64.0;
 
-    wb_swept_section_scale(
-        section, pow(wanted / wb_swept_hex_second_moment(section, formulation, material), 0.25));
+    wb_swept_section_scale(section,
+                           pow(wanted / second_moment(section, formulation, material), 0.25));
 }

@@ -10,7 +10,7 @@
  * - one point: mean gradients (Flanagan and Belytschko 1981), four hourglass vectors.
  *
  * Hourglass stiffness is elastic. Four points yield in bending with few elements, one point needs
- * about 60 a section for it. Details are in swept_hex_kernel.inc.
+ * about 60 a section for it. Details are in swept_hex_kernel.c.
  *
  * The logarithm is a polynomial: at a strain of 5 % along the axes forces are 0.2 % off, with a
  * shear strain of 5 % 1.3 %, and with strains of 3 % 0.04 and 0.5 %. Elements with a component of
@@ -38,13 +38,6 @@ enum wb_swept_hex_formulation {
     WB_SWEPT_HEX_ONE_POINT
 };
 
-enum wb_swept_hex_instructions {
-    WB_SWEPT_HEX_BEST, /* of what this processor has */
-    WB_SWEPT_HEX_BASELINE,
-    WB_SWEPT_HEX_AVX2,
-    WB_SWEPT_HEX_AVX512
-};
-
 struct wb_swept_hex_model {
     const struct wb_swept_section *section; /* borrowed; must outlive the hex */
     struct wb_material material;            /* elastic or power law */
@@ -55,7 +48,7 @@ struct wb_swept_hex_model {
     double hourglass; /* coefficient, 1; 0: 0.05. Of one point, 1 gives the fields that bend an
                          element their elastic stiffness */
     bool double_precision;
-    enum wb_swept_hex_instructions instructions;
+    enum wb_swept_instructions instructions;
 };
 
 struct wb_swept_hex_fields {
@@ -83,7 +76,6 @@ void wb_swept_hex_destroy(struct wb_swept_hex *hex);
 const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex);
 struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
 int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
-const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex);
 /* Of those that this processor has the best. */
 const char *wb_swept_hex_best_instructions(void);
 
@@ -95,7 +87,6 @@ void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double sti
 WB_MUST_CHECK enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
                                                        const struct wb_swept_hex *hex);
 void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
-void wb_swept_hex_state_reset(struct wb_swept_hex_state *state);
 
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */
 void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
@@ -116,17 +107,6 @@ void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
 
 /* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);
-
-/* Accumulated plastic strain at a point (0 to 3, or 0) of a section's element. */
-double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
-                                   int point);
-
-/* The second moment of area, m4, with which elements of this section bend elastically about the z
- * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
- * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
-double wb_swept_hex_second_moment(const struct wb_swept_section *section,
-                                  enum wb_swept_hex_formulation formulation,
-                                  const struct wb_material *material);
 
 /* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not
  * pi d^2 / 4: of four points 1.2 % less with 4 elements, 0.5 % less with 12, 0.1 % less with 84; of

@@ -1,5 +1,4 @@
-/* The force kernels behind fe/swept/swept_hex.h: one source, swept_hex_kernel.inc, compiled for
- * float and double and for each instruction set.
+/* The force kernels behind fe/swept/swept_hex.h. Lanes are elements along the wire.
  *
  * Everything that a kernel multiplies with is prepared in its own type: constants of the section's
  * elements in rows of WB_SWEPT_HEX_KERNEL_CONSTANTS, and the table of the hardening law. Histories
@@ -14,17 +13,15 @@
 
 #include <stdbool.h>
 
-#include "fe/swept/swept.h"
 #include "fe/swept/swept_hex.h"
+#include "fe/swept/swept_kernel.h"
 
 enum {
     WB_SWEPT_HEX_KERNEL_CONSTANTS = 48, /* a row */
     WB_SWEPT_HEX_KERNEL_HISTORY = 6,    /* numbers of a point */
     WB_SWEPT_HEX_KERNEL_NODE = 12,      /* vectors of a node in the workspace, */
     WB_SWEPT_HEX_KERNEL_CARRY = 3,      /* and those from block to block */
-    /* The hardening law's table: polynomials of 7 terms in octaves of x from 2^-31 to 2. */
-    WB_SWEPT_HEX_KERNEL_TERMS = 7,
-    WB_SWEPT_HEX_KERNEL_OCTAVES = 32
+    WB_SWEPT_HEX_KERNEL_TERMS = 7       /* of an octave of the hardening law's table */
 };
 
 /* Places in a row of constants. h is the element's length, V its volume, mu the shear modulus,
@@ -53,7 +50,7 @@ struct wb_swept_hex_kernel_model {
     struct wb_swept_range counted; /* elements, in sums */
     double strain_limit;           /* beyond it elements are counted */
     const void *constants;         /* (n_quads x WB_SWEPT_HEX_KERNEL_CONSTANTS) */
-    const void *table;             /* (WB_SWEPT_HEX_KERNEL_TERMS x WB_SWEPT_HEX_KERNEL_OCTAVES) */
+    const void *table;             /* of the hardening law (fe/material/hardening.h) */
 };
 
 struct wb_swept_hex_kernel_call {
@@ -67,20 +64,10 @@ struct wb_swept_hex_kernel_call {
 };
 
 struct wb_swept_hex_kernel {
-    const char *name;
-    bool is_double;
-    bool (*runs_here)(void); /* whether this processor has the instructions */
     void (*four_points)(const struct wb_swept_hex_kernel_call *call);
     void (*one_point)(const struct wb_swept_hex_kernel_call *call);
 };
 
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_baseline;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_baseline;
-#ifdef __x86_64__
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_avx2;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_avx2;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_avx512;
-extern const struct wb_swept_hex_kernel wb_swept_hex_kernel_double_avx512;
-#endif
+WB_SWEPT_KERNEL_DECLARE(wb_swept_hex_kernel);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "base/vec3.h"
 #include "fe/swept/swept_hex_kernel.h"
+#include "fe/swept/swept_private.h"
 
 enum {
     HISTORY = WB_SWEPT_HEX_KERNEL_HISTORY,
@@ -27,7 +28,7 @@ static double log_strain(double e)
 }
 
 /* An element as the kernels see it: columns of F, Green's strain, and its logarithm (swept_hex_
- * kernel.inc has the formulas). */
+ * kernel.c has the formulas). */
 struct element {
     struct wb_swept_quad quad;
     double along[4][3]; /* d_a / h */
@@ -102,8 +103,7 @@ static double kept(const struct wb_swept_hex_model *m, const void *history, size
     const size_t at =
         (point * HISTORY + (size_t)component) * WB_SWEPT_LANES + (size_t)(element % WB_SWEPT_LANES);
 
-    return m->double_precision ? ((const double *)history)[at]
-                               : (double)((const float *)history)[at];
+    return wb_swept_kernel_get(m->double_precision, history, (ptrdiff_t)at);
 }
 
 void wb_swept_hex_stress_find(const struct wb_swept_hex *hex, struct wb_swept_hex_state *state,

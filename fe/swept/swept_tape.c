@@ -1,22 +1,52 @@
 #include "fe/swept/swept_tape.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vec3.h"
-#include "fe/swept/swept_hardening.h"
-#include "fe/swept/swept_tape_private.h"
+#include "fe/material/hardening.h"
+#include "fe/swept/swept_private.h"
+#include "fe/swept/swept_tape_kernel.h"
 
 #define WB_LOG_DOMAIN "swept"
 
 enum {
     LANES = WB_SWEPT_LANES,
-    MOST_NODES = 1 << 16
+    MOST_NODES = 1 << 16,
+    UNKNOWNS = 24, /* of an element: 4 positions, then 4 directors */
+    LENGTHS = WB_SWEPT_TAPE_N_MEASURES,
+    ALL_MEASURES = LENGTHS + 4
 };
+
+_Static_assert((int)WB_SWEPT_TAPE_STRESS_MOST == (int)WB_SWEPT_TAPE_MOST_POINTS,
+               "room for the points");
 
 static const double default_hourglass = 0.1;
 static const double shear_correction = 5.0 / 6.0;
+
+static const struct wb_swept_tape_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_tape_kernel);
+
+/* An element of the reference state. */
+struct element {
+    double node[4][3], director[4][3]; /* (k, j), (k, j + 1), (k + 1, j), (k + 1, j + 1) */
+    double area;                       /* m2; of the plane through the middle */
+    double B[3];                       /* 11, 21, 22 */
+    double hourglass[2];               /* in the frame, m */
+    double normal[3];
+};
+
+struct wb_swept_tape {
+    struct wb_swept_tape_model model;
+    const struct wb_swept_tape_kernel *kernel;
+    struct wb_swept_tape_kernel_model numbers;
+    void *reference, *table, *length_stiffness;
+    double *position, *director; /* fields */
+    double *area;                /* (n_nodes x stride) */
+    double *mass, *inertia;      /* (n_nodes), per length */
+};
 
 struct wb_swept_tape_state {
     const struct wb_swept_tape *tape;
@@ -44,29 +74,20 @@ static double shear_modulus(const struct wb_material *m)
     return m->youngs_modulus / (2.0 * (1.0 + m->poissons_ratio));
 }
 
-static size_t real_size(const struct wb_swept_tape *tape)
-{
-    return tape->model.double_precision ? sizeof(double) : sizeof(float);
-}
-
 /* Numbers in the kernel's type. */
 static void put(const struct wb_swept_tape *tape, void *numbers, size_t at, double value)
 {
-    if (tape->model.double_precision)
-        ((double *)numbers)[at] = value;
-    else
-        ((float *)numbers)[at] = (float)value;
+    wb_swept_kernel_put(tape->model.double_precision, numbers, (ptrdiff_t)at, value);
 }
 
 static double get(const struct wb_swept_tape *tape, const void *numbers, size_t at)
 {
-    return tape->model.double_precision ? ((const double *)numbers)[at]
-                                        : (double)((const float *)numbers)[at];
+    return wb_swept_kernel_get(tape->model.double_precision, numbers, (ptrdiff_t)at);
 }
 
 /* --- the reference state --- */
 
-static bool is_convex(const struct wb_swept_tape_element *e)
+static bool is_convex(const struct element *e)
 {
     static const int next[4] = {1, 3, 0, 2}; /* round the element */
     static const int before[4] = {2, 0, 3, 1};
@@ -84,8 +105,9 @@ static bool is_convex(const struct wb_swept_tape_element *e)
     return true;
 }
 
-bool wb_swept_tape_element_of(const struct wb_swept_tape *tape, int k, int j,
-                              struct wb_swept_tape_element *element)
+/* Positions of an element's nodes, and what follows from them; directors are zero before they are
+ * made. False when it is not convex. */
+static bool find_element(const struct wb_swept_tape *tape, int k, int j, struct element *element)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
     double X1[3], X2[3], XH[3], e1[3], e2[3], area[3];
@@ -124,8 +146,8 @@ bool wb_swept_tape_element_of(const struct wb_swept_tape *tape, int k, int j,
     return is_convex(element);
 }
 
-double wb_swept_tape_gyration(const struct wb_swept_tape *tape,
-                              const struct wb_swept_tape_element *element)
+/* Squared radius of gyration that an element's directors get, m2. */
+static double gyration(const struct wb_swept_tape *tape, const struct element *element)
 {
     const double thickness = tape->model.thickness / tape->model.sheets;
     return element->area / 8.0 + thickness * thickness / 6.0;
@@ -134,12 +156,12 @@ double wb_swept_tape_gyration(const struct wb_swept_tape *tape,
 /* Walks over all elements; `use` gets each with its place. */
 static enum wb_status for_elements(struct wb_swept_tape *tape,
                                    void (*use)(struct wb_swept_tape *tape, int k, int j,
-                                               const struct wb_swept_tape_element *element))
+                                               const struct element *element))
 {
     for (int k = 0; k < tape->numbers.n_elements; k++) {
         for (int j = 0; j < tape->numbers.n_along; j++) {
-            struct wb_swept_tape_element element;
-            if (!wb_swept_tape_element_of(tape, k, j, &element))
+            struct element element;
+            if (!find_element(tape, k, j, &element))
                 return wb_fail(WB_ERR_ARGUMENT,
                                "the tape's element at node %d, station %d is not convex", k, j);
             use(tape, k, j, &element);
@@ -149,8 +171,7 @@ static enum wb_status for_elements(struct wb_swept_tape *tape,
 }
 
 /* Adds what an element gives to its nodes. */
-static void lump(struct wb_swept_tape *tape, int k, int j,
-                 const struct wb_swept_tape_element *element)
+static void lump(struct wb_swept_tape *tape, int k, int j, const struct element *element)
 {
     const struct wb_swept_tape_model *m = &tape->model;
     const size_t stride = (size_t)m->layout.stride;
@@ -167,13 +188,12 @@ static void lump(struct wb_swept_tape *tape, int k, int j,
                 element->normal[i];
         tape->area[at] += share;
         tape->mass[node] += mass / length;
-        tape->inertia[node] += mass / length * wb_swept_tape_gyration(tape, element);
+        tape->inertia[node] += mass / length * gyration(tape, element);
         put(tape, tape->length_stiffness, at, get(tape, tape->length_stiffness, at) + stiffness);
     }
 }
 
-static void fill_reference(struct wb_swept_tape *tape, int k, int j,
-                           const struct wb_swept_tape_element *element)
+static void fill_reference(struct wb_swept_tape *tape, int k, int j, const struct element *element)
 {
     const size_t place = (size_t)(j / LANES) * (size_t)tape->numbers.n_elements + (size_t)k;
     const size_t at = place * WB_SWEPT_TAPE_REFERENCE * LANES + (size_t)(j % LANES);
@@ -228,19 +248,16 @@ static enum wb_status make_reference(struct wb_swept_tape *tape)
 
 static enum wb_status check_material(const struct wb_material *m)
 {
-    const bool power = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
+    char why[120];
 
-    if (!power && m->hardening != WB_HARDENING_NONE_ELASTIC)
+    if (wb_hardening_law(m)->moves)
         return wb_fail(WB_ERR_UNSUPPORTED, "the tape does not harden kinematically");
     if (!(m->youngs_modulus > 0.0 && isfinite(m->youngs_modulus)) ||
         !(m->poissons_ratio > -1.0 && m->poissons_ratio <= 0.5))
         return wb_fail(WB_ERR_ARGUMENT, "tape: E = %g Pa, nu = %g", m->youngs_modulus,
                        m->poissons_ratio);
-    if (power && !(m->yield_stress > 0.0 && isfinite(m->yield_stress) &&
-                   m->strength_coefficient >= 0.0 && isfinite(m->strength_coefficient) &&
-                   m->hardening_exponent > 0.0 && m->hardening_exponent <= 2.0))
-        return wb_fail(WB_ERR_ARGUMENT, "tape: sigma_Y = %g Pa, K = %g Pa, n = %g", m->yield_stress,
-                       m->strength_coefficient, m->hardening_exponent);
+    if (!wb_hardening_is_possible(m, why, sizeof why))
+        return wb_fail(WB_ERR_ARGUMENT, "tape: %s", why);
     return WB_OK;
 }
 
@@ -268,35 +285,13 @@ static enum wb_status check(const struct wb_swept_tape_model *m)
     return WB_OK;
 }
 
-static const struct wb_swept_tape_kernel *find_kernel(const struct wb_swept_tape_model *model)
-{
-    static const struct wb_swept_tape_kernel *const kernels[][2] = {
-#ifdef __x86_64__
-        [WB_SWEPT_TAPE_AVX512] = {&wb_swept_tape_kernel_float_avx512,
-                                  &wb_swept_tape_kernel_double_avx512},
-        [WB_SWEPT_TAPE_AVX2] = {&wb_swept_tape_kernel_float_avx2,
-                                &wb_swept_tape_kernel_double_avx2},
-#endif
-        [WB_SWEPT_TAPE_BASELINE] = {&wb_swept_tape_kernel_float_baseline,
-                                    &wb_swept_tape_kernel_double_baseline},
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = n - 1; i >= WB_SWEPT_TAPE_BASELINE; i--) {
-        const struct wb_swept_tape_kernel *kernel = kernels[i][model->double_precision];
-        const bool wanted =
-            model->instructions == WB_SWEPT_TAPE_BEST || (int)model->instructions == i;
-        if (wanted && kernel->runs_here())
-            return kernel;
-    }
-    return NULL;
-}
-
 static void set_numbers(struct wb_swept_tape *tape)
 {
     const struct wb_swept_tape_model *m = &tape->model;
     const double E = m->material.youngs_modulus, nu = m->material.poissons_ratio;
     const double mu = shear_modulus(&m->material), bent = m->thickness / m->sheets;
+    const bool yields = wb_hardening_law(&m->material)->yields;
+    const double yield_strain = yields ? m->material.yield_stress / (3.0 * mu) : (double)INFINITY;
     struct wb_swept_tape_kernel_model *k = &tape->numbers;
 
     *k = (struct wb_swept_tape_kernel_model){
@@ -310,10 +305,8 @@ static void set_numbers(struct wb_swept_tape *tape)
         .shear = shear_correction * mu,
         .membrane_hourglass = m->hourglass * E / 3.0,
         .bending_hourglass = m->hourglass * E / 3.0 * bent * bent / 12.0,
-        .yield_strain = m->material.hardening == WB_HARDENING_NONE_ELASTIC
-                            ? (double)INFINITY
-                            : m->material.yield_stress / (3.0 * mu),
-        .exponent = m->material.hardening_exponent,
+        .yield_strain = yield_strain,
+        .exponent = wb_hardening_exponent(&m->material, yield_strain),
         .mean_share = 2.0 * (1.0 + nu) / (3.0 * (1.0 - nu)),
         .mean_slope = (1.0 + nu) / (3.0 * (1.0 - nu)),
         .strain_limit = WB_SWEPT_TAPE_STRAIN_LIMIT,
@@ -329,15 +322,12 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
     const size_t nodes = (size_t)layout->n_nodes, stride = (size_t)layout->stride;
-    const size_t size = real_size(tape);
+    const size_t size = wb_swept_kernel_real_size(tape->model.double_precision);
     const size_t elements = (size_t)tape->numbers.n_elements * stride;
     void *fields[3] = {NULL};
 
     enum wb_status status =
         wb_swept_allocate(&tape->reference, elements * WB_SWEPT_TAPE_REFERENCE, size);
-    if (status == WB_OK)
-        status = wb_swept_allocate(&tape->table,
-                                   WB_SWEPT_HARDENING_TERMS * WB_SWEPT_HARDENING_OCTAVES, size);
     if (status == WB_OK)
         status = wb_swept_allocate(&tape->length_stiffness, nodes * stride, size);
     for (int i = 0; i < 2 && status == WB_OK; i++)
@@ -351,7 +341,6 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
     tape->mass = tape->area + nodes * stride;
     tape->inertia = tape->mass + nodes;
     tape->numbers.reference = tape->reference;
-    tape->numbers.table = tape->table;
     tape->numbers.length_stiffness = tape->length_stiffness;
     return WB_OK;
 }
@@ -359,17 +348,19 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
 static enum wb_status fill(struct wb_swept_tape *tape)
 {
     const struct wb_swept_tape_model *m = &tape->model;
-    double table[WB_SWEPT_HARDENING_TERMS][WB_SWEPT_HARDENING_OCTAVES];
+    struct wb_material radial = m->material;
+    double table[WB_SWEPT_TAPE_TERMS][WB_HARDENING_TABLE_OCTAVES];
 
     WB_TRY(check(m));
-    tape->kernel = find_kernel(m);
-    if (!tape->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+    radial.youngs_modulus *= 1.5 / (1.0 + radial.poissons_ratio); /* 3 mu */
+    WB_TRY(wb_swept_choose_instructions(&tape->model.instructions, m->instructions));
+    tape->kernel = kernels[m->instructions][m->double_precision];
     set_numbers(tape);
     WB_TRY(allocate(tape));
-    WB_TRY(wb_swept_hardening_tabulate(&m->material, table));
-    for (size_t i = 0; i < WB_SWEPT_HARDENING_TERMS * WB_SWEPT_HARDENING_OCTAVES; i++)
-        put(tape, tape->table, i, (&table[0][0])[i]);
+    WB_TRY(wb_hardening_tabulate_octaves(&radial, WB_SWEPT_TAPE_TERMS, &table[0][0]));
+    WB_TRY(wb_swept_kernel_convert(&tape->table, m->double_precision, &table[0][0],
+                                   sizeof table / sizeof table[0][0]));
+    tape->numbers.table = tape->table;
     for (int row = 0; row < 3 * m->layout.n_nodes; row++) {
         const size_t at = (size_t)row * (size_t)m->layout.stride;
         memcpy(tape->position + at, m->position + at,
@@ -415,9 +406,9 @@ void wb_swept_tape_destroy(struct wb_swept_tape *tape)
     free(tape);
 }
 
-struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape)
+const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_tape *tape)
 {
-    return tape->model.layout;
+    return &tape->model;
 }
 
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape)
@@ -432,7 +423,7 @@ int wb_swept_tape_elements(const struct wb_swept_tape *tape)
 
 const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape)
 {
-    return tape->kernel->name;
+    return wb_swept_instructions_name(tape->model.instructions);
 }
 
 const double *wb_swept_tape_directors(const struct wb_swept_tape *tape)
@@ -468,10 +459,12 @@ enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
     state->history_size = (size_t)tape->numbers.n_elements * (size_t)layout->stride *
                           (size_t)tape->numbers.n_points * WB_SWEPT_TAPE_HISTORY;
     enum wb_status status =
-        wb_swept_allocate(&state->history, state->history_size, real_size(tape));
+        wb_swept_allocate(&state->history, state->history_size,
+                          wb_swept_kernel_real_size(tape->model.double_precision));
     if (status == WB_OK)
-        status = wb_swept_allocate(
-            &state->carry, (size_t)layout->n_nodes * WB_SWEPT_TAPE_CARRY * LANES, real_size(tape));
+        status =
+            wb_swept_allocate(&state->carry, (size_t)layout->n_nodes * WB_SWEPT_TAPE_CARRY * LANES,
+                              wb_swept_kernel_real_size(tape->model.double_precision));
     if (status != WB_OK) {
         wb_swept_tape_state_destroy(state);
         return status;
@@ -489,14 +482,9 @@ void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state)
     free(state);
 }
 
-void wb_swept_tape_state_reset(struct wb_swept_tape_state *state)
-{
-    memset(state->history, 0, state->history_size * real_size(state->tape));
-}
-
 void *wb_swept_tape_state_data(struct wb_swept_tape_state *state, size_t *bytes)
 {
-    *bytes = state->history_size * real_size(state->tape);
+    *bytes = state->history_size * wb_swept_kernel_real_size(state->tape->model.double_precision);
     return state->history;
 }
 
@@ -550,13 +538,326 @@ double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state)
             for (int q = 0; q < m->n_points; q++) {
                 const double p = wb_swept_tape_plastic_strain(state, k, j, q);
                 if (p > 0.0)
-                    density += m->weight[q] * p *
-                               (law->yield_stress + law->strength_coefficient *
-                                                        pow(p, law->hardening_exponent) /
-                                                        (law->hardening_exponent + 1.0));
+                    density += m->weight[q] * p * wb_hardening_mean_stress(law, p);
             }
             work += density * get(tape, tape->reference, at);
         }
     }
     return work;
+}
+
+/* --- stable step --- */
+
+/* The measures of swept_tape_kernel.c and the directors' lengths, all quadratic in `u`: the plain
+ * version of what the kernel does. */
+static void find_measures(const struct element *element, const double *u, double *e)
+{
+    const double *B = element->B, *c = element->hourglass;
+    double mode[8][3], a1[3], a2[3], d1[3], d2[3], hx[3], hd[3];
+
+    for (int f = 0; f < 2; f++) {
+        for (int i = 0; i < 3; i++) {
+            const double *x = u + 12 * f + i;
+            mode[4 * f][i] = 0.25 * (x[0] + x[3] + x[6] + x[9]);
+            mode[4 * f + 1][i] = 0.5 * (x[3] - x[0] + x[9] - x[6]);
+            mode[4 * f + 2][i] = 0.5 * (x[6] - x[0] + x[9] - x[3]);
+            mode[4 * f + 3][i] = 0.5 * (x[9] - x[6] - x[3] + x[0]);
+        }
+    }
+    const double *X1 = mode[1], *X2 = mode[2], *XH = mode[3];
+    const double *D0 = mode[4], *D1 = mode[5], *D2 = mode[6], *DH = mode[7];
+    for (int i = 0; i < 3; i++) {
+        a1[i] = B[0] * X1[i];
+        a2[i] = B[1] * X1[i] + B[2] * X2[i];
+        d1[i] = B[0] * D1[i];
+        d2[i] = B[1] * D1[i] + B[2] * D2[i];
+        hx[i] = XH[i] - c[0] * a1[i] - c[1] * a2[i];
+        hd[i] = DH[i] - c[0] * d1[i] - c[1] * d2[i];
+    }
+    const double shear[2] = {wb_vec3_dot(X1, D0) + 0.5 * wb_vec3_dot(XH, D2),
+                             wb_vec3_dot(X2, D0) + 0.5 * wb_vec3_dot(XH, D1)};
+    e[0] = 0.25 * (wb_vec3_dot(a1, a1) + wb_vec3_dot(a2, a2));
+    e[1] = 0.25 * (wb_vec3_dot(a1, a1) - wb_vec3_dot(a2, a2));
+    e[2] = 0.5 * wb_vec3_dot(a1, a2);
+    e[3] = 0.5 * (wb_vec3_dot(a1, d1) + wb_vec3_dot(a2, d2));
+    e[4] = 0.5 * (wb_vec3_dot(a1, d1) - wb_vec3_dot(a2, d2));
+    e[5] = 0.5 * (wb_vec3_dot(a1, d2) + wb_vec3_dot(a2, d1));
+    e[6] = B[0] * shear[0];
+    e[7] = B[1] * shear[0] + B[2] * shear[1];
+    e[8] = 0.5 * wb_vec3_dot(X1, D2) + wb_vec3_dot(XH, D0);
+    e[9] = 0.5 * wb_vec3_dot(X2, D1) + wb_vec3_dot(XH, D0);
+    e[10] = wb_vec3_dot(hx, a1);
+    e[11] = wb_vec3_dot(hx, a2);
+    e[12] = wb_vec3_dot(hd, a1);
+    e[13] = wb_vec3_dot(hd, a2);
+    for (int a = 0; a < 4; a++)
+        e[LENGTHS + a] = 0.5 * wb_vec3_dot(u + 12 + 3 * a, u + 12 + 3 * a);
+}
+
+/* Stiffnesses of the measures. */
+static void find_stiffnesses(const struct wb_swept_tape *tape, const struct element *element,
+                             double *k)
+{
+    const struct wb_swept_tape_kernel_model *m = &tape->numbers;
+    const double V = element->area * tape->model.thickness;
+    const double bent = tape->model.thickness / tape->model.sheets;
+    const double *B = element->B;
+    const double plane[2] = {B[0] * B[0] + B[1] * B[1], B[2] * B[2]};
+
+    for (int i = 0; i < 3; i++) {
+        k[i] = 2.0 * V * (i == 0 ? m->sum_modulus : m->difference_modulus);
+        k[3 + i] = k[i] * bent * bent / 12.0;
+    }
+    for (int i = 0; i < 2; i++) {
+        k[6 + i] = V * m->shear;
+        k[8 + i] = V * m->shear / 3.0 * plane[i];
+        k[10 + i] = V * m->membrane_hourglass * plane[i];
+        k[12 + i] = V * m->bending_hourglass * plane[i];
+    }
+    for (int a = 0; a < 4; a++)
+        k[LENGTHS + a] = 0.25 * V * m->shear;
+}
+
+/* The largest eigenvalue of M^-1 K with masses `mass`, `inertia` at each of its nodes. */
+static enum wb_status element_eigenvalue(const struct wb_swept_tape *tape,
+                                         const struct element *element, double mass, double inertia,
+                                         double *value)
+{
+    double u[UNKNOWNS], row[ALL_MEASURES][UNKNOWNS], k[ALL_MEASURES];
+    double K[UNKNOWNS * UNKNOWNS] = {0.0}, values[UNKNOWNS], vector = 0.0;
+    const double length = sqrt(element->area);
+    lapack_int found = 0, ignored = 0;
+
+    for (int a = 0; a < 4; a++) {
+        memcpy(u + 3 * a, element->node[a], sizeof element->node[a]);
+        memcpy(u + 12 + 3 * a, element->director[a], sizeof element->director[a]);
+    }
+    for (int b = 0; b < UNKNOWNS; b++) {
+        /* Differences are exact for quadratic functions, but for round-off. */
+        const double step = b < 12 ? 0.1 * length : 0.1, saved = u[b];
+        double above[ALL_MEASURES], below[ALL_MEASURES];
+        u[b] = saved + step;
+        find_measures(element, u, above);
+        u[b] = saved - step;
+        find_measures(element, u, below);
+        u[b] = saved;
+        for (int i = 0; i < ALL_MEASURES; i++)
+            row[i][b] = (above[i] - below[i]) / (2.0 * step * sqrt(b < 12 ? mass : inertia));
+    }
+    find_stiffnesses(tape, element, k);
+    for (int i = 0; i < ALL_MEASURES; i++) {
+        for (int a = 0; a < UNKNOWNS; a++) {
+            for (int b = a; b < UNKNOWNS; b++)
+                K[a * UNKNOWNS + b] += k[i] * row[i][a] * row[i][b];
+        }
+    }
+    const lapack_int info =
+        LAPACKE_dsyevx(LAPACK_ROW_MAJOR, 'N', 'I', 'U', UNKNOWNS, K, UNKNOWNS, 0.0, 0.0, UNKNOWNS,
+                       UNKNOWNS, 0.0, &found, values, &vector, 1, &ignored);
+    if (info != 0 || found != 1 || !(values[0] > 0.0 && isfinite(values[0])))
+        return wb_fail(WB_ERR_CONVERGENCE, "the largest frequency of a tape's element: not found");
+    *value = values[0] * (1.0 + 1e-9);
+    return WB_OK;
+}
+
+/* Whether an element is the other moved and turned, to 1e-9. */
+static bool is_same(const struct element *a, const struct element *b)
+{
+    for (int p = 0; p < 4; p++) {
+        for (int q = 0; q < 4; q++) {
+            double of_a[3], of_b[3];
+            for (int i = 0; i < 3; i++) {
+                of_a[i] = a->node[q][i] - a->node[0][i];
+                of_b[i] = b->node[q][i] - b->node[0][i];
+            }
+            const double size = sqrt(wb_vec3_dot(of_a, of_a));
+            if (!(fabs(size - sqrt(wb_vec3_dot(of_b, of_b))) <= 1e-9 * size) ||
+                !(fabs(wb_vec3_dot(a->director[p], of_a) - wb_vec3_dot(b->director[p], of_b)) <=
+                  1e-9 * size) ||
+                !(fabs(wb_vec3_dot(a->director[p], a->director[q]) -
+                       wb_vec3_dot(b->director[p], b->director[q])) <= 1e-9))
+                return false;
+        }
+    }
+    return fabs(a->area - b->area) <= 1e-9 * a->area &&
+           fabs(a->B[0] - b->B[0]) <= 1e-9 * fabs(a->B[0]) &&
+           fabs(a->B[1] - b->B[1]) <= 1e-9 * fabs(a->B[0]) &&
+           fabs(a->B[2] - b->B[2]) <= 1e-9 * fabs(a->B[2]);
+}
+
+/* How much larger a node's share of the elements, at the most, is than what it is given: masses are
+ * means over the stations. */
+static enum wb_status largest_shares(const struct wb_swept_tape *tape, double *of_mass,
+                                     double *of_inertia)
+{
+    const struct wb_swept_tape_model *m = &tape->model;
+    const size_t stride = (size_t)m->layout.stride;
+    double *share = calloc((size_t)m->layout.n_nodes * stride, sizeof *share);
+
+    if (!share)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a tape");
+    *of_mass = *of_inertia = 0.0;
+    for (int k = 0; k < tape->numbers.n_elements; k++) {
+        for (int j = 0; j < tape->numbers.n_along; j++) {
+            struct element e;
+            (void)find_element(tape, k, j, &e);
+            for (int a = 0; a < 4; a++)
+                share[(size_t)((k + a / 2) % m->layout.n_nodes) * stride + (size_t)(j + a % 2)] +=
+                    0.25 * e.area * gyration(tape, &e);
+        }
+    }
+    for (int k = 0; k < m->layout.n_nodes; k++) {
+        for (int j = 0; j < m->layout.n_stations; j++) {
+            const size_t at = (size_t)k * stride + (size_t)j;
+            const bool is_end = j == 0 || j == m->layout.n_stations - 1;
+            const double factor = m->density * m->thickness / (m->spacing * (is_end ? 0.5 : 1.0));
+            *of_mass = fmax(*of_mass, tape->area[at] * factor / tape->mass[k]);
+            *of_inertia = fmax(*of_inertia, share[at] * factor / tape->inertia[k]);
+        }
+    }
+    free(share);
+    return WB_OK;
+}
+
+enum wb_status wb_swept_tape_stiffness_per_mass(const struct wb_swept_tape *tape, double *largest)
+{
+    double of_mass = 0.0, of_inertia = 0.0, most = 0.0;
+
+    WB_TRY(largest_shares(tape, &of_mass, &of_inertia));
+    for (int k = 0; k < tape->numbers.n_elements; k++) {
+        struct element before;
+        for (int j = 0; j < tape->numbers.n_along; j++) {
+            struct element e;
+            double value = 0.0;
+            (void)find_element(tape, k, j, &e);
+            if (j > 0 && is_same(&before, &e))
+                continue;
+            before = e;
+            const double mass = tape->model.density * tape->model.thickness * 0.25 * e.area;
+            WB_TRY(element_eigenvalue(tape, &e, mass / of_mass,
+                                      mass * gyration(tape, &e) / of_inertia, &value));
+            most = fmax(most, value);
+        }
+    }
+    *largest = most;
+    return WB_OK;
+}
+
+/* --- stresses --- */
+
+/* A symmetric matrix in the plane: (11 + 22) / 2, (11 - 22) / 2, 12. */
+struct symmetric {
+    double mean, difference, both;
+};
+
+int wb_swept_tape_stress_points(const struct wb_swept_tape *tape)
+{
+    return tape->numbers.n_points;
+}
+
+static double constant(const struct wb_swept_tape *tape, int element, int along, int which)
+{
+    const size_t place =
+        (size_t)(along / LANES) * (size_t)tape->numbers.n_elements + (size_t)element;
+
+    return get(tape, tape->reference,
+               (place * WB_SWEPT_TAPE_REFERENCE + (size_t)which) * LANES + (size_t)(along % LANES));
+}
+
+/* Derivatives of a field along the element's frame. */
+static void find_gradient(const struct wb_swept_tape *tape, const double *field, int element,
+                          int along, double by[2][3])
+{
+    const int n = tape->model.layout.n_nodes, stride = tape->model.layout.stride;
+    const double B11 = constant(tape, element, along, WB_SWEPT_TAPE_B11);
+    const double B21 = constant(tape, element, along, WB_SWEPT_TAPE_B21);
+    const double B22 = constant(tape, element, along, WB_SWEPT_TAPE_B22);
+
+    for (int i = 0; i < 3; i++) {
+        const double *a = field + (ptrdiff_t)(3 * element + i) * stride + along;
+        const double *b = field + (ptrdiff_t)(3 * ((element + 1) % n) + i) * stride + along;
+        const double by_xi = 0.5 * (a[1] - a[0] + b[1] - b[0]);
+        const double by_eta = 0.5 * (b[0] + b[1] - a[0] - a[1]);
+        by[0][i] = B11 * by_xi;
+        by[1][i] = B21 * by_xi + B22 * by_eta;
+    }
+}
+
+/* 1/2 a_i.b_j, symmetric, less `reference` of it. */
+static struct symmetric products(double a[2][3], double b[2][3], double factor,
+                                 const double reference[3])
+{
+    const double first = wb_vec3_dot(a[0], b[0]), second = wb_vec3_dot(a[1], b[1]);
+
+    return (struct symmetric){
+        0.5 * factor * (first + second) - reference[0],
+        0.5 * factor * (first - second) - reference[1],
+        0.5 * factor * (wb_vec3_dot(a[0], b[1]) + wb_vec3_dot(a[1], b[0])) - reference[2],
+    };
+}
+
+/* Membrane strain and curvature, Green's. */
+static void find_strains(const struct wb_swept_tape *tape, const double *position,
+                         const double *director, int element, int along, struct symmetric *E,
+                         struct symmetric *K)
+{
+    double a[2][3], d[2][3], membrane[3], bending[3];
+
+    for (int i = 0; i < 3; i++) {
+        membrane[i] =
+            constant(tape, element, along, WB_SWEPT_TAPE_MEASURES + WB_SWEPT_TAPE_MEMBRANE + i);
+        bending[i] =
+            constant(tape, element, along, WB_SWEPT_TAPE_MEASURES + WB_SWEPT_TAPE_BENDING + i);
+    }
+    find_gradient(tape, position, element, along, a);
+    find_gradient(tape, director, element, along, d);
+    *E = products(a, a, 0.5, membrane);
+    *K = products(a, d, 1.0, bending);
+}
+
+/* f(E), f(e) = e - e^2 + 4/3 e^3 - 2 e^4, by its eigenvalues. */
+static struct symmetric logarithm(const struct symmetric *E)
+{
+    const double r = hypot(E->difference, E->both), e[2] = {E->mean + r, E->mean - r};
+    double f[2];
+
+    for (int i = 0; i < 2; i++)
+        f[i] = e[i] * (1.0 - e[i] * (1.0 - e[i] * (4.0 / 3.0 - 2.0 * e[i])));
+    const double turn = r > 0.0 ? 0.5 * (f[0] - f[1]) / r : 0.0;
+    return (struct symmetric){0.5 * (f[0] + f[1]), turn * E->difference, turn * E->both};
+}
+
+void wb_swept_tape_stress_find(const struct wb_swept_tape *tape, struct wb_swept_tape_state *state,
+                               const double *position, const double *director, int element,
+                               int along,
+                               struct wb_swept_tape_stress out[WB_SWEPT_TAPE_STRESS_MOST])
+{
+    const struct wb_swept_tape_kernel_model *m = &tape->numbers;
+    const size_t place = (size_t)(along / LANES) * (size_t)m->n_elements + (size_t)element;
+    size_t bytes;
+    const void *history = wb_swept_tape_state_data(state, &bytes);
+    struct symmetric E, K;
+
+    find_strains(tape, position, director, element, along, &E, &K);
+    for (int q = 0; q < m->n_points; q++) {
+        const size_t at =
+            (place * (size_t)m->n_points + (size_t)q) * WB_SWEPT_TAPE_HISTORY * LANES +
+            (size_t)(along % LANES);
+        const double z = m->z[q];
+        const struct symmetric here = {E.mean + z * K.mean, E.difference + z * K.difference,
+                                       E.both + z * K.both};
+        const struct symmetric all = logarithm(&here);
+        const double mean = m->sum_modulus * (all.mean - get(tape, history, at));
+        const double difference =
+            m->difference_modulus * (all.difference - get(tape, history, at + LANES));
+        out[q].stress[0] = mean + difference;
+        out[q].stress[1] = mean - difference;
+        out[q].stress[2] = m->difference_modulus * (all.both - get(tape, history, at + 2 * LANES));
+        out[q].plastic = get(tape, history, at + 3 * LANES);
+    }
+}
+
+double wb_swept_tape_stress_von_mises(const double s[3])
+{
+    return sqrt(s[0] * s[0] + s[1] * s[1] - s[0] * s[1] + 3.0 * s[2] * s[2]);
 }

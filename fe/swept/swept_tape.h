@@ -11,7 +11,7 @@
  * Hourglass stiffness is elastic, of what bends an element in its plane and of its directors. Total
  * Lagrangian: nothing is integrated in time but the plastic strain. Stresses are per reference area
  * (of Kirchhoff): as plastic flow keeps the volume, that a stretched tape gets thinner is in them.
- * Details are in swept_tape_kernel.inc.
+ * Details are in swept_tape_kernel.c.
  *
  * The logarithm is a polynomial: at a strain of 10 % it is 0.03 % off, forces 0.2 %. Elements with
  * a larger strain are counted; whoever runs the model must say so.
@@ -31,13 +31,6 @@
 
 #define WB_SWEPT_TAPE_STRAIN_LIMIT 0.1
 
-enum wb_swept_tape_instructions {
-    WB_SWEPT_TAPE_BEST, /* of what this processor has */
-    WB_SWEPT_TAPE_BASELINE,
-    WB_SWEPT_TAPE_AVX2,
-    WB_SWEPT_TAPE_AVX512
-};
-
 struct wb_swept_tape_model {
     struct wb_material material; /* elastic or power law */
     double density;              /* kg/m3 */
@@ -55,7 +48,7 @@ struct wb_swept_tape_model {
                                       tape (cohesion, contact); all is computed */
     bool closed;                   /* the last node of the ring is joined to the first */
     bool double_precision;
-    enum wb_swept_tape_instructions instructions;
+    enum wb_swept_instructions instructions;
 };
 
 struct wb_swept_tape_sums {
@@ -68,15 +61,16 @@ struct wb_swept_tape;       /* opaque: constants; not changed after creation */
 struct wb_swept_tape_state; /* opaque: plastic histories, workspace */
 
 /* WB_ERR_UNSUPPORTED when the processor does not have the instructions, or for laws that
- * fe/swept/swept_hardening.h refuses; WB_ERR_ARGUMENT also for elements that are not convex. */
+ * fe/material/hardening.h cannot tabulate; WB_ERR_ARGUMENT also for elements that are not convex.
+ */
 WB_MUST_CHECK enum wb_status wb_swept_tape_create(struct wb_swept_tape **out,
                                                   const struct wb_swept_tape_model *model);
 void wb_swept_tape_destroy(struct wb_swept_tape *tape);
 
-struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape);
+/* As given, with a copy of the positions, and with defaults and instructions filled in. */
+const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_tape *tape);
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape);   /* of WB_SWEPT_LANES stations */
 int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* round the ring */
-const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
 
 /* Directors of the reference state (a field): the mean of the adjoining elements' normals, in the
  * plane of the section. */
@@ -101,7 +95,6 @@ WB_MUST_CHECK enum wb_status wb_swept_tape_stiffness_per_mass(const struct wb_sw
 WB_MUST_CHECK enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
                                                         const struct wb_swept_tape *tape);
 void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state);
-void wb_swept_tape_state_reset(struct wb_swept_tape_state *state);
 
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */
 void *wb_swept_tape_state_data(struct wb_swept_tape_state *state, size_t *bytes);
@@ -124,9 +117,33 @@ void wb_swept_tape_forces(struct wb_swept_tape_state *state,
 /* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
 double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state);
 
-/* Accumulated plastic strain of an element (between nodes `element` and the next, stations `along`
- * and the next) at a point through the thickness, from the inside. */
-double wb_swept_tape_plastic_strain(const struct wb_swept_tape_state *state, int element, int along,
-                                    int point);
+/* --- stresses ---
+ *
+ * Asked one element at a time: the kernels' law once more, slowly and in double, from positions,
+ * directors and the plastic strains kept. Positions must be those of the last forces, or of the
+ * step after them; then the plastic strains go with them but for a step's strain (some 1e-7). */
+
+enum {
+    WB_SWEPT_TAPE_STRESS_MOST = 5 /* points through the thickness */
+};
+
+struct wb_swept_tape_stress {
+    double stress[3]; /* Pa, per reference area (of Kirchhoff): 11, 22, 12 in the element's frame,
+                         1 along the tape's stations; without the transverse shear */
+    double plastic;   /* accumulated plastic strain */
+};
+
+/* Points through the thickness. */
+int wb_swept_tape_stress_points(const struct wb_swept_tape *tape);
+
+/* Of the element between nodes `element` and the next of the ring, stations `along` and the next:
+ * its points from the inside. `state` is not changed. */
+void wb_swept_tape_stress_find(const struct wb_swept_tape *tape, struct wb_swept_tape_state *state,
+                               const double *position, const double *director, int element,
+                               int along,
+                               struct wb_swept_tape_stress out[WB_SWEPT_TAPE_STRESS_MOST]);
+
+/* Von Mises stress of plane stress, Pa. */
+double wb_swept_tape_stress_von_mises(const double stress[3]);
 
 #endif

@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "base/vec3.h"
-#include "fe/swept/swept_tape_contact_private.h"
+#include "fe/swept/swept_private.h"
+#include "fe/swept/swept_tape_contact_kernel.h"
 
 #define WB_LOG_DOMAIN "swept"
 
@@ -14,6 +15,9 @@ enum {
     ROWS = WB_SWEPT_TAPE_CONTACT_ROWS,
     HISTORY = WB_SWEPT_TAPE_CONTACT_HISTORY
 };
+
+static const struct wb_swept_tape_contact_kernel *const kernels[][2] =
+    WB_SWEPT_KERNEL_VERSIONS(wb_swept_tape_contact_kernel);
 
 static const double default_margin = 0.05; /* of the smallest radius */
 static const int default_interval = 100;
@@ -26,6 +30,38 @@ static const double sharpest_bend = 10.0;
  * contact would draw energy from that. */
 static const double kept_slip = 0.02;
 
+struct surface {
+    int n;
+    int *node;     /* (n) */
+    double radius; /* m */
+};
+
+/* Where a node is near a wire. */
+struct near_place {
+    int wire, partner[2], station;
+    double gap, round, along, offset;
+    double aside, inwards; /* the centre, seen from between the partners */
+};
+
+struct wb_swept_tape_contact {
+    const struct wb_swept_tape *tape;             /* borrowed */
+    const struct wb_swept_tape_model *tape_model; /* the tape's */
+    const struct wb_swept_cohesion *cohesion;     /* borrowed; NULL: nothing is bonded */
+    struct wb_swept_tape_contact_settings settings;
+    const struct wb_swept_tape_contact_kernel *kernel;
+    struct wb_swept_tape_contact_kernel_model model;
+    int n_wires;
+    struct surface *surface;                   /* (n_wires) */
+    int *surface_nodes;                        /* of all wires */
+    double *centre, *axis;                     /* (n_wires x 3 x n_stations), when refreshed */
+    int *first;                                /* (n_blocks + 1) */
+    struct wb_swept_tape_contact_strip *strip; /* room for one a node and station */
+    void *rows, *history;
+    struct near_place *near; /* (n_nodes x n_stations); wire -1: none */
+    int n_strips, n_near;
+    long long steps;
+};
+
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings)
 {
     *settings = (struct wb_swept_tape_contact_settings){.normal_stiffness = 30e9,
@@ -36,20 +72,17 @@ void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_setting
 
 static const struct wb_swept_layout *layout_of(const struct wb_swept_tape_contact *c)
 {
-    return &c->tape->model.layout;
+    return &c->tape_model->layout;
 }
 
 static size_t real_size(const struct wb_swept_tape_contact *c)
 {
-    return c->tape->model.double_precision ? sizeof(double) : sizeof(float);
+    return wb_swept_kernel_real_size(c->tape_model->double_precision);
 }
 
 static void put(const struct wb_swept_tape_contact *c, void *numbers, size_t at, double value)
 {
-    if (c->tape->model.double_precision)
-        ((double *)numbers)[at] = value;
-    else
-        ((float *)numbers)[at] = (float)value;
+    wb_swept_kernel_put(c->tape_model->double_precision, numbers, (ptrdiff_t)at, value);
 }
 
 /* --- what is near --- */
@@ -93,7 +126,7 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
     double check = 0.0;
 
     for (int w = 0; w < c->n_wires; w++) {
-        const struct wb_swept_tape_contact_surface *surface = &c->surface[w];
+        const struct surface *surface = &c->surface[w];
         for (int i = 0; i < 3; i++) {
             double *row = centre_row(c, w, i);
             for (int j = 0; j < layout->n_stations; j++)
@@ -118,8 +151,7 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
 /* The place along a wire opposite x at station j: whole stations into near->station and the rest
  * into near->along; the centre there and the axis, a unit vector. False beyond the ends. */
 static bool find_place_along(const struct wb_swept_tape_contact *c, const double x[3], int j,
-                             struct wb_swept_tape_contact_near_place *near, double centre[3],
-                             double axis[3])
+                             struct near_place *near, double centre[3], double axis[3])
 {
     const int last = layout_of(c)->n_stations - 1;
     double from[3];
@@ -147,7 +179,7 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
 
 /* A surface node of a wire there. */
 static void read_surface(const struct wb_swept_tape_contact *c, const double *position, int node,
-                         int j, const struct wb_swept_tape_contact_near_place *near, double out[3])
+                         int j, const struct near_place *near, double out[3])
 {
     double here[3], there[3];
 
@@ -161,9 +193,9 @@ static void read_surface(const struct wb_swept_tape_contact *c, const double *po
  * and where: the farther in that direction of two places. */
 static bool find_place_round(const struct wb_swept_tape_contact *c, const double *position,
                              const double x[3], const double direction[3], const double axis[3],
-                             int j, struct wb_swept_tape_contact_near_place *near, double place[3])
+                             int j, struct near_place *near, double place[3])
 {
-    const struct wb_swept_tape_contact_surface *surface = &c->surface[near->wire];
+    const struct surface *surface = &c->surface[near->wire];
     double across[3], before[3] = {0.0}, u_before = 0.0, v_before = 0.0,
                       farthest = -(double)INFINITY;
 
@@ -220,15 +252,14 @@ static bool may_be_near(const struct wb_swept_tape_contact *c, const double x[3]
 
 /* The wire nearest to a node, within the margin. */
 static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], int k, int j,
-                      struct wb_swept_tape_contact_near_place *best, double centre[3],
-                      double axis[3])
+                      struct near_place *best, double centre[3], double axis[3])
 {
-    const double half = 0.5 * c->tape->model.thickness;
+    const double half = 0.5 * c->tape_model->thickness;
 
     best->wire = -1;
     best->gap = c->settings.margin;
     for (int w = 0; w < c->n_wires; w++) {
-        struct wb_swept_tape_contact_near_place near = {.wire = w};
+        struct near_place near = {.wire = w};
         double at[3], along[3], from[3];
         if (!may_be_near(c, x, w, j, c->surface[w].radius + half + best->gap) ||
             is_bonded(c, k, j, w) || !find_place_along(c, x, j, &near, at, along))
@@ -249,8 +280,8 @@ static bool find_wire(const struct wb_swept_tape_contact *c, const double x[3], 
 
 /* --- strips --- */
 
-static int find_strip(struct wb_swept_tape_contact *c, int k,
-                      const struct wb_swept_tape_contact_near_place *near, int from)
+static int find_strip(struct wb_swept_tape_contact *c, int k, const struct near_place *near,
+                      int from)
 {
     for (int s = from; s < c->n_strips; s++) {
         const struct wb_swept_tape_contact_strip *strip = &c->strip[s];
@@ -265,7 +296,7 @@ static int find_strip(struct wb_swept_tape_contact *c, int k,
         near->wire,
         {near->partner[0], near->partner[1]},
         near->station,
-        c->surface[near->wire].radius + 0.5 * c->tape->model.thickness};
+        c->surface[near->wire].radius + 0.5 * c->tape_model->thickness};
     return c->n_strips++;
 }
 
@@ -278,8 +309,8 @@ static void clear_friction(struct wb_swept_tape_contact *c, int k, int j)
 }
 
 /* Numbers of a node that is near, into its strip. */
-static void look_after(struct wb_swept_tape_contact *c, int k, int j,
-                       const struct wb_swept_tape_contact_near_place *near, int s)
+static void look_after(struct wb_swept_tape_contact *c, int k, int j, const struct near_place *near,
+                       int s)
 {
     const size_t at = (size_t)s * ROWS * LANES + (size_t)(j % LANES);
 
@@ -314,8 +345,8 @@ static double take_out(double v[3], const double unit[3])
 
 /* Whether a node is still near the place found before. */
 static bool is_still_there(const struct wb_swept_tape_contact *c, const double *position,
-                           const struct wb_swept_tape_contact_near_place *near, int j,
-                           const double x[3], const double d[3])
+                           const struct near_place *near, int j, const double x[3],
+                           const double d[3])
 {
     const double size = sqrt(wb_vec3_dot(d, d));
     double a[3], b[3], g[3], unit[3];
@@ -333,7 +364,7 @@ static bool is_still_there(const struct wb_swept_tape_contact *c, const double *
  * (as the kernel's find_depth() has it). */
 static void find_centre_beside(const struct wb_swept_tape_contact *c, const double *position, int j,
                                const double centre[3], const double axis[3],
-                               struct wb_swept_tape_contact_near_place *near)
+                               struct near_place *near)
 {
     double a[3], b[3], chord[3], across[3], from[3];
 
@@ -353,8 +384,7 @@ static void find_centre_beside(const struct wb_swept_tape_contact *c, const doub
  * across it at first, or failing that towards the centre. False where there is none. */
 static bool find_place(const struct wb_swept_tape_contact *c, const double *position, int j,
                        const double x[3], const double d[3], const double centre[3],
-                       const double axis[3], struct wb_swept_tape_contact_near_place *near,
-                       double aside[3])
+                       const double axis[3], struct near_place *near, double aside[3])
 {
     const double size = sqrt(wb_vec3_dot(d, d));
     double radial[3], direction[3], place[3] = {0.0};
@@ -385,10 +415,10 @@ static bool find_place(const struct wb_swept_tape_contact *c, const double *posi
 static enum wb_status look_at(struct wb_swept_tape_contact *c,
                               const struct wb_swept_cohesion_fields *fields, int k, int j, int from)
 {
-    struct wb_swept_tape_contact_near_place *now = &c->near[k * layout_of(c)->n_stations + j];
-    const struct wb_swept_tape_contact_near_place before = *now;
+    struct near_place *now = &c->near[k * layout_of(c)->n_stations + j];
+    const struct near_place before = *now;
     double x[3], d[3], centre[3] = {0.0}, axis[3] = {0.0}, aside[3];
-    struct wb_swept_tape_contact_near_place near = {.wire = -1};
+    struct near_place near = {.wire = -1};
 
     read_node(c, fields->tape.position, k, j, x);
     read_node(c, fields->tape.director, k, j, d);
@@ -460,25 +490,6 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
     return WB_OK;
 }
 
-static const struct wb_swept_tape_contact_kernel *find_kernel(const struct wb_swept_tape *tape)
-{
-    static const struct wb_swept_tape_contact_kernel *const kernels[] = {
-#ifdef __x86_64__
-        &wb_swept_tape_contact_kernel_float_avx512,   &wb_swept_tape_contact_kernel_double_avx512,
-        &wb_swept_tape_contact_kernel_float_avx2,     &wb_swept_tape_contact_kernel_double_avx2,
-#endif
-        &wb_swept_tape_contact_kernel_float_baseline, &wb_swept_tape_contact_kernel_double_baseline,
-    };
-    const int n = (int)(sizeof kernels / sizeof *kernels);
-
-    for (int i = 0; i < n; i++) {
-        if (kernels[i]->is_double == tape->model.double_precision &&
-            strcmp(kernels[i]->name, tape->kernel->name) == 0)
-            return kernels[i];
-    }
-    return NULL;
-}
-
 static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
                                  const struct wb_swept_cohesion_wire *wires)
 {
@@ -493,8 +504,8 @@ static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     nodes = 0;
     for (int w = 0; w < c->n_wires; w++) {
-        c->surface[w] = (struct wb_swept_tape_contact_surface){
-            wires[w].n_surface, c->surface_nodes + nodes, wires[w].radius};
+        c->surface[w] =
+            (struct surface){wires[w].n_surface, c->surface_nodes + nodes, wires[w].radius};
         memcpy(c->surface[w].node, wires[w].surface,
                (size_t)wires[w].n_surface * sizeof *c->surface[w].node);
         nodes += (size_t)wires[w].n_surface;
@@ -530,9 +541,7 @@ static enum wb_status fill(struct wb_swept_tape_contact *c,
     const struct wb_swept_tape_contact_settings *s = &c->settings;
 
     WB_TRY(check(s, c->n_wires, wires));
-    c->kernel = find_kernel(c->tape);
-    if (!c->kernel)
-        return wb_fail(WB_ERR_UNSUPPORTED, "no contact for the instructions of the tape");
+    c->kernel = kernels[c->tape_model->instructions][c->tape_model->double_precision];
     if (c->settings.refresh_interval == 0)
         c->settings.refresh_interval = default_interval;
     WB_TRY(copy_wires(c, wires));
@@ -549,7 +558,7 @@ static enum wb_status fill(struct wb_swept_tape_contact *c,
         .friction_static = s->friction_static,
         .friction_kinetic = s->friction_kinetic,
         .friction_decay = s->friction_decay,
-        .counted = wb_swept_range_within(c->tape->model.counted, layout->n_stations),
+        .counted = wb_swept_range_within(c->tape_model->counted, layout->n_stations),
     };
     wb_swept_tape_contact_reset(c);
     return WB_OK;
@@ -566,6 +575,7 @@ enum wb_status wb_swept_tape_contact_create(struct wb_swept_tape_contact **out,
     if (!c)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     c->tape = tape;
+    c->tape_model = wb_swept_tape_get_model(tape);
     c->cohesion = cohesion;
     c->settings = *settings;
     c->n_wires = n_wires;
@@ -624,4 +634,127 @@ enum wb_status wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *co
 int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact)
 {
     return contact->n_near;
+}
+
+/* --- checkpoints --- */
+
+struct piece {
+    void *data;
+    size_t size;
+};
+
+enum {
+    PIECES = 8
+};
+
+/* All there is room for, so that the size is fixed. */
+static void list_pieces(const struct wb_swept_tape_contact *c, struct piece out[PIECES])
+{
+    struct wb_swept_tape_contact *changeable;
+    const struct wb_swept_layout *layout = layout_of(c);
+    const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
+    const size_t blocks = (size_t)layout->stride / LANES;
+
+    memcpy(&changeable, &c, sizeof changeable);
+    const struct piece pieces[PIECES] = {
+        {&changeable->steps, sizeof c->steps},
+        {&changeable->n_strips, sizeof c->n_strips},
+        {&changeable->n_near, sizeof c->n_near},
+        {c->first, (blocks + 1) * sizeof *c->first},
+        {c->strip, places * sizeof *c->strip},
+        {c->near, places * sizeof *c->near},
+        {c->rows, places * ROWS * LANES * real_size(c)},
+        {c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride * real_size(c)},
+    };
+    memcpy(out, pieces, sizeof pieces);
+}
+
+size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact)
+{
+    struct piece pieces[PIECES];
+    size_t size = 0;
+
+    list_pieces(contact, pieces);
+    for (int i = 0; i < PIECES; i++)
+        size += pieces[i].size;
+    return size;
+}
+
+void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state)
+{
+    struct piece pieces[PIECES];
+    unsigned char *at = state;
+
+    list_pieces(contact, pieces);
+    for (int i = 0; i < PIECES; i++) {
+        memcpy(at, pieces[i].data, pieces[i].size);
+        at += pieces[i].size;
+    }
+}
+
+void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state)
+{
+    struct piece pieces[PIECES];
+    const unsigned char *at = state;
+
+    list_pieces(contact, pieces);
+    for (int i = 0; i < PIECES; i++) {
+        memcpy(pieces[i].data, at, pieces[i].size);
+        at += pieces[i].size;
+    }
+}
+
+/* --- stable step --- */
+
+static double largest_stiffness(const struct wb_swept_tape_contact *c)
+{
+    return fmax(c->settings.normal_stiffness, c->settings.shear_stiffness);
+}
+
+/* See fe/swept/swept_cohesion.c. */
+static const double both_sides = 2.0;
+
+static double largest_area(const struct wb_swept_tape_contact *c)
+{
+    const struct wb_swept_layout *layout = layout_of(c);
+    double area = 0.0;
+
+    for (int k = 0; k < layout->n_nodes; k++) {
+        for (int j = 1; j < layout->n_stations - 1; j++)
+            area = fmax(area, wb_swept_tape_area(c->tape, k, j));
+        for (int j = 0; j < layout->n_stations; j += layout->n_stations - 1)
+            area = fmax(area, 2.0 * wb_swept_tape_area(c->tape, k, j));
+    }
+    return area;
+}
+
+double wb_swept_tape_contact_stiffness_per_mass(const struct wb_swept_tape_contact *contact,
+                                                const double *mass, const double *inertia)
+{
+    double most = 0.0;
+
+    for (int w = 0; w < contact->n_wires; w++) {
+        /* The place lies on a chord, at most so far below the circle. */
+        const double below = contact->surface[w].radius * (1.0 - cos(M_PI / contact->surface[w].n));
+        const double o = 0.5 * contact->tape_model->thickness + below;
+        for (int k = 0; k < layout_of(contact)->n_nodes; k++)
+            most = fmax(most, 1.0 / mass[k] + o * o / inertia[k]);
+    }
+    return both_sides * largest_stiffness(contact) * largest_area(contact) * most;
+}
+
+double wb_swept_tape_contact_wire_stiffness_per_mass(const struct wb_swept_tape_contact *contact,
+                                                     int wire, const double *mass)
+{
+    const struct surface *surface = &contact->surface[wire];
+    const double spacing = contact->tape_model->spacing, area = largest_area(contact);
+    /* A surface node has the tape's nodes on the two chords beside it, by weights from 0 to 1: at
+     * most one more than those of a chord. */
+    const double chord = 2.0 * surface->radius * sin(M_PI / surface->n);
+    const double nodes = chord * spacing / area + 1.0;
+    double least = (double)INFINITY;
+
+    for (int s = 0; s < surface->n; s++)
+        least = fmin(least, mass[surface->node[s]]);
+    return both_sides * largest_stiffness(contact) * area * nodes / least;
 }

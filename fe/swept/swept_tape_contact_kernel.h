@@ -1,5 +1,5 @@
-/* The kernels behind fe/swept/swept_tape_contact.h: one source, swept_tape_contact_kernel.inc,
- * compiled for float and double and for each instruction set. Lanes are stations.
+/* The kernels behind fe/swept/swept_tape_contact.h: forces between tape and wires. Lanes are
+ * stations.
  *
  * A strip is the part of a ring node's stations in one block that face the same pair of a wire's
  * surface nodes at stations as far along; elsewhere in the block its area is zero.
@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-#include "fe/swept/swept.h"
+#include "fe/swept/swept_kernel.h"
 #include "fe/swept/swept_tape_contact.h"
 
 /* Rows of a strip, WB_SWEPT_LANES each. */
@@ -57,18 +57,9 @@ struct wb_swept_tape_contact_kernel_call {
 };
 
 struct wb_swept_tape_contact_kernel {
-    const char *name;
-    bool is_double;
     void (*add_forces)(const struct wb_swept_tape_contact_kernel_call *call);
 };
 
-extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_float_baseline;
-extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_double_baseline;
-#ifdef __x86_64__
-extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_float_avx2;
-extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_double_avx2;
-extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_float_avx512;
-extern const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_double_avx512;
-#endif
+WB_SWEPT_KERNEL_DECLARE(wb_swept_tape_contact_kernel);
 
 #endif

@@ -1,5 +1,4 @@
-/* The force kernels behind fe/swept/swept_tape.h: one source, swept_tape_kernel.inc, compiled for
- * float and double and for each instruction set.
+/* The force kernels behind fe/swept/swept_tape.h.
  *
  * An element lies between the ring's nodes k and k + 1 and the stations j and j + 1; lanes are
  * stations. Constants of the reference state and histories are in blocks of WB_SWEPT_LANES:
@@ -15,13 +14,14 @@
 
 #include <stdbool.h>
 
-#include "fe/swept/swept.h"
+#include "fe/swept/swept_kernel.h"
 #include "fe/swept/swept_tape.h"
 
 enum {
     WB_SWEPT_TAPE_MOST_POINTS = 5,
     WB_SWEPT_TAPE_HISTORY = 4,
-    WB_SWEPT_TAPE_CARRY = 6 /* vectors of a node from block to block */
+    WB_SWEPT_TAPE_TERMS = 6, /* of an octave of the hardening law's table */
+    WB_SWEPT_TAPE_CARRY = 6  /* vectors of a node from block to block */
 };
 
 /* Constants of an element. B turns derivatives by the parameters to those along its frame. */
@@ -58,12 +58,12 @@ struct wb_swept_tape_kernel_model {
     double membrane_hourglass;                /* coefficient times E / 3, Pa */
     double bending_hourglass;                 /* that times h^2 / 12, N */
     double yield_strain;                      /* sigma_Y / (3 mu); infinite when elastic */
-    double exponent;                          /* n */
-    double mean_share;                        /* E / (1 - nu) / (3 mu), of a mean strain */
-    double mean_slope;                        /* E / (2 (1 - nu)) / (3 mu) */
+    double exponent;   /* of the hardening law: n; Newton's method takes it as constant */
+    double mean_share; /* E / (1 - nu) / (3 mu), of a mean strain */
+    double mean_slope; /* E / (2 (1 - nu)) / (3 mu) */
     double strain_limit;
     struct wb_swept_range counted; /* stations, in sums; of the elements those that begin there */
-    const void *table;             /* of fe/swept/swept_hardening.h */
+    const void *table;             /* of the hardening law, octaves of WB_SWEPT_TAPE_TERMS terms */
     void *reference;               /* written by measure only */
     const void *length_stiffness;  /* (n_nodes x stride) of directors, N m */
 };
@@ -79,21 +79,11 @@ struct wb_swept_tape_kernel_call {
 };
 
 struct wb_swept_tape_kernel {
-    const char *name;
-    bool is_double;
-    bool (*runs_here)(void);
     void (*forces)(const struct wb_swept_tape_kernel_call *call);
     /* Makes the measures of the present state those of reference. */
     void (*measure)(const struct wb_swept_tape_kernel_call *call);
 };
 
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_baseline;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_baseline;
-#ifdef __x86_64__
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_avx2;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_avx2;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_float_avx512;
-extern const struct wb_swept_tape_kernel wb_swept_tape_kernel_double_avx512;
-#endif
+WB_SWEPT_KERNEL_DECLARE(wb_swept_tape_kernel);
 
 #endif

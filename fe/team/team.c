@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "fe/team/team_private.h"
-
 #define WB_LOG_DOMAIN "team"
 
 enum {
@@ -46,20 +44,6 @@ struct wb_team {
     void (*work)(void *context, int member);
     void *context;
 };
-
-int wb_team_started(void)
-{
-    /* Open MPI's, MPICH's and Slurm's; each sets one for those it starts. */
-    static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
-
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        const char *text = getenv(names[i]);
-        const long n = text ? strtol(text, NULL, 10) : 0;
-        if (n > 0 && n < INT_MAX)
-            return (int)n;
-    }
-    return 1;
-}
 
 /* --- threads --- */
 
@@ -195,11 +179,6 @@ void wb_team_destroy(struct wb_team *team)
     free(team->memory);
     free(team->member);
     free(team);
-}
-
-int wb_team_size(const struct wb_team *team)
-{
-    return team->size;
 }
 
 int wb_team_first(const struct wb_team *team)

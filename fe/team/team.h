@@ -15,37 +15,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
-
-/* --- ranks: this process among those that mpirun started --- */
-
-/* Joins the other ranks; alone, nothing happens. At the beginning of the program, before any other
- * function here. WB_ERR_UNSUPPORTED when mpirun started several and the program was built without
- * MPI. */
-WB_MUST_CHECK enum wb_status wb_team_start(void);
-/* Leaves them; waits until all do. */
-void wb_team_end(void);
-/* Ends all ranks at once, with an exit code, where they can no longer agree. */
-void wb_team_abort(int code);
-
-int wb_team_rank(void);        /* from 0 */
-int wb_team_ranks(void);       /* 1 without mpirun */
-const char *wb_team_mpi(void); /* its version; NULL: built without */
-
-/* To be called by all ranks, each by one thread and outside of wb_team_run(). Sums are made in the
- * order of the ranks and are the same on all. */
-void wb_team_sum(double *values, int n);
-void wb_team_greatest(double *values, int n);
-/* `size` bytes of rank `from` to all. */
-void wb_team_share(void *bytes, size_t size, int from);
-/* The status of the first rank that did not succeed, else WB_OK. */
-WB_MUST_CHECK enum wb_status wb_team_agree(enum wb_status status);
-
-/* --- members --- */
-
-enum wb_team_side {
-    WB_TEAM_BEFORE,
-    WB_TEAM_AFTER
-};
+#include "fe/team/team_ranks.h"
 
 struct wb_team; /* opaque */
 
@@ -54,8 +24,8 @@ struct wb_team; /* opaque */
 WB_MUST_CHECK enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size);
 void wb_team_destroy(struct wb_team *team); /* accepts NULL */
 
-int wb_team_size(const struct wb_team *team);  /* members of all ranks */
-int wb_team_first(const struct wb_team *team); /* of this rank; then come n_threads - 1 more */
+/* The first member of this rank; then come n_threads - 1 more. */
+int wb_team_first(const struct wb_team *team);
 
 /* Calls work(context, member) for the members of this rank, each in its thread, the first in the
  * caller's; returns when all are done. */

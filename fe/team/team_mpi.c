@@ -3,7 +3,7 @@
 #include <mpi.h>
 #include <stdlib.h>
 
-#include "fe/team/team_private.h"
+#include "fe/team/team_ranks.h"
 
 #define WB_LOG_DOMAIN "team"
 
@@ -58,18 +58,6 @@ int wb_team_rank(void)
 int wb_team_ranks(void)
 {
     return n_ranks;
-}
-
-const char *wb_team_mpi(void)
-{
-    static char version[MPI_MAX_LIBRARY_VERSION_STRING];
-    int length = 0;
-
-    MPI_Get_library_version(version, &length);
-    for (int i = 0; i < length; i++)
-        if (version[i] == ',')
-            version[i] = '\0';
-    return version;
 }
 
 /* By hand, so that the order of the sum is that of the ranks and does not depend on the library. */

@@ -92,7 +92,7 @@ static enum wb_status make_solid(struct wb_wire3d *wire)
         .gravity = {m->gravity[0], m->gravity[1], m->gravity[2]},
         .n_supports = hold_clamp(wire, supports),
         .supports = supports,
-        .interface = m->has_contact ? &m->interface : NULL,
+        .jacket_contact = m->has_contact ? &m->jacket_contact : NULL,
         .strand_length = m->strand_length,
         .strand_x = m->length,
     };
@@ -177,7 +177,7 @@ static bool observe(void *context, double fraction, int iterations)
 
     wb_solid_tip(r->wire->solid, &tip);
     wb_solid_balance(r->wire->solid, &balance);
-    r->wire->sliding = fmax(r->wire->sliding, balance.interface.sliding);
+    r->wire->sliding = fmax(r->wire->sliding, balance.jacket_contact.sliding);
     return wb_wire_run_tell(&r->at, tip.frame[0], fraction, iterations);
 }
 
@@ -508,9 +508,9 @@ void wb_wire3d_balance(const struct wb_wire3d *wire, struct wb_wire3d_balance *b
 
     wb_solid_balance(wire->solid, &b);
     *balance = (struct wb_wire3d_balance){
-        .penetration = b.interface.penetration,
-        .opening = b.interface.opening,
-        .slip = b.interface.slip,
+        .penetration = b.jacket_contact.penetration,
+        .opening = b.jacket_contact.opening,
+        .slip = b.jacket_contact.slip,
         .sliding = wire->sliding,
         .slip_limit = slip_share * shorter_side(wire->model),
         .work = b.work,

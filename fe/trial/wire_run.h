@@ -1,5 +1,5 @@
 /* What computing a wire model gives, by the 3D solid (fe/trial/wire3d.h) and by the 1D rod
- * (fe/trial/wire1d.h) alike: rows along its history, the axis' shapes, and how it ended.
+ * (fe/trial/wire1d.h) alike: rows along its loading steps, the axis' shapes, and how it ended.
  */
 #ifndef WB_FE_TRIAL_WIRE_RUN_H
 #define WB_FE_TRIAL_WIRE_RUN_H
@@ -7,25 +7,25 @@
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "fe/linear/trial.h"
 #include "fe/model/wire_model.h"
-#include "fe/trial/history.h"
 
 struct wb_wire_row {
-    int step;                    /* index into the model's steps */
-    double fraction;             /* of the step, (0, 1]; the first row of all is at 0 */
-    int cycle;                   /* from 1; a new one begins with each loading after an unloading */
-    enum wb_history_phase phase; /* slack: the strand carries nothing */
-    struct wb_tip_loads loads;   /* that act */
-    double tip[3];               /* m, of the axis' end */
-    double tangent[3];           /* unit vector along the wire at the tip */
-    double tip_angle;            /* rad, atan2 of the tangent's y and x, continued over the rows so
-                                    that a wire that curls past pi goes on */
-    double tension;              /* N: strand's tension or vertical force that makes the deflection;
-                                    without either the vertical part of all tip forces */
-    double vertical_force;       /* N: vertical part of the tension */
-    double force; /* N: as the dataset's `force`: vertical force less its value at zero
-                     deflection on the first loading, which is the first row when the first step
-                     is a deflection (0 otherwise); of a follower test the follower force itself */
+    int step;                  /* index into the model's steps */
+    double fraction;           /* of the step, (0, 1]; the first row of all is at 0 */
+    int cycle;                 /* from 1; a new one begins with each loading after an unloading */
+    enum wb_phase phase;       /* slack: the strand carries nothing */
+    struct wb_tip_loads loads; /* that act */
+    double tip[3];             /* m, of the axis' end */
+    double tangent[3];         /* unit vector along the wire at the tip */
+    double tip_angle;          /* rad, atan2 of the tangent's y and x, continued over the rows so
+                                  that a wire that curls past pi goes on */
+    double tension;            /* N: strand's tension or vertical force that makes the deflection;
+                                  without either the vertical part of all tip forces */
+    double vertical_force;     /* N: vertical part of the tension */
+    double force;              /* N: as the dataset's `force`: vertical force less its value at zero
+                                  deflection on the first loading, which is the first row when the first step
+                                  is a deflection (0 otherwise); of a follower test the follower force itself */
     int increments, iterations; /* spent since the row before */
 };
 
@@ -35,7 +35,7 @@ struct wb_wire_run {
     int n_shape;
     double *shape_s;                      /* (n_shape) m, reference arc lengths, owned */
     double (*shape)[3];                   /* (n_rows x n_shape), m, owned */
-    bool converged;                       /* false: the history ends early */
+    bool converged;                       /* false: they end early */
     bool stopped;                         /* by the observer */
     char problem[320];                    /* where and why it did not converge; "" otherwise */
     int increments, iterations, cutbacks; /* in all */
@@ -47,7 +47,7 @@ struct wb_wire_run {
 /* Told during a run; each may be NULL. */
 struct wb_wire_observer {
     /* After every converged increment: step, share of it done, iterations of the increment, share
-     * of the whole history done (for the time left). False stops the run. */
+     * of all steps done (for the time left). False stops the run. */
     bool (*increment)(void *context, const struct wb_wire_run *run, int step, double fraction,
                       int iterations, double done);
     /* After every row; `last` in its step. The solver stands at that state. */
@@ -87,15 +87,6 @@ void wb_wire_run_release(struct wb_wire_run *run); /* accepts a zeroed one */
 /* Rows that a model gives when it runs through: one at the start and those of every step. */
 int wb_wire_run_planned_rows(const struct wb_wire_model *model);
 
-/* Told of the tip's tangent after every increment: in one row it may turn past pi. */
-void wb_wire_run_turn(struct wb_wire_run *run, const double tangent[3]);
-
-/* Appends a row that has step, fraction, loads, tip, tangent, tension, vertical_force, increments
- * and iterations, and completes it: cycle, phase, angle, force. `slack`: the strand carries
- * nothing. `shape` is (n_shape x 3). Rows beyond the spare ones are not taken. */
-void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
-                     const struct wb_wire_row *row, bool slack, const double (*shape)[3]);
-
 /* What `step` wants at `share` of its way from `start`, the state in which it began. */
 struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
                                          const struct wb_wire_target *start, double share);
@@ -110,8 +101,9 @@ bool wb_wire_run_tell(struct wb_wire_progress *progress, const double tangent[3]
 void wb_wire_run_set_forces(struct wb_wire_row *row, const struct wb_wire_model *model,
                             double tension, double vertical, const double frame[3][3]);
 
-/* Appends a row that has fraction, loads, tip, tangent and forces as wb_wire_run_add() does, and
- * tells the observer, whose status it keeps. */
+/* Appends a row that has fraction, loads, tip, tangent and forces, and completes it: step, cycle,
+ * phase, angle, force. `slack`: the strand carries nothing. `shape` is (n_shape x 3). Tells the
+ * observer, whose status it keeps. */
 void wb_wire_run_end_row(struct wb_wire_progress *progress, struct wb_wire_row *row, bool slack,
                          const double (*shape)[3]);
 

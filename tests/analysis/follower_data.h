@@ -7,7 +7,7 @@
 
 #include "analysis/dataset.h"
 #include "base/units.h"
-#include "fe/trial/history.h"
+#include "fe/trial/loading_steps.h"
 
 static const struct wb_material follower_core = {
     WB_HARDENING_ISOTROPIC_POWER, 68.2e9, 0.34, 182e6, 292e6, 0.31};
@@ -36,14 +36,14 @@ static inline void follower_dataset(struct wb_dataset *dataset, const struct wb_
     struct wb_section section;
     struct wb_cantilever_model model;
     struct wb_cantilever *cantilever;
-    struct wb_history history;
+    struct wb_loading_steps loading;
     for (int i = 0; i < POSITIONS; i++)
         s[i] = info->length * i / (POSITIONS - 1);
-    const struct wb_history_plan plan = {.control = WB_CONTROL_FOLLOWER_FORCE,
-                                         .maximum = force,
-                                         .steps = steps,
-                                         .n_shape = POSITIONS,
-                                         .shape_s = s};
+    const struct wb_loading_steps_plan plan = {.control = WB_CONTROL_FOLLOWER_FORCE,
+                                               .maximum = force,
+                                               .steps = steps,
+                                               .n_shape = POSITIONS,
+                                               .shape_s = s};
     wb_section_init_empty(&section);
     assert_int_equal(wb_section_add_ring(&section, 0.0, 3.26e-3, &follower_core, 1.0, 40), WB_OK);
     assert_int_equal(wb_section_add_ring(&section, 3.26e-3, 4.86e-3, &follower_jacket, 1.0, 40),
@@ -54,18 +54,18 @@ static inline void follower_dataset(struct wb_dataset *dataset, const struct wb_
     model.mass_per_length = info->mass_per_length;
     model.gravity_y = -info->gravity;
     assert_int_equal(wb_cantilever_create(&cantilever, &model, NULL), WB_OK);
-    assert_int_equal(wb_history_init(&history, &plan), WB_OK);
-    assert_int_equal(wb_history_run(&history, &plan, cantilever), WB_OK);
-    assert_int_equal(history.n_rows, steps + 1);
+    assert_int_equal(wb_loading_steps_init(&loading, &plan), WB_OK);
+    assert_int_equal(wb_loading_steps_run(&loading, &plan, cantilever), WB_OK);
+    assert_int_equal(loading.n_rows, steps + 1);
     assert_int_equal(wb_dataset_init(dataset), WB_OK);
     dataset->info = *info;
-    for (int i = 0; i < history.n_rows; i++) {
-        const struct wb_cantilever_point *const point = &history.rows[i].point;
+    for (int i = 0; i < loading.n_rows; i++) {
+        const struct wb_cantilever_point *const point = &loading.rows[i].point;
         const struct wb_row row = {.t = i,
                                    .cycle = 1,
                                    .deflection = point->deflection,
                                    .tension = (double)NAN,
-                                   .force = history.rows[i].force,
+                                   .force = loading.rows[i].force,
                                    .stage = (double)NAN,
                                    .tip_x = point->tip_x,
                                    .tip_angle = point->tip_angle};
@@ -75,12 +75,12 @@ static inline void follower_dataset(struct wb_dataset *dataset, const struct wb_
                                                .deflection = point->deflection,
                                                .marker = k,
                                                .s = s[k],
-                                               .x = history.shape_x[i * POSITIONS + k],
-                                               .y = history.shape_y[i * POSITIONS + k]};
+                                               .x = loading.shape_x[i * POSITIONS + k],
+                                               .y = loading.shape_y[i * POSITIONS + k]};
             assert_int_equal(wb_dataset_add_shape_row(dataset, &shape), WB_OK);
         }
     }
-    wb_history_release(&history);
+    wb_loading_steps_release(&loading);
     wb_cantilever_destroy(cantilever);
     wb_section_release(&section);
 }

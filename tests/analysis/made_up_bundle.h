@@ -34,7 +34,7 @@ static inline void made_up_fill_row(struct wb_bundle_result *result, int i,
     *row = (struct wb_bundle_row){
         .time = 0.01 * i,
         .cycle = 1,
-        .phase = WB_HISTORY_LOAD,
+        .phase = WB_PHASE_LOAD,
         .deflection = point->deflection,
         .tip = {point->tip_x, point->deflection, 0.0},
         .tip_angle = point->tip_angle,

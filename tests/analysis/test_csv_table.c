@@ -1,5 +1,5 @@
 /* Strict tables: analysis/csv_table.h. Files are in test_fields.c and test_surface.c. */
-#include "analysis/csv_table.h"
+#include "analysis/csv_table_private.h"
 #include "base/config.h"
 #include "tests/check.h"
 

@@ -1,6 +1,6 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/curve.h"
+#include "analysis/curve_private.h"
 
 static const double mm = WB_MM;
 

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "analysis/dataset_csv.h"
+#include "analysis/csv_table.h"
+#include "analysis/dataset_private.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "tests/check.h"
@@ -64,16 +65,16 @@ static void numbers_come_back_bit_for_bit(void **state)
     static const double special[] = {0.0,   -0.0,  1.0,         -1.0,       0.085,   1e-9, 0.1,
                                      1e21,  1e-30, 123456789.0, 2.5e-8,     0.00001, 1e15, 1e16,
                                      99e14, 1e-3,  5e-324,      0x1.8p-400, 3e-310};
-    char text[WB_DATASET_CSV_NUMBER];
+    char text[WB_CSV_TABLE_NUMBER];
     uint64_t seed = 1;
     for (int i = 0; i < 20000; i++) {
         const int n = (int)(sizeof special / sizeof special[0]);
         const double value = i < n ? special[i] : random_double(&seed);
         for (int shift = 0; shift <= 3; shift += 3) {
             double back;
-            wb_dataset_csv_format_number(value, shift, text);
-            assert_true(strlen(text) < WB_DATASET_CSV_NUMBER);
-            if (!wb_dataset_csv_parse_number(text, shift, &back) || back != value)
+            wb_csv_table_format_number(value, shift, text);
+            assert_true(strlen(text) < WB_CSV_TABLE_NUMBER);
+            if (!wb_csv_table_parse_number(text, shift, &back) || back != value)
                 fail_msg("%a became '%s'", value, text);
         }
     }
@@ -93,9 +94,9 @@ static void numbers_are_short_and_in_their_unit(void **state)
         {1.0 / 3.0, 0, NULL}, {1e-30, 0, "1e-30"},   {2.5e20, 0, "2.5e20"},
         {-1e-12, 3, "-1e-9"}, {0.05, 3, "50"},       {1e12, 3, "1000000000000000"},
     };
-    char text[WB_DATASET_CSV_NUMBER];
+    char text[WB_CSV_TABLE_NUMBER];
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        wb_dataset_csv_format_number(cases[i].value, cases[i].shift, text);
+        wb_csv_table_format_number(cases[i].value, cases[i].shift, text);
         if (cases[i].text)
             assert_string_equal(text, cases[i].text);
     }
@@ -354,7 +355,7 @@ static enum wb_status parse_rows(const char *text, struct wb_dataset *dataset)
     assert_true(n < sizeof buffer);
     memcpy(buffer, text, n + 1);
     memset(dataset, 0, sizeof *dataset);
-    return wb_dataset_csv_parse_rows(dataset, "f.csv", buffer, n);
+    return wb_dataset_parse_rows(dataset, "f.csv", buffer, n);
 }
 
 #define HEADER "t_s,cycle,phase,deflection_mm,tension_N,force_N\n"
@@ -436,14 +437,14 @@ static void garbage_never_crashes_the_reader(void **state)
         struct wb_dataset dataset = {0};
         char copy[512];
         memcpy(copy, text, sizeof copy);
-        const enum wb_status status = wb_dataset_csv_parse_rows(&dataset, "fuzz.csv", text, n);
+        const enum wb_status status = wb_dataset_parse_rows(&dataset, "fuzz.csv", text, n);
         assert_true(status == WB_OK || status == WB_ERR_FORMAT);
         accepted += status == WB_OK;
         for (size_t k = 0; k < dataset.n_rows && status == WB_OK; k++)
             assert_true(isfinite(dataset.rows[k].deflection) && isfinite(dataset.rows[k].force));
         wb_dataset_release(&dataset);
         memset(&dataset, 0, sizeof dataset);
-        if (wb_dataset_csv_parse_shapes(&dataset, "fuzz.csv", copy, n) == WB_OK)
+        if (wb_dataset_parse_shapes(&dataset, "fuzz.csv", copy, n) == WB_OK)
             accepted++;
         wb_dataset_release(&dataset);
     }
@@ -513,9 +514,9 @@ static void bow_and_curvature_match_closed_forms(void **state)
 static void phases_have_their_names(void **state)
 {
     (void)state;
-    assert_string_equal(wb_phase_name(WB_PHASE_LOAD), "load");
-    assert_string_equal(wb_phase_name(WB_PHASE_UNLOAD), "unload");
-    assert_string_equal(wb_phase_name(WB_PHASE_SLACK), "slack");
+    assert_string_equal(wb_trial_phase_name(WB_PHASE_LOAD), "load");
+    assert_string_equal(wb_trial_phase_name(WB_PHASE_UNLOAD), "unload");
+    assert_string_equal(wb_trial_phase_name(WB_PHASE_SLACK), "slack");
 }
 
 int main(void)

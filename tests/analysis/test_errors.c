@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "analysis/errors.h"
+#include "analysis/errors_private.h"
 
 enum {
     N = 101

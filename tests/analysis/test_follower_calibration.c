@@ -5,9 +5,10 @@
 #include <unistd.h>
 
 #include "analysis/calibrate.h"
+#include "analysis/curve_private.h"
 #include "analysis/first_guess.h"
 #include "analysis/properties.h"
-#include "analysis/validate.h"
+#include "analysis/validate_private.h"
 #include "base/file.h"
 
 static const double mm = WB_MM;
@@ -414,7 +415,7 @@ static void another_length_is_predicted_with_its_curl(void **state)
     (void)state;
     const struct wb_properties properties = fitted_properties();
     const struct wb_test_info info = follower_info(0.12);
-    const struct wb_validate_settings settings = {.n_elements = 25};
+    const struct wb_calibrate_settings settings = {.n_elements = 25};
     struct wb_dataset dataset;
     struct wb_validate_result result;
     follower_dataset(&dataset, &info, 20.0, 40);
@@ -440,7 +441,7 @@ static void shapes_of_the_model_itself_have_no_distance(void **state)
 {
     (void)state;
     const struct wb_properties properties = fitted_properties();
-    const struct wb_validate_settings settings = {.n_elements = 50};
+    const struct wb_calibrate_settings settings = {.n_elements = 50};
     struct wb_dataset dataset;
     struct wb_validate_result result;
     double x[11], y[11];
@@ -492,7 +493,7 @@ static void the_csv_is_of_deflections(void **state)
 {
     (void)state;
     const struct wb_properties properties = fitted_properties();
-    const struct wb_validate_settings settings = {.n_elements = BEAM_ELEMENTS};
+    const struct wb_calibrate_settings settings = {.n_elements = BEAM_ELEMENTS};
     const struct wb_dataset *const datasets[] = {&composite};
     struct wb_validate_result result;
     char path[] = "/tmp/wirebench-follower-XXXXXX";

@@ -1,6 +1,6 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/jackknife.h"
+#include "analysis/calibrate_private.h"
 
 #define WB_LOG_DOMAIN "test"
 
@@ -35,7 +35,7 @@ static int run(double deviation[4], int n, const double strength[MOST], double l
     struct wb_calibrate_settings settings = quick_settings();
     struct wb_dataset dataset[MOST];
     const struct wb_dataset *datasets[MOST];
-    int evaluations = 0;
+    struct wb_calibrate_result result = {.material = truth};
     settings.youngs_modulus = truth.youngs_modulus;
     settings.yield_stress = truth.yield_stress;
     for (int i = 0; i < n; i++) {
@@ -44,11 +44,11 @@ static int run(double deviation[4], int n, const double strength[MOST], double l
         beam_dataset(&dataset[i], &info, &material, 1.0 * mm, last, 1.0);
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_jackknife_run(deviation, datasets, n, &settings, &truth, &evaluations),
-                     WB_OK);
+    assert_int_equal(wb_calibrate_deviations(&result, datasets, n, &settings), WB_OK);
+    memcpy(deviation, result.deviation, sizeof result.deviation);
     for (int i = 0; i < n; i++)
         wb_dataset_release(&dataset[i]);
-    return evaluations;
+    return result.evaluations;
 }
 
 static void scatter_of_k_alone_is_found_in_k(void **state)
@@ -104,20 +104,18 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
     const struct wb_calibrate_settings settings = quick_settings();
     struct wb_dataset dataset[2];
     const struct wb_dataset *const datasets[] = {&dataset[0], &dataset[1]};
-    double deviation[4];
-    int evaluations = 0;
+    struct wb_calibrate_result result = {.material = truth};
     for (int i = 0; i < 2; i++)
         beam_dataset(&dataset[i], &info, &truth, 1.0 * mm, 53 * mm, 1.0);
     /* Alone the second one pulls the wrong way. */
     for (size_t i = 0; i < dataset[1].n_rows; i++)
         dataset[1].rows[i].force *= -0.2;
     wb_log_set_sink(count, NULL);
-    assert_int_equal(wb_jackknife_run(deviation, datasets, 2, &settings, &truth, &evaluations),
-                     WB_OK);
+    assert_int_equal(wb_calibrate_deviations(&result, datasets, 2, &settings), WB_OK);
     assert_int_equal(n_errors, 0);
     assert_int_equal(n_warnings, 2);
     for (int k = 0; k < 4; k++)
-        assert_true(isnan(deviation[k]));
+        assert_true(isnan(result.deviation[k]));
     /* Afterwards errors are errors again. */
     wb_error("a test");
     assert_int_equal(n_errors, 1);

@@ -1,5 +1,5 @@
 /* Which point is which marker: chains at the start, following, losses, strays. */
-#include "analysis/markers.h"
+#include "analysis/markers_private.h"
 
 #include <stdlib.h>
 

@@ -6,6 +6,7 @@
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/units.h"
+#include "fe/trial/wire_run_private.h"
 
 static char folder[] = "/tmp/wirebench-simulated-XXXXXX";
 static struct wb_wire_model model;

@@ -6,7 +6,7 @@
 #include "base/file.h"
 
 static const double mm = WB_MM;
-static const struct wb_validate_settings settings = {.step = 1e-3, .n_elements = BEAM_ELEMENTS};
+static const struct wb_calibrate_settings settings = {.step = 1e-3, .n_elements = BEAM_ELEMENTS};
 
 static int silence(void **state)
 {
@@ -32,7 +32,7 @@ static struct wb_properties true_properties(int type)
 
 static void validate(struct wb_validate_result *result, const struct wb_properties *properties,
                      double length, double bow, double factor,
-                     const struct wb_validate_settings *how)
+                     const struct wb_calibrate_settings *how)
 {
     const struct wb_test_info info = beam_info(2, length, bow);
     const struct wb_material material = beam_material(2);
@@ -86,7 +86,7 @@ static void a_bow_that_is_ignored_shows(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
-    struct wb_validate_settings straight = settings;
+    struct wb_calibrate_settings straight = settings;
     struct wb_validate_result result;
     straight.straight = true;
     validate(&result, &properties, 0.085, 3.0 * mm, 1.0, &settings);
@@ -186,7 +186,7 @@ static void a_prediction_that_does_not_converge_is_an_error(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
-    struct wb_validate_settings coarse = settings;
+    struct wb_calibrate_settings coarse = settings;
     struct wb_dataset dataset;
     struct wb_validate_result result;
     double x[9], y[9];

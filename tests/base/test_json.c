@@ -62,24 +62,70 @@ static void numbers_are_as_short_as_they_can_be(void **state)
     struct wb_json *list = wb_json_set_array(root, "a");
     wb_json_append_number(list, 0.1);
     wb_json_append_number(list, 85.0);
-    wb_json_append_array(list);
     wb_json_append_object(list);
+    wb_json_set_array(root, "b");
     char *text;
     assert_int_equal(wb_json_format(root, &text), WB_OK);
-    assert_string_equal(text, "{\n  \"a\": [\n    0.1,\n    85,\n    [],\n    {}\n  ]\n}\n");
+    assert_string_equal(text, "{\n  \"a\": [\n    0.1,\n    85,\n    {}\n  ],\n  \"b\": []\n}\n");
     free(text);
     wb_json_destroy(root);
+}
+
+static enum wb_status format_quietly(const struct wb_json *root)
+{
+    char *text = NULL;
+    wb_log_set_sink(discard_message, NULL);
+    const enum wb_status status = wb_json_format(root, &text);
+    wb_log_set_sink(NULL, NULL);
+    free(text);
+    return status;
 }
 
 static void a_lost_value_is_reported_when_written(void **state)
 {
     (void)state;
     struct wb_json *root = wb_json_create();
+    struct wb_json *const list = wb_json_set_array(root, "list");
+    wb_json_set_number(wb_json_set_object(list, "an array has no keys"), "a", 1.0);
+    assert_int_equal(format_quietly(root), WB_ERR_MEMORY);
+    wb_json_destroy(root);
     wb_json_set_number(wb_json_set_object(NULL, "nowhere"), "a", 1.0);
+    assert_int_equal(format_quietly(NULL), WB_ERR_MEMORY);
+}
+
+/* Two documents are built side by side in one thread, as a report does for its datasets. */
+static void a_failure_belongs_to_one_document(void **state)
+{
+    (void)state;
+    struct wb_json *const broken = wb_json_create();
+    wb_json_append_number(wb_json_set_object(broken, "no array"), 1.0);
+    struct wb_json *const whole = wb_json_create();
+    wb_json_append_number(wb_json_set_array(whole, "array"), 1.0);
+    assert_int_equal(format_quietly(broken), WB_ERR_MEMORY);
+    assert_int_equal(format_quietly(whole), WB_OK);
+    wb_json_set_number(broken, "later", 2.0);
+    wb_json_append_text(wb_json_set_object(broken, "no array either"), "lost");
+    assert_int_equal(format_quietly(whole), WB_OK);
+    assert_int_equal(format_quietly(broken), WB_ERR_MEMORY);
+    wb_json_destroy(whole);
+    wb_json_destroy(broken);
+}
+
+static void setting_again_replaces_and_keeps_the_place(void **state)
+{
+    (void)state;
+    struct wb_json *const root = wb_json_create();
+    struct wb_json *const copied = wb_json_set_object(root, "a");
+    wb_json_append_text(wb_json_set_array(copied, "list"), "x");
+    wb_json_set_integer(root, "b", 1);
+    wb_json_set_copy(root, "b", copied);
+    wb_json_set_copy(root, "b", wb_json_get(root, "b"));
+    wb_json_set_text(root, "a", "y");
     char *text;
-    wb_log_set_sink(discard_message, NULL);
-    assert_int_equal(wb_json_format(root, &text), WB_ERR_MEMORY);
-    wb_log_set_sink(NULL, NULL);
+    assert_int_equal(wb_json_format(root, &text), WB_OK);
+    assert_string_equal(text, "{\n  \"a\": \"y\",\n  \"b\": {\n    \"list\": [\n      \"x\"\n"
+                              "    ]\n  }\n}\n");
+    free(text);
     wb_json_destroy(root);
 }
 
@@ -103,6 +149,8 @@ int main(void)
         cmocka_unit_test(what_json_cannot_say_becomes_null_or_ascii),
         cmocka_unit_test(numbers_are_as_short_as_they_can_be),
         cmocka_unit_test(a_lost_value_is_reported_when_written),
+        cmocka_unit_test(a_failure_belongs_to_one_document),
+        cmocka_unit_test(setting_again_replaces_and_keeps_the_place),
         cmocka_unit_test(bad_json_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "fe/trial/history.h"
+#include "fe/trial/loading_steps.h"
+#include "tests/twin/fibres_swap.h"
 
 enum {
     STEPS = 53,
@@ -29,13 +30,12 @@ static bool time_test(bool slow, struct timing *timing)
 {
     const struct wb_material material = {
         WB_HARDENING_ISOTROPIC_POWER, 4528e6, 0.39, 4.52e6, 1327e6, 0.90};
-    const struct wb_cantilever_settings settings = {.reference_kernel = slow};
     struct wb_section section;
     struct wb_cantilever_model model;
     struct wb_cantilever *cantilever = NULL;
-    struct wb_history history = {0};
-    const struct wb_history_plan load = {.maximum = 0.053, .steps = STEPS};
-    struct wb_history_plan both = load;
+    struct wb_loading_steps loading = {0};
+    const struct wb_loading_steps_plan load = {.maximum = 0.053, .steps = STEPS};
+    struct wb_loading_steps_plan both = load;
     both.cycles = 1;
 
     wb_cantilever_default_model(&model);
@@ -43,8 +43,9 @@ static bool time_test(bool slow, struct timing *timing)
         return false;
     model.section = &section;
     model.length = 0.085;
-    bool good = wb_cantilever_create(&cantilever, &model, &settings) == WB_OK &&
-                wb_history_init(&history, &both) == WB_OK;
+    slow_section = slow ? &section : NULL;
+    bool good = wb_cantilever_create(&cantilever, &model, NULL) == WB_OK &&
+                wb_loading_steps_init(&loading, &both) == WB_OK;
 
     *timing = (struct timing){.load = 1e9, .both = 1e9};
     for (int i = 0; good && i < REPEATS; i++) {
@@ -52,22 +53,23 @@ static bool time_test(bool slow, struct timing *timing)
         double start = cpu_seconds();
         wb_cantilever_set_materials(cantilever, &material);
         wb_cantilever_reset(cantilever);
-        good = wb_history_run(&history, &load, cantilever) == WB_OK && history.converged;
+        good = wb_loading_steps_run(&loading, &load, cantilever) == WB_OK && loading.converged;
         double spent = cpu_seconds() - start;
         timing->load = spent < timing->load ? spent : timing->load;
 
         start = cpu_seconds();
         wb_cantilever_set_materials(cantilever, &material);
         wb_cantilever_reset(cantilever);
-        good = good && wb_history_run(&history, &both, cantilever) == WB_OK && history.converged;
+        good =
+            good && wb_loading_steps_run(&loading, &both, cantilever) == WB_OK && loading.converged;
         spent = cpu_seconds() - start;
         timing->both = spent < timing->both ? spent : timing->both;
     }
-    timing->force = good ? history.rows[STEPS].force : 0.0;
-    for (int i = 0; good && i < history.n_rows; i++)
-        timing->iterations += history.rows[i].point.iterations;
+    timing->force = good ? loading.rows[STEPS].force : 0.0;
+    for (int i = 0; good && i < loading.n_rows; i++)
+        timing->iterations += loading.rows[i].point.iterations;
 
-    wb_history_release(&history);
+    wb_loading_steps_release(&loading);
     wb_cantilever_destroy(cantilever);
     wb_section_release(&section);
     return good;

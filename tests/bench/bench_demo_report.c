@@ -6,7 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "analysis/report/report.h"
+#include "analysis/report/bench/recordings_report.h"
 #include "base/log.h"
 
 static double seconds(clockid_t clock)
@@ -23,24 +23,24 @@ struct timing {
 
 static bool time_report(const char *path, int n_threads, const char *folder, struct timing *timing)
 {
-    struct wb_campaign campaign;
-    struct wb_results results;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
     const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID), start = seconds(CLOCK_MONOTONIC);
-    if (wb_campaign_read(&campaign, path) != WB_OK)
+    if (wb_recordings_read(&campaign, path) != WB_OK)
         return false;
-    if (wb_results_compute(&results, &campaign, n_threads, NULL, NULL) != WB_OK) {
-        wb_campaign_release(&campaign);
+    if (wb_recordings_results_compute(&results, &campaign, n_threads, NULL, NULL) != WB_OK) {
+        wb_recordings_release(&campaign);
         return false;
     }
     const double computed = seconds(CLOCK_MONOTONIC);
-    const bool good = wb_report_write(&results, folder, true) == WB_OK;
+    const bool good = wb_recordings_report_write(&results, folder, true) == WB_OK;
     timing->compute = computed - start;
     timing->draw = seconds(CLOCK_MONOTONIC) - computed;
     timing->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
     timing->n_tests = results.n_tests;
     timing->n_usable = results.n_usable;
-    wb_results_release(&results);
-    wb_campaign_release(&campaign);
+    wb_recordings_results_release(&results);
+    wb_recordings_release(&campaign);
     return good;
 }
 

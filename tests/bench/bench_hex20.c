@@ -16,7 +16,7 @@ enum {
 struct element {
     struct wb_hex20_geometry geometry;
     double u[60];
-    struct wb_hex20_state before[27], after[27];
+    struct wb_solid_point_state before[27], after[27];
 };
 
 static const struct wb_material material = {
@@ -29,9 +29,9 @@ static double cpu_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static bool make_element(struct element *e, enum wb_hex20_integration integration)
+static bool make_element(struct element *e, enum wb_integration integration)
 {
-    struct wb_hex20_state virgin[27] = {{{0.0}}};
+    struct wb_solid_point_state virgin[27] = {{{0.0}}};
     struct wb_hex20_result result;
     double position[20][3], force[60];
 
@@ -53,11 +53,11 @@ enum what {
 };
 
 /* Least microseconds an element of all repeats; from the state after (no yielding) or before. */
-static double time_elements(struct element *elements, enum wb_hex20_integration integration,
+static double time_elements(struct element *elements, enum wb_integration integration,
                             bool yielding, enum what what)
 {
     static double K[3600];
-    struct wb_hex20_state after[27];
+    struct wb_solid_point_state after[27];
     struct wb_hex20_result result;
     double force[60], best = 1e9;
     int yields = 0;
@@ -66,7 +66,7 @@ static double time_elements(struct element *elements, enum wb_hex20_integration 
         const double start = cpu_seconds();
         for (int i = 0; i < ELEMENTS; i++) {
             struct element *e = &elements[i];
-            const struct wb_hex20_state *before = yielding ? e->before : e->after;
+            const struct wb_solid_point_state *before = yielding ? e->before : e->after;
             bool good;
             if (what == TWIN)
                 good = twin_evaluate(&e->geometry, wb_hex20_points(integration), false, &material,
@@ -93,8 +93,8 @@ int main(void)
     printf("one evaluation of a 20-node hexahedron, CPU microseconds on one core\n\n"
            "                          forces   and stiffness   slow twin   ratio to the twin\n");
     for (int k = 0; good && k < 2; k++) {
-        const enum wb_hex20_integration integration =
-            k == 0 ? WB_HEX20_SELECTIVE : WB_HEX20_REDUCED;
+        const enum wb_integration integration =
+            k == 0 ? WB_INTEGRATION_SELECTIVE : WB_INTEGRATION_REDUCED;
         srand(1);
         for (int i = 0; good && i < ELEMENTS; i++)
             good = make_element(&elements[i], integration);

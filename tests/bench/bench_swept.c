@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_step.h"
 #include "tests/fe/swept/swept_hex_twin.h"
 
@@ -218,7 +219,7 @@ static bool print_row(const struct wb_swept_hex_model *model, double twin)
 static bool print_copies(struct wb_swept_hex_model model)
 {
     struct bench b;
-    model.instructions = WB_SWEPT_HEX_BEST;
+    model.instructions = WB_SWEPT_BEST;
     bench_clock = CLOCK_MONOTONIC;
     bool good = bench_create(&b, &model, 1.0);
     if (good) {
@@ -263,7 +264,7 @@ int main(void)
         int rows = 0;
         for (int i = 0; i < 6; i++) {
             model.double_precision = i % 2;
-            model.instructions = (enum wb_swept_hex_instructions)(WB_SWEPT_HEX_AVX512 - i / 2);
+            model.instructions = (enum wb_swept_instructions)(WB_SWEPT_AVX512 - i / 2);
             rows += print_row(&model, twin);
         }
         if (rows == 0 || !(twin > 0.0)) {

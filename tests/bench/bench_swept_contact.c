@@ -9,6 +9,7 @@
 
 #include "fe/model/packing.h"
 #include "fe/swept/swept_contact.h"
+#include "fe/swept/swept_private.h"
 
 enum {
     MOST_WIRES = 32,
@@ -149,7 +150,7 @@ static bool run_round(const struct problem *problem, struct bundle *bundle,
     return energies.normal > 0.0;
 }
 
-static bool time_problem(const struct problem *problem, enum wb_swept_contact_instructions set)
+static bool time_problem(const struct problem *problem, enum wb_swept_instructions set)
 {
     struct bundle bundle = {0};
     struct wb_swept_contact_settings settings;
@@ -200,8 +201,8 @@ int main(void)
     printf("contact between wires, one core, CPU ns\n");
     for (size_t i = 0; i < sizeof problems / sizeof problems[0]; i++) {
         printf("%s\n", problems[i].title);
-        for (int set = WB_SWEPT_CONTACT_BASELINE; set <= WB_SWEPT_CONTACT_AVX512; set++) {
-            if (!time_problem(&problems[i], (enum wb_swept_contact_instructions)set) && set == 1) {
+        for (int set = WB_SWEPT_BASELINE; set <= WB_SWEPT_AVX512; set++) {
+            if (!time_problem(&problems[i], (enum wb_swept_instructions)set) && set == 1) {
                 fprintf(stderr, "%s: failed\n", problems[i].title);
                 return EXIT_FAILURE;
             }

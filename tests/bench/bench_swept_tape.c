@@ -66,8 +66,8 @@ static enum wb_status make_steps(struct sleeve *s, bool is_double)
     return WB_OK;
 }
 
-static enum wb_status create(struct sleeve *s, enum wb_swept_tape_instructions instructions,
-                             int points, bool is_double)
+static enum wb_status create(struct sleeve *s, enum wb_swept_instructions instructions, int points,
+                             bool is_double)
 {
     struct wb_swept_tape_model model = {
         .material = {WB_HARDENING_ISOTROPIC_POWER, 119e6, 0.3, 2.4e6, 16.3e6, 0.73},
@@ -238,7 +238,7 @@ int main(void)
            "                 points   elastic   yielding   elastic, with update   "
            "a bonded node   a touching node\n");
     for (int is_double = 0; is_double < 2; is_double++) {
-        for (int way = WB_SWEPT_TAPE_BASELINE; way <= WB_SWEPT_TAPE_AVX512; way++) {
+        for (int way = WB_SWEPT_BASELINE; way <= WB_SWEPT_AVX512; way++) {
             for (int points = 3; points <= 5; points += 2) {
                 struct sleeve s;
                 if (create(&s, way, points, is_double) != WB_OK) {

@@ -7,15 +7,22 @@ manual=$2/docs/commands.md
 bad=0
 commands=$("$tool" --help | awk '/^  [a-z]/ && NF > 2 && !/--/ { print $1 }')
 [ "$(echo "$commands" | wc -w)" -ge 12 ] || { echo "too few commands in --help"; exit 1; }
-for command in $commands; do
-    grep -qE "wirebench $command" "$manual" || { echo "'$command' is not documented"; bad=1; }
-    for option in $("$tool" "$command" --help | grep -oE '^ +(-[a-z], )?--[a-z][a-z-]+' |
+check() { # COMMAND [KIND]
+    grep -qE "wirebench $*" "$manual" || { echo "'$*' is not documented"; bad=1; }
+    for option in $("$tool" "$@" --help | grep -oE '^ +(-[a-z], )?--[a-z][a-z-]+' |
         grep -oE -- '--[a-z-]+' | sort -u); do
         case $option in --help | --usage) continue ;; esac
         grep -qF -- "\`$option" "$manual" || {
-            echo "'$command $option' is not documented"
+            echo "'$* $option' is not documented"
             bad=1
         }
     done
+}
+for command in $commands; do
+    check "$command"
+done
+# `solve --help` has the options that all kinds share.
+for kind in cantilever wire3d wire1d bundle; do
+    check solve "$kind"
 done
 exit $bad

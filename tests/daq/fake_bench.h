@@ -42,6 +42,10 @@ struct fake_bench {
     atomic_bool stage_refuses;    /* answers jogs with error:15 */
     atomic_bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
     atomic_bool stage_overshoots; /* goes on beyond the target */
+    atomic_bool has_top;          /* answers jogs that end above 0 with error:15 */
+    atomic_int reports_of_100;    /* how many questions for the state are answered; 0: all */
+    atomic_int
+        readings_at_once; /* the load cell's arrive so many in one piece; 0: each by itself */
     atomic_bool overload, other_unit, garbage;
     atomic_bool raise_alarm;
     atomic_int markers;      /* how many are there */
@@ -63,6 +67,9 @@ struct fake_bench {
     int32_t frame;
     char line[256];
     size_t n_line;
+    char readings[4096]; /* that wait to be written together */
+    size_t n_readings;
+    int readings_held, questions;
     struct sockaddr_in client;
     bool has_client;
     struct wb_natnet_frame data;
@@ -118,6 +125,9 @@ static inline void fake_report(struct fake_bench *bench)
     const size_t n = wb_grbl_format_report(text, sizeof text, &report);
     if (bench->stage_silent || (bench->stage_wild && bench->reset_ns != 0))
         return;
+    const int share = bench->reports_of_100;
+    if (share > 0 && ++bench->questions * share % 100 >= share)
+        return;
     fake_write(bench->stage, text, n);
     bench->report_last_ns = wb_acquisition_now_ns();
 }
@@ -126,12 +136,13 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
 {
     struct wb_grbl_jog jog;
     if (wb_grbl_parse_jog(line, &jog)) {
-        if (bench->stage_refuses) {
+        const double target = jog.relative ? bench->position_mm + jog.target_mm : jog.target_mm;
+        if (bench->stage_refuses || (bench->has_top && target < 0.0)) {
             fake_say(bench, "error:15\r\n");
         } else if (strcmp(bench->state, "Idle") != 0) {
             fake_say(bench, "error:9\r\n");
         } else {
-            bench->target_mm = jog.relative ? bench->position_mm + jog.target_mm : jog.target_mm;
+            bench->target_mm = target;
             bench->feed_mm_s = jog.feed_mm_min / 60.0;
             bench->state = "Jog";
             if (!atomic_exchange(&bench->stage_forgets_ok, false))
@@ -211,7 +222,13 @@ static inline void fake_reading(struct fake_bench *bench)
         ((bench->force_limit_mg > 0 && fabs(mg) > bench->force_limit_mg) || bench->overload ||
          bench->other_unit))
         bench->limit_sent_ns = wb_acquisition_now_ns();
-    fake_write(bench->load, text, strlen(text));
+    memcpy(bench->readings + bench->n_readings, text, strlen(text));
+    bench->n_readings += strlen(text);
+    if (++bench->readings_held < bench->readings_at_once)
+        return;
+    fake_write(bench->load, bench->readings, bench->n_readings);
+    bench->n_readings = 0;
+    bench->readings_held = 0;
     bench->load_last_ns = wb_acquisition_now_ns();
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "fe/bundle/bundle_run.h"
-#include "fe/trial/history.h"
+#include "fe/trial/loading_steps.h"
 #include "tests/fe/rod/wires.h"
 
 static char folder[] = "/tmp/wirebench-bundle-XXXXXX";

@@ -436,7 +436,7 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
         const struct wb_bundle_run_options plain = {.threads = threads};
         run_with(&plain);
         assert_int_equal(result.parts, threads);
-        assert_int_equal(result.rows[8].phase, WB_HISTORY_SLACK);
+        assert_int_equal(result.rows[8].phase, WB_PHASE_SLACK);
         const struct wb_bundle_result straight = result;
         result = (struct wb_bundle_result){0};
 

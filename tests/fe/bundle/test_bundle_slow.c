@@ -9,13 +9,13 @@ static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles,
         STEPS = 5
     };
     struct wb_cantilever *cantilever = test_cantilever(beam);
-    const struct wb_history_plan plan = {.maximum = 50e-3, .steps = STEPS, .cycles = cycles};
-    struct wb_history expected;
+    const struct wb_loading_steps_plan plan = {.maximum = 50e-3, .steps = STEPS, .cycles = cycles};
+    struct wb_loading_steps expected;
     double worst = 0.0;
     int slack = 0;
 
-    assert_int_equal(wb_history_init(&expected, &plan), WB_OK);
-    assert_int_equal(wb_history_run(&expected, &plan, cantilever), WB_OK);
+    assert_int_equal(wb_loading_steps_init(&expected, &plan), WB_OK);
+    assert_int_equal(wb_loading_steps_run(&expected, &plan, cantilever), WB_OK);
     run_model(NULL);
     assert_true(result.converged);
     assert_int_equal(result.n_rows, 1 + 2 * cycles * STEPS);
@@ -28,8 +28,8 @@ static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles,
         assert_int_equal(row->cycle, expected.rows[i].cycle);
         assert_close(error, 0.0, limit);
         worst = fmax(worst, fabs(error));
-        slack += row->phase == WB_HISTORY_SLACK;
-        if (row->phase == WB_HISTORY_SLACK) {
+        slack += row->phase == WB_PHASE_SLACK;
+        if (row->phase == WB_PHASE_SLACK) {
             assert_true(row->tension == 0.0);
             assert_close_relative(row->deflection, expected.rows[i].point.deflection, 0.02);
         }
@@ -37,7 +37,7 @@ static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles,
     print_message("largest error of %d rows, %d of them slack: %.2f %% of the largest force\n",
                   result.n_rows, slack, 100.0 * worst);
     assert_true(result.largest.imbalance < 0.01);
-    wb_history_release(&expected);
+    wb_loading_steps_release(&expected);
     wb_cantilever_destroy(cantilever);
     return slack;
 }

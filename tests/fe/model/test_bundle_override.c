@@ -42,16 +42,13 @@ static void all_of_it_reaches_the_model(void **unused)
     (void)unused;
     static struct wb_bundle_model model;
     const struct wb_bundle_override override = {
-        .mesh = "fine",
         .dead_force = true,
         .no_weight = true,
-        .duration = 1.5,
-        .mass_scaling = 100.0,
-        .selective = 50.0,
-        .has_friction = true,
-        .friction_static = 0.3,
-        .friction_kinetic = 0.3,
-        .cohesive_stiffness = 60e9,
+        .run = {.mesh = "fine", .duration = 1.5, .mass_scaling = 100.0, .selective = 50.0},
+        .interface = {.has_friction = true,
+                      .friction_static = 0.3,
+                      .friction_kinetic = 0.3,
+                      .normal_stiffness = 60e9},
     };
     make_model(&model);
     assert_false(wb_bundle_override_is_empty(&override));
@@ -73,7 +70,7 @@ static void friction_of_zero_is_an_override(void **unused)
 {
     (void)unused;
     static struct wb_bundle_model model;
-    const struct wb_bundle_override override = {.has_friction = true};
+    const struct wb_bundle_override override = {.interface = {.has_friction = true}};
     make_model(&model);
     assert_false(wb_bundle_override_is_empty(&override));
     assert_int_equal(wb_bundle_override_apply(&override, &model), WB_OK);
@@ -85,15 +82,15 @@ static void what_is_out_of_range_is_refused_and_changes_nothing(void **unused)
 {
     (void)unused;
     static const struct wb_bundle_override bad[] = {
-        {.has_friction = true, .friction_static = -0.1},
-        {.has_friction = true, .friction_static = 11.0},
-        {.has_friction = true, .friction_static = 0.1, .friction_kinetic = 0.2},
-        {.has_friction = true, .friction_decay = -1.0},
-        {.cohesive_stiffness = -1.0},
-        {.no_weight = true, .cohesive_stiffness = 60e9, .mass_scaling = 0.5},
-        {.dead_force = true, .selective = 0.99},
-        {.duration = -1.0},
-        {.duration = (double)NAN},
+        {.interface = {.has_friction = true, .friction_static = -0.1}},
+        {.interface = {.has_friction = true, .friction_static = 11.0}},
+        {.interface = {.has_friction = true, .friction_static = 0.1, .friction_kinetic = 0.2}},
+        {.interface = {.has_friction = true, .friction_decay = -1.0}},
+        {.interface = {.normal_stiffness = -1.0}},
+        {.no_weight = true, .run = {.mass_scaling = 0.5}, .interface = {.normal_stiffness = 60e9}},
+        {.dead_force = true, .run = {.selective = 0.99}},
+        {.run = {.duration = -1.0}},
+        {.run = {.duration = (double)NAN}},
     };
     static struct wb_bundle_model model, before;
     make_model(&model);
@@ -102,7 +99,7 @@ static void what_is_out_of_range_is_refused_and_changes_nothing(void **unused)
         assert_int_equal(wb_bundle_override_apply(&bad[i], &model), WB_ERR_ARGUMENT);
         assert_memory_equal(&model, &before, sizeof model);
     }
-    const struct wb_bundle_override other = {.dead_force = true, .mesh = "none"};
+    const struct wb_bundle_override other = {.dead_force = true, .run = {.mesh = "none"}};
     assert_int_equal(wb_bundle_override_apply(&other, &model), WB_ERR_NOT_FOUND);
     assert_memory_equal(&model, &before, sizeof model);
 }
@@ -112,14 +109,14 @@ static void damage_has_to_soften_with_the_new_stiffness(void **unused)
 {
     (void)unused;
     static struct wb_bundle_model model;
-    struct wb_bundle_override override = {.cohesive_stiffness = 3e9};
+    struct wb_bundle_override override = {.interface = {.normal_stiffness = 3e9}};
     make_model(&model);
     model.interface.has_damage = true;
     model.interface.damage = (struct wb_bundle_damage){
         .strength = 3e6, .shear_strength = 1e6, .fracture_energy = 1400.0};
     assert_int_equal(wb_bundle_override_apply(&override, &model), WB_ERR_ARGUMENT);
     assert_close(model.interface.normal_stiffness, 30e9, 0.0);
-    override.cohesive_stiffness = 4e9;
+    override.interface.normal_stiffness = 4e9;
     assert_int_equal(wb_bundle_override_apply(&override, &model), WB_OK);
     /* In shear 10 N/mm3 becomes 1.33: 1.5 N/mm until 2 MPa. */
     make_model(&model);

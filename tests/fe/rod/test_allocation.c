@@ -2,7 +2,7 @@
  * (--wrap). */
 #include <stdlib.h>
 
-#include "fe/trial/history.h"
+#include "fe/trial/loading_steps.h"
 #include "tests/fe/rod/wires.h"
 
 static int allocations;
@@ -44,21 +44,21 @@ static void stepping_allocates_nothing(void **unused)
     model.strand_length = 0.76;
     model.mass_per_length = test_wire_mass(&wire);
     struct wb_cantilever *cantilever = test_cantilever(&model);
-    const struct wb_history_plan plan = {.maximum = 0.053, .steps = 10, .cycles = 2};
-    struct wb_history history;
-    assert_int_equal(wb_history_init(&history, &plan), WB_OK);
+    const struct wb_loading_steps_plan plan = {.maximum = 0.053, .steps = 10, .cycles = 2};
+    struct wb_loading_steps loading;
+    assert_int_equal(wb_loading_steps_init(&loading, &plan), WB_OK);
     assert_true(allocations > 10);
 
     allocations = 0;
     wb_cantilever_set_materials(cantilever, &wire.material);
     wb_cantilever_reset(cantilever);
-    assert_int_equal(wb_history_run(&history, &plan, cantilever), WB_OK);
+    assert_int_equal(wb_loading_steps_run(&loading, &plan, cantilever), WB_OK);
     wb_cantilever_save(cantilever);
     wb_cantilever_restore(cantilever);
     assert_int_equal(allocations, 0);
-    assert_int_equal(history.n_rows, 41);
+    assert_int_equal(loading.n_rows, 41);
 
-    wb_history_release(&history);
+    wb_loading_steps_release(&loading);
     wb_cantilever_destroy(cantilever);
     wb_section_release(&section);
 }

@@ -1,6 +1,6 @@
 /* The cantilever under a force that stays normal to the wire: by its size, and by the deflection
  * that it makes. */
-#include "fe/trial/history.h"
+#include "fe/trial/loading_steps.h"
 
 #include "tests/fe/rod/wires.h"
 
@@ -301,24 +301,24 @@ static void strand_and_follower_exclude_each_other(void **unused)
     release_rig(&rig);
 }
 
-static void force_of_a_history_is_the_followers(void **unused)
+static void force_of_loading_steps_is_the_followers(void **unused)
 {
     (void)unused;
     const enum wb_cantilever_control controls[] = {WB_CONTROL_FOLLOWER_DEFLECTION,
                                                    WB_CONTROL_FOLLOWER_FORCE};
     for (int k = 0; k < 2; k++) {
         struct rig rig = composite_rig();
-        const struct wb_history_plan plan = {
+        const struct wb_loading_steps_plan plan = {
             .control = controls[k], .maximum = k == 0 ? 0.03 : 14.0, .steps = 10};
-        struct wb_history h;
-        assert_int_equal(wb_history_init(&h, &plan), WB_OK);
-        assert_int_equal(wb_history_run(&h, &plan, rig.cantilever), WB_OK);
+        struct wb_loading_steps h;
+        assert_int_equal(wb_loading_steps_init(&h, &plan), WB_OK);
+        assert_int_equal(wb_loading_steps_run(&h, &plan, rig.cantilever), WB_OK);
         assert_int_equal(h.n_rows, 11);
         assert_true(h.zero_force == 0.0);
         for (int i = 0; i < h.n_rows; i++)
             assert_true(h.rows[i].force == h.rows[i].point.follower);
         assert_true(h.rows[10].force > 13.9);
-        wb_history_release(&h);
+        wb_loading_steps_release(&h);
         release_rig(&rig);
     }
 }
@@ -336,7 +336,7 @@ int main(void)
         cmocka_unit_test(weight_is_carried_at_zero_deflection),
         cmocka_unit_test(other_tip_loads_stay),
         cmocka_unit_test(strand_and_follower_exclude_each_other),
-        cmocka_unit_test(force_of_a_history_is_the_followers),
+        cmocka_unit_test(force_of_loading_steps_is_the_followers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

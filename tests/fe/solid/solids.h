@@ -5,9 +5,11 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid.h"
+#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
 
-static const enum wb_hex20_integration test_solid_rules[2] = {WB_HEX20_SELECTIVE, WB_HEX20_REDUCED};
+static const enum wb_integration test_solid_rules[2] = {WB_INTEGRATION_SELECTIVE,
+                                                        WB_INTEGRATION_REDUCED};
 static const char *const test_solid_rule_names[2] = {"selective", "reduced"};
 
 static inline struct wb_material test_solid_elastic(double E, double nu)
@@ -18,7 +20,7 @@ static inline struct wb_material test_solid_elastic(double E, double nu)
 struct test_solid {
     struct wb_solid_mesh mesh;
     struct wb_solid_part part;
-    enum wb_hex20_integration integration;
+    enum wb_integration integration;
     struct wb_solid_settings settings;
     int n_supports;
     struct wb_solid_support *supports;
@@ -29,7 +31,7 @@ struct test_solid {
 
 /* Takes over t->mesh. */
 static inline void test_solid_init(struct test_solid *t, const struct wb_material *material,
-                                   enum wb_hex20_integration integration)
+                                   enum wb_integration integration)
 {
     t->part = (struct wb_solid_part){*material, 0.0};
     t->integration = integration;

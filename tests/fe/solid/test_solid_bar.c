@@ -139,7 +139,7 @@ static void turning_a_yielded_body_turns_its_residual_stress(void **unused)
 
 /* A cantilever bar is loaded beyond yield and unloaded, in increments of a share; what is missing
  * in the balance at either end, over the work of loading. */
-static void missing_work(const struct wb_material *material, enum wb_hex20_integration how,
+static void missing_work(const struct wb_material *material, enum wb_integration how,
                          double increment, double missing[2])
 {
     const int n[3] = {4, 2, 1};

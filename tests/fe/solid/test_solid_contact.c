@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid.h"
+#include "fe/solid/solid_mesh_private.h"
+#include "fe/solid/solid_private.h"
 #include "fe/trial/wire3d.h"
 
 /* --- two blocks --- */
@@ -20,7 +22,7 @@ struct stack {
     int n_lower;       /* nodes of the lower block */
     double axis[3][3]; /* up, and two directions across */
     struct wb_solid_part parts[2];
-    struct wb_interface_law law;
+    struct wb_jacket_contact_law law;
     struct wb_solid_settings settings;
     int n_supports;
     struct wb_solid_support *supports;
@@ -100,7 +102,7 @@ static struct stack *stack_begin(const double up[3], const double across[3], dou
     for (int p = 0; p < 2; p++)
         s->parts[p].material =
             (struct wb_material){WB_HARDENING_NONE_ELASTIC, young, 0.3, 0.0, 0.0, 0.0};
-    s->law = (struct wb_interface_law){1e13, 3e11, mu};
+    s->law = (struct wb_jacket_contact_law){1e13, 3e11, mu};
     s->settings = (struct wb_solid_settings){.force_tolerance = 1e-8};
     return s;
 }
@@ -131,11 +133,11 @@ static void stack_create(struct stack *s)
     const struct wb_solid_model model = {
         .mesh = &s->mesh,
         .parts = s->parts,
-        .integration = WB_HEX20_SELECTIVE,
+        .integration = WB_INTEGRATION_SELECTIVE,
         .n_supports = s->n_supports,
         .supports = s->supports,
         .nodal_force = (const double(*)[3])s->force,
-        .interface = &s->law,
+        .jacket_contact = &s->law,
     };
     assert_int_equal(wb_solid_create(&s->solid, &model, &s->settings), WB_OK);
 }
@@ -208,8 +210,8 @@ static void pressed_blocks_stick_then_slip_at_mu_times_the_force(void **unused)
     const double compliance = 2.0 * height / shear + 1.0 / s->law.tangential_stiffness;
     assert_close_relative(force[1], area * 0.1 * full / compliance, 0.03);
     assert_true(force[1] < 0.7 * mu * pressure * area);
-    assert_int_equal(balance.interface.slipping, 0);
-    assert_true(balance.interface.slip == 0.0 && balance.friction == 0.0);
+    assert_int_equal(balance.jacket_contact.slipping, 0);
+    assert_true(balance.jacket_contact.slip == 0.0 && balance.friction == 0.0);
 
     /* Slipping everywhere. */
     stack_go(s, 1.0, 1.0);
@@ -218,10 +220,10 @@ static void pressed_blocks_stick_then_slip_at_mu_times_the_force(void **unused)
     assert_close(force[0], -pressure * area, 1e-7);
     assert_close_relative(force[1], mu * pressure * area, 3e-4);
     assert_close(force[2], 0.0, 1e-4 * mu * pressure * area);
-    assert_int_equal(balance.interface.slipping, 9 * SIDE * SIDE);
+    assert_int_equal(balance.jacket_contact.slipping, 9 * SIDE * SIDE);
     /* The largest slip is at an edge that is pressed on less than the mean. */
-    assert_true(balance.interface.slip > full - mu * pressure * compliance);
-    assert_true(balance.interface.slip < full);
+    assert_true(balance.jacket_contact.slip > full - mu * pressure * compliance);
+    assert_true(balance.jacket_contact.slip < full);
 
     /* And back the other way. */
     stack_go(s, -1.0, 1.0);
@@ -341,8 +343,8 @@ static void lifted_block_lets_go_and_comes_back(void **unused)
     pushed(s, force);
     for (int c = 0; c < 3; c++)
         assert_close(force[c], 0.0, 1e-12);
-    assert_int_equal(balance.interface.touching, 0);
-    assert_close_relative(balance.interface.opening, 1e-6, 1e-3);
+    assert_int_equal(balance.jacket_contact.touching, 0);
+    assert_close_relative(balance.jacket_contact.opening, 1e-6, 1e-3);
     for (int e = 0; e < s->mesh.n_elements; e++) {
         wb_solid_nodal_stress(s->solid, e, stress, plastic);
         for (int a = 0; a < 20; a++)
@@ -382,10 +384,10 @@ static struct bent bend(double mu, const double poissons_ratio[2], double pull, 
         model->part[p].material = (struct wb_material){
             WB_HARDENING_NONE_ELASTIC, wire_young, poissons_ratio[p], 0.0, 0.0, 0.0};
     model->has_contact = mu >= 0.0;
-    wb_interface_default_law(&model->interface, wire_young, poissons_ratio[1],
-                             0.5 * (jacket - core), mu);
-    model->interface.normal_stiffness *= stiffer;
-    model->interface.tangential_stiffness *= stiffer;
+    wb_trial_default_jacket_contact(&model->jacket_contact, wire_young, poissons_ratio[1],
+                                    0.5 * (jacket - core), mu);
+    model->jacket_contact.normal_stiffness *= stiffer;
+    model->jacket_contact.tangential_stiffness *= stiffer;
     model->elements_along = 12;
     model->section_density = 1;
     if (pull > 0.0)

@@ -2,6 +2,8 @@
  * locking near incompressibility and in the plastic limit. docs/verification.md has the numbers. */
 #include "tests/fe/solid/solids.h"
 
+#include "fe/solid/solid_private.h"
+
 /* ---- Cook's membrane ---- */
 
 static const double cook_thickness = 0.5;
@@ -16,7 +18,7 @@ static void cook_map(void *context, const double unit[3], double at[3])
 
 /* n x n elements, E = 1; deflection at the middle of the loaded edge for a load of 1 per thickness
  * of 1. Plane strain: held in z everywhere. */
-static double cook(int n, double nu, bool plane_strain, enum wb_hex20_integration how)
+static double cook(int n, double nu, bool plane_strain, enum wb_integration how)
 {
     const struct wb_material material = test_solid_elastic(1.0, nu);
     const int elements[3] = {n, n, 1};
@@ -43,16 +45,16 @@ static double cook(int n, double nu, bool plane_strain, enum wb_hex20_integratio
 }
 
 /* Errors of 2 x 2, 4 x 4, 8 x 8 and 16 x 16 elements. */
-static void cook_errors(double nu, bool plane_strain, double reference,
-                        enum wb_hex20_integration how, double error[4])
+static void cook_errors(double nu, bool plane_strain, double reference, enum wb_integration how,
+                        double error[4])
 {
     for (int k = 0; k < 4; k++) {
         const double answer = cook(2 << k, nu, plane_strain, how);
         error[k] = answer / reference - 1.0;
         print_message("Cook, nu = %g, %s, %d x %d, %s: %.4f, %+.2f %% of %.4f\n", nu,
                       plane_strain ? "plane strain" : "plane stress", 2 << k, 2 << k,
-                      test_solid_rule_names[how == WB_HEX20_REDUCED], answer, 100.0 * error[k],
-                      reference);
+                      test_solid_rule_names[how == WB_INTEGRATION_REDUCED], answer,
+                      100.0 * error[k], reference);
     }
     print_message("orders of convergence %.2f, %.2f, %.2f\n", log2(error[0] / error[1]),
                   log2(error[1] / error[2]), log2(error[2] / error[3]));
@@ -117,8 +119,7 @@ static void push(void *context, const double at[3], const double normal[3], doub
 /* A quarter of the ring; its inner side moves outward by `displacement` at factor 1. The forces for
  * a pressure of 1 are in `unit_pressure` (n_nodes), allocated. */
 static void ring_begin(struct test_solid *t, const int n[3], const struct wb_material *material,
-                       enum wb_hex20_integration how, double displacement,
-                       double (**unit_pressure)[3])
+                       enum wb_integration how, double displacement, double (**unit_pressure)[3])
 {
     test_solid_block(t, n, ring_map, NULL);
     test_solid_init(t, material, how);
@@ -153,7 +154,7 @@ static double ring_pressure(const struct test_solid *t, const double (*unit_pres
 }
 
 /* Lame: u(a) = p (1 + nu) a / E / (b^2 - a^2) ((1 - 2 nu) a^2 + b^2). */
-static double ring_error(int m, double nu, enum wb_hex20_integration how)
+static double ring_error(int m, double nu, enum wb_integration how)
 {
     const double E = 210e9, a = inner_radius, b = outer_radius, u = 1e-8;
     const double exact =
@@ -166,7 +167,7 @@ static double ring_error(int m, double nu, enum wb_hex20_integration how)
     test_solid_go(&t, 1.0, 0.0);
     const double error = ring_pressure(&t, (const double(*)[3])unit) / exact - 1.0;
     print_message("elastic ring, nu = %g, %d x %d, %s: %+.2e\n", nu, n[0], n[1],
-                  test_solid_rule_names[how == WB_HEX20_REDUCED], error);
+                  test_solid_rule_names[how == WB_INTEGRATION_REDUCED], error);
     free(unit);
     test_solid_release(&t);
     return error;
@@ -181,14 +182,15 @@ static void elastic_ring_converges_with_fourth_order(void **unused)
     for (int k = 0; k < 2; k++) {
         double e[4];
         for (int m = 0; m < 4; m++)
-            e[m] = ring_error(1 << m, ratio[k], WB_HEX20_SELECTIVE);
+            e[m] = ring_error(1 << m, ratio[k], WB_INTEGRATION_SELECTIVE);
         print_message("orders of convergence %.2f, %.2f, %.2f\n", log2(e[0] / e[1]),
                       log2(e[1] / e[2]), log2(e[2] / e[3]));
         assert_close(e[0], 0.0, 4e-3);
         assert_close(log2(e[1] / e[2]), 4.0, 0.4);
         assert_close(log2(e[2] / e[3]), 4.0, 0.3);
         for (int m = 0; m < 3; m++)
-            assert_true(fabs(ring_error(1 << m, ratio[k], WB_HEX20_REDUCED)) < 0.05 * fabs(e[m]));
+            assert_true(fabs(ring_error(1 << m, ratio[k], WB_INTEGRATION_REDUCED)) <
+                        0.05 * fabs(e[m]));
     }
 }
 
@@ -229,7 +231,7 @@ static void block_map(void *context, const double unit[3], double at[3])
     at[2] = unit[2];
 }
 
-static double block(int m, enum wb_hex20_integration how)
+static double block(int m, enum wb_integration how)
 {
     const struct wb_material material = test_solid_elastic(1e9, 0.3);
     const int n[3] = {4 * m, m, m};
@@ -250,11 +252,11 @@ static double block(int m, enum wb_hex20_integration how)
 static void cantilever_block_converges(void **unused)
 {
     (void)unused;
-    const double finest = block(6, WB_HEX20_SELECTIVE);
+    const double finest = block(6, WB_INTEGRATION_SELECTIVE);
     double e[3];
     for (int k = 0; k < 3; k++) {
         const int m = 1 << k;
-        const double answer = block(m, WB_HEX20_SELECTIVE);
+        const double answer = block(m, WB_INTEGRATION_SELECTIVE);
         e[k] = answer / finest - 1.0;
         print_message("cantilever block, %d x %d x %d: %.6e, %+.3f %% of the finest\n", 4 * m, m, m,
                       answer, 100.0 * e[k]);

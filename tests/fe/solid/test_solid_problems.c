@@ -2,6 +2,9 @@
  * docs/verification.md has the numbers that this prints. */
 #include "tests/fe/solid/solids.h"
 
+#include "fe/solid/solid_mesh_private.h"
+#include "fe/solid/solid_private.h"
+
 /* ---- Patch tests: the cube of seven elements of MacNeal and Harder 1985 ---- */
 
 enum {
@@ -71,7 +74,7 @@ static int patch_hold(struct test_solid *t, const double H[3][3])
 
 /* Solves a patch of MacNeal and Harder's field times `scale`; checks that all displacements are the
  * field's and that stress is the same everywhere, which it returns, with the plastic strain. */
-static double patch_stress(const struct wb_material *material, enum wb_hex20_integration how,
+static double patch_stress(const struct wb_material *material, enum wb_integration how,
                            double scale, double stress[6])
 {
     struct test_solid t;
@@ -179,7 +182,7 @@ struct beam {
 };
 
 /* Displacement of the loads' points along the load, over the load. */
-static double beam_answer(const struct beam *beam, enum wb_hex20_integration how)
+static double beam_answer(const struct beam *beam, enum wb_integration how)
 {
     const struct wb_material material = test_solid_elastic(beam->E, beam->nu);
     struct test_solid_pull pull = {{beam->load[0], beam->load[1], beam->load[2]}, beam->area};
@@ -338,7 +341,7 @@ static void twisted_beams_bend_as_known(void **unused)
 }
 
 /* Saint-Venant's torsion of the straight beam: ends turned, free to warp. Torsion constant. */
-static double torsion_constant(const int n[3], enum wb_hex20_integration how)
+static double torsion_constant(const int n[3], enum wb_integration how)
 {
     const struct wb_material material = test_solid_elastic(1e7, 0.3);
     const struct beam beam = {"", STRAIGHT, REGULAR, ALONG, 0.0, {n[0], n[1], n[2]}, {0.0, 0.0}};
@@ -420,7 +423,7 @@ static void straight_beams_twist_nearly_as_saint_venant_says(void **unused)
         double per_moment = moment / polar;
         struct test_solid t;
         test_solid_block(&t, n, straight_map, (void *)&beam);
-        test_solid_init(&t, &material, WB_HEX20_SELECTIVE);
+        test_solid_init(&t, &material, WB_INTEGRATION_SELECTIVE);
         test_solid_clamp(&t);
         test_solid_load_end(&t, true, twist, &per_moment, t.force);
         test_solid_create(&t);

@@ -52,7 +52,7 @@ static inline void place_block(const struct wb_swept_layout *layout, double *pos
 }
 
 static inline struct pair pair_create(const struct wb_swept_cohesion_settings *settings,
-                                      bool is_double, enum wb_swept_tape_instructions instructions)
+                                      bool is_double, enum wb_swept_instructions instructions)
 {
     struct wb_swept_tape_model model = tape_model(&elastic_tape, NODES, STATIONS, false, spacing);
     struct wb_swept_cohesion_bond bond[NODES * STATIONS];
@@ -166,7 +166,7 @@ static const double whole_area = 2e-3 * 0.5e-3 * (STATIONS - 1);
 
 /* Positions, directors and wire off by much, turned. */
 static inline struct pair shaken(const struct wb_swept_cohesion_settings *settings, bool is_double,
-                                 enum wb_swept_tape_instructions instructions)
+                                 enum wb_swept_instructions instructions)
 {
     struct pair p = pair_create(settings, is_double, instructions);
     uint64_t seed = 4;

@@ -1,4 +1,6 @@
 /* Forces of cohesion that does not break: tractions, balance, energy, stable step. */
+#include "fe/swept/swept_private.h"
+
 #include "tests/fe/swept/taped_block.h"
 
 static void opening_is_borne_by_the_normal_stiffness_alone(void **unused)
@@ -6,7 +8,7 @@ static void opening_is_borne_by_the_normal_stiffness_alone(void **unused)
     (void)unused;
     struct wb_swept_cohesion_settings settings;
     wb_swept_cohesion_default_settings(&settings);
-    struct pair p = pair_create(&settings, true, WB_SWEPT_TAPE_BEST);
+    struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
     double sum[3];
     assert_close_relative(wb_swept_cohesion_area(p.cohesion), whole_area, 1e-12);
     assert_close(pair_forces(&p).stored, 0.0, 1e-25);
@@ -34,7 +36,7 @@ static void shear_is_borne_by_the_shear_stiffness_alone(void **unused)
     (void)unused;
     struct wb_swept_cohesion_settings settings;
     wb_swept_cohesion_default_settings(&settings);
-    struct pair p = pair_create(&settings, true, WB_SWEPT_TAPE_BEST);
+    struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
     double sum[3];
     set_tape(&p, 3e-6, 0.0, -4e-6);
     const struct wb_swept_cohesion_sums sums = pair_forces(&p);
@@ -55,7 +57,7 @@ static void shear_of_a_turned_pair_follows_it(void **unused)
     struct wb_swept_cohesion_settings settings;
     wb_swept_cohesion_default_settings(&settings);
     for (int is_double = 0; is_double < 2; is_double++) {
-        struct pair p = pair_create(&settings, is_double, WB_SWEPT_TAPE_BEST);
+        struct pair p = pair_create(&settings, is_double, WB_SWEPT_BEST);
         double sum[3], R[3][3];
         const double angle = 1.2, open[3] = {3e-6, 5e-6, -4e-6};
         const double traction[3] = {-10e9 * open[0], -30e9 * open[1], -10e9 * open[2]};
@@ -84,7 +86,7 @@ static void forces_are_the_derivatives_of_the_energy(void **unused)
     (void)unused;
     struct wb_swept_cohesion_settings settings;
     wb_swept_cohesion_default_settings(&settings);
-    struct pair p = shaken(&settings, true, WB_SWEPT_TAPE_BEST);
+    struct pair p = shaken(&settings, true, WB_SWEPT_BEST);
     const size_t tape = wb_swept_size(&p.tape.layout), wire = wb_swept_size(&p.layout);
     double *force = malloc((2 * tape + wire) * sizeof *force);
     assert_non_null(force);
@@ -120,7 +122,7 @@ static void forces_and_their_moments_balance(void **unused)
     (void)unused;
     const struct wb_swept_cohesion_settings settings = brittle();
     for (int is_double = 0; is_double < 2; is_double++) {
-        struct pair p = shaken(&settings, is_double, WB_SWEPT_TAPE_BEST);
+        struct pair p = shaken(&settings, is_double, WB_SWEPT_BEST);
         (void)pair_forces(&p);
         double force[3] = {0.0}, moment[3] = {0.0}, size = 0.0;
         for (int body = 0; body < 2; body++) {
@@ -159,18 +161,18 @@ static void instruction_sets_and_precisions_agree(void **unused)
 {
     (void)unused;
     const struct wb_swept_cohesion_settings settings = brittle();
-    struct pair base = shaken(&settings, true, WB_SWEPT_TAPE_BASELINE);
+    struct pair base = shaken(&settings, true, WB_SWEPT_BASELINE);
     const struct wb_swept_cohesion_sums expected = pair_forces(&base);
     int tried = 0;
     assert_true(expected.dissipated > 0.01 * expected.stored);
     for (int is_double = 0; is_double < 2; is_double++) {
-        for (int way = WB_SWEPT_TAPE_BASELINE; way <= WB_SWEPT_TAPE_AVX512; way++) {
+        for (int way = WB_SWEPT_BASELINE; way <= WB_SWEPT_AVX512; way++) {
             static const char *const feature[] = {"", "", "avx2", "avx512"};
-            if ((way == WB_SWEPT_TAPE_AVX2 && !__builtin_cpu_supports("avx2")) ||
-                (way == WB_SWEPT_TAPE_AVX512 && !__builtin_cpu_supports("avx512dq")))
+            if ((way == WB_SWEPT_AVX2 && !__builtin_cpu_supports("avx2")) ||
+                (way == WB_SWEPT_AVX512 && !__builtin_cpu_supports("avx512dq")))
                 continue;
             struct pair p = shaken(&settings, is_double, way);
-            if (way > WB_SWEPT_TAPE_BASELINE)
+            if (way > WB_SWEPT_BASELINE)
                 assert_string_equal(wb_swept_tape_instructions(p.tape.tape), feature[way]);
             const struct wb_swept_cohesion_sums sums = pair_forces(&p);
             assert_close_relative(sums.stored, expected.stored, is_double ? 1e-12 : 1e-5);
@@ -247,7 +249,7 @@ static void bound_of_what_it_adds_to_frequencies_holds(void **unused)
     struct wb_swept_cohesion_settings settings;
     wb_swept_cohesion_default_settings(&settings);
     for (int heavy = 0; heavy < 2; heavy++) {
-        struct pair p = pair_create(&settings, true, WB_SWEPT_TAPE_BEST);
+        struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
         double mass[NODES], inertia[NODES], wire_mass[CORNERS];
         wb_swept_tape_masses(p.tape.tape, mass, inertia);
         for (int k = 0; k < NODES; k++) {

@@ -1,4 +1,6 @@
 /* Where a tape is bonded, and what is refused. */
+#include "fe/swept/swept_private.h"
+
 #include "tests/fe/swept/taped_block.h"
 
 /* --- where it is bonded --- */
@@ -120,7 +122,7 @@ static void impossible_bonds_are_refused(void **unused)
     struct wb_swept_cohesion_settings good, bad;
     struct wb_swept_cohesion *cohesion = NULL;
     wb_swept_cohesion_default_settings(&good);
-    struct pair p = pair_create(&good, false, WB_SWEPT_TAPE_BEST);
+    struct pair p = pair_create(&good, false, WB_SWEPT_BEST);
     struct wb_swept_cohesion_bond bond[NODES * STATIONS];
     for (int i = 0; i < NODES * STATIONS; i++)
         bond[i] = (struct wb_swept_cohesion_bond){0, 1.0};

@@ -1,4 +1,6 @@
 /* Bonds that break. */
+#include "fe/swept/swept_private.h"
+
 #include "tests/fe/swept/taped_block.h"
 
 /* Opens by `n` and slides by `s` m in so many steps, and takes the work. */
@@ -27,7 +29,7 @@ static void area_below_the_curve_is_the_fracture_energy(void **unused)
     const double way[3][2] = {{110e-6, 0.0}, {0.0, 260e-6}, {80e-6, 200e-6}};
     for (int is_double = 0; is_double < 2; is_double++) {
         for (int mode = 0; mode < 3; mode++) {
-            struct pair p = pair_create(&settings, is_double, WB_SWEPT_TAPE_BEST);
+            struct pair p = pair_create(&settings, is_double, WB_SWEPT_BEST);
             double dissipated = 0.0;
             const double work = work_of(&p, way[mode][0], way[mode][1], 4000, &dissipated);
             const double expected = 25.0 * whole_area;
@@ -46,7 +48,7 @@ static void traction_peaks_at_the_strength(void **unused)
     (void)unused;
     const struct wb_swept_cohesion_settings settings = brittle();
     for (int mode = 0; mode < 2; mode++) {
-        struct pair p = pair_create(&settings, true, WB_SWEPT_TAPE_BEST);
+        struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
         double largest = 0.0, at = 0.0, sum[3];
         for (int step = 1; step <= 1000; step++) {
             const double opened = 0.1e-6 * step;
@@ -70,7 +72,7 @@ static void unloading_goes_back_to_the_origin(void **unused)
 {
     (void)unused;
     const struct wb_swept_cohesion_settings settings = brittle();
-    struct pair p = pair_create(&settings, true, WB_SWEPT_TAPE_BEST);
+    struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
     double sum[3], again[3];
     set_tape(&p, 0.0, 50e-6, 0.0);
     const struct wb_swept_cohesion_sums first = pair_forces(&p);

@@ -2,6 +2,7 @@
  * the bound for the stable step against the largest eigenvalue. */
 #include "base/vec3.h"
 #include "fe/swept/swept_contact.h"
+#include "fe/swept/swept_private.h"
 
 #include "tests/fe/swept/contacts.h"
 
@@ -364,7 +365,7 @@ static void check_against_twin(const struct wb_swept_contact_settings *settings,
     contacts_release(&c);
 }
 
-static bool has_instructions(enum wb_swept_contact_instructions set)
+static bool has_instructions(enum wb_swept_instructions set)
 {
     struct wb_swept_contact_settings settings = contacts_settings();
     static const double radius = 1e-3;
@@ -385,14 +386,14 @@ static bool has_instructions(enum wb_swept_contact_instructions set)
 static void every_kernel_equals_the_slow_twin(void **state)
 {
     (void)state;
-    assert_true(has_instructions(WB_SWEPT_CONTACT_BASELINE));
-    assert_false(has_instructions((enum wb_swept_contact_instructions)7));
-    for (int set = WB_SWEPT_CONTACT_BASELINE; set <= WB_SWEPT_CONTACT_AVX512; set++) {
-        if (!has_instructions((enum wb_swept_contact_instructions)set))
+    assert_true(has_instructions(WB_SWEPT_BASELINE));
+    assert_false(has_instructions((enum wb_swept_instructions)7));
+    for (int set = WB_SWEPT_BASELINE; set <= WB_SWEPT_AVX512; set++) {
+        if (!has_instructions((enum wb_swept_instructions)set))
             continue;
         for (int type = 0; type < 2; type++) {
             struct wb_swept_contact_settings settings = contacts_settings();
-            settings.instructions = (enum wb_swept_contact_instructions)set;
+            settings.instructions = (enum wb_swept_instructions)set;
             settings.double_precision = type == 1;
             settings.refresh_interval = 5;
             settings.friction_kinetic = 0.1;

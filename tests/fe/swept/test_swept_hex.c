@@ -1,4 +1,5 @@
 #include "fe/swept/swept_hex.h"
+#include "fe/swept/swept_private.h"
 
 #include "tests/fe/swept/swept_bodies.h"
 #include "tests/fe/swept/swept_hex_twin.h"
@@ -332,7 +333,7 @@ static void all_instructions_agree(void **unused)
                 uint64_t seed = 3;
                 struct wb_swept_hex *hex;
                 model.double_precision = way % 2 == 0;
-                model.instructions = (enum wb_swept_hex_instructions)(1 + way / 2);
+                model.instructions = (enum wb_swept_instructions)(1 + way / 2);
                 if (wb_swept_hex_create(&hex, &model) != WB_OK) {
                     assert_true(way > 1);
                     continue;

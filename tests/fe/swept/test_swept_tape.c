@@ -216,7 +216,7 @@ static void instruction_sets_agree(void **unused)
         (void)tape_forces(&base);
         const double largest = largest_load(&base, base.force);
         int tried = 0;
-        for (int way = WB_SWEPT_TAPE_BASELINE; way <= WB_SWEPT_TAPE_AVX512; way++) {
+        for (int way = WB_SWEPT_BASELINE; way <= WB_SWEPT_AVX512; way++) {
             struct test_tape probe = uneven_tube(&tape_law, is_double);
             struct wb_swept_tape_model model = probe.model;
             struct wb_swept_tape *tape = NULL;

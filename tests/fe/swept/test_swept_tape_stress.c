@@ -1,5 +1,6 @@
 /* Stresses of tapes asked from outside, against closed forms, the flow stress and the energy. */
-#include "fe/swept/swept_tape_stress.h"
+#include "fe/swept/swept_private.h"
+#include "fe/swept/swept_tape.h"
 
 #include "tests/fe/swept/tapes.h"
 

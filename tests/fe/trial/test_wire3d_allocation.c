@@ -46,7 +46,7 @@ static struct wb_wire_model make_model(bool contact)
         .n_steps = 1,
         .step = {{.loads = {.force = {0.0, 1e-3, 0.0}}, .rows = 2}},
     };
-    wb_interface_default_law(&model.interface, 1e9, 0.3, 0.2e-3, 0.0);
+    wb_trial_default_jacket_contact(&model.jacket_contact, 1e9, 0.3, 0.2e-3, 0.0);
     return model;
 }
 

@@ -58,9 +58,9 @@ static void strand_goes_slack_within_a_long_row(void **state)
     c->model.step[2] = to_deflection(52e-3, 4, false);
     compute(c, NULL);
     print_message("let go at %.3f mm\n", c->run.rows[6].tip[1] / WB_MM);
-    assert_int_equal(c->run.rows[6].phase, WB_HISTORY_SLACK);
-    assert_int_equal(c->run.rows[8].phase, WB_HISTORY_SLACK);
-    assert_int_equal(c->run.rows[9].phase, WB_HISTORY_LOAD);
+    assert_int_equal(c->run.rows[6].phase, WB_PHASE_SLACK);
+    assert_int_equal(c->run.rows[8].phase, WB_PHASE_SLACK);
+    assert_int_equal(c->run.rows[9].phase, WB_PHASE_LOAD);
     assert_close(c->run.rows[9].tip[1], 39e-3, 1e-9);
     assert_rows_alike(c, 0.02e-3);
     end(c);
@@ -79,7 +79,7 @@ static void weight_upwards_lifts_the_wire_off_its_strand(void **state)
     c->model.step[1] = (struct wb_wire_step){
         .name = "released", .kind = WB_WIRE_STEP_RELEASE, .rows = 1, .unloads = true};
     compute(c, NULL);
-    assert_int_equal(c->run.rows[0].phase, WB_HISTORY_SLACK);
+    assert_int_equal(c->run.rows[0].phase, WB_PHASE_SLACK);
     assert_true(c->run.rows[0].tip[1] > 0.5e-3);
     assert_true(c->run.zero_force == 0.0);
     assert_rows_alike(c, 0.003e-3);
@@ -100,7 +100,7 @@ static void slack_stays_until_there_is_tension_again(void **state)
     c->model.step[2] = (struct wb_wire_step){
         .name = "released", .kind = WB_WIRE_STEP_RELEASE, .rows = 2, .unloads = true};
     compute(c, NULL);
-    assert_int_equal(last_row(c)->phase, WB_HISTORY_SLACK);
+    assert_int_equal(last_row(c)->phase, WB_PHASE_SLACK);
     assert_rows_alike(c, 0.02e-3);
     end(c);
 }
@@ -288,7 +288,7 @@ static void sliding_beyond_what_contact_is_made_for_is_told(void **state)
         m->part[1].outer_diameter = m->wire.outer_diameter = 1.4e-3;
         m->part[1].material = soft;
         m->has_contact = true;
-        wb_interface_default_law(&m->interface, 1e9, 0.3, 0.2e-3, 0.0);
+        wb_trial_default_jacket_contact(&m->jacket_contact, 1e9, 0.3, 0.2e-3, 0.0);
         /* Each part carries a share of the force as large as its share of sum E A. */
         const double area = M_PI * 1.96e-6 / 4.0;
         const double stress = 1e6 + 50e6 * strains[k];

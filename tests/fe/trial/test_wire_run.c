@@ -2,6 +2,7 @@
 #include "tests/check.h"
 
 #include "fe/trial/wire_run.h"
+#include "fe/trial/wire_run_private.h"
 
 static struct wb_wire_model model;
 
@@ -80,13 +81,13 @@ static void loading_after_unloading_is_a_new_cycle(void **state)
         int step;
         bool slack;
         int cycle;
-        enum wb_history_phase phase;
+        enum wb_phase phase;
     } rows[] = {
-        {0, false, 1, WB_HISTORY_LOAD},   {0, false, 1, WB_HISTORY_LOAD},
-        {0, false, 1, WB_HISTORY_LOAD},   {1, false, 1, WB_HISTORY_UNLOAD},
-        {1, true, 1, WB_HISTORY_SLACK},   {2, true, 2, WB_HISTORY_SLACK},
-        {2, false, 2, WB_HISTORY_LOAD},   {3, false, 2, WB_HISTORY_UNLOAD},
-        {3, false, 2, WB_HISTORY_UNLOAD},
+        {0, false, 1, WB_PHASE_LOAD},   {0, false, 1, WB_PHASE_LOAD},
+        {0, false, 1, WB_PHASE_LOAD},   {1, false, 1, WB_PHASE_UNLOAD},
+        {1, true, 1, WB_PHASE_SLACK},   {2, true, 2, WB_PHASE_SLACK},
+        {2, false, 2, WB_PHASE_LOAD},   {3, false, 2, WB_PHASE_UNLOAD},
+        {3, false, 2, WB_PHASE_UNLOAD},
     };
     struct wb_wire_run run;
     make_raise_and_release();

@@ -1,0 +1,28 @@
+/* Straight lines and parabolas through measured points, and medians. GSL's error handler, which
+ * aborts, must be off. */
+#ifndef WB_ANALYSIS_FIT_H
+#define WB_ANALYSIS_FIT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Ordinary straight line through n points: value at x = 0, slope, standard errors, standard
+ * deviation of the points from the line. */
+struct wb_fit_line {
+    double value, slope, value_deviation, slope_deviation, residual;
+};
+
+/* False with fewer than three points, or where the result is not finite. */
+bool wb_fit_line(const double *x, const double *y, size_t n, struct wb_fit_line *line);
+
+/* Least squares of c[0] + c[1] x + c[2] x^2 through n points; `deviation` is the standard error of
+ * c[0]. False with fewer than four points, or where the result is not finite. */
+bool wb_fit_parabola(const double *x, const double *y, size_t n, double c[3], double *deviation);
+
+/* Ascending. */
+void wb_fit_sort(double *values, size_t n);
+
+/* Sorts the values; NaN when n is 0. */
+double wb_fit_median(double *values, size_t n);
+
+#endif

@@ -1,0 +1,31 @@
+/* Distance between measured marker positions and the computed wire, first loading. */
+#ifndef WB_ANALYSIS_MARKER_DISTANCE_H
+#define WB_ANALYSIS_MARKER_DISTANCE_H
+
+#include "analysis/computed.h"
+#include "analysis/dataset.h"
+#include "base/status.h"
+
+struct wb_marker_distance {
+    double rms, largest; /* m; NaN without points */
+    int n_points;
+};
+
+/* Which frames are compared: of deflection, or of the force of follower tests. */
+struct wb_marker_distance_range {
+    double step; /* m or N between the model's shapes; frames between are interpolated */
+    double last; /* m or N: frames from 0 to there count */
+};
+
+/* Runs the model through the range while the wire is first loaded, and compares each marker that
+ * was measured there with the computed point at its own arc length. A follower test's force at a
+ * marker's time is taken from its rows, and what comes after the largest is left out. The marker on
+ * the clamp (arc length 0) is the origin and left out, and so is what the model does not reach. */
+WB_MUST_CHECK enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
+                                                     struct wb_computed *computed,
+                                                     const struct wb_material *material,
+                                                     const struct wb_dataset *const *datasets,
+                                                     int n,
+                                                     const struct wb_marker_distance_range *range);
+
+#endif

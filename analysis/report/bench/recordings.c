@@ -1,0 +1,348 @@
+#include "analysis/report/bench/recordings.h"
+
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/bench/index.h"
+#include "base/config.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "campaign"
+
+static const char default_index[] = "recordings/index.yaml";
+
+/* What reading needs besides the campaign itself. */
+struct reading {
+    struct wb_recordings *campaign;
+    char folder[WB_PATH]; /* of the campaign file */
+    struct wb_index index;
+    bool has_index;
+    char index_problem[320];
+};
+
+/* --- single parts --- */
+
+static enum wb_status read_limits(const struct wb_config_node *node, struct wb_recordings *campaign)
+{
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_NUMBER("calibration_rms_max", &campaign->calibration_limit, 1.0, 1e-6,
+                                  10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("validation_rms_max", &campaign->validation_limit, 1.0, 1e-6,
+                                  10.0),
+    };
+    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+}
+
+static enum wb_status read_merits(const struct wb_config_node *node, struct wb_recordings *campaign)
+{
+    if (!node)
+        return WB_OK;
+    const struct wb_config_node *range;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("source", campaign->reference_source),
+        WB_CONFIG_NODE("validation_rms", &range),
+    };
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    const struct wb_config_key number = WB_CONFIG_NUMBER("validation_rms", NULL, 1.0, 1e-6, 10.0);
+    int n = 0;
+    return wb_config_numbers(range, &number, 2, 2, campaign->reference_rms, &n);
+}
+
+static enum wb_status read_reference(const struct wb_config_node *node,
+                                     struct wb_recordings_wire *wire)
+{
+    const struct wb_material *const known = &wire->product.material;
+    if (!node) {
+        wire->has_reference = wire->product.has_properties;
+        snprintf(wire->reference_source, sizeof wire->reference_source, "%s", wire->product.source);
+        wire->reference[0] = known->youngs_modulus;
+        wire->reference[1] = known->yield_stress;
+        wire->reference[2] = known->strength_coefficient;
+        wire->reference[3] = known->hardening_exponent;
+        return WB_OK;
+    }
+    wire->has_reference = true;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("source", wire->reference_source),
+        WB_CONFIG_NUMBER("youngs_modulus_MPa", &wire->reference[0], WB_MPA, 1e-3, 1e7),
+        WB_CONFIG_NUMBER("yield_stress_MPa", &wire->reference[1], WB_MPA, 1e-6, 1e5),
+        WB_CONFIG_NUMBER("strength_coefficient_MPa", &wire->reference[2], WB_MPA, 0.0, 1e7),
+        WB_CONFIG_NUMBER("hardening_exponent", &wire->reference[3], 1.0, 1e-3, 2.0),
+    };
+    return wb_config_map(node, keys, WB_COUNT(keys));
+}
+
+/* --- recordings --- */
+
+static enum wb_status add_test(struct wb_recordings_tests *tests,
+                               const struct wb_recordings_test *test)
+{
+    struct wb_recordings_test *const larger =
+        realloc(tests->items, ((size_t)tests->n + 1) * sizeof *tests->items);
+    if (!larger)
+        return wb_fail(WB_ERR_MEMORY, "out of memory listing recordings");
+    tests->items = larger;
+    tests->items[tests->n++] = *test;
+    return WB_OK;
+}
+
+static void take_entry(struct wb_recordings_test *test, const struct wb_index_entry *entry)
+{
+    test->sample = entry->sample;
+    test->seed = entry->seed;
+    memcpy(test->sha256, entry->sha256, sizeof test->sha256);
+}
+
+/* A recording at a path, with what the index knows of it (entry may be NULL). */
+static enum wb_status add_file(struct wb_recordings_tests *tests, const char *path,
+                               const struct wb_index_entry *entry)
+{
+    struct wb_recordings_test test = {.seed = -1};
+    snprintf(test.name, sizeof test.name, "%s", wb_file_name(path));
+    if (entry)
+        take_entry(&test, entry);
+    if (wb_file_exists(path))
+        snprintf(test.path, sizeof test.path, "%s", path);
+    else
+        snprintf(test.missing, sizeof test.missing, "%s",
+                 entry                       ? "the index lists it, but the file is not there"
+                 : strpbrk(test.name, "*?[") ? "no file matches this pattern"
+                                             : "no such file");
+    return add_test(tests, &test);
+}
+
+static int by_sample(const void *a, const void *b)
+{
+    const struct wb_recordings_test *const left = a, *const right = b;
+    if (left->sample != right->sample)
+        return left->sample < right->sample ? -1 : 1;
+    return strcmp(left->name, right->name);
+}
+
+/* All recordings of the index of this wire and length, and a missing one for each expected sample
+ * that it does not list. */
+static enum wb_status take_from_index(const struct reading *reading,
+                                      const struct wb_recordings_wire *wire, double length,
+                                      struct wb_recordings_tests *tests)
+{
+    for (int i = 0; i < reading->index.n; i++) {
+        const struct wb_index_entry *const entry = &reading->index.entries[i];
+        if (strcmp(entry->wire, wire->product.name) != 0 || !(fabs(entry->length - length) < 1e-6))
+            continue;
+        char path[WB_PATH];
+        WB_TRY(wb_file_join(path, reading->index.folder, entry->file));
+        WB_TRY(add_file(tests, path, entry));
+    }
+    for (int sample = 1; tests->n < reading->campaign->samples && sample <= 100000; sample++) {
+        bool known = false;
+        for (int i = 0; i < tests->n; i++)
+            known |= tests->items[i].sample == sample;
+        if (known)
+            continue;
+        struct wb_recordings_test test = {.sample = sample, .seed = -1};
+        snprintf(test.name, sizeof test.name, "%.60s, %g mm, sample %d", wire->label,
+                 length / WB_MM, sample);
+        if (reading->has_index)
+            snprintf(test.missing, sizeof test.missing, "not in the index of recordings");
+        else
+            snprintf(test.missing, sizeof test.missing, "%s", reading->index_problem);
+        WB_TRY(add_test(tests, &test));
+    }
+    if (tests->n > 1)
+        qsort(tests->items, (size_t)tests->n, sizeof *tests->items, by_sample);
+    return WB_OK;
+}
+
+/* One item of an explicit list: a name in the index, else a path or glob beside the campaign. */
+static enum wb_status take_named(const struct reading *reading, const char *name,
+                                 struct wb_recordings_tests *tests)
+{
+    char path[WB_PATH];
+    const struct wb_index_entry *const entry =
+        strchr(name, '/') ? NULL : wb_index_find(&reading->index, name);
+    if (entry) {
+        WB_TRY(wb_file_join(path, reading->index.folder, entry->file));
+        return add_file(tests, path, entry);
+    }
+    WB_TRY(wb_file_join(path, reading->folder, name));
+    glob_t found = {0};
+    enum wb_status status = WB_OK;
+    /* glob() sorts, so the order is the same in every run (of one locale, which we never set). */
+    const bool any = glob(path, 0, NULL, &found) == 0;
+    for (size_t i = 0; any && status == WB_OK && i < found.gl_pathc; i++)
+        status =
+            add_file(tests, found.gl_pathv[i], wb_index_find(&reading->index, found.gl_pathv[i]));
+    globfree(&found);
+    return any ? status : add_file(tests, path, NULL);
+}
+
+static enum wb_status find_tests(const struct reading *reading,
+                                 const struct wb_recordings_wire *wire,
+                                 const struct wb_config_node *list, double length,
+                                 struct wb_recordings_tests *tests)
+{
+    if (!list)
+        return take_from_index(reading, wire, length, tests);
+    const int n = wb_config_length(list);
+    if (n < 0)
+        return wb_config_refuse(list, NULL, "expected a list of recordings");
+    for (int i = 0; i < n; i++) {
+        const char *const name = wb_config_scalar(wb_config_item(list, i));
+        if (!name || !*name)
+            return wb_config_refuse(wb_config_item(list, i), NULL,
+                                    "expected the name or path of a recording");
+        WB_TRY(take_named(reading, name, tests));
+    }
+    return WB_OK;
+}
+
+static enum wb_status read_wire(const struct reading *reading, const struct wb_config_node *node,
+                                struct wb_recordings_wire *wire)
+{
+    char name[256];
+    const struct wb_config_node *reference, *calibration, *validation;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("wire", name),
+        WB_CONFIG_OPTIONAL_TEXT("label", wire->label),
+        WB_CONFIG_OPTIONAL_NODE("reference", &reference),
+        WB_CONFIG_OPTIONAL_NODE("calibration", &calibration),
+        WB_CONFIG_OPTIONAL_NODE("validation", &validation),
+    };
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    char path[WB_PATH], named_in[WB_PATH + 32];
+    snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
+             wb_config_line(wb_config_find(node, "wire")));
+    WB_TRY(wb_file_find_named(path, "wires", name, reading->folder, named_in));
+    WB_TRY(wb_wire_read(path, &wire->product));
+    if (!wire->label[0])
+        snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);
+    WB_TRY(read_reference(reference, wire));
+
+    const struct wb_recordings *const campaign = reading->campaign;
+    WB_TRY(
+        find_tests(reading, wire, calibration, campaign->calibration_length, &wire->calibration));
+    if (campaign->validation_length > 0.0)
+        WB_TRY(
+            find_tests(reading, wire, validation, campaign->validation_length, &wire->validation));
+    else if (validation)
+        return wb_config_refuse(node, "validation", "the campaign has no validation_length_mm");
+    return WB_OK;
+}
+
+static enum wb_status read_wires(struct reading *reading, const struct wb_config_node *list)
+{
+    struct wb_recordings *const campaign = reading->campaign;
+    const int n = wb_config_length(list);
+    if (n < 1)
+        return wb_config_refuse(list, "wires", "expected a list of at least one wire");
+    campaign->wires = calloc((size_t)n, sizeof *campaign->wires);
+    if (!campaign->wires)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    for (int i = 0; i < n; i++) {
+        const struct wb_config_node *const node = wb_config_item(list, i);
+        struct wb_recordings_wire *const wire = &campaign->wires[campaign->n_wires++];
+        WB_TRY(read_wire(reading, node, wire));
+        for (int k = 0; k < i; k++) {
+            if (strcmp(campaign->wires[k].product.name, wire->product.name) == 0)
+                return wb_config_refuse(node, "wire", "'%s' stands twice in the campaign",
+                                        wire->product.name);
+        }
+    }
+    return WB_OK;
+}
+
+/* A campaign without its index can still name recordings by path, and says what it lacks. */
+static enum wb_status read_index(struct reading *reading, const char *given)
+{
+    char path[WB_PATH];
+    bool found;
+    if (given[0]) {
+        WB_TRY(wb_file_join(path, reading->folder, given));
+        found = wb_file_exists(path);
+    } else {
+        found = wb_file_find_data(path, default_index) == WB_OK;
+    }
+    if (!found) {
+        snprintf(reading->index_problem, sizeof reading->index_problem,
+                 "there is no index of recordings '%.200s'", given[0] ? given : default_index);
+        return WB_OK;
+    }
+    WB_TRY(wb_index_read(&reading->index, path));
+    reading->has_index = true;
+    return WB_OK;
+}
+
+static enum wb_status read_campaign(struct reading *reading, const struct wb_config_node *root)
+{
+    struct wb_recordings *const campaign = reading->campaign;
+    const struct wb_config_node *settings, *limits, *reference, *wires;
+    char index[1024] = "";
+    campaign->samples = 1;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_IGNORED("kind"),
+        WB_CONFIG_TEXT("title", campaign->title),
+        WB_CONFIG_OPTIONAL_TEXT("notes", campaign->notes),
+        WB_CONFIG_OPTIONAL_TEXT("index", index),
+        WB_CONFIG_NUMBER("calibration_length_mm", &campaign->calibration_length, WB_MM, 1.0, 1e4),
+        WB_CONFIG_OPTIONAL_NUMBER("validation_length_mm", &campaign->validation_length, WB_MM, 1.0,
+                                  1e4),
+        WB_CONFIG_OPTIONAL_INTEGER("samples", &campaign->samples, 1, 1000),
+        WB_CONFIG_OPTIONAL_NODE("settings", &settings),
+        WB_CONFIG_OPTIONAL_NODE("limits", &limits),
+        WB_CONFIG_OPTIONAL_NODE("reference", &reference),
+        WB_CONFIG_NODE("wires", &wires),
+    };
+    WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
+    WB_TRY(wb_campaign_read_settings(settings, &campaign->calibrate));
+    WB_TRY(read_limits(limits, campaign));
+    WB_TRY(read_merits(reference, campaign));
+    WB_TRY(read_index(reading, index));
+    return read_wires(reading, wires);
+}
+
+enum wb_status wb_recordings_read(struct wb_recordings *campaign, const char *path)
+{
+    memset(campaign, 0, sizeof *campaign);
+    wb_calibrate_default_settings(&campaign->calibrate);
+    WB_TRY(wb_hash_file(path, campaign->sha256));
+    wb_campaign_set_name(campaign->name, sizeof campaign->name, path);
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path));
+    struct reading reading = {.campaign = campaign};
+    wb_file_folder(reading.folder, path);
+    const enum wb_status status = read_campaign(&reading, wb_config_root(config));
+    wb_index_release(&reading.index);
+    wb_config_destroy(config);
+    if (status != WB_OK)
+        wb_recordings_release(campaign);
+    return status;
+}
+
+void wb_recordings_release(struct wb_recordings *campaign)
+{
+    for (int i = 0; i < campaign->n_wires; i++) {
+        free(campaign->wires[i].calibration.items);
+        free(campaign->wires[i].validation.items);
+    }
+    free(campaign->wires);
+    memset(campaign, 0, sizeof *campaign);
+}
+
+int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing)
+{
+    int n = 0;
+    *n_missing = 0;
+    for (int i = 0; i < campaign->n_wires; i++) {
+        const struct wb_recordings_tests *const both[] = {&campaign->wires[i].calibration,
+                                                          &campaign->wires[i].validation};
+        for (int k = 0; k < 2; k++) {
+            n += both[k]->n;
+            for (int j = 0; j < both[k]->n; j++)
+                *n_missing += both[k]->items[j].missing[0] != '\0';
+        }
+    }
+    return n;
+}

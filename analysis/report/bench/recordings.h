@@ -1,0 +1,102 @@
+/* A campaign: which wires were tested, with which recordings, how they are calibrated and
+ * validated, and within which limits. Its YAML file:
+ *
+ *     kind: recordings                            # optional, this by default
+ *     title: Single wires, types 1 to 3
+ *     notes: what a reader should know            # optional
+ *     index: ../../recordings/index.yaml          # optional, this by default as shipped data
+ *     calibration_length_mm: 85
+ *     validation_length_mm: 100                   # optional, absent: no validation
+ *     samples: 3                                  # recordings expected for each wire and length
+ *     settings:                                   # optional, as all of its keys
+ *       elastic_zone: 0.05
+ *       yield_point: 0.04
+ *       step_mm: 0.5
+ *       straight: false
+ *       restart: true
+ *       elements: 50
+ *       fibres: 20
+ *     limits:                                     # optional, absent: none
+ *       calibration_rms_max: 1e-2
+ *       validation_rms_max: 3.65e-2
+ *     reference:                                  # optional: published figures of merit
+ *       source: Fig. 15 of the paper
+ *       validation_rms: [1.26e-2, 3.65e-2]
+ *     wires:
+ *       - wire: type1                             # name in fixtures/wires, or a path
+ *         label: Type 1                           # optional, the wire's name by default
+ *         reference:                              # optional, the wire file's properties by default
+ *           source: Table 3 of the paper
+ *           youngs_modulus_MPa: 5021
+ *           yield_stress_MPa: 3.90
+ *           strength_coefficient_MPa: 3222
+ *           hardening_exponent: 0.99
+ *         calibration: [my-test.wbr, "S?.wbr.zst"]   # optional: names in the index, paths or
+ *         validation: []                          # globs relative to this file; by default the
+ *                                                 # index' recordings of this wire and length
+ *
+ * Reading a campaign finds its recordings. One that is not there is no error: it is listed with
+ * the reason, and the report says so.
+ */
+#ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
+#define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_H
+
+#include <stdbool.h>
+
+#include "analysis/calibrate.h"
+#include "analysis/report/campaign.h"
+#include "analysis/validate.h"
+#include "base/config.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/status.h"
+#include "fe/model/wire.h"
+
+/* One recording that the campaign wants. */
+struct wb_recordings_test {
+    char name[256];              /* file name without folder, or what is missing: "sample 2" */
+    char path[WB_PATH];          /* "" when missing */
+    char missing[320];           /* why it is not there; "" when it is */
+    int sample;                  /* as the index or the count says; 0 unknown */
+    int seed;                    /* as the index says; -1 unknown */
+    char sha256[WB_SHA256_TEXT]; /* as the index says; "" when it is not in the index */
+};
+
+struct wb_recordings_tests {
+    int n;
+    struct wb_recordings_test *items; /* (n), owned */
+};
+
+struct wb_recordings_wire {
+    char label[64];
+    struct wb_wire product;
+    bool has_reference;
+    char reference_source[160];
+    double reference[4]; /* E, sigma_Y, K in Pa, and n */
+    struct wb_recordings_tests calibration, validation;
+};
+
+struct wb_recordings {
+    char title[200];
+    char notes[2000];
+    char name[256];              /* of the file, from fixtures/ on when it is a shipped one */
+    char sha256[WB_SHA256_TEXT]; /* of the file */
+    double calibration_length;   /* m */
+    double validation_length;    /* m; 0: no validation */
+    int samples;
+    struct wb_calibrate_settings calibrate;
+    double calibration_limit, validation_limit; /* of the RMS over F_max; 0: none */
+    char reference_source[160];
+    double reference_rms[2]; /* published range of the validation's RMS; 0: none */
+    int n_wires;
+    struct wb_recordings_wire *wires; /* (n_wires), owned */
+};
+
+/* Errors name file, line and key. */
+WB_MUST_CHECK enum wb_status wb_recordings_read(struct wb_recordings *campaign, const char *path);
+void wb_recordings_release(struct wb_recordings *campaign); /* accepts a zeroed one */
+
+/* How many recordings it wants, and how many of them are missing. */
+int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing);
+
+#endif

@@ -1,0 +1,811 @@
+#include "analysis/report/bench/recordings_figures.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/pages.h"
+#include "analysis/report/pdf.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+const char *wb_recordings_figures_measured(const struct wb_recordings_results *results)
+{
+    return results->any_virtual ? "measured (virtual rig)" : "measured";
+}
+
+void wb_recordings_figures_slug(char slug[64], const char *name)
+{
+    size_t n = 0;
+    for (; name[n] && n < 48; n++)
+        slug[n] = (char)(isalnum((unsigned char)name[n]) ? tolower((unsigned char)name[n]) : '-');
+    slug[n] = '\0';
+}
+
+/* --- what they share --- */
+
+/* Markers of one frame, in the order of the dataset. */
+enum {
+    MOST_MARKERS = 64
+};
+struct frame {
+    int n;                                   /* 0: there is none */
+    double x[MOST_MARKERS], y[MOST_MARKERS]; /* mm */
+    double deflection, t;                    /* m, s */
+};
+
+static const struct wb_recordings_results_wire *wire_of(const struct wb_recordings_results *results,
+                                                        int index)
+{
+    return &results->wires[index];
+}
+
+static int count_wires(const void *context)
+{
+    const struct wb_recordings_results *const results = context;
+    return results->n_wires;
+}
+
+/* Deflection in mm and force in mN; with a scale over F_max on the right when it is given. */
+static void set_force_axes(struct wb_panel *panel, double max_force)
+{
+    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Force <i>F</i> (mN)");
+    if (max_force > 0.0)
+        wb_figure_set_right_axis(panel, "<i>F</i> / <i>F</i><sub>max</sub>", WB_MN / max_force);
+}
+
+/* A figure named WIRE-KIND ("all-KIND" for all wires) that says where its data come from. */
+static enum wb_status start(struct wb_figure **figure, const struct wb_recordings_results *results,
+                            const struct wb_recordings_results_wire *wire, const char *kind,
+                            double width, double height)
+{
+    char slug[64] = "all", name[128];
+    if (wire)
+        wb_recordings_figures_slug(slug, wire->wanted->product.name);
+    snprintf(name, sizeof name, "%s-%s", slug, kind);
+    WB_TRY(wb_figure_create(figure, name, width, height));
+    wb_figure_set_footer(*figure, wb_recordings_figures_measured(results));
+    return WB_OK;
+}
+
+/* Adds F_max to the footer, where a scale or an error is a part of it. */
+static void state_max_force(struct wb_figure *figure, const struct wb_recordings_results *results,
+                            double max_force)
+{
+    char footer[160];
+    snprintf(footer, sizeof footer, "%s \xc2\xb7 <i>F</i><sub>max</sub> = %.1f mN",
+             wb_recordings_figures_measured(results), max_force / WB_MN);
+    wb_figure_set_footer(figure, footer);
+}
+
+/* --- from datasets --- */
+
+double wb_recordings_figures_turn(const struct wb_dataset *dataset, double *t)
+{
+    double largest = 0.0;
+    *t = (double)INFINITY;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->cycle == 1 && row->phase == WB_PHASE_LOAD && row->deflection > largest) {
+            largest = row->deflection;
+            *t = row->t;
+        }
+    }
+    return largest;
+}
+
+/* The frame of the first loading that is nearest to a deflection (m). */
+static void find_frame(const struct wb_dataset *dataset, double deflection, struct frame *frame)
+{
+    double end, nearest = (double)INFINITY;
+    wb_recordings_figures_turn(dataset, &end);
+    frame->n = 0;
+    for (size_t i = 0; i < dataset->n_shape_rows; i++) {
+        const struct wb_shape_row *const row = &dataset->shape_rows[i];
+        if (row->t <= end + 0.2 && fabs(row->deflection - deflection) < nearest) {
+            nearest = fabs(row->deflection - deflection);
+            frame->deflection = row->deflection;
+            frame->t = row->t;
+        }
+    }
+    for (size_t i = 0; isfinite(nearest) && i < dataset->n_shape_rows; i++) {
+        const struct wb_shape_row *const row = &dataset->shape_rows[i];
+        if (row->t != frame->t || frame->n == MOST_MARKERS)
+            continue;
+        frame->x[frame->n] = row->x / WB_MM;
+        frame->y[frame->n++] = row->y / WB_MM;
+    }
+}
+
+static int n_cycles(const struct wb_dataset *dataset)
+{
+    int n = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        if (dataset->rows[i].cycle > n)
+            n = dataset->rows[i].cycle;
+    }
+    return n;
+}
+
+/* Adds the rows of one cycle (only its loading, or all of it but slack) as a line. Below zero
+ * deflection, where no cycle is, the tip lies on its rest. */
+static enum wb_status add_rows(struct wb_panel *panel, const char *label,
+                               const struct wb_dataset *dataset, int cycle, bool loading_only,
+                               const struct wb_figure_style *style)
+{
+    double *const x = malloc((dataset->n_rows + 1) * sizeof *x);
+    double *const y = malloc((dataset->n_rows + 1) * sizeof *y);
+    if (!x || !y) {
+        free(x);
+        free(y);
+        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+    }
+    const double longest = wb_dataset_gap(dataset);
+    size_t n = 0;
+    double last = (double)NAN;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->cycle != cycle)
+            continue;
+        const bool shown =
+            row->deflection >= 0.0 &&
+            (row->phase == WB_PHASE_LOAD || (!loading_only && row->phase == WB_PHASE_UNLOAD));
+        /* A gap in time is a gap in the line. */
+        const bool gap = isfinite(last) && row->t - last > longest;
+        x[n] = row->deflection / WB_MM;
+        y[n++] = shown && !gap ? row->force / WB_MN : (double)NAN;
+        last = row->t;
+    }
+    if (n > 0)
+        wb_figure_add_line(panel, label, n, x, y, style);
+    free(x);
+    free(y);
+    return WB_OK;
+}
+
+/* --- the paper's Fig. 9 --- */
+
+/* The recording with the most cycles; NULL without any. */
+static const struct wb_recordings_results_test *
+most_cycles(const struct wb_recordings_results_wire *wire, int *most)
+{
+    const struct wb_recordings_results_test *best = NULL;
+    *most = 0;
+    const struct wb_recordings_results_tests *const both[] = {&wire->calibration_tests,
+                                                              &wire->validation_tests};
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < both[k]->n; i++) {
+            const struct wb_recordings_results_test *const test = &both[k]->items[i];
+            if (test->usable && n_cycles(&test->dataset) > *most) {
+                *most = n_cycles(&test->dataset);
+                best = test;
+            }
+        }
+    }
+    return best;
+}
+
+static enum wb_status draw_cycles(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    int most;
+    const struct wb_recordings_results_test *const best = most_cycles(wire, &most);
+    if (!best)
+        return WB_OK;
+    WB_TRY(start(figure, results, wire, "cycles", WB_PDF_HALF_WIDTH, 200.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    set_force_axes(panel, 0.0);
+    for (int cycle = 1; cycle <= most; cycle++) {
+        char label[40];
+        snprintf(label, sizeof label, "cycle %d", cycle);
+        /* After the first, cycles lie on each other: each is drawn thinner and darker within the
+         * one before, so that all are seen. */
+        const struct wb_figure_style style = {
+            .colour = wb_palette_sequence(most - cycle, most),
+            .width = most > 1 ? 2.8 - 2.2 * (cycle - 1) / (most - 1) : 1.0};
+        WB_TRY(add_rows(panel, label, &best->dataset, cycle, false, &style));
+    }
+    return WB_OK;
+}
+
+static void tell_cycles(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    int most;
+    const struct wb_recordings_results_test *const test = most_cycles(wire, &most);
+    wb_text_append(text, "Cycles of sample %d, %g mm, %s; stretches with a slack strand left out.",
+                   test->dataset.info.sample, test->dataset.info.length / WB_MM,
+                   wb_recordings_figures_measured(results));
+}
+
+static enum wb_status draw_samples(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_colour colour = wb_palette_wire(index);
+    if (wire->calibration_state != WB_RECORDINGS_DONE)
+        return WB_OK;
+    static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
+    WB_TRY(start(figure, results, wire, "samples", WB_PDF_HALF_WIDTH, 200.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    set_force_axes(panel, wire->fit.curve.max_force);
+    state_max_force(*figure, results, wire->fit.curve.max_force);
+    char label[64];
+    snprintf(label, sizeof label, "range of %d", wire->fit.curve.n_samples);
+    WB_TRY(wb_figures_add_range(panel, label, &wire->fit.curve, colour));
+    const struct wb_figure_style mean = {.colour = colour, .width = 1.6};
+    for (int i = 0; i < wire->calibration_tests.n; i++) {
+        const struct wb_recordings_results_test *const test = &wire->calibration_tests.items[i];
+        if (!test->usable)
+            continue;
+        const int sample = test->dataset.info.sample;
+        snprintf(label, sizeof label, "sample %d", sample);
+        const struct wb_figure_style style = {
+            .colour = wb_palette_sample(sample), .width = 1.0, .dash = dashes[(sample + 2) % 3]};
+        WB_TRY(add_rows(panel, label, &test->dataset, 1, true, &style));
+    }
+    WB_TRY(
+        wb_figures_add_curve(panel, "mean", &wire->fit.curve, wire->fit.curve.force, WB_MN, &mean));
+    return WB_OK;
+}
+
+static void tell_samples(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    wb_text_append(text,
+                   "First loading of %d %s, %g mm, %s, with mean and range; "
+                   "<i>F</i><sub>max</sub> = %.1f mN.",
+                   wire->fit.curve.n_samples,
+                   wb_pages_plural(wire->fit.curve.n_samples, "sample", "samples"),
+                   results->campaign->calibration_length / WB_MM,
+                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
+}
+
+/* --- the paper's Fig. 10 --- */
+
+/* The first recording that has shapes; NULL without any. */
+static const struct wb_recordings_results_test *
+first_with_shapes(const struct wb_recordings_results_tests *tests)
+{
+    for (int i = 0; i < tests->n; i++) {
+        if (tests->items[i].usable && tests->items[i].dataset.n_shape_rows > 0)
+            return &tests->items[i];
+    }
+    return NULL;
+}
+
+static enum wb_status draw_shapes(struct wb_figure **figure, const void *context, int index)
+{
+    static const enum wb_figure_marker markers[] = {
+        WB_MARKER_CIRCLE, WB_MARKER_SQUARE, WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND, WB_MARKER_RING};
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_recordings_results_test *const test =
+        first_with_shapes(&wire->calibration_tests);
+    if (!test)
+        return WB_OK;
+    WB_TRY(start(figure, results, wire, "shapes", WB_PDF_WIDTH, 300.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
+    wb_figure_set_equal_aspect(panel);
+    double end, last_shown = (double)NAN;
+    const double largest = wb_recordings_figures_turn(&test->dataset, &end);
+    for (int i = 0; i < 5; i++) {
+        struct frame frame;
+        find_frame(&test->dataset, 0.25 * i * largest, &frame);
+        if (frame.n < 2 || frame.t == last_shown)
+            continue;
+        last_shown = frame.t;
+        char label[96];
+        snprintf(label, sizeof label, "<i>t</i> = %.1f s, <i>\xce\xb4</i> = %.1f mm", frame.t,
+                 frame.deflection / WB_MM);
+        const struct wb_figure_style style = {.colour = wb_palette_sequence(i, 6),
+                                              .width = 0.9,
+                                              .marker = markers[i],
+                                              .marker_size = 4.4};
+        wb_figure_add_line(panel, label, (size_t)frame.n, frame.x, frame.y, &style);
+    }
+    return WB_OK;
+}
+
+static void tell_shapes(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_test_info *const info =
+        &first_with_shapes(&wire->calibration_tests)->dataset.info;
+    wb_text_append(text,
+                   "Shapes of sample %d, %g mm, on its first loading, %s: the markers, moved onto "
+                   "the wire's axis, in the clamp's frame.",
+                   info->sample, info->length / WB_MM, wb_recordings_figures_measured(results));
+}
+
+/* --- the bench --- */
+
+static const struct wb_recordings_results_test *
+any_test(const struct wb_recordings_results *results)
+{
+    const struct wb_recordings_results_test *test = NULL;
+    for (int i = 0; i < results->n_wires && !test; i++) {
+        test = first_with_shapes(&results->wires[i].calibration_tests);
+        if (!test)
+            test = first_with_shapes(&results->wires[i].validation_tests);
+    }
+    return test;
+}
+
+static void add_box(struct wb_panel *panel, double x0, double y0, double x1, double y1,
+                    const struct wb_figure_style *style)
+{
+    const double x[] = {x0, x1, x1, x0, x0}, y[] = {y0, y0, y1, y1, y0};
+    wb_figure_add_line(panel, NULL, 5, x, y, style);
+}
+
+static void add_arrow(struct wb_panel *panel, double x, double from, double to,
+                      const struct wb_figure_style *style)
+{
+    const double head = from > to ? 3.0 : -3.0;
+    const double xs[] = {x, x, x - 1.6, x, x + 1.6};
+    const double ys[] = {from, to, to + head, to, to + head};
+    wb_figure_add_line(panel, NULL, 5, xs, ys, style);
+}
+
+/* Clamp, strand, cell and counterweight around the wire; all lengths in mm. */
+static void add_bench(struct wb_panel *panel, const struct wb_recordings_results_test *test,
+                      double tip_x, double tip_y)
+{
+    const struct wb_figure_style solid = {.colour = wb_palette_ink(), .width = 1.2};
+    const struct wb_figure_style thin = {.colour = wb_palette_grey(), .width = 0.9};
+    const struct wb_figure_style strand = {
+        .colour = wb_palette_grey(), .width = 0.9, .dash = WB_DASH_DASHED};
+    const double length = test->dataset.info.length / WB_MM;
+    add_box(panel, -14.0, -5.0, 0.0, 5.0, &solid);
+    add_arrow(panel, -7.0, -8.0, -20.0, &thin);
+    char text[160];
+    snprintf(text, sizeof text, "clamp on the stage, down at %.3g mm/s",
+             test->rig.stage.speed / WB_MM);
+    wb_figure_add_text(panel, -3.0, -15.0, -1, text);
+    /* The strand's true direction: its upper end is straight above the straight wire's tip. */
+    const double strand_mm = test->rig.strand.length / WB_MM;
+    const double lean = strand_mm > 0.0 ? (length - tip_x) / strand_mm : 0.0;
+    const double top = tip_y + 26.0, top_x = tip_x + 26.0 * lean;
+    const double strand_x[] = {tip_x, top_x}, strand_y[] = {tip_y, top};
+    wb_figure_add_line(panel, NULL, 2, strand_x, strand_y, &strand);
+    add_box(panel, top_x - 7.0, top, top_x + 7.0, top + 8.0, &solid);
+    snprintf(text, sizeof text, "load cell, %.3g g, stands still",
+             wb_recordings_results_capacity(&test->rig) / WB_G);
+    wb_figure_add_text(panel, top_x + 10.0, top + 4.0, -1, text);
+    if (strand_mm > 0.0) {
+        snprintf(text, sizeof text, "strand of %.4g mm, drawn shortened", strand_mm);
+        wb_figure_add_text(panel, top_x + 3.0, tip_y + 15.0, -1, text);
+    }
+    if (test->rig.strand.counterweight > 0.0) {
+        const double line_x[] = {tip_x, tip_x}, line_y[] = {tip_y, tip_y - 9.0};
+        wb_figure_add_line(panel, NULL, 2, line_x, line_y, &thin);
+        add_box(panel, tip_x - 3.0, tip_y - 16.0, tip_x + 3.0, tip_y - 9.0, &thin);
+        snprintf(text, sizeof text, "counterweight, %.3g g", test->rig.strand.counterweight / WB_G);
+        wb_figure_add_text(panel, tip_x + 6.0, tip_y - 12.5, -1, text);
+    }
+}
+
+static enum wb_status draw_bench(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    (void)index;
+    const struct wb_recordings_results_test *const test = any_test(results);
+    if (!test)
+        return WB_OK;
+    struct frame frame;
+    double end;
+    find_frame(&test->dataset, wb_recordings_figures_turn(&test->dataset, &end), &frame);
+    if (frame.n < 2)
+        return WB_OK;
+    WB_TRY(start(figure, results, NULL, "bench", WB_PDF_WIDTH, 190.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    wb_figure_hide_axes(panel);
+    wb_figure_set_equal_aspect(panel);
+    const double length = test->dataset.info.length / WB_MM;
+    const double straight_x[] = {0.0, length}, straight_y[] = {0.0, 0.0};
+    const struct wb_figure_style straight = {
+        .colour = wb_palette_grey(), .width = 0.9, .dash = WB_DASH_DOTTED};
+    wb_figure_add_line(panel, NULL, 2, straight_x, straight_y, &straight);
+    const struct wb_figure_style wire = {
+        .colour = wb_palette_wire(0), .width = 1.8, .marker = WB_MARKER_RING, .marker_size = 5.0};
+    wb_figure_add_line(panel, NULL, (size_t)frame.n, frame.x, frame.y, &wire);
+    wb_figure_add_text(panel, length + 4.0, 0.0, -1, "straight wire");
+    char text[96];
+    snprintf(text, sizeof text, "wire with %d markers", test->specimen.n_markers);
+    wb_figure_add_text(panel, 0.4 * length, 0.45 * frame.y[frame.n - 1], 1, text);
+    add_bench(panel, test, frame.x[frame.n - 1], frame.y[frame.n - 1]);
+    return WB_OK;
+}
+
+static void tell_bench(struct wb_text *text, const void *context, int index)
+{
+    (void)index;
+    wb_text_append(text,
+                   "The test, drawn to scale but for the strand: the clamp moves down, the strand "
+                   "holds the wire's tip, the load cell above stands still. Markers as %s at the "
+                   "largest deflection.",
+                   wb_recordings_figures_measured(context));
+}
+
+/* --- beside the calibrated beam --- */
+
+#define SHAPE_POINTS 60
+
+/* Measured markers and the computed shape at half and at full deflection. */
+static enum wb_status add_shapes(struct wb_panel *inset,
+                                 const struct wb_recordings_results_wire *wire,
+                                 const struct wb_recordings_results_tests *tests,
+                                 const struct wb_validate_result *result, struct wb_colour colour)
+{
+    const struct wb_recordings_results_test *const test = first_with_shapes(tests);
+    const struct wb_dataset *const dataset = test ? &test->dataset : NULL;
+    wb_figure_set_axes(inset, "<i>x</i> (mm)", "<i>y</i> (mm)");
+    wb_figure_set_equal_aspect(inset);
+    const struct wb_figure_style computed = {.colour = wb_palette_ink(), .width = 0.9};
+    const struct wb_figure_style measured = {
+        .colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 3.4};
+    for (int i = 1; i <= 2 && dataset; i++) {
+        struct frame frame;
+        double line_x[SHAPE_POINTS], line_y[SHAPE_POINTS];
+        find_frame(dataset, 0.5 * i * result->curve.max_deflection, &frame);
+        if (frame.n == 0)
+            continue;
+        const enum wb_status status = wb_validate_shape(
+            &wire->properties, &result->info, frame.deflection, SHAPE_POINTS, line_x, line_y);
+        if (status != WB_OK && status != WB_ERR_CONVERGENCE)
+            return status;
+        for (int k = 0; k < SHAPE_POINTS; k++) {
+            line_x[k] /= WB_MM;
+            line_y[k] /= WB_MM;
+        }
+        if (status == WB_OK)
+            wb_figure_add_line(inset, NULL, SHAPE_POINTS, line_x, line_y, &computed);
+        wb_figure_add_line(inset, NULL, (size_t)frame.n, frame.x, frame.y, &measured);
+    }
+    return WB_OK;
+}
+
+static enum wb_status add_measured(struct wb_panel *panel, const struct wb_curve *curve,
+                                   struct wb_colour colour)
+{
+    char label[80];
+    if (curve->n_samples > 1)
+        snprintf(label, sizeof label, "range of %d samples", curve->n_samples);
+    WB_TRY(wb_figures_add_range(panel, label, curve, colour));
+    snprintf(label, sizeof label, curve->n_samples > 1 ? "measured, mean" : "measured");
+    const struct wb_figure_style style = {.colour = colour, .width = 1.6};
+    return wb_figures_add_curve(panel, label, curve, curve->force, WB_MN, &style);
+}
+
+static const struct wb_figure_style computed_style = {
+    .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
+
+static enum wb_status draw_calibration(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_colour colour = wb_palette_wire(index);
+    if (wire->calibration_state != WB_RECORDINGS_DONE)
+        return WB_OK;
+    const struct wb_validate_result *const fit = &wire->fit;
+    WB_TRY(start(figure, results, wire, "calibration", WB_PDF_WIDTH, 208.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    set_force_axes(panel, fit->curve.max_force);
+    state_max_force(*figure, results, fit->curve.max_force);
+    /* Room above for the inset. */
+    wb_figure_set_y_range(panel, (double)NAN, 1.25 * fit->curve.max_force / WB_MN);
+    WB_TRY(add_measured(panel, &fit->curve, colour));
+    WB_TRY(wb_figures_add_curve(panel, "computed, calibrated", &fit->curve,
+                                fit->elastoplastic.force, WB_MN, &computed_style));
+    return add_shapes(wb_figure_add_inset(panel), wire, &wire->calibration_tests, fit, colour);
+}
+
+static void tell_calibration(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    wb_text_append(text,
+                   "Calibration at %g mm: mean of the samples, %s, and the calibrated beam. Inset: "
+                   "markers of one sample and computed shape at half and at full deflection. "
+                   "<i>F</i><sub>max</sub> = %.1f mN.",
+                   results->campaign->calibration_length / WB_MM,
+                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
+}
+
+static enum wb_status draw_validation(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_colour colour = wb_palette_wire(index);
+    if (wire->validation_state != WB_RECORDINGS_DONE)
+        return WB_OK;
+    const struct wb_validate_result *const validation = &wire->validation;
+    WB_TRY(start(figure, results, wire, "validation", WB_PDF_WIDTH, 208.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    set_force_axes(panel, validation->curve.max_force);
+    state_max_force(*figure, results, validation->curve.max_force);
+    /* The elastic curve goes far beyond; it may leave the frame. */
+    wb_figure_set_y_range(panel, (double)NAN, 1.45 * validation->curve.max_force / WB_MN);
+    WB_TRY(add_measured(panel, &validation->curve, colour));
+    WB_TRY(wb_figures_add_curve(panel, "computed, elastoplastic", &validation->curve,
+                                validation->elastoplastic.force, WB_MN, &computed_style));
+    const struct wb_figure_style elastic = {
+        .colour = wb_palette_grey(), .width = 1.2, .dash = WB_DASH_DOTTED};
+    WB_TRY(wb_figures_add_curve(panel, "computed, linear elastic", &validation->curve,
+                                validation->elastic.force, WB_MN, &elastic));
+    return add_shapes(wb_figure_add_inset(panel), wire, &wire->validation_tests, validation,
+                      colour);
+}
+
+static void tell_validation(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    wb_text_append(
+        text,
+        "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and "
+        "for contrast the same beam without yielding, which leaves the frame. Inset as "
+        "before. <i>F</i><sub>max</sub> = %.1f mN.",
+        results->campaign->validation_length / WB_MM, wb_recordings_figures_measured(results),
+        results->campaign->calibration_length / WB_MM, wire->validation.curve.max_force / WB_MN);
+}
+
+static enum wb_status add_error(struct wb_panel *panel, const char *what, double length,
+                                const struct wb_validate_result *result,
+                                const struct wb_figure_style *style)
+{
+    char label[160];
+    snprintf(label, sizeof label, "%s, %g mm: RMS %.4f, <i>F</i><sub>max</sub> %.1f mN", what,
+             length / WB_MM, result->elastoplastic.rms, result->curve.max_force / WB_MN);
+    return wb_figures_add_curve(panel, label, &result->curve, result->elastoplastic.error, 1.0,
+                                style);
+}
+
+static enum wb_status draw_error(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_colour colour = wb_palette_wire(index);
+    if (wire->calibration_state != WB_RECORDINGS_DONE)
+        return WB_OK;
+    const struct wb_recordings *const campaign = results->campaign;
+    WB_TRY(start(figure, results, wire, "error", WB_PDF_WIDTH, 155.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
+    const struct wb_figure_style calibration = {
+        .colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED};
+    WB_TRY(add_error(panel, "calibration", campaign->calibration_length, &wire->fit, &calibration));
+    const struct wb_figure_style validation = {.colour = colour, .width = 1.5};
+    if (wire->validation_state == WB_RECORDINGS_DONE)
+        WB_TRY(add_error(panel, "validation", campaign->validation_length, &wire->validation,
+                         &validation));
+    return WB_OK;
+}
+
+static void tell_error(struct wb_text *text, const void *context, int index)
+{
+    (void)index;
+    wb_text_append(
+        text,
+        "Error of the computed force against the mean force, %s (eq. 18), as part of each "
+        "curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19).",
+        wb_recordings_figures_measured(context));
+}
+
+/* --- the search --- */
+
+static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibrate_result *result,
+                               struct wb_colour colour)
+{
+    const int n = result->n_path;
+    double *const values = malloc(4 * ((size_t)n + 1) * sizeof *values);
+    if (!values)
+        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+    double *const step = values, *const error = values + n, *const k = values + 2 * n,
+                  *const exponent = values + 3 * n;
+    for (int i = 0; i < n; i++) {
+        step[i] = i + 1;
+        error[i] = result->path[i].error;
+        k[i] = result->path[i].strength_coefficient / WB_MPA;
+        exponent[i] = result->path[i].hardening_exponent;
+    }
+    struct wb_panel *const errors = wb_figure_add_panel(figure);
+    wb_figure_set_axes(errors, "Iteration",
+                       "<i>E</i><sub>L2</sub> / (<i>F</i><sub>max</sub> "
+                       "\xce\xb4<sub>max</sub><sup>1/2</sup>)");
+    wb_figure_set_logarithmic_y(errors);
+    const struct wb_figure_style line = {.colour = colour, .width = 1.3};
+    wb_figure_add_line(errors, NULL, (size_t)n, step, error, &line);
+
+    struct wb_panel *const path = wb_figure_add_panel(figure);
+    wb_figure_set_axes(path, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
+    const struct wb_figure_style thin = {
+        .colour = colour, .width = 0.8, .marker = WB_MARKER_CIRCLE, .marker_size = 2.4};
+    wb_figure_add_line(path, "best so far", (size_t)n, exponent, k, &thin);
+    const double first_n = result->first_hardening_exponent;
+    const double first_k = result->first_strength_coefficient / WB_MPA;
+    const struct wb_figure_style start = {
+        .colour = wb_palette_grey(), .marker = WB_MARKER_RING, .marker_size = 6.0};
+    wb_figure_add_line(path, "<i>n</i><sub>0</sub>, <i>K</i><sub>0</sub> (eqs. 15, 16)", 1,
+                       &first_n, &first_k, &start);
+    const double last_n = result->material.hardening_exponent;
+    const double last_k = result->material.strength_coefficient / WB_MPA;
+    const struct wb_figure_style end = {
+        .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
+    wb_figure_add_line(path, "calibrated", 1, &last_n, &last_k, &end);
+    free(values);
+    return WB_OK;
+}
+
+static enum wb_status draw_optimiser(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_colour colour = wb_palette_wire(index);
+    if (wire->calibration_state != WB_RECORDINGS_DONE || wire->calibration.n_path < 1)
+        return WB_OK;
+    WB_TRY(start(figure, results, wire, "optimiser", WB_PDF_WIDTH, 170.0));
+    return add_path(*figure, &wire->calibration, colour);
+}
+
+static void tell_optimiser(struct wb_text *text, const void *context, int index)
+{
+    (void)context, (void)index;
+    wb_text_append(text, "Left: error of the best corner of the simplex after each iteration. "
+                         "Right: its path from the first guess to the calibrated values.");
+}
+
+/* --- all wires in one --- */
+
+static enum wb_status add_overview(struct wb_panel *panel,
+                                   const struct wb_recordings_results *results, int index,
+                                   const struct wb_validate_result *result)
+{
+    static const enum wb_figure_marker markers[] = {WB_MARKER_CIRCLE, WB_MARKER_SQUARE,
+                                                    WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND};
+    const struct wb_curve *const curve = &result->curve;
+    const struct wb_colour colour = wb_palette_wire(index);
+    char label[160];
+    snprintf(label, sizeof label, "%s, measured", results->wires[index].wanted->label);
+    WB_TRY(wb_figures_add_range(panel, NULL, curve, colour));
+    /* Every tenth point carries a marker, so that wires differ without their colours. */
+    double *const x = wb_figures_deflections(curve);
+    double *const y = wb_figures_scaled(curve->force, curve->n, WB_MN);
+    int n = 0;
+    for (int i = 0; x && y && i < curve->n; i += 10, n++) {
+        x[n] = x[i];
+        y[n] = y[i];
+    }
+    const struct wb_figure_style points = {
+        .colour = colour, .marker = markers[index % 4], .marker_size = 4.2};
+    if (x && y)
+        wb_figure_add_line(panel, label, (size_t)n, x, y, &points);
+    free(x);
+    free(y);
+    snprintf(label, sizeof label, "%s, computed", results->wires[index].wanted->label);
+    const struct wb_figure_style line = {.colour = colour, .width = 1.3};
+    return wb_figures_add_curve(panel, label, curve, result->elastoplastic.force, WB_MN, &line);
+}
+
+static enum wb_status draw_all(struct wb_figure **figure,
+                               const struct wb_recordings_results *results, bool validation)
+{
+    int n = 0;
+    for (int i = 0; i < results->n_wires; i++)
+        n += validation ? results->wires[i].validation_state == WB_RECORDINGS_DONE
+                        : results->wires[i].calibration_state == WB_RECORDINGS_DONE;
+    if (n == 0)
+        return WB_OK;
+    WB_TRY(start(figure, results, NULL, validation ? "validation" : "calibration", WB_PDF_WIDTH,
+                 205.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    set_force_axes(panel, 0.0);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        if (validation && wire->validation_state == WB_RECORDINGS_DONE)
+            WB_TRY(add_overview(panel, results, i, &wire->validation));
+        if (!validation && wire->calibration_state == WB_RECORDINGS_DONE)
+            WB_TRY(add_overview(panel, results, i, &wire->fit));
+    }
+    return WB_OK;
+}
+
+static enum wb_status draw_calibrations(struct wb_figure **figure, const void *context, int index)
+{
+    (void)index;
+    return draw_all(figure, context, false);
+}
+
+static void tell_calibrations(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    (void)index;
+    wb_text_append(text,
+                   "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
+                   "against them. Bands: range of the samples.",
+                   results->campaign->calibration_length / WB_MM,
+                   wb_recordings_figures_measured(results));
+}
+
+static enum wb_status draw_validations(struct wb_figure **figure, const void *context, int index)
+{
+    (void)index;
+    return draw_all(figure, context, true);
+}
+
+static void tell_validations(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    (void)index;
+    wb_text_append(text,
+                   "The same wires at %g mm, %s, and the prediction of the beams calibrated at %g "
+                   "mm.",
+                   results->campaign->validation_length / WB_MM,
+                   wb_recordings_figures_measured(results),
+                   results->campaign->calibration_length / WB_MM);
+}
+
+static enum wb_status draw_errors(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    (void)index;
+    static const enum wb_figure_dash dashes[] = {WB_DASH_SOLID, WB_DASH_DASHED, WB_DASH_MIXED,
+                                                 WB_DASH_DOTTED};
+    struct wb_panel *panel = NULL;
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        if (wire->validation_state != WB_RECORDINGS_DONE)
+            continue;
+        if (!*figure) {
+            WB_TRY(start(figure, results, NULL, "errors", WB_PDF_WIDTH, 165.0));
+            panel = wb_figure_add_panel(*figure);
+            wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)",
+                               "Error / <i>F</i><sub>max</sub>");
+        }
+        char label[160];
+        snprintf(label, sizeof label, "%s, RMS %.4f, <i>F</i><sub>max</sub> %.1f mN",
+                 wire->wanted->label, wire->validation.elastoplastic.rms,
+                 wire->validation.curve.max_force / WB_MN);
+        const struct wb_figure_style style = {
+            .colour = wb_palette_wire(i), .width = 1.3, .dash = dashes[i % 4]};
+        WB_TRY(wb_figures_add_curve(panel, label, &wire->validation.curve,
+                                    wire->validation.elastoplastic.error, 1.0, &style));
+    }
+    return WB_OK;
+}
+
+static void tell_errors(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_recordings_results *const results = context;
+    (void)index;
+    wb_text_append(text,
+                   "Error of the prediction at %g mm (eq. 18): distance of mean force, %s, and "
+                   "computed force over the largest mean force of the wire.",
+                   results->campaign->validation_length / WB_MM,
+                   wb_recordings_figures_measured(results));
+}
+
+/* --- the table --- */
+
+const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
+    {"bench", NULL, draw_bench, tell_bench, false},
+    {"overview", NULL, draw_calibrations, tell_calibrations, false},
+    {"overview", NULL, draw_validations, tell_validations, false},
+    {"overview", NULL, draw_errors, tell_errors, false},
+    {"measured", count_wires, draw_cycles, tell_cycles, true},
+    {"measured", count_wires, draw_samples, tell_samples, true},
+    {"measured", count_wires, draw_shapes, tell_shapes, false},
+    {"compared", count_wires, draw_calibration, tell_calibration, false},
+    {"compared", count_wires, draw_validation, tell_validation, false},
+    {"compared", count_wires, draw_error, tell_error, false},
+    {"search", count_wires, draw_optimiser, tell_optimiser, false},
+};

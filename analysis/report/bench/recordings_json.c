@@ -1,0 +1,241 @@
+#include "analysis/report/bench/recordings_json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/report/bench/recordings_figures.h"
+#include "base/units.h"
+#include "base/version.h"
+
+static const char *state_text(enum wb_recordings_results_state state)
+{
+    static const char *const texts[] = {"not wanted", "missing", "failed", "done"};
+    return texts[state];
+}
+
+static void put_settings(struct wb_json *root, const struct wb_recordings *campaign)
+{
+    const struct wb_calibrate_settings meant = wb_calibrate_settings_meant(&campaign->calibrate);
+    struct wb_json *const settings = wb_json_set_object(root, "settings");
+    for (size_t i = 0; i < wb_calibrate_table.n; i++) {
+        const struct wb_setting *const row = &wb_calibrate_table.rows[i];
+        if (wb_setting_applies(row, WB_CALIBRATE_REPORT))
+            wb_setting_set_json(row, &meant, settings);
+    }
+    struct wb_json *const limits = wb_json_set_object(root, "limits");
+    if (campaign->calibration_limit > 0.0)
+        wb_json_set_number(limits, "calibration_rms_max", campaign->calibration_limit);
+    if (campaign->validation_limit > 0.0)
+        wb_json_set_number(limits, "validation_rms_max", campaign->validation_limit);
+}
+
+static void put_tests(struct wb_json *list, const struct wb_recordings_results_wire *wire,
+                      const struct wb_recordings_results_tests *tests, const char *purpose)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        struct wb_json *const entry = wb_json_append_object(list);
+        wb_json_set_text(entry, "name", test->wanted->name);
+        wb_json_set_text(entry, "wire", wire->wanted->product.name);
+        wb_json_set_text(entry, "purpose", purpose);
+        wb_json_set_boolean(entry, "used", test->usable);
+        if (test->wanted->seed >= 0)
+            wb_json_set_integer(entry, "seed", test->wanted->seed);
+        const char *const sha256 = test->sha256[0] ? test->sha256 : test->wanted->sha256;
+        if (sha256[0])
+            wb_json_set_text(entry, "sha256", sha256);
+        if (!test->usable) {
+            wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
+            continue;
+        }
+        const struct wb_test_info *const info = &test->dataset.info;
+        wb_json_set_integer(entry, "sample", info->sample);
+        wb_json_set_number(entry, "length_mm", info->length / WB_MM);
+        wb_json_set_boolean(entry, "virtual_rig", test->is_virtual);
+        wb_json_set_text(entry, "start_utc", test->start_utc);
+        wb_json_set_text(entry, "tool_revision", test->tool_revision);
+        wb_json_set_text(entry, "operator", test->operator_name);
+        wb_json_set_number(entry, "bow_mm", wb_dataset_bow(info) / WB_MM);
+        static const char *const parts[] = {"corrections", "checks", "warnings"};
+        for (int k = 0; k < 3; k++) {
+            const struct wb_json *const part = wb_json_get(test->dataset.document, parts[k]);
+            if (part)
+                wb_json_set_copy(entry, parts[k], part);
+        }
+    }
+}
+
+static void put_array(struct wb_json *object, const char *key, const double *values, int n,
+                      double unit)
+{
+    struct wb_json *const list = wb_json_set_array(object, key);
+    for (int i = 0; i < n; i++)
+        wb_json_append_number(list, values[i] / unit);
+}
+
+static void put_prediction(struct wb_json *object, const char *key,
+                           const struct wb_prediction *prediction)
+{
+    struct wb_json *const entry = wb_json_set_object(object, key);
+    wb_json_set_number(entry, "rms_over_F_max", prediction->rms);
+    wb_json_set_number(entry, "rms_from_5mm_over_F_max", prediction->rms_from_5mm);
+    wb_json_set_number(entry, "largest_error_over_F_max", prediction->max_error);
+    wb_json_set_integer(entry, "points_reached", prediction->n_reached);
+    put_array(entry, "force_mN", prediction->force, prediction->n, WB_MN);
+    put_array(entry, "error_over_F_max", prediction->error, prediction->n, 1.0);
+}
+
+static void put_comparison(struct wb_json *object, const struct wb_validate_result *result,
+                           double scatter, double residual)
+{
+    const struct wb_curve *const curve = &result->curve;
+    wb_json_set_integer(object, "samples", curve->n_samples);
+    wb_json_set_number(object, "length_mm", result->info.length / WB_MM);
+    wb_json_set_number(object, "F_max_mN", curve->max_force / WB_MN);
+    wb_json_set_number(object, "max_deflection_mm", curve->max_deflection / WB_MM);
+    wb_json_set_number(object, "scatter_rms_over_F_max",
+                       curve->n_samples > 1 ? scatter : (double)NAN);
+    wb_json_set_number(object, "residual_scatter_rms_over_F_max",
+                       curve->n_samples > 1 ? residual : (double)NAN);
+    wb_json_set_number(object, "shape_rms_mm", result->shape_rms / WB_MM);
+    wb_json_set_number(object, "shape_largest_mm", result->shape_max / WB_MM);
+    wb_json_set_integer(object, "shape_points", result->n_shape_points);
+    wb_json_set_number(object, "mean_bow_mm", wb_dataset_bow(&result->info) / WB_MM);
+    struct wb_json *const measured = wb_json_set_object(object, "measured");
+    struct wb_json *const deflection = wb_json_set_array(measured, "deflection_mm");
+    for (int i = 0; i < curve->n; i++)
+        wb_json_append_number(deflection, i * curve->step / WB_MM);
+    put_array(measured, "force_mN", curve->force, curve->n, WB_MN);
+    put_array(measured, "lowest_mN", curve->low, curve->n, WB_MN);
+    put_array(measured, "highest_mN", curve->high, curve->n, WB_MN);
+    put_array(measured, "standard_deviation_mN", curve->deviation, curve->n, WB_MN);
+    put_prediction(object, "elastoplastic", &result->elastoplastic);
+    put_prediction(object, "linear_elastic", &result->elastic);
+}
+
+static void put_validation(struct wb_json *object, const struct wb_recordings_results_wire *wire)
+{
+    put_comparison(object, &wire->validation, wire->validation.scatter_rms,
+                   wire->validation.residual_scatter_rms);
+    wb_json_set_number(object, "rms_expected_from_scatter_at_most_over_F_max",
+                       wire->validation.expected_rms);
+    wb_json_set_number(object, "share_explained_by_scatter_at_most",
+                       wb_recordings_results_validation_share(wire));
+}
+
+static void put_values(struct wb_json *object, const char *name, const double values[4])
+{
+    struct wb_json *const entry = wb_json_set_object(object, name);
+    wb_json_set_number(entry, "youngs_modulus_MPa", values[0] / WB_MPA);
+    wb_json_set_number(entry, "yield_stress_MPa", values[1] / WB_MPA);
+    wb_json_set_number(entry, "strength_coefficient_MPa", values[2] / WB_MPA);
+    wb_json_set_number(entry, "hardening_exponent", values[3]);
+}
+
+static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_result *result)
+{
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    struct wb_json *const entry = wb_json_set_object(object, "standard_uncertainties");
+    wb_json_set_number(entry, "youngs_modulus_MPa", result->deviation[0] / WB_MPA);
+    wb_json_set_number(entry, "yield_stress_MPa", result->deviation[1] / WB_MPA);
+    wb_json_set_number(entry, "strength_coefficient_factor", exp(result->deviation[2]));
+    wb_json_set_number(entry, "hardening_exponent", result->deviation[3]);
+    wb_json_set_boolean(object, "bow_corrected", result->bow_corrected);
+    struct wb_json *const list = wb_json_set_array(object, "remarks");
+    const int n = wb_calibrate_remarks(result, remarks);
+    for (int i = 0; i < n; i++)
+        wb_json_append_text(list, remarks[i]);
+}
+
+static void put_search(struct wb_json *object, const struct wb_calibrate_result *c)
+{
+    struct wb_json *const search = wb_json_set_object(object, "search");
+    wb_json_set_number(search, "first_strength_coefficient_MPa",
+                       c->first_strength_coefficient / WB_MPA);
+    wb_json_set_number(search, "first_hardening_exponent", c->first_hardening_exponent);
+    wb_json_set_text(search, "stopped_because", wb_calibrate_end_text(c->end));
+    wb_json_set_boolean(search, "restarted", c->restarted);
+    wb_json_set_number(search, "restart_moved", c->restart_moved);
+    wb_json_set_integer(search, "beam_runs", c->evaluations);
+    wb_json_set_integer(search, "beam_runs_not_converged", c->failed_evaluations);
+    struct wb_json *const k = wb_json_set_array(search, "strength_coefficient_MPa");
+    struct wb_json *const n = wb_json_set_array(search, "hardening_exponent");
+    struct wb_json *const error = wb_json_set_array(search, "error_over_F_max");
+    struct wb_json *const size = wb_json_set_array(search, "simplex_size");
+    for (int i = 0; i < c->n_path; i++) {
+        wb_json_append_number(k, c->path[i].strength_coefficient / WB_MPA);
+        wb_json_append_number(n, c->path[i].hardening_exponent);
+        wb_json_append_number(error, c->path[i].error);
+        wb_json_append_number(size, c->path[i].size);
+    }
+}
+
+static void put_wire(struct wb_json *list, const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings_wire *const wanted = wire->wanted;
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "wire", wanted->product.name);
+    wb_json_set_text(entry, "label", wanted->label);
+    wb_json_set_number(entry, "conductor_diameter_mm", wanted->product.conductor_diameter / WB_MM);
+    wb_json_set_number(entry, "outer_diameter_mm", wanted->product.outer_diameter / WB_MM);
+    wb_json_set_number(entry, "density_g_cm3", wanted->product.density / WB_G_PER_CM3);
+    if (wanted->has_reference) {
+        put_values(entry, "published", wanted->reference);
+        wb_json_set_text(wb_json_get(entry, "published"), "source", wanted->reference_source);
+    }
+    struct wb_json *const calibration = wb_json_set_object(entry, "calibration");
+    wb_json_set_text(calibration, "state", state_text(wire->calibration_state));
+    if (wire->calibration_state == WB_RECORDINGS_DONE) {
+        const struct wb_material *const m = &wire->calibration.material;
+        const double values[] = {m->youngs_modulus, m->yield_stress, m->strength_coefficient,
+                                 m->hardening_exponent};
+        put_values(calibration, "properties", values);
+        put_uncertainties(calibration, &wire->calibration);
+        wb_json_set_number(calibration, "rms_over_F_max", wire->calibration.rms);
+        wb_json_set_number(calibration, "largest_error_over_F_max", wire->calibration.max_error);
+        put_comparison(calibration, &wire->fit, wire->calibration.scatter_rms,
+                       wire->calibration.residual_scatter_rms);
+        put_search(calibration, &wire->calibration);
+    } else {
+        wb_json_set_text(calibration, "problem", wb_text_string(&wire->calibration_problem));
+    }
+    struct wb_json *const validation = wb_json_set_object(entry, "validation");
+    wb_json_set_text(validation, "state", state_text(wire->validation_state));
+    if (wire->validation_state == WB_RECORDINGS_DONE)
+        put_validation(validation, wire);
+    else if (wire->validation_state != WB_RECORDINGS_NOT_WANTED)
+        wb_json_set_text(validation, "problem", wb_text_string(&wire->validation_problem));
+}
+
+struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *results,
+                                         const char *const *files, int n_files)
+{
+    const struct wb_recordings *const campaign = results->campaign;
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "title", campaign->title);
+    wb_json_set_text(root, "data", wb_recordings_figures_measured(results));
+    wb_json_set_boolean(root, "virtual_rig", results->any_virtual);
+    struct wb_json *const tool = wb_json_set_object(root, "tool");
+    wb_json_set_text(tool, "name", "wirebench report");
+    wb_json_set_text(tool, "version", wb_version());
+    wb_json_set_text(tool, "revision", wb_version_revision());
+    struct wb_json *const file = wb_json_set_object(root, "campaign");
+    wb_json_set_text(file, "file", campaign->name);
+    wb_json_set_text(file, "sha256", campaign->sha256);
+    put_settings(root, campaign);
+    wb_json_set_boolean(root, "complete", results->is_complete);
+    wb_json_set_boolean(root, "limit_exceeded", results->exceeds_limit);
+    struct wb_json *const recordings = wb_json_set_array(root, "recordings");
+    struct wb_json *const wires = wb_json_set_array(root, "wires");
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        put_tests(recordings, wire, &wire->calibration_tests, "calibration");
+        put_tests(recordings, wire, &wire->validation_tests, "validation");
+        put_wire(wires, wire);
+    }
+    struct wb_json *const list = wb_json_set_array(root, "files");
+    for (int i = 0; i < n_files; i++)
+        wb_json_append_text(list, files[i]);
+    return root;
+}

@@ -1,0 +1,1119 @@
+/* Recordings' report, in order: summary, specimens and bench, all wires, each wire, provenance. */
+#include "analysis/report/bench/recordings_pages.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/align.h"
+#include "analysis/report/bench/recordings_figures.h"
+#include "analysis/report/pages.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "base/version.h"
+
+/* Tells why recordings are missing or were refused, one item each. Returns how many. */
+static int put_missing_tests(struct wb_document *document,
+                             const struct wb_recordings_results_tests *tests)
+{
+    int n = 0;
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        if (test->usable)
+            continue;
+        char name[400], problem[1200], item[1800];
+        wb_pages_escape(name, sizeof name, test->wanted->name);
+        wb_pages_escape(problem, sizeof problem, wb_text_string(&test->problem));
+        snprintf(item, sizeof item, "<b>%s</b>: %s", name, problem);
+        wb_document_item(document, WB_TONE_WARNING, item);
+        n++;
+    }
+    return n;
+}
+
+/* --- summary: origin, limits, what is missing, properties, figures of merit, warnings --- */
+
+#define MOST_WARNINGS 4
+
+static void put_origin(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    if (!results->any_virtual)
+        return;
+    wb_document_notice(
+        document, WB_TONE_ORIGIN,
+        results->all_virtual
+            ? "<b>Virtual rig.</b> All recordings of this report come from the virtual rig, a "
+              "simulated bench with a simulated wire. No physical wire was tested. The wire in it "
+              "only resembles the published one, whose values stand beside for orientation."
+            : "<b>Virtual rig.</b> Some recordings of this report come from the virtual rig, a "
+              "simulated bench with a simulated wire; the list of recordings says which.");
+}
+
+/* What the scatter between samples may have to do with a validation's error. */
+static void append_share(struct wb_text *text, const struct wb_validate_result *validation)
+{
+    if (isfinite(validation->scatter_share))
+        wb_text_append(text,
+                       " RMS that the scatter between samples alone lets expect: at most %.4f; "
+                       "found: %.4f. So it explains at most %.0f %% of the mean square error.",
+                       validation->expected_rms, validation->elastoplastic.rms,
+                       100.0 * validation->scatter_share);
+    else
+        wb_text_append(text, " What the scatter between samples explains is not known: there are "
+                             "fewer than two samples.");
+}
+
+/* `validation` NULL: of the calibration. */
+static void put_miss(struct wb_document *document, const char *label, double rms, double limit,
+                     const struct wb_validate_result *validation)
+{
+    char escaped[300];
+    struct wb_text text = {0};
+    wb_text_append(&text,
+                   "<b>Limit exceeded.</b> %s, %s: RMS %.4f of <i>F</i><sub>max</sub>, "
+                   "limit %.4g.",
+                   wb_pages_escape(escaped, sizeof escaped, label),
+                   validation ? "validation" : "calibration", rms, limit);
+    if (validation)
+        append_share(&text, validation);
+    wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
+    document->failed |= text.failed;
+    wb_text_release(&text);
+}
+
+static void put_limits(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    const struct wb_recordings *const campaign = results->campaign;
+    int judged = 0;
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        const char *const label = wire->wanted->label;
+        if (wire->calibration_state == WB_RECORDINGS_DONE && campaign->calibration_limit > 0.0) {
+            judged++;
+            if (!(wire->calibration.rms <= campaign->calibration_limit))
+                put_miss(document, label, wire->calibration.rms, campaign->calibration_limit, NULL);
+        }
+        if (wire->validation_state == WB_RECORDINGS_DONE && campaign->validation_limit > 0.0) {
+            judged++;
+            if (!(wire->validation.elastoplastic.rms <= campaign->validation_limit))
+                put_miss(document, label, wire->validation.elastoplastic.rms,
+                         campaign->validation_limit, &wire->validation);
+        }
+    }
+    if (judged == 0 || results->exceeds_limit)
+        return;
+    struct wb_text text = {0};
+    wb_text_append(&text, results->is_complete
+                              ? "<b>All limits of the campaign are kept:</b>"
+                              : "<b>What could be computed keeps the campaign's limits:</b>");
+    if (campaign->calibration_limit > 0.0)
+        wb_text_append(&text, " RMS of each calibration at most %.4g", campaign->calibration_limit);
+    if (campaign->validation_limit > 0.0)
+        wb_text_append(&text, "%s of each validation at most %.4g",
+                       campaign->calibration_limit > 0.0 ? "," : " RMS",
+                       campaign->validation_limit);
+    wb_text_append(&text, " of <i>F</i><sub>max</sub>.");
+    wb_document_notice(document, WB_TONE_GOOD, wb_text_string(&text));
+    document->failed |= text.failed;
+    wb_text_release(&text);
+}
+
+static void put_step_problem(struct wb_document *document, const char *label, const char *step,
+                             enum wb_recordings_results_state state, const struct wb_text *problem)
+{
+    if (state != WB_RECORDINGS_MISSING && state != WB_RECORDINGS_FAILED)
+        return;
+    char name[300], reason[1200], item[1700];
+    snprintf(item, sizeof item, "<b>%s: no %s</b>: %s", wb_pages_escape(name, sizeof name, label),
+             step, wb_pages_escape(reason, sizeof reason, wb_text_string(problem)));
+    wb_document_item(document, WB_TONE_WARNING, item);
+}
+
+static void put_missing(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    if (results->is_complete)
+        return;
+    char text[300];
+    const int n = results->n_tests - results->n_usable;
+    if (n > 0)
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> %d of %d recordings %s missing or could not be used. The "
+                 "report shows what the others give.",
+                 n, results->n_tests, wb_pages_plural(n, "is", "are"));
+    else
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> All recordings are there, but not every "
+                 "step could be done.");
+    wb_document_notice(document, WB_TONE_WARNING, text);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        put_missing_tests(document, &wire->calibration_tests);
+        put_missing_tests(document, &wire->validation_tests);
+        put_step_problem(document, wire->wanted->label, "calibration", wire->calibration_state,
+                         &wire->calibration_problem);
+        put_step_problem(document, wire->wanted->label, "validation", wire->validation_state,
+                         &wire->validation_problem);
+    }
+}
+
+static void put_property(struct wb_document *document, struct wb_document_table *table,
+                         const struct wb_recordings_results_wire *wire, int i)
+{
+    const struct wb_pages_property *const property = &wb_pages_properties[i];
+    const struct wb_recordings_wire *const wanted = wire->wanted;
+    const bool done = wire->calibration_state == WB_RECORDINGS_DONE;
+    const double value =
+        done ? wb_pages_value(&wire->calibration.material, i) / property->factor : (double)NAN;
+    /* K's is a factor. */
+    const double own = done ? wire->calibration.deviation[i] : (double)NAN;
+    const double deviation = i == 2 ? exp(own) : own / property->factor;
+    const double reference =
+        wanted->has_reference ? wanted->reference[i] / property->factor : (double)NAN;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, i == 0 ? wanted->label : "");
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
+    wb_pages_cell_number(&row, value, property->decimals);
+    if (i == 2 && isfinite(deviation))
+        wb_pages_cell(&row, WB_TONE_PLAIN, "\xc3\x97/\xc3\xb7 %.3g", deviation);
+    else
+        wb_pages_cell_number(&row, deviation, property->decimals);
+    wb_pages_cell_number(&row, reference, property->decimals);
+    wb_pages_cell_number(&row, value / reference, 2);
+    wb_pages_put_row(document, table, i == 0, &row);
+}
+
+static void put_properties(struct wb_document *document,
+                           const struct wb_recordings_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire"},
+        {"Property"},
+        {"Unit"},
+        {.heading = "Calibrated", .right = true},
+        {.heading = "\xc2\xb1 (samples)", .right = true},
+        {.heading = "Published", .right = true},
+        {.heading = "Ratio", .right = true},
+    };
+    const struct wb_calibrate_settings *const settings = &results->campaign->calibrate;
+    char source[300] = "none", caption[900];
+    for (int i = 0; i < results->n_wires; i++) {
+        if (results->wires[i].wanted->has_reference) {
+            wb_pages_escape(source, sizeof source, results->wires[i].wanted->reference_source);
+            break;
+        }
+    }
+    wb_document_heading(document, 2, "properties", "Calibrated properties");
+    snprintf(caption, sizeof caption,
+             "<i>E</i> from eq. 10 at a deflection of %g of the length, "
+             "<i>\xcf\x83</i><sub>Y</sub> from eq. 11 at %g of it. \xc2\xb1: standard "
+             "uncertainty from the scatter between samples (jackknife), of <i>K</i> a factor. "
+             "%s Published: %s. Ratio: calibrated over published.",
+             settings->elastic_zone,
+             settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone,
+             settings->bow_corrected
+                 ? "<i>E</i> and <i>\xcf\x83</i><sub>Y</sub> are corrected for the samples' bows."
+                 : "Not corrected for the samples' bows (bow_corrected: false).",
+             source);
+    struct wb_document_table *const table = wb_document_table(document, caption, 7, columns);
+    for (int i = 0; i < results->n_wires; i++) {
+        for (int k = 0; k < 4; k++)
+            put_property(document, table, &results->wires[i], k);
+    }
+}
+
+static void put_rms(struct wb_pages_row *row, bool done, double rms, double limit)
+{
+    if (!done)
+        wb_pages_cell(row, WB_TONE_WARNING, "missing");
+    else if (limit > 0.0)
+        wb_pages_cell(row, rms <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.4f", rms);
+    else
+        wb_pages_cell(row, WB_TONE_PLAIN, "%.4f", rms);
+}
+
+static void put_share(struct wb_pages_row *row, double share)
+{
+    if (isfinite(share))
+        wb_pages_cell(row, WB_TONE_PLAIN, "%.0f %%", 100.0 * share);
+    else
+        wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");
+}
+
+static void put_merits(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    const struct wb_recordings *const campaign = results->campaign;
+    static const struct wb_document_column columns[] = {
+        {"Wire"},
+        {.heading = "Calibration RMS", .right = true, .wraps = true},
+        {.heading = "Validation RMS", .right = true, .wraps = true},
+        {.heading = "Validation, largest", .right = true, .wraps = true},
+        {.heading = "Linear elastic RMS", .right = true, .wraps = true},
+        {.heading = "Scatter explains, at most", .right = true, .wraps = true},
+        {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
+        {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
+    };
+    char caption[900], source[300];
+    int length = snprintf(caption, sizeof caption,
+                          "Errors are parts of <i>F</i><sub>max</sub>, the largest force of the "
+                          "mean measured curve (eqs. 18 and 19); that of the validation is given. "
+                          "Scatter explains, at most: bound of the part of the validation's "
+                          "RMS<sup>2</sup> that a perfect model would show too, because means of a "
+                          "few unlike samples differ by chance; the scatter it comes from holds "
+                          "the model's error with the samples' bows too.");
+    if (campaign->calibration_limit > 0.0)
+        length += snprintf(caption + length, sizeof caption - (size_t)length,
+                           " Limit of the calibration: %.4g.", campaign->calibration_limit);
+    if (campaign->validation_limit > 0.0)
+        length += snprintf(caption + length, sizeof caption - (size_t)length,
+                           " Limit of the validation: %.4g.", campaign->validation_limit);
+    if (campaign->reference_rms[1] > 0.0)
+        snprintf(caption + length, sizeof caption - (size_t)length,
+                 " Published RMS of validations: %.4g to %.4g (%s).", campaign->reference_rms[0],
+                 campaign->reference_rms[1],
+                 wb_pages_escape(source, sizeof source, campaign->reference_source));
+    wb_document_heading(document, 2, "merits", "How well the model fits");
+    struct wb_document_table *const table = wb_document_table(document, caption, 8, columns);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        const bool validated = wire->validation_state == WB_RECORDINGS_DONE;
+        const struct wb_validate_result *const v = &wire->validation;
+        struct wb_pages_row row = {.n = 0};
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, wire->wanted->label);
+        put_rms(&row, wire->calibration_state == WB_RECORDINGS_DONE, wire->calibration.rms,
+                campaign->calibration_limit);
+        if (wire->validation_state == WB_RECORDINGS_NOT_WANTED)
+            wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
+        else
+            put_rms(&row, validated, v->elastoplastic.rms, campaign->validation_limit);
+        wb_pages_cell_number(&row, validated ? v->elastoplastic.max_error : (double)NAN, 4);
+        wb_pages_cell_number(&row, validated ? v->elastic.rms : (double)NAN, 4);
+        put_share(&row, wb_recordings_results_validation_share(wire));
+        wb_pages_cell_number(&row, validated ? v->shape_rms / WB_MM : (double)NAN, 2);
+        wb_pages_cell_number(&row, validated ? v->curve.max_force / WB_MN : (double)NAN, 1);
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+static bool is_about_gaps(const char *warning)
+{
+    return strstr(warning, WB_ALIGN_GAPS_TEXT);
+}
+
+static void count_gaps(const struct wb_recordings_results_tests *tests, int *n, double *longest)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        const struct wb_json *const rows =
+            test->usable ? wb_json_get(wb_json_get(test->dataset.document, "checks"), "rows")
+                         : NULL;
+        double gaps = 0.0, one = 0.0;
+        if (!wb_json_get_number(rows, "gaps", &gaps) || !(gaps > 0.0))
+            continue;
+        ++*n;
+        if (wb_json_get_number(rows, "longest_gap_s", &one))
+            *longest = fmax(*longest, one);
+    }
+}
+
+/* Recordings with gaps, in one line: their curves stay usable, a gap is left out of them. */
+static int put_gaps(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    char item[300];
+    double longest = 0.0;
+    int n = 0;
+    for (int i = 0; i < results->n_wires; i++) {
+        count_gaps(&results->wires[i].calibration_tests, &n, &longest);
+        count_gaps(&results->wires[i].validation_tests, &n, &longest);
+    }
+    if (n == 0)
+        return 0;
+    snprintf(item, sizeof item,
+             "%d of %d recordings %s gaps in the rows, the longest of %.2f s; the pages of the "
+             "wires name them.",
+             n, results->n_usable, wb_pages_plural(n, "has", "have"), longest);
+    wb_document_item(document, WB_TONE_PLAIN, item);
+    return 1;
+}
+
+/* Warnings of alignments, at most a few here; each wire's pages list its own. */
+static int put_alignment_warnings(struct wb_document *document,
+                                  const struct wb_recordings_results_tests *tests, int shown)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        const struct wb_json *const warnings =
+            test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
+        for (size_t k = 0; k < wb_json_length(warnings); k++) {
+            const char *warning;
+            if (!wb_json_text(wb_json_item(warnings, k), &warning) || is_about_gaps(warning) ||
+                ++shown > MOST_WARNINGS)
+                continue;
+            char name[400], text[1000], item[1500];
+            snprintf(item, sizeof item, "%s: %s",
+                     wb_pages_escape(name, sizeof name, test->wanted->name),
+                     wb_pages_escape(text, sizeof text, warning));
+            wb_document_item(document, WB_TONE_PLAIN, item);
+        }
+    }
+    return shown;
+}
+
+/* What a reader must know of a search before trusting K and n. */
+static int put_search_warnings(struct wb_document *document,
+                               const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    char label[300], item[700];
+    int n = 0;
+    if (wire->calibration_state != WB_RECORDINGS_DONE)
+        return 0;
+    wb_pages_escape(label, sizeof label, wire->wanted->label);
+    if (c->end != WB_CALIBRATE_SIZE && c->end != WB_CALIBRATE_ERROR) {
+        snprintf(item, sizeof item, "%s: the search for K and n ended because %s.", label,
+                 wb_calibrate_end_text(c->end));
+        wb_document_item(document, WB_TONE_WARNING, item);
+        n++;
+    }
+    if (c->restarted && !(c->restart_moved <= 1e-3)) {
+        snprintf(item, sizeof item,
+                 "%s: a restart of the search moved K and n by up to %.2g %%: other pairs fit as "
+                 "well.",
+                 label, 100.0 * c->restart_moved);
+        wb_document_item(document, WB_TONE_PLAIN, item);
+        n++;
+    }
+    if (c->failed_evaluations > 0) {
+        snprintf(item, sizeof item, "%s: %d of %d runs of the beam did not converge.", label,
+                 c->failed_evaluations, c->evaluations);
+        wb_document_item(document, WB_TONE_PLAIN, item);
+        n++;
+    }
+    return n;
+}
+
+static void put_warnings(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    wb_document_heading(document, 2, "warnings", "Warnings");
+    int shown = 0, of_searches = 0;
+    const int of_gaps = put_gaps(document, results);
+    for (int i = 0; i < results->n_wires; i++)
+        of_searches += put_search_warnings(document, &results->wires[i]);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        shown = put_alignment_warnings(document, &wire->calibration_tests, shown);
+        shown = put_alignment_warnings(document, &wire->validation_tests, shown);
+    }
+    if (shown + of_searches + of_gaps == 0)
+        wb_document_item(document, WB_TONE_QUIET, "None.");
+    if (shown > MOST_WARNINGS) {
+        char text[120];
+        snprintf(text, sizeof text, "%d more on the pages of the wires.", shown - MOST_WARNINGS);
+        wb_document_item(document, WB_TONE_PLAIN, text);
+    }
+}
+
+static void put_summary(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    wb_document_heading(document, 1, "summary", "Summary");
+    put_origin(document, results);
+    put_limits(document, results);
+    put_missing(document, results);
+    put_properties(document, results);
+    put_merits(document, results);
+    put_warnings(document, results);
+}
+
+/* --- wires, specimens, bench, and what alignment corrected --- */
+
+static void put_wires(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire"},
+        {.heading = "Conductor (mm)", .right = true},
+        {.heading = "Outside (mm)", .right = true},
+        {.heading = "Density (g/cm<sup>3</sup>)", .right = true},
+        {.heading = "Mass (g/m)", .right = true},
+        {.heading = "Poisson's ratio", .right = true},
+    };
+    wb_document_heading(document, 2, "products", "Wires");
+    struct wb_document_table *const table = wb_document_table(document, NULL, 6, columns);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_wire *const wire = &results->wires[i].wanted->product;
+        struct wb_pages_row row = {.n = 0};
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, results->wires[i].wanted->label);
+        wb_pages_cell_number(&row, wire->conductor_diameter / WB_MM, 2);
+        wb_pages_cell_number(&row, wire->outer_diameter / WB_MM, 2);
+        wb_pages_cell_number(&row, wire->density / WB_G_PER_CM3, 2);
+        wb_pages_cell_number(&row, wb_wire_mass_per_length(wire) / WB_G, 3);
+        wb_pages_cell_number(&row,
+                             wire->has_properties ? wire->material.poissons_ratio : (double)NAN, 2);
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+static double largest_force(const struct wb_dataset *dataset, int *cycles)
+{
+    double force = 0.0;
+    *cycles = 0;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->cycle > *cycles)
+            *cycles = row->cycle;
+        if (row->phase == WB_PHASE_LOAD && row->cycle == 1 && row->force > force)
+            force = row->force;
+    }
+    return force;
+}
+
+static void put_specimen_rows(struct wb_document *document, struct wb_document_table *table,
+                              const struct wb_recordings_results_wire *wire,
+                              const struct wb_recordings_results_tests *tests, bool *first)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        if (!test->usable)
+            continue;
+        const struct wb_dataset *const dataset = &test->dataset;
+        double seen = (double)NAN, t;
+        wb_json_get_number(wb_json_get(wb_json_get(dataset->document, "checks"), "markers"),
+                           "seen_percent", &seen);
+        int cycles;
+        const double force = largest_force(dataset, &cycles);
+        struct wb_pages_row row = {.n = 0};
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, *first ? wire->wanted->label : "");
+        wb_pages_cell_number(&row, dataset->info.length / WB_MM, 0);
+        wb_pages_cell(&row, WB_TONE_PLAIN, "%d", dataset->info.sample);
+        wb_pages_cell(&row, WB_TONE_PLAIN, "%d", cycles);
+        wb_pages_cell_number(&row, wb_dataset_bow(&dataset->info) / WB_MM, 2);
+        wb_pages_cell_number(&row, wb_recordings_figures_turn(dataset, &t) / WB_MM, 1);
+        wb_pages_cell_number(&row, force / WB_MN, 1);
+        wb_pages_cell_number(&row, seen, 1);
+        wb_pages_cell_plain(&row, test->operator_name[0] ? WB_TONE_PLAIN : WB_TONE_QUIET,
+                            test->operator_name[0] ? test->operator_name : "not given");
+        wb_pages_put_row(document, table, *first, &row);
+        *first = false;
+    }
+}
+
+/* Names of usual length stay in one line: "make-/recordings" reads as two. */
+static bool has_long_operator(const struct wb_recordings_results *results)
+{
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_tests *const both[] = {
+            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
+        for (int k = 0; k < 2; k++) {
+            for (int j = 0; j < both[k]->n; j++) {
+                if (strlen(both[k]->items[j].operator_name) > 20)
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void put_specimens(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    const struct wb_document_column columns[] = {
+        {"Wire"},
+        {.heading = "Length (mm)", .right = true, .wraps = true},
+        {.heading = "Sample", .right = true},
+        {.heading = "Cycles", .right = true},
+        {.heading = "Bow (mm)", .right = true, .wraps = true},
+        {.heading = "Largest deflection (mm)", .right = true, .wraps = true},
+        {.heading = "Largest force (mN)", .right = true, .wraps = true},
+        {.heading = "Markers seen (%)", .right = true, .wraps = true},
+        {.heading = "Operator", .wraps = has_long_operator(results)},
+    };
+    wb_document_heading(document, 2, "specimens", "Specimens");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Bow: natural offset of the tip, upwards positive, found from the recording. Deflection "
+        "and force: of the first loading.",
+        9, columns);
+    for (int i = 0; i < results->n_wires; i++) {
+        bool first = true;
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        put_specimen_rows(document, table, wire, &wire->calibration_tests, &first);
+        put_specimen_rows(document, table, wire, &wire->validation_tests, &first);
+    }
+}
+
+/* --- the bench --- */
+
+static const struct wb_recordings_results_test *test_at(const struct wb_recordings_results *results,
+                                                        int index)
+{
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_tests *const both[] = {
+            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
+        for (int k = 0; k < 2; k++) {
+            for (int j = 0; j < both[k]->n; j++) {
+                if (both[k]->items[j].usable && index-- == 0)
+                    return &both[k]->items[j];
+            }
+        }
+    }
+    return NULL;
+}
+
+static void put_pair(struct wb_document *document, struct wb_document_table *table,
+                     const char *name, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void put_pair(struct wb_document *document, struct wb_document_table *table,
+                     const char *name, const char *format, ...)
+{
+    char plain[300];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(plain, sizeof plain, format, arguments);
+    va_end(arguments);
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", name);
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, plain);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+/* As their makers write it. */
+static const char *protocol_name(const char *protocol)
+{
+    static const char *const names[][2] = {
+        {"natnet", "NatNet"}, {"grbl", "GRBL"}, {"mt-sics", "MT-SICS"}};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (strcmp(protocol, names[i][0]) == 0)
+            return names[i][1];
+    }
+    return protocol;
+}
+
+static bool same_bench(const struct wb_rig *a, const struct wb_rig *b)
+{
+    return strcmp(a->name, b->name) == 0 && a->is_virtual == b->is_virtual &&
+           strcmp(a->load_cell.serial_number, b->load_cell.serial_number) == 0 &&
+           a->load_cell.capacity == b->load_cell.capacity && a->strand.length == b->strand.length &&
+           a->strand.counterweight == b->strand.counterweight && a->stage.speed == b->stage.speed;
+}
+
+static void put_rig(struct wb_document *document, const struct wb_recordings_results *results,
+                    const struct wb_recordings_results_test *test)
+{
+    static const struct wb_document_column columns[] = {{""}, {.heading = "", .wraps = true}};
+    const struct wb_rig *const rig = &test->rig;
+    const struct wb_rig_load_cell *const cell = &rig->load_cell;
+    bool same = true;
+    for (int i = 1; test_at(results, i); i++)
+        same &= same_bench(rig, &test_at(results, i)->rig);
+    wb_document_heading(document, 2, "rig", "Bench");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        same ? NULL : "Not all recordings were made on the same bench; this is the first one's.", 2,
+        columns);
+    put_pair(document, table, "Name", "%s%s", rig->name,
+             test->is_virtual && !strstr(rig->name, "virtual") ? " (virtual rig)" : "");
+    put_pair(document, table, "Load cell",
+             "%.4g g, reads on to %.4g %%, serial number %s, "
+             "calibrated %s",
+             wb_recordings_results_capacity(rig) / WB_G,
+             cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
+             cell->serial_number[0] ? cell->serial_number : "not given",
+             cell->calibration_date[0] ? cell->calibration_date : "not given");
+    put_pair(document, table, "Filter of the cell", "delay %.3g ms, uncertain by %.3g ms",
+             1e3 * cell->filter_delay, 1e3 * cell->filter_delay_uncertainty);
+    put_pair(document, table, "Motion capture",
+             "%s, %.4g frames a second expected, %d markers on "
+             "the wire, %.3g mm off its axis",
+             protocol_name(rig->mocap.protocol), rig->mocap.frame_rate, test->specimen.n_markers,
+             test->specimen.marker_offset / WB_MM);
+    put_pair(document, table, "Stage", "%s, %.3g mm/s, %.4g mm of travel",
+             protocol_name(rig->stage.protocol), rig->stage.speed / WB_MM,
+             rig->stage.travel / WB_MM);
+    if (rig->strand.length > 0.0)
+        put_pair(document, table, "Strand", "%.4g mm, counterweight %.3g g at the tip",
+                 rig->strand.length / WB_MM, rig->strand.counterweight / WB_G);
+    else
+        put_pair(document, table, "Strand", "none, the force is vertical");
+    put_pair(document, table, "Gravity", "%.6g m/s\xc2\xb2", rig->gravity);
+}
+
+/* --- corrections --- */
+
+static bool correction_value(const struct wb_json *entry, const char *what, double *value,
+                             const char **unit)
+{
+    static const char *const units[] = {"mN",  "mm",  "ms",  "s",      "us",
+                                        "deg", "rad", "ppm", "percent"};
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+        char key[64];
+        snprintf(key, sizeof key, "%s_%s", what, units[i]);
+        if (wb_json_get_number(entry, key, value)) {
+            *unit = units[i];
+            return true;
+        }
+    }
+    return false;
+}
+
+static const struct wb_json *correction_of(const struct wb_recordings_results_test *test,
+                                           const char *name)
+{
+    const struct wb_json *const list = wb_json_get(test->dataset.document, "corrections");
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const struct wb_json *const entry = wb_json_item(list, i);
+        const char *other;
+        if (wb_json_get_text(entry, "name", &other) && strcmp(other, name) == 0)
+            return entry;
+    }
+    return NULL;
+}
+
+/* One correction over all recordings: the range of its size and the largest uncertainty. */
+static void put_correction(struct wb_document *document, struct wb_document_table *table,
+                           const struct wb_recordings_results *results, const char *name)
+{
+    double low = (double)NAN, high = (double)NAN, largest = (double)NAN;
+    const char *unit = "";
+    const struct wb_recordings_results_test *test;
+    for (int i = 0; (test = test_at(results, i)); i++) {
+        const struct wb_json *const entry = correction_of(test, name);
+        double value;
+        if (entry && correction_value(entry, "value", &value, &unit)) {
+            low = low <= value ? low : value;
+            high = high >= value ? high : value;
+        }
+        if (entry && correction_value(entry, "uncertainty", &value, &unit))
+            largest = largest >= value ? largest : value;
+    }
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, name);
+    wb_pages_cell_plain(&row, WB_TONE_QUIET, unit);
+    wb_pages_cell_number(&row, low, 3);
+    wb_pages_cell_number(&row, high, 3);
+    wb_pages_cell_number(&row, largest, 3);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_corrections(struct wb_document *document,
+                            const struct wb_recordings_results *results,
+                            const struct wb_recordings_results_test *first)
+{
+    static const struct wb_document_column columns[] = {
+        {"Correction"},
+        {"Unit"},
+        {.heading = "Smallest", .right = true},
+        {.heading = "Largest", .right = true},
+        {.heading = "Uncertainty, at most", .right = true},
+    };
+    const struct wb_json *const list = wb_json_get(first->dataset.document, "corrections");
+    if (wb_json_length(list) == 0)
+        return;
+    wb_document_heading(document, 2, "corrections", "Corrections made by the alignment");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Over all recordings. The natural shape is not taken off the data but given to the model. "
+        "Each correction of each recording, with its reason, is in report.json.",
+        5, columns);
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const char *name;
+        if (wb_json_get_text(wb_json_item(list, i), "name", &name))
+            put_correction(document, table, results, name);
+    }
+}
+
+static void put_bench(struct wb_document *document, const struct wb_recordings_results *results,
+                      const struct wb_figures *figures)
+{
+    const struct wb_recordings_results_test *const first = test_at(results, 0);
+    wb_document_new_page(document);
+    wb_document_heading(document, 1, "bench", "Specimens and bench");
+    wb_figures_put(figures, document, "bench", 0);
+    put_wires(document, results);
+    if (!first)
+        return;
+    put_rig(document, results, first);
+    put_corrections(document, results, first);
+    put_specimens(document, results);
+}
+
+/* --- all wires --- */
+
+static void put_overview(struct wb_document *document, const struct wb_figures *figures)
+{
+    if (!wb_figures_has(figures, "overview", 0))
+        return;
+    wb_document_heading(document, 1, "overview", "All wires");
+    wb_figures_put(figures, document, "overview", 0);
+}
+
+/* --- one wire --- */
+
+static void put_calibration_text(struct wb_document *document,
+                                 const struct wb_recordings_results *results,
+                                 const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings *const campaign = results->campaign;
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    struct wb_text text = {0};
+    wb_text_append(&text,
+                   "Calibrated on %d %s of %g mm: <i>E</i> = %.0f MPa, "
+                   "<i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = %.0f MPa, <i>n</i> = %.3f, "
+                   "RMS %.4f of <i>F</i><sub>max</sub> = %.1f mN (largest error %.4f).",
+                   wire->calibration_tests.n_usable,
+                   wb_pages_plural(wire->calibration_tests.n_usable, "sample", "samples"),
+                   campaign->calibration_length / WB_MM, c->material.youngs_modulus / WB_MPA,
+                   c->material.yield_stress / WB_MPA, c->material.strength_coefficient / WB_MPA,
+                   c->material.hardening_exponent, c->rms, wire->fit.curve.max_force / WB_MN,
+                   c->max_error);
+    if (wire->validation_state == WB_RECORDINGS_DONE)
+        wb_text_append(&text,
+                       " Predicts %d %s of %g mm with RMS %.4f of <i>F</i><sub>max</sub> = %.1f mN "
+                       "(largest error %.4f); a linear elastic wire would be off by RMS %.4f.",
+                       wire->validation_tests.n_usable,
+                       wb_pages_plural(wire->validation_tests.n_usable, "sample", "samples"),
+                       campaign->validation_length / WB_MM, wire->validation.elastoplastic.rms,
+                       wire->validation.curve.max_force / WB_MN,
+                       wire->validation.elastoplastic.max_error, wire->validation.elastic.rms);
+    wb_document_paragraph(document, wb_text_string(&text));
+    document->failed |= text.failed;
+    wb_text_release(&text);
+}
+
+static void put_problem(struct wb_document *document, const char *step,
+                        enum wb_recordings_results_state state, const struct wb_text *problem)
+{
+    if (state != WB_RECORDINGS_MISSING && state != WB_RECORDINGS_FAILED)
+        return;
+    char reason[1200], text[1500];
+    snprintf(text, sizeof text, "<b>No %s:</b> %s", step,
+             wb_pages_escape(reason, sizeof reason, wb_text_string(problem)));
+    wb_document_notice(document, WB_TONE_WARNING, text);
+}
+
+struct merit {
+    const char *name, *unit;
+    double calibration, validation; /* in the unit; NaN unknown */
+    int decimals;
+};
+
+static void put_merit(struct wb_document *document, struct wb_document_table *table,
+                      const struct merit *merit)
+{
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", merit->name);
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", merit->unit);
+    wb_pages_cell_number(&row, merit->calibration, merit->decimals);
+    wb_pages_cell_number(&row, merit->validation, merit->decimals);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_numbers(struct wb_document *document, const struct wb_recordings_results_wire *wire)
+{
+    static const struct wb_document_column columns[] = {
+        {"Figure of merit"},
+        {"Unit"},
+        {.heading = "Calibration", .right = true},
+        {.heading = "Validation", .right = true},
+    };
+    const double none = (double)NAN;
+    const bool v = wire->validation_state == WB_RECORDINGS_DONE;
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    const struct wb_validate_result *const fit = &wire->fit, *const val = &wire->validation;
+    const bool scatters = fit->curve.n_samples > 1, v_scatters = v && val->curve.n_samples > 1;
+    const char *const part = "of <i>F</i><sub>max</sub>";
+    const struct merit merits[] = {
+        {"RMS (eq. 19)", part, fit->elastoplastic.rms, v ? val->elastoplastic.rms : none, 4},
+        {"RMS beyond 5 mm", part, fit->elastoplastic.rms_from_5mm,
+         v ? val->elastoplastic.rms_from_5mm : none, 4},
+        {"Largest error (eq. 18)", part, fit->elastoplastic.max_error,
+         v ? val->elastoplastic.max_error : none, 4},
+        {"RMS of the linear elastic beam", part, fit->elastic.rms, v ? val->elastic.rms : none, 4},
+        {"Scatter between samples <i>s</i>", part, scatters ? c->scatter_rms : none,
+         v_scatters ? val->scatter_rms : none, 4},
+        {"Scatter beyond the natural shapes <i>r</i>", part,
+         scatters ? c->residual_scatter_rms : none, v_scatters ? val->residual_scatter_rms : none,
+         4},
+        {"RMS expected from scatter, at most", part, none, v ? val->expected_rms : none, 4},
+        {"Share that the scatter explains, at most", "1", none,
+         wb_recordings_results_validation_share(wire), 2},
+        {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? val->shape_rms / WB_MM : none,
+         2},
+        {"Shapes, largest distance", "mm", fit->shape_max / WB_MM,
+         v ? val->shape_max / WB_MM : none, 2},
+        {"<i>F</i><sub>max</sub>", "mN", fit->curve.max_force / WB_MN,
+         v ? val->curve.max_force / WB_MN : none, 1},
+        {"Largest deflection of all samples", "mm", fit->curve.max_deflection / WB_MM,
+         v ? val->curve.max_deflection / WB_MM : none, 1},
+        {"Mean bow of the samples", "mm", wb_dataset_bow(&fit->info) / WB_MM,
+         v ? wb_dataset_bow(&val->info) / WB_MM : none, 2},
+    };
+    wb_document_heading(document, 2, "", "Numbers");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Scatter <i>s</i>: standard deviation between the samples at the same deflection, RMS over "
+        "all deflections; <i>r</i>: what remains of it when each sample is computed with its own "
+        "natural shape, the model's error with the bow included. With <i>m</i> the smaller of "
+        "both, "
+        "the mean of <i>n</i> samples is off by <i>m</i>/<i>n</i><sup>1/2</sup> at most by chance, "
+        "so that even a perfect model would show an RMS of up to "
+        "(<i>m</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
+        "<i>m</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>)<sup>1/2</sup>, of the validation's "
+        "samples (v) and those calibrated on (c). Share: its square over RMS<sup>2</sup>, at most "
+        "1; an upper bound, near 0 the error is the model's.",
+        4, columns);
+    for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
+        put_merit(document, table, &merits[i]);
+}
+
+static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
+{
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    const int n = wb_calibrate_remarks(result, remarks);
+    for (int i = 0; i < n; i++) {
+        char escaped[400], item[440];
+        snprintf(item, sizeof item, "Note: %s.",
+                 wb_pages_escape(escaped, sizeof escaped, remarks[i]));
+        wb_document_item(document, WB_TONE_PLAIN, item);
+    }
+}
+
+static void put_search(struct wb_document *document, const struct wb_recordings_results *results,
+                       int index, const struct wb_figures *figures)
+{
+    const struct wb_recordings_results_wire *const wire = &results->wires[index];
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    struct wb_text text = {0};
+    wb_document_heading(document, 2, "", "Search for K and n");
+    wb_text_append(&text,
+                   "Nelder-Mead from <i>K</i><sub>0</sub> = %.0f MPa, <i>n</i><sub>0</sub> = %.3f "
+                   "(eqs. 12 to 16), %d runs of the beam; stopped because %s.",
+                   c->first_strength_coefficient / WB_MPA, c->first_hardening_exponent,
+                   c->evaluations, wb_calibrate_end_text(c->end));
+    if (c->restarted && c->restart_moved == 0.0)
+        wb_text_append(&text, " A restart from the optimum did not move K and n.");
+    else if (c->restarted)
+        wb_text_append(&text, " A restart from the optimum moved K and n by at most %.2g %%.",
+                       100.0 * c->restart_moved);
+    if (c->failed_evaluations > 0)
+        wb_text_append(&text, " %d of the runs did not converge and were given a large error.",
+                       c->failed_evaluations);
+    wb_document_paragraph(document, wb_text_string(&text));
+    document->failed |= text.failed;
+    wb_text_release(&text);
+    put_remarks(document, c);
+    wb_figures_put(figures, document, "search", index);
+}
+
+static void put_test_warnings(struct wb_document *document,
+                              const struct wb_recordings_results_tests *tests)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        const struct wb_json *const warnings =
+            test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
+        for (size_t k = 0; k < wb_json_length(warnings); k++) {
+            const char *warning;
+            if (!wb_json_text(wb_json_item(warnings, k), &warning))
+                continue;
+            char name[400], escaped[1000], item[1500];
+            snprintf(item, sizeof item, "%s: %s",
+                     wb_pages_escape(name, sizeof name, test->wanted->name),
+                     wb_pages_escape(escaped, sizeof escaped, warning));
+            wb_document_item(document, WB_TONE_PLAIN, item);
+        }
+    }
+}
+
+static bool has_warnings(const struct wb_recordings_results_tests *tests)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        if (!test->usable || wb_json_length(wb_json_get(test->dataset.document, "warnings")) > 0)
+            return true;
+    }
+    return false;
+}
+
+static void put_wire(struct wb_document *document, const struct wb_recordings_results *results,
+                     int index, const struct wb_figures *figures)
+{
+    const struct wb_recordings_results_wire *const wire = &results->wires[index];
+    char slug[64], anchor[80];
+    wb_recordings_figures_slug(slug, wire->wanted->product.name);
+    snprintf(anchor, sizeof anchor, "wire-%s", slug);
+    wb_document_new_page(document);
+    wb_document_heading(document, 1, anchor, wire->wanted->label);
+    put_problem(document, "calibration", wire->calibration_state, &wire->calibration_problem);
+    put_problem(document, "validation", wire->validation_state, &wire->validation_problem);
+    if (wire->calibration_state == WB_RECORDINGS_DONE)
+        put_calibration_text(document, results, wire);
+    wb_figures_put(figures, document, "measured", index);
+    if (wire->calibration_state == WB_RECORDINGS_DONE) {
+        wb_figures_put(figures, document, "compared", index);
+        put_search(document, results, index, figures);
+        put_numbers(document, wire);
+    }
+    if (has_warnings(&wire->calibration_tests) || has_warnings(&wire->validation_tests)) {
+        wb_document_heading(document, 2, "", "Warnings");
+        put_missing_tests(document, &wire->calibration_tests);
+        put_missing_tests(document, &wire->validation_tests);
+        put_test_warnings(document, &wire->calibration_tests);
+        put_test_warnings(document, &wire->validation_tests);
+    }
+}
+
+/* --- provenance: settings, recordings with their checksums --- */
+
+static void put_test_rows(struct wb_document *document, struct wb_document_table *table,
+                          const struct wb_recordings_results_tests *tests, bool begins_group)
+{
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_recordings_results_test *const test = &tests->items[i];
+        struct wb_pages_row row = {.n = 0};
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, test->wanted->name);
+        if (!test->usable) {
+            wb_pages_cell(&row, WB_TONE_WARNING, "not used");
+        } else {
+            char start[40];
+            snprintf(start, sizeof start, "%.19s", test->start_utc);
+            char *const t = strchr(start, 'T');
+            if (t)
+                *t = ' ';
+            wb_pages_cell_plain(&row, WB_TONE_PLAIN, start);
+        }
+        if (test->wanted->seed >= 0)
+            wb_pages_cell(&row, WB_TONE_PLAIN, "%d", test->wanted->seed);
+        else
+            wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN,
+                            test->sha256[0] ? test->sha256 : test->wanted->sha256);
+        wb_pages_put_row(document, table, begins_group && i == 0, &row);
+    }
+}
+
+/* The revisions that recorded, each once, in the order of the list. */
+static void append_revisions(struct wb_text *caption, const struct wb_recordings_results *results)
+{
+    struct wb_text list = {0};
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_tests *const both[] = {
+            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
+        for (int k = 0; k < 2; k++) {
+            for (int j = 0; j < both[k]->n; j++) {
+                char revision[400];
+                wb_pages_escape(revision, sizeof revision, both[k]->items[j].tool_revision);
+                if (!revision[0] || strstr(wb_text_string(&list), revision))
+                    continue;
+                wb_text_append(&list, "%s%s", list.length > 0 ? ", " : "", revision);
+            }
+        }
+    }
+    if (list.length > 0)
+        wb_text_append(caption, " Recorded with revision %s.", wb_text_string(&list));
+    caption->failed |= list.failed;
+    wb_text_release(&list);
+}
+
+static void put_recordings(struct wb_document *document,
+                           const struct wb_recordings_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "Recording", .wraps = true},
+        {.heading = "Start (UTC)"},
+        {.heading = "Seed", .right = true},
+        {.heading = "SHA-256", .monospace = true},
+    };
+    wb_document_heading(document, 2, "recordings", "Recordings");
+    struct wb_text caption = {0};
+    wb_text_append(&caption, "All checksums are those of the uncompressed recordings.%s",
+                   results->any_virtual ? " Seed: of the virtual rig." : "");
+    append_revisions(&caption, results);
+    struct wb_document_table *const table =
+        wb_document_table(document, wb_text_string(&caption), 4, columns);
+    document->failed |= caption.failed;
+    wb_text_release(&caption);
+    for (int i = 0; i < results->n_wires; i++) {
+        put_test_rows(document, table, &results->wires[i].calibration_tests, true);
+        put_test_rows(document, table, &results->wires[i].validation_tests, true);
+    }
+}
+
+static void put_setting(struct wb_document *document, struct wb_document_table *table,
+                        const char *name, const char *value, const char *meaning)
+{
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", name);
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, value);
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", meaning);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_settings(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Setting"}, {"Value"}, {.heading = "Meaning", .wraps = true}};
+    const struct wb_recordings *const campaign = results->campaign;
+    const struct wb_calibrate_settings *const s = &campaign->calibrate;
+    char value[80];
+    wb_document_heading(document, 2, "settings", "Settings");
+    struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
+    snprintf(value, sizeof value, "%g", s->elastic_zone);
+    put_setting(document, table, "Elastic zone", value,
+                "deflection over length at which eq. 10 gives <i>E</i>");
+    snprintf(value, sizeof value, "%g", s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
+    put_setting(document, table, "Yield point", value,
+                "deflection over length at which eq. 11 gives <i>\xcf\x83</i><sub>Y</sub>");
+    snprintf(value, sizeof value, "%g mm", s->step / WB_MM);
+    put_setting(document, table, "Step", value, "between the deflections that are compared");
+    put_setting(document, table, "Initial shape", s->straight ? "straight" : "mean of the samples",
+                "natural shape of the computed wire");
+    put_setting(document, table, "Restart", s->restart ? "once" : "no",
+                "of the search, from its optimum");
+    snprintf(value, sizeof value, "%d", s->n_elements);
+    put_setting(document, table, "Elements", value, "quadratic beam elements along the wire");
+    snprintf(value, sizeof value, "%d", s->n_fibres);
+    put_setting(document, table, "Fibres", value, "integration points over the diameter");
+    snprintf(value, sizeof value, "%g of the size, %g of the error", s->size_tolerance,
+             s->error_tolerance);
+    put_setting(document, table, "Stops at", value,
+                "size in units of <i>K</i><sub>0</sub> and <i>n</i><sub>0</sub>; error over "
+                "<i>F</i><sub>max</sub>");
+}
+
+static void put_provenance(struct wb_document *document,
+                           const struct wb_recordings_results *results)
+{
+    const struct wb_recordings *const campaign = results->campaign;
+    wb_pages_put_origin(document, campaign->name, campaign->sha256, campaign->notes, "recordings");
+    put_settings(document, results);
+    put_recordings(document, results);
+}
+
+/* --- all of it --- */
+
+void wb_recordings_pages_build(struct wb_document *document,
+                               const struct wb_recordings_results *results,
+                               const struct wb_figures *figures)
+{
+    char subtitle[300], footer[300];
+    snprintf(footer, sizeof footer, "wirebench %s, revision %s%s", wb_version(),
+             wb_version_revision(), results->any_virtual ? " \xc2\xb7 virtual rig" : "");
+    snprintf(subtitle, sizeof subtitle,
+             "%d of %d recordings, the latest of %.10s \xc2\xb7 wirebench %s, revision %s",
+             results->n_usable, results->n_tests,
+             results->latest_utc[0] ? results->latest_utc : "an unknown date", wb_version(),
+             wb_version_revision());
+    if (results->n_usable == 0)
+        snprintf(subtitle, sizeof subtitle,
+                 "none of %d recordings \xc2\xb7 wirebench %s, revision "
+                 "%s",
+                 results->n_tests, wb_version(), wb_version_revision());
+    wb_document_init(document, "Calibration report", results->campaign->title, subtitle, footer,
+                     results->latest_utc);
+    put_summary(document, results);
+    put_bench(document, results, figures);
+    put_overview(document, figures);
+    for (int i = 0; i < results->n_wires; i++)
+        put_wire(document, results, i, figures);
+    put_provenance(document, results);
+}

@@ -1,0 +1,106 @@
+/* Everything that a campaign's report tells: its recordings aligned, its wires calibrated and
+ * validated. Alignment and the wires run side by side on several threads; the numbers do not depend
+ * on how many.
+ */
+#ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_RESULTS_H
+#define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_RESULTS_H
+
+#include <stdbool.h>
+
+#include "analysis/calibrate.h"
+#include "analysis/dataset.h"
+#include "analysis/report/bench/recordings.h"
+#include "analysis/validate.h"
+#include "base/status.h"
+#include "base/text.h"
+#include "daq/rig.h"
+#include "daq/specimen.h"
+
+/* One recording as the report knows it. */
+struct wb_recordings_results_test {
+    const struct wb_recordings_test *wanted; /* borrowed from the campaign */
+    bool usable;                             /* aligned: `dataset` and `sha256` are there */
+    struct wb_text problem;                  /* why not: missing, damaged, altered, ... */
+    struct wb_dataset dataset;
+    char sha256[WB_SHA256_TEXT]; /* of the uncompressed recording */
+    char start_utc[40], tool_revision[64], operator_name[128];
+    bool is_virtual;
+    struct wb_rig rig; /* of its own meta; name "" when it could not be read */
+    struct wb_specimen specimen;
+};
+
+struct wb_recordings_results_tests {
+    int n, n_usable;
+    struct wb_recordings_results_test *items; /* (n), owned */
+};
+
+/* How a step of a wire ended. */
+enum wb_recordings_results_state {
+    WB_RECORDINGS_NOT_WANTED, /* the campaign has no such step */
+    WB_RECORDINGS_MISSING,    /* no usable recordings, or the step before it failed */
+    WB_RECORDINGS_FAILED,     /* refused, with the reason in `problem` */
+    WB_RECORDINGS_DONE
+};
+
+struct wb_recordings_results_wire {
+    const struct wb_recordings_wire *wanted; /* borrowed */
+    struct wb_recordings_results_tests calibration_tests, validation_tests;
+
+    enum wb_recordings_results_state calibration_state;
+    struct wb_text calibration_problem;
+    struct wb_calibrate_result calibration;
+    struct wb_properties properties;
+    struct wb_validate_result fit; /* the calibrated model on the curves it was calibrated on */
+
+    enum wb_recordings_results_state validation_state;
+    struct wb_text validation_problem;
+    struct wb_validate_result validation;
+};
+
+struct wb_recordings_results {
+    const struct wb_recordings *campaign; /* borrowed; must outlive the results */
+    int n_wires;
+    struct wb_recordings_results_wire *wires; /* (n_wires), owned */
+    int n_tests, n_usable;                    /* recordings wanted and used */
+    bool any_virtual, all_virtual;            /* of the recordings that were used */
+    char latest_utc[40];                      /* start of the latest recording; "" without any */
+    bool is_complete;                         /* nothing is missing, refused or failed */
+    bool exceeds_limit;                       /* of the campaign */
+    bool interrupted;                         /* by Ctrl-C; the results are not to be reported */
+};
+
+/* Told after each finished job from the calling thread's side, under a lock: how many of how many,
+ * and what is being done. May be NULL. */
+typedef void wb_recordings_results_progress(void *context, int done, int total, const char *what);
+
+/* Computes everything, on `n_threads` threads (0: as many as cores, 4 at most). WB_OK also when
+ * recordings are missing or steps failed: the results say so. */
+WB_MUST_CHECK enum wb_status wb_recordings_results_compute(struct wb_recordings_results *results,
+                                                           const struct wb_recordings *campaign,
+                                                           int n_threads,
+                                                           wb_recordings_results_progress *progress,
+                                                           void *context);
+void wb_recordings_results_release(
+    struct wb_recordings_results *results); /* accepts a zeroed one */
+
+/* The two ends of wb_recordings_results_compute(), for results that come from elsewhere: makes all
+ * places with nothing in them, and after they were filled counts and decides what is complete,
+ * where it comes from and whether it keeps the limits. */
+WB_MUST_CHECK enum wb_status wb_recordings_results_init(struct wb_recordings_results *results,
+                                                        const struct wb_recordings *campaign);
+void wb_recordings_results_judge(struct wb_recordings_results *results);
+
+/* Capacity of a rig's load cell as its maker states it: the mass, kg, that weighs so much under the
+ * rig's gravity; NaN when that is not known. */
+double wb_recordings_results_capacity(const struct wb_rig *rig);
+
+/* How much of a validation's mean square error the scatter between samples explains at most, 0 to
+ * 1; NaN where it is not known. Both means scatter: that of the curve it is compared with and that
+ * of the curves the model was calibrated on. With r the smaller of the RMS over deflection of the
+ * samples' standard deviation and of what remains of it when each is predicted with its own natural
+ * shape, over F_max, and n samples, it is (r_v^2/n_v + r_c^2/n_c) / RMS^2, at most 1. What remains
+ * holds the model's own error with the bow, hence the bound. A calibration has none: its curve is
+ * fitted, whatever its scatter. */
+double wb_recordings_results_validation_share(const struct wb_recordings_results_wire *wire);
+
+#endif

@@ -1,0 +1,385 @@
+#include "analysis/report/bundles/bundles.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/campaign.h"
+#include "base/config.h"
+#include "base/number.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "campaign"
+
+static const char shipped[] = "simulations";
+
+const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run)
+{
+    const struct wb_bundle_model *const model = run->model;
+    const bool has =
+        model->has_published && model->published.has_beam && model->published.beam.has_properties;
+    return has ? &model->published.beam : NULL;
+}
+
+const char *wb_bundles_loading(const struct wb_bundles_run *run)
+{
+    static const char *const texts[2][2] = {{"dead force", "dead force, weight"},
+                                            {"strand", "strand, weight"}};
+    const struct wb_bundle_loads *const loads = &run->model->loads;
+    return texts[loads->strand_length > 0.0][loads->weight];
+}
+
+/* --- datasets --- */
+
+const char *wb_bundles_as_told(const char *given)
+{
+    if (given[0] == '/' || strstr(given, ".."))
+        given = wb_file_name(given);
+    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
+}
+
+/* A name lies among the simulations; whatever holds a '/' is a path from the campaign file. */
+enum wb_status wb_bundles_dataset_find(const struct wb_bundles_reading *reading, const char *given,
+                                       struct wb_bundles_dataset *dataset)
+{
+    char folder[WB_PATH], name[WB_PATH];
+    snprintf(dataset->log, sizeof dataset->log, "%.120s", wb_file_name(given));
+    if (strchr(given, '/')) {
+        snprintf(dataset->name, sizeof dataset->name, "%.250s", wb_bundles_as_told(given));
+        return wb_file_join(dataset->path, reading->folder, given);
+    }
+    const char *const told = wb_bundles_as_told(reading->simulations);
+    const bool has_name = told[0] && strcmp(told, ".") != 0;
+    snprintf(dataset->name, sizeof dataset->name, "%.120s/%.120s", has_name ? told : shipped,
+             given);
+    if (reading->simulations[0]) {
+        WB_TRY(wb_file_join(folder, reading->folder, reading->simulations));
+        return wb_file_join(dataset->path, folder, given);
+    }
+    if (wb_file_find_data(folder, shipped) != WB_OK)
+        snprintf(folder, sizeof folder, "%s", shipped);
+    WB_TRY(wb_file_join(name, folder, given));
+    snprintf(dataset->path, sizeof dataset->path, "%s", name);
+    return WB_OK;
+}
+
+static void tell(struct wb_bundles_dataset *dataset, const char *text)
+{
+    const size_t used = strlen(dataset->command);
+    const char *const quote = strpbrk(text, " \t'\"$") ? "'" : "";
+    snprintf(dataset->command + used, sizeof dataset->command - used, "%s%s%s%s", used ? " " : "",
+             quote, text, quote);
+}
+
+enum wb_status wb_bundles_dataset_argue(struct wb_bundles_dataset *dataset, const char *argument,
+                                        const char *told)
+{
+    int n = 0;
+    while (n < WB_BUNDLES_ARGUMENTS - 1 && dataset->arguments[n])
+        n++;
+    dataset->arguments[n] = n < WB_BUNDLES_ARGUMENTS - 1 ? strdup(argument) : NULL;
+    if (!dataset->arguments[n])
+        return wb_fail(WB_ERR_MEMORY, "no room for the arguments of %s", dataset->name);
+    if (n == 0)
+        tell(dataset, "wirebench");
+    tell(dataset, told ? told : argument);
+    return WB_OK;
+}
+
+void wb_bundles_dataset_end(struct wb_bundles_dataset *dataset)
+{
+    tell(dataset, "-o");
+    tell(dataset, dataset->name);
+}
+
+void wb_bundles_dataset_release(struct wb_bundles_dataset *dataset)
+{
+    for (int i = 0; i < WB_BUNDLES_ARGUMENTS; i++)
+        free((char *)dataset->arguments[i]);
+}
+
+/* --- rods --- */
+
+static enum wb_status argue_rod(const struct wb_bundles_run *run, struct wb_bundles_dataset *rod)
+{
+    const struct wb_bundle_model *const model = run->model;
+    const struct wb_wire *const beam = wb_bundles_published(run);
+    const char *fixed[] = {"solve", "cantilever", "--wire", beam->name};
+    for (size_t i = 0; i < WB_COUNT(fixed); i++)
+        WB_TRY(wb_bundles_dataset_argue(rod, fixed[i], NULL));
+    const struct {
+        const char *option;
+        double value;
+    } lengths[] = {{"--length-mm", model->length},
+                   {"--deflection-mm", model->run.deflection},
+                   {"--strand-mm", model->loads.strand_length}};
+    for (size_t i = 0; i < WB_COUNT(lengths); i++) {
+        char text[WB_NUMBER_TEXT];
+        snprintf(text, sizeof text, "%.10g", lengths[i].value / WB_MM);
+        if (lengths[i].value == 0.0)
+            continue;
+        WB_TRY(wb_bundles_dataset_argue(rod, lengths[i].option, NULL));
+        WB_TRY(wb_bundles_dataset_argue(rod, text, NULL));
+    }
+    if (model->loads.weight)
+        WB_TRY(wb_bundles_dataset_argue(rod, "--weight", NULL));
+    wb_bundles_dataset_end(rod);
+    return WB_OK;
+}
+
+/* --- groups --- */
+
+static enum wb_status find_run(const struct wb_bundles *bundles, const struct wb_config_node *node,
+                               const char *key, const char *name, int *run)
+{
+    for (int i = 0; i < bundles->n_runs; i++) {
+        if (strcmp(bundles->runs[i].name, name) == 0) {
+            *run = i;
+            return WB_OK;
+        }
+    }
+    return wb_config_refuse(node, key, "there is no run '%s'", name);
+}
+
+static enum wb_status read_bundle(const struct wb_bundles_reading *reading,
+                                  const struct wb_config_node *node,
+                                  struct wb_bundles_bundle *bundle)
+{
+    struct wb_bundles *const all = reading->bundles;
+    char dynamic[128], constant[128] = "", rod[256] = "";
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("label", bundle->label),
+        WB_CONFIG_TEXT("dynamic", dynamic),
+        WB_CONFIG_OPTIONAL_TEXT("constant", constant),
+        WB_CONFIG_OPTIONAL_TEXT("rod", rod),
+    };
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    bundle->constant = -1;
+    WB_TRY(find_run(all, node, "dynamic", dynamic, &bundle->dynamic));
+    const struct wb_bundles_run *const run = &all->runs[bundle->dynamic];
+    if (constant[0]) {
+        WB_TRY(find_run(all, node, "constant", constant, &bundle->constant));
+        if (strcmp(all->runs[bundle->constant].model->sha256, run->model->sha256) != 0)
+            return wb_config_refuse(node, "constant", "'%s' is of another bundle than '%s'",
+                                    constant, dynamic);
+    }
+    bundle->has_rod = rod[0] != '\0';
+    if (!bundle->has_rod)
+        return WB_OK;
+    const struct wb_wire *const beam = wb_bundles_published(run);
+    char path[WB_PATH];
+    if (!beam)
+        return wb_config_refuse(node, "rod", "'%s' has no published beam", run->model->name);
+    if (wb_file_find_fixture(path, "wires", beam->name, NULL) != WB_OK)
+        return wb_config_refuse(node, "rod", "the published beam '%s' is not in fixtures/wires",
+                                beam->name);
+    WB_TRY(wb_bundles_dataset_find(reading, rod, &bundle->rod));
+    return argue_rod(run, &bundle->rod);
+}
+
+static enum wb_status read_figures(const struct wb_config_node *node,
+                                   struct wb_bundles_group *group)
+{
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_TEXT("section", group->figures[WB_BUNDLES_SECTION]),
+        WB_CONFIG_OPTIONAL_TEXT("force", group->figures[WB_BUNDLES_FORCE]),
+        WB_CONFIG_OPTIONAL_TEXT("error", group->figures[WB_BUNDLES_ERROR]),
+        WB_CONFIG_OPTIONAL_TEXT("shape", group->figures[WB_BUNDLES_SHAPE]),
+        WB_CONFIG_OPTIONAL_TEXT("energy", group->figures[WB_BUNDLES_ENERGY]),
+    };
+    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+}
+
+static enum wb_status read_group(const struct wb_bundles_reading *reading,
+                                 const struct wb_config_node *node, int index)
+{
+    struct wb_bundles *const all = reading->bundles;
+    struct wb_bundles_group *const group = &all->groups[index];
+    const struct wb_config_node *figures, *list;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("label", group->label),
+        WB_CONFIG_OPTIONAL_NODE("figures", &figures),
+        WB_CONFIG_NODE("bundles", &list),
+    };
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    WB_TRY(read_figures(figures, group));
+    group->first = all->n_bundles;
+    group->n = wb_config_length(list);
+    if (group->n < 1 || group->n > WB_FIGURES_BUNDLE_MOST)
+        return wb_config_refuse(node, "bundles", "expected a list of 1 to %d bundles",
+                                WB_FIGURES_BUNDLE_MOST);
+    for (int i = 0; i < group->n; i++) {
+        struct wb_bundles_bundle *const bundle = &all->bundles[all->n_bundles++];
+        bundle->group = index;
+        WB_TRY(read_bundle(reading, wb_config_item(list, i), bundle));
+    }
+    return WB_OK;
+}
+
+static enum wb_status read_groups(const struct wb_bundles_reading *reading,
+                                  const struct wb_config_node *root,
+                                  const struct wb_config_node *list)
+{
+    struct wb_bundles *const all = reading->bundles;
+    all->n_groups = wb_config_length(list);
+    if (all->n_groups < 1 || all->n_groups > WB_BUNDLES_GROUPS)
+        return wb_config_refuse(root, "groups", "expected a list of 1 to %d groups",
+                                WB_BUNDLES_GROUPS);
+    for (int i = 0; i < all->n_groups; i++)
+        WB_TRY(read_group(reading, wb_config_item(list, i), i));
+    return WB_OK;
+}
+
+/* --- studies --- */
+
+static enum wb_status read_labels(const struct wb_bundles *all, const struct wb_config_node *node,
+                                  const struct wb_config_node *labels,
+                                  struct wb_bundles_study *study)
+{
+    if (labels && wb_config_length(labels) != study->n)
+        return wb_config_refuse(node, "labels", "expected a list of %d labels, as many as runs",
+                                study->n);
+    for (int i = 0; i < study->n; i++) {
+        const char *const own = labels ? wb_config_scalar(wb_config_item(labels, i)) : NULL;
+        snprintf(study->labels[i], sizeof study->labels[i], "%.150s",
+                 own ? own : all->runs[study->runs[i]].label);
+    }
+    return WB_OK;
+}
+
+static enum wb_status read_study(struct wb_bundles *all, const struct wb_config_node *node,
+                                 struct wb_bundles_study *study)
+{
+    const struct wb_config_node *runs, *labels;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("title", study->title),
+        WB_CONFIG_NODE("runs", &runs),
+        WB_CONFIG_OPTIONAL_NODE("labels", &labels),
+    };
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    study->n = wb_config_length(runs);
+    if (study->n < 1 || study->n > WB_BUNDLES_STUDY_RUNS)
+        return wb_config_refuse(node, "runs", "expected a list of 1 to %d runs",
+                                WB_BUNDLES_STUDY_RUNS);
+    for (int i = 0; i < study->n; i++) {
+        const char *const name = wb_config_scalar(wb_config_item(runs, i));
+        WB_TRY(find_run(all, node, "runs", name ? name : "", &study->runs[i]));
+    }
+    return read_labels(all, node, labels, study);
+}
+
+static enum wb_status read_studies(struct wb_bundles *all, const struct wb_config_node *root,
+                                   const struct wb_config_node *list)
+{
+    const int n = list ? wb_config_length(list) : 0;
+    if (n < 0 || n > WB_BUNDLES_STUDIES)
+        return wb_config_refuse(root, "studies", "expected a list of at most %d studies",
+                                WB_BUNDLES_STUDIES);
+    all->n_studies = n;
+    for (int i = 0; i < n; i++)
+        WB_TRY(read_study(all, wb_config_item(list, i), &all->studies[i]));
+    return WB_OK;
+}
+
+/* --- the rest --- */
+
+static enum wb_status read_limits(const struct wb_config_node *node,
+                                  struct wb_bundles_limits *limits)
+{
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_NUMBER("rms_max", &limits->rms, 1.0, 1e-6, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("kinetic_max", &limits->kinetic, 1.0, 1e-6, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("artificial_max", &limits->artificial, 1.0, 1e-6, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("imbalance_max", &limits->imbalance, 1.0, 1e-6, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("cost_max", &limits->cost, 1.0, 1e-6, 10.0),
+    };
+    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+}
+
+static enum wb_status read_printed(const struct wb_config_node *node, struct wb_bundles *all)
+{
+    const struct wb_config_node *rms;
+    int n;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("source", all->printed_source),
+        WB_CONFIG_OPTIONAL_NODE("rms", &rms),
+        WB_CONFIG_OPTIONAL_NUMBER("cost", &all->printed_cost, 1.0, 1e-6, 10.0),
+    };
+    if (!node)
+        return WB_OK;
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    const struct wb_config_key range =
+        WB_CONFIG_OPTIONAL_NUMBER("rms", all->printed_rms, 1.0, 0.0, 10.0);
+    return rms ? wb_config_numbers(rms, &range, 2, 2, all->printed_rms, &n) : WB_OK;
+}
+
+static enum wb_status find_inset(struct wb_bundles *all, const struct wb_config_node *root,
+                                 const char *label)
+{
+    all->inset = -1;
+    for (int i = 0; i < all->n_bundles; i++) {
+        if (label[0] && strcmp(all->bundles[i].label, label) == 0)
+            all->inset = i;
+    }
+    if (label[0] && all->inset < 0)
+        return wb_config_refuse(root, "inset", "there is no bundle with the label '%s'", label);
+    return WB_OK;
+}
+
+static enum wb_status read_root(struct wb_bundles_reading *reading,
+                                const struct wb_config_node *root)
+{
+    struct wb_bundles *const all = reading->bundles;
+    const struct wb_config_node *defaults, *runs, *groups, *studies, *fit, *limits, *printed;
+    char inset[64] = "";
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_IGNORED("kind"),
+        WB_CONFIG_TEXT("title", all->title),
+        WB_CONFIG_OPTIONAL_TEXT("notes", all->notes),
+        WB_CONFIG_OPTIONAL_TEXT("simulations", reading->simulations),
+        WB_CONFIG_OPTIONAL_NODE("defaults", &defaults),
+        WB_CONFIG_NODE("runs", &runs),
+        WB_CONFIG_NODE("groups", &groups),
+        WB_CONFIG_OPTIONAL_NODE("studies", &studies),
+        WB_CONFIG_OPTIONAL_TEXT("inset", inset),
+        WB_CONFIG_OPTIONAL_NODE("fit", &fit),
+        WB_CONFIG_OPTIONAL_NODE("limits", &limits),
+        WB_CONFIG_OPTIONAL_NODE("printed", &printed),
+    };
+    WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
+    WB_TRY(wb_bundles_run_read(reading, runs, defaults));
+    WB_TRY(read_groups(reading, root, groups));
+    WB_TRY(read_studies(all, root, studies));
+    WB_TRY(find_inset(all, root, inset));
+    WB_TRY(wb_campaign_read_settings(fit, &all->fit));
+    WB_TRY(read_limits(limits, &all->limits));
+    return read_printed(printed, all);
+}
+
+enum wb_status wb_bundles_read(struct wb_bundles *bundles, const char *path)
+{
+    memset(bundles, 0, sizeof *bundles);
+    wb_calibrate_default_settings(&bundles->fit);
+    WB_TRY(wb_hash_file(path, bundles->sha256));
+    wb_campaign_set_name(bundles->name, sizeof bundles->name, path);
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path));
+    struct wb_bundles_reading reading = {.bundles = bundles};
+    wb_file_folder(reading.folder, path);
+    const enum wb_status status = read_root(&reading, wb_config_root(config));
+    wb_config_destroy(config);
+    if (status != WB_OK)
+        wb_bundles_release(bundles);
+    return status;
+}
+
+void wb_bundles_release(struct wb_bundles *bundles)
+{
+    for (int i = 0; i < WB_BUNDLES_RUNS; i++) {
+        free(bundles->runs[i].model);
+        wb_bundles_dataset_release(&bundles->runs[i].dataset);
+    }
+    for (int i = 0; i < WB_BUNDLES_BUNDLES; i++)
+        wb_bundles_dataset_release(&bundles->bundles[i].rod);
+    memset(bundles, 0, sizeof *bundles);
+}

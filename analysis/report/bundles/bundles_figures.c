@@ -1,0 +1,592 @@
+#include "analysis/report/bundles/bundles_figures.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/properties.h"
+#include "analysis/report/draw/figures_surface.h"
+#include "analysis/report/pages.h"
+#include "analysis/report/pdf.h"
+#include "analysis/validate.h"
+#include "base/text.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double millijoule = 1e-3;
+static const double panel_height = 190.0;
+
+/* --- lines --- */
+
+/* The published curve is a broad pale line in every figure; the others lie on it. */
+static const struct wb_figure_style published_style = {.colour = {0.34, 0.71, 0.91, 0.75},
+                                                       .width = 3.6};
+static const struct wb_figure_style dynamic_style = {.colour = {0.114, 0.153, 0.2, 1.0},
+                                                     .width = 1.3};
+static const struct wb_figure_style constant_style = {
+    .colour = {0.835, 0.369, 0.0, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
+
+static enum wb_status add_run(struct wb_panel *panel, const char *label,
+                              const struct wb_bundles_result *run,
+                              const struct wb_figure_style *style)
+{
+    return run ? wb_figures_add_curve(panel, label, &run->curve, run->curve.force, 1.0, style)
+               : WB_OK;
+}
+
+static enum wb_status add_published(struct wb_panel *panel, const char *label,
+                                    const struct wb_bundles_result *run)
+{
+    if (!run || !run->published)
+        return WB_OK;
+    return wb_figures_add_curve(panel, label, &run->curve, run->published, 1.0, &published_style);
+}
+
+static enum wb_status start(struct wb_figure **figure, const char *kind, int index, double height)
+{
+    char name[64];
+    snprintf(name, sizeof name, index >= 0 ? "%s-%d" : "%s", kind, index + 1);
+    return wb_figures_start_simulation(figure, name, height);
+}
+
+static struct wb_panel *add_force_panel(struct wb_figure *figure, const char *title, bool first)
+{
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    wb_figures_set_title(panel, title);
+    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", first ? "Force (N)" : "");
+    wb_figure_set_y_range(panel, 0.0, (double)NAN);
+    return panel;
+}
+
+/* --- sections --- */
+
+/* "7 wires, 12 wires and 19 wires", escaped. */
+static void append_labels(struct wb_text *text, const struct wb_bundles *campaign,
+                          const struct wb_bundles_group *group)
+{
+    for (int i = 0; i < group->n; i++) {
+        if (i > 0)
+            wb_text_append(text, i + 1 < group->n ? ", " : " and ");
+        wb_text_append_escaped(text, campaign->bundles[group->first + i].label);
+    }
+}
+
+static enum wb_status draw_sections(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_group *const group = &campaign->groups[index];
+    const struct wb_bundle_model *models[WB_FIGURES_BUNDLE_MOST];
+    const char *mesh = campaign->runs[campaign->bundles[group->first].dynamic].mesh->name;
+    char name[64];
+    snprintf(name, sizeof name, "sections-%d", index + 1);
+    for (int i = 0; i < group->n; i++) {
+        models[i] = campaign->runs[campaign->bundles[group->first + i].dynamic].model;
+        if (!wb_bundle_model_mesh(models[i], mesh))
+            mesh = "engineering";
+    }
+    return wb_figures_bundle_draw(figure, name, group->n, models, mesh);
+}
+
+static void tell_sections(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    wb_text_append(text, "Sections%s of ",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_SECTION]));
+    append_labels(text, results->campaign, group);
+    wb_text_append(text, ", with the lines of the mesh and the homogenised cylinder.");
+}
+
+/* --- constant and decaying friction --- */
+
+static enum wb_status add_forces(struct wb_panel *panel, const struct wb_bundles_results *results,
+                                 const struct wb_bundles_bundle *bundle)
+{
+    const struct wb_bundles_result *const dynamic =
+        wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const constant =
+        wb_bundles_results_usable(results, bundle->constant);
+    const struct wb_bundles_result *const any = dynamic ? dynamic : constant;
+    double largest = any->published ? fmax(any->published_max, 0.0) : 0.0;
+    largest = fmax(largest, fmax(dynamic ? dynamic->curve.max_force : 0.0,
+                                 constant ? constant->curve.max_force : 0.0));
+    /* Room above for the legend, so that the panels are alike. */
+    wb_figure_set_y_range(panel, 0.0, 1.25 * largest);
+    WB_TRY(add_published(panel, "published", any));
+    WB_TRY(add_run(panel, "constant", constant, &constant_style));
+    return add_run(panel, "decaying", dynamic, &dynamic_style);
+}
+
+static enum wb_status draw_forces(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    if (!wb_bundles_results_any(results, group))
+        return WB_OK;
+    WB_TRY(start(figure, "forces", index, panel_height));
+    for (int i = group->first, n = 0; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        if (wb_bundles_results_either(results, bundle))
+            WB_TRY(add_forces(add_force_panel(*figure, bundle->label, n++ == 0), results, bundle));
+    }
+    return WB_OK;
+}
+
+static void tell_forces(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    const struct wb_bundles_run *const run =
+        &results->campaign->runs[results->campaign->bundles[group->first].dynamic];
+    wb_text_append(text,
+                   "Force over deflection%s, simulated with decaying and with constant friction "
+                   "(%s), and the published curve.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_FORCE]),
+                   wb_bundles_loading(run));
+    if (group->figures[WB_BUNDLES_FORCE][0])
+        wb_text_append(text, " The paper's figure has tests in the published curve's place; "
+                             "they are not at hand.");
+}
+
+/* --- errors --- */
+
+static enum wb_status add_error(struct wb_panel *panel, const char *bundle, const char *friction,
+                                const struct wb_bundles_result *run,
+                                const struct wb_figure_style *style)
+{
+    struct wb_text label = {0};
+    if (!run || !run->published || !isfinite(run->rms))
+        return WB_OK;
+    wb_text_append_escaped(&label, bundle);
+    wb_text_append(&label, ", %s: RMS %.4f", friction, run->rms);
+    const enum wb_status status =
+        wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, run->error, 1.0, style);
+    wb_text_release(&label);
+    return status;
+}
+
+static enum wb_status draw_errors(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_group *const group = &campaign->groups[index];
+    bool any = false;
+    for (int i = 0; i < group->n; i++)
+        any |= wb_bundles_published(&campaign->runs[campaign->bundles[group->first + i].dynamic]) !=
+               NULL;
+    if (!any || !wb_bundles_results_any(results, group))
+        return WB_OK;
+    WB_TRY(start(figure, "errors", index, 180.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
+    wb_figure_set_y_range(panel, 0.0, (double)NAN);
+    for (int i = 0; i < group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &campaign->bundles[group->first + i];
+        const struct wb_figure_style solid = {.colour = wb_palette_wire(i), .width = 1.5};
+        const struct wb_figure_style dashed = {
+            .colour = wb_palette_wire(i), .width = 1.1, .dash = WB_DASH_DASHED};
+        WB_TRY(add_error(panel, bundle->label, "decaying",
+                         wb_bundles_results_usable(results, bundle->dynamic), &solid));
+        WB_TRY(add_error(panel, bundle->label, "constant",
+                         wb_bundles_results_usable(results, bundle->constant), &dashed));
+    }
+    return WB_OK;
+}
+
+static void tell_errors(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    wb_text_append(text,
+                   "Distance of the simulated curves from the published ones%s, over the published "
+                   "curve's largest force <i>F</i><sub>max</sub>.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ERROR]));
+}
+
+/* --- energies --- */
+
+enum energy {
+    INTERNAL,
+    FRICTION,
+    KINETIC,
+    ARTIFICIAL,
+    ENERGIES
+};
+
+static double energy_of(const struct wb_bundles_energy *row, enum energy kind)
+{
+    const double of[ENERGIES] = {
+        [INTERNAL] = row->internal,
+        [FRICTION] = row->friction,
+        [KINETIC] = row->kinetic,
+        [ARTIFICIAL] = row->artificial,
+    };
+    return of[kind];
+}
+
+static enum wb_status add_energies(struct wb_panel *panel, const struct wb_bundles_result *run)
+{
+    static const char *const labels[ENERGIES] = {"internal", "friction", "kinetic", "artificial"};
+    const struct wb_figure_style styles[ENERGIES] = {
+        {.colour = wb_palette_ink(), .width = 1.4},
+        {.colour = wb_palette_wire(1), .width = 1.2, .dash = WB_DASH_DASHED},
+        {.colour = wb_palette_wire(0), .width = 1.2},
+        {.colour = wb_palette_wire(2), .width = 1.2, .dash = WB_DASH_DOTTED},
+    };
+    const size_t n = run ? (size_t)run->n_energies : 0;
+    if (n == 0)
+        return WB_OK;
+    double *const values = malloc(2 * n * sizeof *values);
+    if (!values)
+        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+    for (int kind = 0; kind < ENERGIES; kind++) {
+        for (size_t i = 0; i < n; i++) {
+            values[i] = run->energies[i].time;
+            values[n + i] = energy_of(&run->energies[i], (enum energy)kind) / millijoule;
+        }
+        wb_figure_add_line(panel, labels[kind], n, values, values + n, &styles[kind]);
+    }
+    free(values);
+    return WB_OK;
+}
+
+static double largest_energy(const struct wb_bundles_result *run)
+{
+    double largest = 0.0;
+    for (int i = 0; i < run->n_energies; i++)
+        largest = fmax(largest, run->energies[i].internal);
+    return largest > 0.0 ? largest : millijoule;
+}
+
+static enum wb_status draw_energies(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    bool any = false;
+    for (int i = group->first; i < group->first + group->n; i++)
+        any |= wb_bundles_results_usable(results, results->campaign->bundles[i].dynamic) != NULL;
+    if (!any)
+        return WB_OK;
+    WB_TRY(start(figure, "energies", index, panel_height));
+    for (int i = group->first, n = 0; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, bundle->dynamic);
+        if (!run)
+            continue;
+        struct wb_panel *const panel = wb_figure_add_panel(*figure);
+        wb_figures_set_title(panel, bundle->label);
+        wb_figure_set_axes(panel, "Time of the model (s)", n++ == 0 ? "Energy (mJ)" : "");
+        /* Room above for the legend, so that the panels are alike. */
+        wb_figure_set_y_range(panel, 0.0, 1.3 * largest_energy(run) / millijoule);
+        WB_TRY(add_energies(panel, run));
+    }
+    return WB_OK;
+}
+
+static void tell_energies(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char place[48];
+    wb_text_append(text,
+                   "Energies%s over the model's own time, with decaying friction. Internal: stored "
+                   "and plastic, in wires, tape, contact and cohesion.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ENERGY]));
+}
+
+/* --- bent bundles --- */
+
+/* The bundles of a group have one scale. */
+static double most_stress(const struct wb_bundles_results *results,
+                          const struct wb_bundles_group *group)
+{
+    double most = 0.0;
+    for (int i = group->first; i < group->first + group->n; i++) {
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, results->campaign->bundles[i].dynamic);
+        if (run && run->surface.n > 0)
+            most = fmax(most, wb_figures_surface_most_stress(&run->surface));
+    }
+    return most;
+}
+
+static enum wb_status draw_shape(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    struct wb_text title = {0};
+    char name[64];
+    if (!run || run->surface.n == 0)
+        return WB_OK;
+    wb_text_append_escaped(&title, bundle->label);
+    snprintf(name, sizeof name, "shape-%d", index + 1);
+    const struct wb_figures_surface_style style = {
+        .width = WB_PDF_WIDTH,
+        .most_stress = most_stress(results, &campaign->groups[bundle->group]),
+        .title = wb_text_string(&title)};
+    const enum wb_status status = wb_figures_surface_draw(figure, name, &run->surface, &style);
+    wb_text_release(&title);
+    return status;
+}
+
+static void tell_shape(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
+    char place[48];
+    wb_text_append_escaped(text, bundle->label);
+    wb_text_append(
+        text,
+        " bent by %.0f mm%s: von Mises stress of the wires, with the tape drawn as "
+        "glass, from the side and its ends from nearby.",
+        wb_bundles_results_usable(results, bundle->dynamic)->curve.max_deflection / WB_MM,
+        wb_pages_paper_figure(place, campaign->groups[bundle->group].figures[WB_BUNDLES_SHAPE]));
+}
+
+/* --- studies --- */
+
+static enum wb_status draw_study(struct wb_figure *figure, const struct wb_bundles_results *results,
+                                 const struct wb_bundles_study *study, bool first)
+{
+    static const enum wb_figure_dash dashes[] = {WB_DASH_SOLID, WB_DASH_DASHED, WB_DASH_DOTTED,
+                                                 WB_DASH_MIXED};
+    struct wb_panel *const panel = add_force_panel(figure, study->title, first);
+    bool published = false;
+    for (int i = 0; i < study->n; i++) {
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, study->runs[i]);
+        const struct wb_figure_style style = {
+            .colour = wb_palette_wire(i), .width = 1.2, .dash = dashes[i % 4]};
+        struct wb_text label = {0};
+        if (!run)
+            continue;
+        if (!published)
+            WB_TRY(add_published(panel, "published", run));
+        published = true;
+        wb_text_append_escaped(&label, study->labels[i]);
+        const enum wb_status status = add_run(panel, wb_text_string(&label), run, &style);
+        wb_text_release(&label);
+        WB_TRY(status);
+    }
+    return WB_OK;
+}
+
+static enum wb_status draw_studies(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    bool any = false;
+    for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++) {
+        for (int i = 0; i < campaign->studies[k].n; i++)
+            any |= wb_bundles_results_usable(results, campaign->studies[k].runs[i]) != NULL;
+    }
+    if (!any)
+        return WB_OK;
+    WB_TRY(start(figure, "study", index, 220.0));
+    for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++)
+        WB_TRY(draw_study(*figure, results, &campaign->studies[k], k == 2 * index));
+    return WB_OK;
+}
+
+static void tell_studies(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    wb_text_append(text, "Studies of ");
+    for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++) {
+        const struct wb_bundles_study *const study = &campaign->studies[k];
+        wb_text_append(text, "%s<i>", k > 2 * index ? " and " : "");
+        wb_text_append_escaped(text, study->title);
+        wb_text_append(text, "</i> (");
+        wb_text_append_escaped(text, campaign->runs[study->runs[0]].model->title);
+        wb_text_append(text, ")");
+    }
+    wb_text_append(text,
+                   "%s. Published: the 1D beam with the published properties, under "
+                   "the first run's loading.",
+                   index == 0 && campaign->printed_source[0] ? ", after the paper's Fig. 18" : "");
+}
+
+/* --- 3D and 1D --- */
+
+enum {
+    SHAPE_POINTS = 61,
+    SHAPES = 3, /* at thirds of the largest deflection */
+    MOST_MARKERS = 128
+};
+
+/* The stored axis at the row nearest to a deflection, mm; returns its number of points. */
+static size_t take_axis(const struct wb_dataset *dataset, double *deflection, double x[],
+                        double y[])
+{
+    const double wanted = *deflection;
+    double nearest = (double)INFINITY;
+    size_t n = 0;
+    for (size_t i = 0; i < dataset->n_shape_rows; i++)
+        nearest = fmin(nearest, fabs(dataset->shape_rows[i].deflection - wanted));
+    for (size_t i = 0; i < dataset->n_shape_rows && n < MOST_MARKERS; i++) {
+        const struct wb_shape_row *const row = &dataset->shape_rows[i];
+        if (fabs(row->deflection - wanted) > nearest)
+            continue;
+        if (n > 0 && row->marker == 0)
+            break;
+        *deflection = row->deflection;
+        x[n] = row->x / WB_MM;
+        y[n++] = row->y / WB_MM;
+    }
+    return n;
+}
+
+static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_bundles_result *run,
+                                 const struct wb_bundles_fit *fit,
+                                 const struct wb_figure_style *solid,
+                                 const struct wb_figure_style *beam)
+{
+    struct wb_properties properties;
+    wb_properties_from_result(&fit->result, &properties);
+    wb_figure_set_axes(inset, "<i>x</i> (mm)", "<i>y</i> (mm)");
+    wb_figure_set_equal_aspect(inset);
+    for (int i = 1; i <= SHAPES; i++) {
+        double x[MOST_MARKERS], y[MOST_MARKERS], line_x[SHAPE_POINTS], line_y[SHAPE_POINTS];
+        double deflection = run->curve.max_deflection * i / SHAPES;
+        const size_t n = take_axis(&run->dataset, &deflection, x, y);
+        if (n == 0)
+            continue;
+        wb_figure_add_line(inset, NULL, n, x, y, solid);
+        const enum wb_status status = wb_validate_shape(&properties, &run->dataset.info, deflection,
+                                                        SHAPE_POINTS, line_x, line_y);
+        if (status == WB_ERR_CONVERGENCE)
+            continue;
+        WB_TRY(status);
+        for (int k = 0; k < SHAPE_POINTS; k++) {
+            line_x[k] /= WB_MM;
+            line_y[k] /= WB_MM;
+        }
+        wb_figure_add_line(inset, NULL, SHAPE_POINTS, line_x, line_y, beam);
+    }
+    return WB_OK;
+}
+
+static struct wb_figure_style solid_style(int index)
+{
+    return (struct wb_figure_style){.colour = wb_palette_fade(wb_palette_wire(index), 0.45),
+                                    .width = 3.6};
+}
+
+static struct wb_figure_style beam_style(int index)
+{
+    return (struct wb_figure_style){
+        .colour = wb_palette_wire(index), .width = 1.2, .dash = WB_DASH_DASHED};
+}
+
+static enum wb_status add_fit(struct wb_panel *panel, const struct wb_bundles_results *results,
+                              int index)
+{
+    const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
+    const struct wb_figure_style solid = solid_style(index), beam = beam_style(index);
+    struct wb_text label = {0};
+    wb_text_append_escaped(&label, bundle->label);
+    wb_text_append(&label, ", 3D");
+    enum wb_status status = add_run(panel, wb_text_string(&label), run, &solid);
+    wb_text_release(&label);
+    if (status != WB_OK || !fit)
+        return status;
+    wb_text_append_escaped(&label, bundle->label);
+    wb_text_append(&label, ", 1D: RMS %.4f", fit->result.rms);
+    status =
+        wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, fit->force, 1.0, &beam);
+    wb_text_release(&label);
+    return status;
+}
+
+static enum wb_status draw_fit(struct wb_figure **figure, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    (void)index;
+    const struct wb_bundles *const campaign = results->campaign;
+    double largest = 0.0;
+    bool some_rod = false; /* then variants without one would only crowd the figure */
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, campaign->bundles[i].dynamic);
+        largest = fmax(largest, run ? run->curve.max_force : 0.0);
+        some_rod = some_rod || campaign->bundles[i].has_rod;
+    }
+    if (!(largest > 0.0))
+        return WB_OK;
+    WB_TRY(start(figure, "fit", -1, 300.0));
+    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Force (N)");
+    /* Room above for legend and inset. */
+    wb_figure_set_y_range(panel, 0.0, 1.3 * largest);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        if (campaign->bundles[i].has_rod || !some_rod)
+            WB_TRY(add_fit(panel, results, i));
+    if (campaign->inset < 0 || !wb_bundles_results_fit(results, campaign->inset))
+        return WB_OK;
+    const struct wb_figure_style solid = solid_style(campaign->inset),
+                                 beam = beam_style(campaign->inset);
+    return add_shapes(
+        wb_figure_add_inset(panel),
+        wb_bundles_results_usable(results, campaign->bundles[campaign->inset].dynamic),
+        wb_bundles_results_fit(results, campaign->inset), &solid, &beam);
+}
+
+static void tell_fit(struct wb_text *text, const void *context, int index)
+{
+    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = results->campaign;
+    (void)index;
+    wb_text_append(text,
+                   "Simulated force over deflection in 3D (broad) and of the fitted 1D "
+                   "beam (dashed)%s.",
+                   campaign->printed_source[0] ? ", after the paper's Fig. 26" : "");
+    if (campaign->inset >= 0) {
+        wb_text_append(text, " Inset: bent axes of ");
+        wb_text_append_escaped(text, campaign->bundles[campaign->inset].label);
+        wb_text_append(text, " at a third, two thirds and all of the deflection.");
+    }
+}
+
+/* --- the table --- */
+
+static int count_groups(const void *context)
+{
+    const struct wb_bundles_results *const results = context;
+    return results->campaign->n_groups;
+}
+
+static int count_bundles(const void *context)
+{
+    const struct wb_bundles_results *const results = context;
+    return results->campaign->n_bundles;
+}
+
+/* Two studies stand beside each other. */
+static int count_studies(const void *context)
+{
+    const struct wb_bundles_results *const results = context;
+    return (results->campaign->n_studies + 1) / 2;
+}
+
+const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
+    {"sections", count_groups, draw_sections, tell_sections, false},
+    {"studies", count_studies, draw_studies, tell_studies, false},
+    {"curves", count_groups, draw_forces, tell_forces, false},
+    {"curves", count_groups, draw_errors, tell_errors, false},
+    {"energies", count_groups, draw_energies, tell_energies, false},
+    {"shapes", count_bundles, draw_shape, tell_shape, false},
+    {"fit", NULL, draw_fit, tell_fit, false},
+};

@@ -1,0 +1,604 @@
+/* The report of bundles, in order: summary, bundles, studies, groups, 1D properties, cost, runs,
+ * provenance. */
+#include "analysis/report/bundles/bundles_pages.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/report/pages.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "base/version.h"
+
+/* --- what is missing, what is exceeded --- */
+
+static void put_missing_dataset(struct wb_document *document,
+                                const struct wb_bundles_dataset *dataset,
+                                const struct wb_bundles_result *result)
+{
+    char text[1700], name[600], problem[900];
+    if (result->state == WB_BUNDLES_USABLE || result->state == WB_BUNDLES_NOT_WANTED)
+        return;
+    snprintf(text, sizeof text,
+             "<b>%s</b>: %s. To make it:", wb_pages_escape(name, sizeof name, dataset->name),
+             wb_pages_escape(problem, sizeof problem, wb_text_string(&result->problem)));
+    wb_document_item(document, WB_TONE_WARNING, text);
+    wb_document_code(document, dataset->command);
+}
+
+static void put_unfitted(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    char text[1700], name[600], problem[900];
+    for (int i = 0; i < results->campaign->n_bundles; i++) {
+        const struct wb_bundles_fit *const fit = &results->fits[i];
+        if (fit->state != WB_BUNDLES_REFUSED)
+            continue;
+        snprintf(text, sizeof text, "<b>%s</b>, no fitted beam: %s",
+                 wb_pages_escape(name, sizeof name, results->campaign->bundles[i].label),
+                 wb_pages_escape(problem, sizeof problem, wb_text_string(&fit->problem)));
+        wb_document_item(document, WB_TONE_WARNING, text);
+    }
+}
+
+static void put_missing(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    char text[400];
+    const int n = results->n_wanted - results->n_usable;
+    if (results->is_complete)
+        return;
+    if (n > 0)
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> %d of %d datasets %s missing or cannot be used. The report "
+                 "shows what the others give. <tt>wirebench report --solve</tt> makes them.",
+                 n, results->n_wanted, wb_pages_plural(n, "is", "are"));
+    else
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> All datasets are there, but not every step could be done.");
+    wb_document_notice(document, WB_TONE_WARNING, text);
+    for (int i = 0; i < campaign->n_runs; i++)
+        put_missing_dataset(document, &campaign->runs[i].dataset, &results->runs[i]);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        put_missing_dataset(document, &campaign->bundles[i].rod, &results->rods[i]);
+    put_unfitted(document, results);
+}
+
+static void put_limits(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+    const int n = wb_bundles_results_judge(results, verdicts);
+    for (int i = 0; i < n; i++) {
+        const struct wb_bundles_verdict *const v = &verdicts[i];
+        char text[600], label[300], value[40] = "not known";
+        if (isfinite(v->value))
+            snprintf(value, sizeof value, "%.3g %%", v->value / WB_PERCENT);
+        snprintf(text, sizeof text, "<b>%s</b> %s, %s: %s, limit %.3g %%.",
+                 v->kept ? "Limit kept." : "Limit exceeded.", v->what,
+                 wb_pages_escape(label, sizeof label, v->label), value, v->limit / WB_PERCENT);
+        wb_document_item(document, v->kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
+    }
+}
+
+/* --- what came out --- */
+
+static void put_fact(struct wb_document *document, struct wb_document_table *table,
+                     const struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
+    const struct wb_bundles_result *const dynamic =
+        wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const constant =
+        wb_bundles_results_usable(results, bundle->constant);
+    const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
+    const double none = (double)NAN;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
+    wb_pages_cell_number(&row, dynamic ? dynamic->curve.max_force : none, 3);
+    wb_pages_cell_number(&row, dynamic && dynamic->published ? dynamic->published_max : none, 3);
+    wb_pages_cell_number(&row, dynamic && dynamic->published ? dynamic->rms : none, 4);
+    wb_pages_cell_number(&row, constant && constant->published ? constant->rms : none, 4);
+    wb_pages_cell_number(&row, fit ? fit->result.rms : none, 4);
+    wb_pages_cell_number(&row, wb_bundles_results_cost(results, index) / WB_PERCENT, 3);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_facts(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Bundle"},
+        {.heading = "<i>F</i><sub>max</sub>, 3D (N)", .right = true, .wraps = true},
+        {.heading = "<i>F</i><sub>max</sub>, published (N)", .right = true, .wraps = true},
+        {.heading = "RMS, decaying friction", .right = true, .wraps = true},
+        {.heading = "RMS, constant friction", .right = true, .wraps = true},
+        {.heading = "RMS, 1D from 3D", .right = true, .wraps = true},
+        {.heading = "CPU of 1D over 3D (%)", .right = true, .wraps = true},
+    };
+    const struct wb_bundles *const campaign = results->campaign;
+    struct wb_text caption = {0};
+    wb_text_append(&caption,
+                   "RMS of decaying and of constant friction: from the published curve, over its "
+                   "largest force. The published curve is the 1D beam with the published "
+                   "properties, under the same loading.");
+    if (campaign->printed_rms[1] > 0.0)
+        wb_text_append(&caption, " The paper's own 3D curves lie %g to %g from its tests.",
+                       campaign->printed_rms[0], campaign->printed_rms[1]);
+    wb_document_heading(document, 2, "facts", "What came out");
+    struct wb_document_table *const table =
+        wb_document_table(document, wb_text_string(&caption), 7, columns);
+    document->failed |= caption.failed;
+    wb_text_release(&caption);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        put_fact(document, table, results, i);
+}
+
+static void put_summary(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    wb_document_heading(document, 1, "summary", "Summary");
+    wb_document_notice(
+        document, WB_TONE_ORIGIN,
+        "<b>Simulations.</b> Everything in this report is computed: bundles of wires "
+        "with contact, friction and tape in explicit 3D, and 1D beams. No bundle was "
+        "tested.");
+    put_missing(document, results);
+    put_limits(document, results);
+    put_facts(document, results);
+}
+
+/* --- a table of runs --- */
+
+/* In percent, as short as the column. */
+static void put_ratio(struct wb_pages_row *row, double value, double limit)
+{
+    const double percent = value / WB_PERCENT;
+    enum wb_document_tone tone = WB_TONE_PLAIN;
+    if (limit > 0.0)
+        tone = value <= limit ? WB_TONE_GOOD : WB_TONE_WARNING;
+    if (isfinite(value) && percent < 0.005)
+        wb_pages_cell(row, tone, "&lt; 0.01");
+    else if (isfinite(value))
+        wb_pages_cell(row, tone, "%.*f", percent < 1.0 ? 2 : percent < 10.0 ? 1 : 0, percent);
+    else
+        wb_pages_cell_number(row, value, 0);
+}
+
+static void put_run(struct wb_document *document, struct wb_document_table *table,
+                    const struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles_run *const wanted = &results->campaign->runs[index];
+    const struct wb_bundles_limits *const limits = &results->campaign->limits;
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, index);
+    const struct wb_bundle_interface *const interface = &wanted->model->interface;
+    const double none = (double)NAN;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, wanted->name);
+    if (interface->friction_kinetic != interface->friction_static)
+        wb_pages_cell(&row, WB_TONE_PLAIN, "%g\xe2\x80\x93%g", interface->friction_static,
+                      interface->friction_kinetic);
+    else
+        wb_pages_cell(&row, WB_TONE_PLAIN, "%g", interface->friction_static);
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%g", interface->normal_stiffness / 1e9);
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", wb_bundles_loading(wanted));
+    wb_pages_cell_number(&row, run ? run->numbers.duration : none, 2);
+    wb_pages_cell_number(&row, run ? run->curve.max_force : none, 3);
+    wb_pages_cell_number(&row, run && run->published ? run->rms : none, 4);
+    put_ratio(&row, run ? run->numbers.kinetic : none, limits->kinetic);
+    put_ratio(&row, run ? run->numbers.artificial : none, limits->artificial);
+    put_ratio(&row, run ? run->numbers.imbalance : none, limits->imbalance);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_runs(struct wb_document *document, const struct wb_bundles_results *results, int n,
+                     const int *runs, bool explained)
+{
+    static const char caption[] =
+        "RMS: from the published curve under the same loading, over its largest force. "
+        "<i>E</i><sub>kin</sub>, <i>E</i><sub>art</sub>: kinetic and artificial energy over "
+        "internal energy, at most from 2 mm on; <i>E</i><sub>off</sub>: imbalance of energy over "
+        "the external work. Time: of the model.";
+    static const struct wb_document_column columns[] = {
+        {"Run"},
+        {.heading = "Friction", .right = true},
+        {.heading = "<i>K</i><sub>cc</sub> (N/mm<sup>3</sup>)", .right = true, .wraps = true},
+        {"Loading"},
+        {.heading = "Time (s)", .right = true, .wraps = true},
+        {.heading = "<i>F</i><sub>max</sub> (N)", .right = true, .wraps = true},
+        {.heading = "RMS", .right = true},
+        {.heading = "<i>E</i><sub>kin</sub> (%)", .right = true, .wraps = true},
+        {.heading = "<i>E</i><sub>art</sub> (%)", .right = true, .wraps = true},
+        {.heading = "<i>E</i><sub>off</sub> (%)", .right = true, .wraps = true},
+    };
+    struct wb_document_table *const table =
+        wb_document_table(document, explained ? caption : NULL, 10, columns);
+    for (int i = 0; i < n; i++)
+        put_run(document, table, results, runs[i]);
+}
+
+static const double n_mm2 = 1e-6;                     /* N m2 of one N mm2 */
+static const int property_decimals[4] = {0, 2, 1, 3}; /* E, sigma_Y, K, n */
+
+/* --- sections and Table 4 --- */
+
+static void put_section(struct wb_document *document, struct wb_document_table *table,
+                        const struct wb_bundles_bundle *bundle, const struct wb_bundles_run *run)
+{
+    const struct wb_bundle_model *const m = run->model;
+    const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(m);
+    const double own = wb_bundle_model_diameter(m), none = (double)NAN;
+    const double printed = m->has_published ? m->published.outer_diameter : none;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%d", m->packing.n);
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, wb_bundle_model_arrangement(m));
+    wb_pages_cell_number(&row, own / WB_MM, 2);
+    wb_pages_cell_number(&row, printed / WB_MM, 2);
+    wb_pages_cell_number(
+        &row, wb_bundle_model_density(m, m->has_published ? printed : own) / WB_G_PER_CM3, 2);
+    wb_pages_cell_number(&row, m->has_published ? m->published.density / WB_G_PER_CM3 : none, 2);
+    wb_pages_cell_number(&row, rigidity.sliding[0] / n_mm2, 0);
+    wb_pages_cell_number(&row, rigidity.bonded[0] / n_mm2, 0);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_sections(struct wb_document *document, const struct wb_bundles_results *results,
+                         const struct wb_figures *figures)
+{
+    static const struct wb_document_column columns[] = {
+        {"Bundle"},
+        {.heading = "Wires", .right = true},
+        {"Packing"},
+        {.heading = "<i>d</i><sub>o</sub>, packed (mm)", .right = true, .wraps = true},
+        {.heading = "<i>d</i><sub>o</sub>, printed (mm)", .right = true, .wraps = true},
+        {.heading = "Density (g/cm<sup>3</sup>)", .right = true, .wraps = true},
+        {.heading = "Density, printed", .right = true, .wraps = true},
+        {.heading = "<i>EI</i>, sliding (N mm<sup>2</sup>)", .right = true, .wraps = true},
+        {.heading = "<i>EI</i>, bonded (N mm<sup>2</sup>)", .right = true, .wraps = true},
+    };
+    const struct wb_bundles *const campaign = results->campaign;
+    wb_document_heading(document, 1, "bundles", "Bundles");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Packed: round wires and tape as they are packed here. Printed: Table 4 of the paper. "
+        "Density: eq. 30, over the printed diameter. <i>EI</i>: elastic bounds of wires that slide "
+        "freely and of wires that do not slide at all, with the tape.",
+        9, columns);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        put_section(document, table, &campaign->bundles[i],
+                    &campaign->runs[campaign->bundles[i].dynamic]);
+    for (int i = 0; i < campaign->n_groups; i++)
+        wb_figures_put(figures, document, "sections", i);
+}
+
+/* --- studies --- */
+
+static void put_studies(struct wb_document *document, const struct wb_bundles_results *results,
+                        const struct wb_figures *figures)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    if (campaign->n_studies == 0)
+        return;
+    wb_document_heading(document, 1, "studies", "Friction, cohesion, loading");
+    for (int i = 0; 2 * i < campaign->n_studies; i++)
+        wb_figures_put(figures, document, "studies", i);
+    for (int i = 0; i < campaign->n_studies; i++) {
+        char anchor[32];
+        snprintf(anchor, sizeof anchor, "study-%d", i + 1);
+        wb_document_heading(document, 2, anchor, campaign->studies[i].title);
+        put_runs(document, results, campaign->studies[i].n, campaign->studies[i].runs,
+                 i == campaign->n_studies - 1);
+    }
+}
+
+/* --- groups --- */
+
+static void put_group(struct wb_document *document, const struct wb_bundles_results *results,
+                      int index, const struct wb_figures *figures)
+{
+    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    char anchor[32];
+    snprintf(anchor, sizeof anchor, "group-%d", index + 1);
+    wb_document_heading(document, 1, anchor, group->label);
+    if (!wb_bundles_results_any(results, group))
+        wb_document_paragraph(document, "None of their datasets is there.");
+    wb_figures_put(figures, document, "curves", index);
+    for (int i = group->first; i < group->first + group->n; i++)
+        wb_figures_put(figures, document, "shapes", i);
+    wb_figures_put(figures, document, "energies", index);
+}
+
+static void put_groups(struct wb_document *document, const struct wb_bundles_results *results,
+                       const struct wb_figures *figures)
+{
+    for (int i = 0; i < results->campaign->n_groups; i++)
+        put_group(document, results, i, figures);
+}
+
+/* --- 1D properties --- */
+
+static void put_properties(struct wb_document *document, struct wb_document_table *table,
+                           const char *label, const char *of, const struct wb_material *material,
+                           double diameter)
+{
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, label);
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", of);
+    wb_pages_cell_number(&row, diameter / WB_MM, 2);
+    for (int k = 0; k < 4; k++)
+        wb_pages_cell_number(&row,
+                             material ? wb_pages_value(material, k) / wb_pages_properties[k].factor
+                                      : (double)NAN,
+                             property_decimals[k]);
+    wb_pages_cell_number(
+        &row,
+        material ? wb_bundles_results_rigidity(material->youngs_modulus, diameter) / n_mm2
+                 : (double)NAN,
+        0);
+    wb_pages_put_row(document, table, label[0] != '\0', &row);
+}
+
+static void put_bundle(struct wb_document *document, struct wb_document_table *table,
+                       const struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
+    const struct wb_bundles_run *const run = &results->campaign->runs[bundle->dynamic];
+    const struct wb_bundles_result *const result =
+        wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_wire *const published = wb_bundles_published(run);
+    const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
+    put_properties(document, table, bundle->label, "here", fit ? &fit->result.material : NULL,
+                   result ? result->dataset.info.outer_diameter : (double)NAN);
+    if (published)
+        put_properties(document, table, "", "paper", &published->material,
+                       published->outer_diameter);
+}
+
+static void put_table(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    static const char form[] = "%s (%s)";
+    char headings[4][80];
+    struct wb_document_column columns[8] = {
+        {"Bundle"}, {"Of"}, {.heading = "<i>d</i><sub>o</sub> (mm)", .right = true}};
+    for (int k = 0; k < 4; k++) {
+        const struct wb_pages_property *const p = &wb_pages_properties[k];
+        snprintf(headings[k], sizeof headings[k], strcmp(p->unit, "1") ? form : "%s", p->symbol,
+                 p->unit);
+        columns[3 + k] = (struct wb_document_column){.heading = headings[k], .right = true};
+    }
+    columns[7] =
+        (struct wb_document_column){.heading = "<i>EI</i> (N mm<sup>2</sup>)", .right = true};
+    wb_document_heading(document, 2, "properties", "Properties of the 1D beam");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Here: calibrated against each simulated 3D curve with decaying friction, with the printed "
+        "diameter. Paper: Tables 4 and 5. <i>E</i> goes with the diameter's inverse fourth power, "
+        "<i>EI</i> does not depend on it.",
+        8, columns);
+    for (int i = 0; i < results->campaign->n_bundles; i++)
+        put_bundle(document, table, results, i);
+}
+
+static void put_quality(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Bundle"},
+        {.heading = "RMS, 1D from 3D", .right = true, .wraps = true},
+        {.heading = "Largest error", .right = true, .wraps = true},
+        {.heading = "<i>EI</i>, here over paper", .right = true, .wraps = true},
+        {.heading = "Beam runs of the fit", .right = true, .wraps = true},
+        {.heading = "Stopped because", .wraps = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document, "Errors are over the largest force of the 3D curve.", 6, columns);
+    for (int i = 0; i < results->campaign->n_bundles; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        const struct wb_wire *const published =
+            wb_bundles_published(&results->campaign->runs[bundle->dynamic]);
+        const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, i);
+        struct wb_pages_row row = {.n = 0};
+        if (!fit)
+            continue;
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
+        wb_pages_cell_number(&row, fit->result.rms, 4);
+        wb_pages_cell_number(&row, fit->result.max_error, 4);
+        wb_pages_cell_number(&row,
+                             published ? fit->rigidity / wb_bundles_results_rigidity(
+                                                             published->material.youngs_modulus,
+                                                             published->outer_diameter)
+                                       : (double)NAN,
+                             2);
+        wb_pages_cell(&row, WB_TONE_PLAIN, "%d", fit->result.evaluations);
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, wb_calibrate_end_text(fit->result.end));
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+static void put_remarks(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    for (int i = 0; i < results->campaign->n_bundles; i++) {
+        const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, i);
+        const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+        const int n = fit ? wb_calibrate_remarks(&fit->result, remarks) : 0;
+        for (int k = 0; k < n; k++) {
+            char text[800], label[300], remark[400];
+            snprintf(text, sizeof text, "<b>%s</b>: %s.",
+                     wb_pages_escape(label, sizeof label, results->campaign->bundles[i].label),
+                     wb_pages_escape(remark, sizeof remark, remarks[k]));
+            wb_document_item(document, WB_TONE_PLAIN, text);
+        }
+    }
+}
+
+static void put_fit(struct wb_document *document, const struct wb_bundles_results *results,
+                    const struct wb_figures *figures)
+{
+    wb_document_heading(document, 1, "one-dimensional", "Effective 1D properties");
+    wb_figures_put(figures, document, "fit", 0);
+    put_table(document, results);
+    put_quality(document, results);
+    put_remarks(document, results);
+}
+
+/* --- cost --- */
+
+static void put_cost_of(struct wb_document *document, struct wb_document_table *table,
+                        const struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
+    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const rod = &results->rods[index];
+    const double none = (double)NAN, cost = wb_bundles_results_cost(results, index);
+    const double limit = results->campaign->limits.cost;
+    const double rod_cpu = rod->state == WB_BUNDLES_USABLE ? rod->numbers.cpu_s : none;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
+    wb_pages_cell_number(&row, run ? run->numbers.elements : none, 0);
+    wb_pages_cell_number(&row, run ? run->numbers.shells : none, 0);
+    wb_pages_cell_number(&row, run ? run->numbers.steps / 1e3 : none, 0);
+    wb_pages_cell_number(&row, run ? run->numbers.ns : none, 1);
+    wb_pages_cell_number(&row, run ? run->numbers.cpu_s : none, 1);
+    wb_pages_cell_number(&row, rod_cpu, 3);
+    if (limit > 0.0 && isfinite(cost))
+        wb_pages_cell(&row, cost <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.3f",
+                      cost / WB_PERCENT);
+    else
+        wb_pages_cell_number(&row, cost / WB_PERCENT, 3);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_cost(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Bundle"},
+        {.heading = "Hexahedra", .right = true},
+        {.heading = "Shells", .right = true},
+        {.heading = "Steps (10<sup>3</sup>)", .right = true, .wraps = true},
+        {.heading = "ns per element-step", .right = true, .wraps = true},
+        {.heading = "CPU of 3D (s)", .right = true, .wraps = true},
+        {.heading = "CPU of 1D (s)", .right = true, .wraps = true},
+        {.heading = "1D over 3D (%)", .right = true, .wraps = true},
+    };
+    const struct wb_bundles *const campaign = results->campaign;
+    struct wb_text caption = {0};
+    wb_text_append(&caption, "CPU seconds are those that each simulation stored when it was made, "
+                             "on the machine that made it.");
+    if (campaign->printed_cost > 0.0)
+        wb_text_append(&caption, " The paper: 1D costs below %g %% of 3D.",
+                       campaign->printed_cost / WB_PERCENT);
+    wb_document_heading(document, 1, "cost", "Cost");
+    struct wb_document_table *const table =
+        wb_document_table(document, wb_text_string(&caption), 8, columns);
+    document->failed |= caption.failed;
+    wb_text_release(&caption);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        put_cost_of(document, table, results, i);
+}
+
+/* --- all runs --- */
+
+static void put_all_runs(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    int all[WB_BUNDLES_RUNS], n_beyond = 0;
+    const int n = results->campaign->n_runs;
+    struct wb_text text = {0};
+    for (int i = 0; i < n; i++) {
+        const struct wb_bundles_result *const run = wb_bundles_results_usable(results, i);
+        all[i] = i;
+        if (run && run->beyond)
+            wb_text_append(&text, "%s%s (%.1f %%)", n_beyond++ > 0 ? ", " : "",
+                           results->campaign->runs[i].name, run->numbers.strain / WB_PERCENT);
+    }
+    wb_document_heading(document, 1, "runs", "All runs");
+    put_runs(document, results, n, all, true);
+    if (n_beyond > 0) {
+        struct wb_text note = {0};
+        wb_text_append(&note, "Strains went beyond what the elements' logarithm is made for in ");
+        wb_text_append_escaped(&note, wb_text_string(&text));
+        wb_text_append(&note, ".");
+        wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&note));
+        wb_text_release(&note);
+    }
+    wb_text_release(&text);
+}
+
+/* --- provenance --- */
+
+static void put_dataset(struct wb_document *document, struct wb_document_table *table,
+                        const struct wb_bundles_dataset *wanted,
+                        const struct wb_bundles_result *result)
+{
+    struct wb_pages_row row = {.n = 0};
+    if (result->state == WB_BUNDLES_NOT_WANTED)
+        return;
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, wanted->name);
+    if (result->state == WB_BUNDLES_USABLE)
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, result->revision);
+    else
+        wb_pages_cell(&row, WB_TONE_WARNING, "not used");
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, result->sha256);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_datasets(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "Dataset", .wraps = true},
+        {"Revision"},
+        {.heading = "SHA-256 of force_deflection.csv", .monospace = true},
+    };
+    const struct wb_bundles *const campaign = results->campaign;
+    wb_document_heading(document, 2, "datasets", "Datasets");
+    struct wb_document_table *const table =
+        wb_document_table(document, "Revision: of the program that made it.", 3, columns);
+    for (int i = 0; i < campaign->n_runs; i++)
+        put_dataset(document, table, &campaign->runs[i].dataset, &results->runs[i]);
+    for (int i = 0; i < campaign->n_bundles; i++)
+        put_dataset(document, table, &campaign->bundles[i].rod, &results->rods[i]);
+}
+
+static void put_models(struct wb_document *document, const struct wb_bundles *campaign)
+{
+    static const struct wb_document_column columns[] = {
+        {"Bundle"},
+        {.heading = "Mesh"},
+        {.heading = "SHA-256 with its wires and materials", .monospace = true},
+    };
+    wb_document_heading(document, 2, "models", "Bundles");
+    struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        const struct wb_bundles_run *const run = &campaign->runs[campaign->bundles[i].dynamic];
+        struct wb_pages_row row = {.n = 0};
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->model_name);
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->mesh->name);
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->model->sha256);
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+static void put_provenance(struct wb_document *document, const struct wb_bundles_results *results)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    wb_pages_put_origin(document, campaign->name, campaign->sha256, campaign->notes, "datasets");
+    put_models(document, campaign);
+    put_datasets(document, results);
+}
+
+/* --- all of it --- */
+
+void wb_bundles_pages_build(struct wb_document *document, const struct wb_bundles_results *results,
+                            const struct wb_figures *figures)
+{
+    char subtitle[300], footer[300];
+    snprintf(footer, sizeof footer, "wirebench %s, revision %s \xc2\xb7 simulations, no tests",
+             wb_version(), wb_version_revision());
+    snprintf(subtitle, sizeof subtitle, "%d of %d simulations \xc2\xb7 wirebench %s, revision %s",
+             results->n_usable, results->n_wanted, wb_version(), wb_version_revision());
+    wb_document_init(document, "Simulation report", results->campaign->title, subtitle, footer, "");
+    put_summary(document, results);
+    put_sections(document, results, figures);
+    put_studies(document, results, figures);
+    put_groups(document, results, figures);
+    put_fit(document, results, figures);
+    put_cost(document, results);
+    put_all_runs(document, results);
+    put_provenance(document, results);
+}

@@ -1,0 +1,298 @@
+#include "analysis/report/bundles/bundles_results.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/computed.h"
+#include "analysis/report/reasons.h"
+#include "base/interrupt.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double pi = 3.14159265358979323846;
+
+const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
+                                                          int run)
+{
+    return run >= 0 && results->runs[run].state == WB_BUNDLES_USABLE ? &results->runs[run] : NULL;
+}
+
+bool wb_bundles_results_either(const struct wb_bundles_results *results,
+                               const struct wb_bundles_bundle *bundle)
+{
+    return wb_bundles_results_usable(results, bundle->dynamic) ||
+           wb_bundles_results_usable(results, bundle->constant);
+}
+
+bool wb_bundles_results_any(const struct wb_bundles_results *results,
+                            const struct wb_bundles_group *group)
+{
+    bool any = false;
+    for (int i = group->first; i < group->first + group->n; i++)
+        any |= wb_bundles_results_either(results, &results->campaign->bundles[i]);
+    return any;
+}
+
+const struct wb_bundles_fit *wb_bundles_results_fit(const struct wb_bundles_results *results,
+                                                    int bundle)
+{
+    const struct wb_bundles_fit *const fit = &results->fits[bundle];
+    return fit->state == WB_BUNDLES_USABLE ? fit : NULL;
+}
+
+double wb_bundles_results_rigidity(double youngs_modulus, double diameter)
+{
+    return youngs_modulus * pi / 64.0 * pow(diameter, 4.0);
+}
+
+double wb_bundles_results_cost(const struct wb_bundles_results *results, int bundle)
+{
+    const struct wb_bundles_result *const rod = &results->rods[bundle];
+    const struct wb_bundles_result *const run =
+        wb_bundles_results_usable(results, results->campaign->bundles[bundle].dynamic);
+    return run && rod->state == WB_BUNDLES_USABLE ? rod->numbers.cpu_s / run->numbers.cpu_s
+                                                  : (double)NAN;
+}
+
+/* --- limits --- */
+
+static void judge_one(struct wb_bundles_verdict *verdicts, int *n,
+                      const struct wb_bundles_verdict *verdict)
+{
+    if (!(verdict->limit > 0.0))
+        return;
+    verdicts[*n] = *verdict;
+    /* So that a NaN is not kept. */
+    verdicts[(*n)++].kept = verdict->value <= verdict->limit;
+}
+
+enum ratio {
+    KINETIC,
+    ARTIFICIAL,
+    IMBALANCE
+};
+
+static double ratio_of(const struct wb_bundles_numbers *numbers, enum ratio ratio)
+{
+    return ratio == KINETIC      ? numbers->kinetic
+           : ratio == ARTIFICIAL ? numbers->artificial
+                                 : numbers->imbalance;
+}
+
+/* The worst of all usable runs that are judged; a NaN is worse than any. */
+static void judge_energy(const struct wb_bundles_results *results,
+                         struct wb_bundles_verdict *verdicts, int *n, enum ratio ratio)
+{
+    const struct wb_bundles_limits *const limits = &results->campaign->limits;
+    const struct wb_bundles_verdict cases[] = {
+        [KINETIC] = {.what = "Kinetic over internal energy",
+                     .key = "kinetic_max",
+                     .limit = limits->kinetic},
+        [ARTIFICIAL] = {.what = "Artificial over internal energy",
+                        .key = "artificial_max",
+                        .limit = limits->artificial},
+        [IMBALANCE] = {.what = "Imbalance of energy over the external work",
+                       .key = "imbalance_max",
+                       .limit = limits->imbalance},
+    };
+    struct wb_bundles_verdict verdict = cases[ratio];
+    for (int i = 0; i < results->campaign->n_runs; i++) {
+        const struct wb_bundles_result *const run = wb_bundles_results_usable(results, i);
+        const double value = run ? ratio_of(&run->numbers, ratio) : (double)NAN;
+        if (!run || !results->campaign->runs[i].judged || (verdict.label && value <= verdict.value))
+            continue;
+        verdict.value = value;
+        verdict.label = results->campaign->runs[i].name;
+        if (isnan(value))
+            break;
+    }
+    if (verdict.label)
+        judge_one(verdicts, n, &verdict);
+}
+
+int wb_bundles_results_judge(const struct wb_bundles_results *results,
+                             struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS])
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    const struct wb_bundles_limits *const limits = &campaign->limits;
+    int n = 0;
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
+        const struct wb_bundles_result *const run =
+            wb_bundles_results_usable(results, bundle->dynamic);
+        const struct wb_bundles_verdict rms = {
+            "RMS from the published curve, over its largest force",
+            "rms_max",
+            bundle->label,
+            run ? run->rms : (double)NAN,
+            limits->rms,
+            false};
+        if (run && run->published && isfinite(run->rms))
+            judge_one(verdicts, &n, &rms);
+    }
+    judge_energy(results, verdicts, &n, KINETIC);
+    judge_energy(results, verdicts, &n, ARTIFICIAL);
+    judge_energy(results, verdicts, &n, IMBALANCE);
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        const double value = wb_bundles_results_cost(results, i);
+        const struct wb_bundles_verdict cost = {"CPU seconds of the 1D beam over those of the "
+                                                "bundle",
+                                                "cost_max",
+                                                campaign->bundles[i].label,
+                                                value,
+                                                limits->cost,
+                                                false};
+        if (!isnan(value))
+            judge_one(verdicts, &n, &cost);
+    }
+    return n;
+}
+
+static void judge(struct wb_bundles_results *results)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS];
+    results->n_wanted = campaign->n_runs;
+    results->is_complete = true;
+    for (int i = 0; i < campaign->n_runs; i++) {
+        const struct wb_bundles_result *const run = &results->runs[i];
+        results->n_usable += run->state == WB_BUNDLES_USABLE;
+        if (run->state == WB_BUNDLES_USABLE && run->published && run->n_published < run->curve.n)
+            results->is_complete = false;
+    }
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        results->n_wanted += campaign->bundles[i].has_rod;
+        results->n_usable += results->rods[i].state == WB_BUNDLES_USABLE;
+        results->is_complete &= results->fits[i].state == WB_BUNDLES_USABLE;
+    }
+    results->is_complete &= results->n_usable == results->n_wanted;
+    const int n = wb_bundles_results_judge(results, verdicts);
+    for (int i = 0; i < n; i++)
+        results->exceeds_limit |= !verdicts[i].kept;
+}
+
+/* --- the fit --- */
+
+static bool go_on(void *context, int evaluation, double error, double size)
+{
+    (void)context, (void)evaluation, (void)error, (void)size;
+    return !wb_interrupted();
+}
+
+/* The fitted beam's forces on the grid of the run's curve. */
+static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
+                                     const struct wb_bundles_result *run,
+                                     const struct wb_calibrate_settings *settings)
+{
+    const struct wb_computed_settings how = {.n_elements = settings->n_elements,
+                                             .n_fibres = settings->n_fibres};
+    struct wb_computed *computed;
+    int n_reached;
+    fit->force = malloc((size_t)run->curve.n * sizeof *fit->force);
+    if (!fit->force)
+        return wb_fail(WB_ERR_MEMORY, "out of memory fitting a bundle");
+    WB_TRY(wb_computed_create(&computed, &run->dataset.info, &fit->result.material, &how));
+    const enum wb_status status = wb_computed_curve(computed, &fit->result.material, run->curve.n,
+                                                    run->curve.step, fit->force, &n_reached);
+    wb_computed_destroy(computed);
+    return status;
+}
+
+static enum wb_status calibrate(struct wb_bundles_fit *fit, const struct wb_bundles_result *run,
+                                const struct wb_calibrate_settings *settings)
+{
+    const struct wb_dataset *const dataset = &run->dataset;
+    struct wb_calibrate_settings own = *settings;
+    own.progress = go_on;
+    WB_TRY(wb_calibrate_run(&fit->result, &dataset, 1, &own));
+    fit->rigidity = wb_bundles_results_rigidity(fit->result.material.youngs_modulus,
+                                                dataset->info.outer_diameter);
+    const enum wb_status status = compute_fitted(fit, run, settings);
+    if (status != WB_OK)
+        wb_calibrate_result_release(&fit->result);
+    return status;
+}
+
+static void fit_bundle(struct wb_bundles_results *results, int index)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    struct wb_bundles_fit *const fit = &results->fits[index];
+    const struct wb_bundles_result *const run =
+        wb_bundles_results_usable(results, campaign->bundles[index].dynamic);
+    fit->state = WB_BUNDLES_MISSING;
+    if (!run) {
+        wb_text_append(&fit->problem, "the bundle's dataset that it builds on is missing");
+        return;
+    }
+    struct wb_reasons reasons = {&fit->problem, NULL, NULL};
+    wb_reasons_begin(&reasons);
+    const enum wb_status status = calibrate(fit, run, &campaign->fit);
+    wb_reasons_end();
+    fit->state = status == WB_OK ? WB_BUNDLES_USABLE : WB_BUNDLES_REFUSED;
+    if (status == WB_OK)
+        wb_text_release(&fit->problem);
+    else if (fit->problem.length == 0)
+        wb_text_append(&fit->problem, "%s", wb_status_text(status));
+}
+
+/* A dataset that cannot be compared is refused with the reason. */
+static void compare_run(struct wb_bundles_result *result, const struct wb_bundles_run *run,
+                        const struct wb_calibrate_settings *fit)
+{
+    struct wb_reasons reasons = {&result->problem, run->dataset.path, run->dataset.name};
+    wb_reasons_begin(&reasons);
+    const enum wb_status status = wb_bundles_run_compare(result, run, fit);
+    wb_reasons_end();
+    if (status == WB_OK)
+        return;
+    result->state = WB_BUNDLES_REFUSED;
+    if (result->problem.length == 0)
+        wb_text_append(&result->problem, "%s", wb_status_text(status));
+}
+
+/* --- all of it --- */
+
+void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign)
+{
+    results->campaign = campaign;
+    for (int i = 0; i < campaign->n_runs; i++)
+        wb_bundles_run_load(&results->runs[i], &campaign->runs[i]);
+    for (int i = 0; i < campaign->n_bundles; i++) {
+        const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
+        wb_bundles_run_load_rod(&results->rods[i], bundle, &campaign->runs[bundle->dynamic]);
+    }
+}
+
+void wb_bundles_results_compute(struct wb_bundles_results *results, wb_bundles_progress *progress,
+                                void *context)
+{
+    const struct wb_bundles *const campaign = results->campaign;
+    for (int i = 0; i < campaign->n_runs && !wb_interrupted(); i++) {
+        if (results->runs[i].state == WB_BUNDLES_USABLE)
+            compare_run(&results->runs[i], &campaign->runs[i], &campaign->fit);
+    }
+    for (int i = 0; i < campaign->n_bundles && !wb_interrupted(); i++) {
+        fit_bundle(results, i);
+        if (progress)
+            progress(context, i + 1, campaign->n_bundles, campaign->bundles[i].label);
+    }
+    results->interrupted = wb_interrupted();
+    judge(results);
+}
+
+void wb_bundles_results_release(struct wb_bundles_results *results)
+{
+    for (int i = 0; i < WB_BUNDLES_RUNS; i++)
+        wb_bundles_run_release(&results->runs[i]);
+    for (int i = 0; i < WB_BUNDLES_BUNDLES; i++) {
+        struct wb_bundles_fit *const fit = &results->fits[i];
+        wb_bundles_run_release(&results->rods[i]);
+        wb_text_release(&fit->problem);
+        if (fit->state == WB_BUNDLES_USABLE)
+            wb_calibrate_result_release(&fit->result);
+        free(fit->force);
+    }
+    memset(results, 0, sizeof *results);
+}

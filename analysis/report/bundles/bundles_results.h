@@ -1,0 +1,80 @@
+/* Everything that the report of bundles tells: datasets read and checked, compared with the
+ * published curves, and the 1D properties fitted to each bundle.
+ */
+#ifndef WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RESULTS_H
+#define WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RESULTS_H
+
+#include <stdbool.h>
+
+#include "analysis/calibrate.h"
+#include "analysis/report/bundles/bundles.h"
+#include "analysis/report/bundles/bundles_run.h"
+#include "base/status.h"
+#include "base/text.h"
+
+/* The homogenised beam fitted to a bundle's run with decaying friction. */
+struct wb_bundles_fit {
+    enum wb_bundles_state state; /* missing: its dataset is */
+    struct wb_text problem;
+    struct wb_calibrate_result result; /* of a usable one, as all that follows */
+    double *force;                     /* N, (curve.n) of the run's curve; owned */
+    double rigidity;                   /* N m2: E I over the diameter of the dataset */
+};
+
+struct wb_bundles_results {
+    const struct wb_bundles *campaign; /* borrowed */
+    struct wb_bundles_result runs[WB_BUNDLES_RUNS];
+    struct wb_bundles_result rods[WB_BUNDLES_BUNDLES];
+    struct wb_bundles_fit fits[WB_BUNDLES_BUNDLES];
+    int n_wanted, n_usable; /* datasets */
+    bool is_complete;
+    bool exceeds_limit;
+    bool interrupted;
+};
+
+typedef void wb_bundles_progress(void *context, int done, int total, const char *what);
+
+/* Reads and checks the datasets into zeroed results. Nothing fails. */
+void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign);
+/* Then compares and fits what is there, and tells of each bundle. Nothing fails. */
+void wb_bundles_results_compute(struct wb_bundles_results *results, wb_bundles_progress *progress,
+                                void *context);
+void wb_bundles_results_release(struct wb_bundles_results *results); /* accepts a zeroed one */
+
+/* A run's result (index -1: none) that is usable, else NULL. */
+const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
+                                                          int run);
+/* Whether one of a bundle's runs is usable, or one of any bundle of a group. */
+bool wb_bundles_results_either(const struct wb_bundles_results *results,
+                               const struct wb_bundles_bundle *bundle);
+bool wb_bundles_results_any(const struct wb_bundles_results *results,
+                            const struct wb_bundles_group *group);
+/* The fit of a bundle that is usable, else NULL. */
+const struct wb_bundles_fit *wb_bundles_results_fit(const struct wb_bundles_results *results,
+                                                    int bundle);
+
+/* CPU seconds of the 1D beam over those of the bundle's run; NaN unless both are used and known. */
+double wb_bundles_results_cost(const struct wb_bundles_results *results, int bundle);
+
+/* E I of a beam, N m2. */
+double wb_bundles_results_rigidity(double youngs_modulus, double diameter);
+
+/* What a limit of the campaign says of what is usable. */
+struct wb_bundles_verdict {
+    const char *what;    /* markup */
+    const char *key;     /* of the limit: "rms_max" */
+    const char *label;   /* of the bundle, or the run it is about */
+    double value, limit; /* 1 */
+    bool kept;
+};
+
+enum {
+    WB_BUNDLES_VERDICTS = 2 * WB_BUNDLES_BUNDLES + 3
+};
+
+/* Returns how many there are: of every bundle its RMS and its cost, and of the energies the worst
+ * of all runs. */
+int wb_bundles_results_judge(const struct wb_bundles_results *results,
+                             struct wb_bundles_verdict verdicts[WB_BUNDLES_VERDICTS]);
+
+#endif

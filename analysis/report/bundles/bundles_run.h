@@ -1,0 +1,80 @@
+/* A dataset of a campaign of bundles: read, checked against its bundle and the run's settings, with
+ * what it says of its computation; and the published curve beside it.
+ */
+#ifndef WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RUN_H
+#define WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RUN_H
+
+#include <stdbool.h>
+
+#include "analysis/curve.h"
+#include "analysis/dataset.h"
+#include "analysis/report/bundles/bundles.h"
+#include "analysis/surface.h"
+#include "base/text.h"
+
+enum wb_bundles_state {
+    WB_BUNDLES_NOT_WANTED,
+    WB_BUNDLES_MISSING, /* there is no such dataset */
+    WB_BUNDLES_STALE,   /* of a bundle or of settings that have changed, or cut short: to be made
+                           again */
+    WB_BUNDLES_REFUSED, /* it is something else, damaged, ... */
+    WB_BUNDLES_USABLE
+};
+
+/* A row of energies.csv, J. */
+struct wb_bundles_energy {
+    double deflection, time; /* m; s, of the model */
+    double external, kinetic, internal, artificial, friction, plastic;
+};
+
+/* What a dataset says of its computation; NaN where it does not. */
+struct wb_bundles_numbers {
+    double elements, shells, steps, time_step, duration, cpu_s, wall_s, ns; /* s, ns */
+    double kinetic, artificial, imbalance, strain; /* largest ratios, see fe/bundle/bundle_run.h */
+    double penetration;                            /* m */
+};
+
+struct wb_bundles_result {
+    enum wb_bundles_state state;
+    struct wb_text problem; /* why it cannot be used */
+    char revision[64];      /* of the program that made it */
+    char sha256[WB_SHA256_TEXT];
+    struct wb_bundles_numbers numbers;
+    bool beyond;         /* strains beyond what the elements' logarithm is made for */
+    bool kinetic_choice; /* the duration was chosen by the limit of kinetic energy */
+    /* Of a usable one: */
+    struct wb_dataset dataset;
+    int n_energies;
+    struct wb_bundles_energy *energies; /* (n_energies), owned; none without energies.csv */
+    struct wb_surface surface;          /* bent; no bodies without surface.csv */
+    struct wb_curve curve;              /* the loading */
+    /* The published beam under the run's own loading, where there is one; (curve.n), owned. */
+    double *published; /* N; NaN from n_published on */
+    int n_published;
+    double published_max; /* N, its largest force: what errors are divided by */
+    double *error;        /* of the run from it, over published_max */
+    double rms, max_error;
+};
+
+/* Reads what a run wants into a zeroed result. Nothing fails: the result says what is wrong. */
+void wb_bundles_run_load(struct wb_bundles_result *result, const struct wb_bundles_run *run);
+/* The same of the 1D dataset of a bundle, of `run`'s published beam. */
+void wb_bundles_run_load_rod(struct wb_bundles_result *result,
+                             const struct wb_bundles_bundle *bundle,
+                             const struct wb_bundles_run *run);
+void wb_bundles_run_release(struct wb_bundles_result *result); /* accepts a zeroed one */
+
+/* The part of them that concerns the loading curve: averages the usable dataset's loading on the
+ * fit's grid and computes the published curve on it. */
+WB_MUST_CHECK enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
+                                                    const struct wb_bundles_run *run,
+                                                    const struct wb_calibrate_settings *fit);
+
+/* Whether it is to be made (again) by --solve. */
+bool wb_bundles_run_is_missing(const struct wb_bundles_result *result);
+
+/* What a run costs, beside others: its elements, and twice as much where the duration is to be
+ * found first. */
+double wb_bundles_run_cost(const struct wb_bundles_run *run);
+
+#endif

@@ -1,0 +1,192 @@
+#include "analysis/report/files.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/report/html.h"
+#include "analysis/report/pdf.h"
+#include "base/file.h"
+#include "base/json.h"
+#include "base/text.h"
+
+#define WB_LOG_DOMAIN "report"
+
+/* Pixels of a PNG for a point: 216 dots an inch. */
+static const double png_scale = 3.0;
+
+struct output {
+    char name[128]; /* relative to the report's folder */
+    struct wb_text bytes;
+};
+
+struct outputs {
+    int n;
+    struct output *items;
+};
+
+/* --- drawing --- */
+
+static struct wb_text *add_output(struct outputs *outputs, const char *folder, const char *name,
+                                  const char *ending)
+{
+    struct output *const output = &outputs->items[outputs->n++];
+    snprintf(output->name, sizeof output->name, "%s%s.%s", folder, name, ending);
+    return &output->bytes;
+}
+
+static enum wb_status draw_json(struct outputs *outputs, const struct wb_files_content *content)
+{
+    const char **const names = calloc((size_t)outputs->n + 1, sizeof *names);
+    if (!names)
+        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
+    for (int i = 0; i < outputs->n; i++)
+        names[i] = outputs->items[i].name;
+    names[outputs->n] = "report.json";
+    struct wb_json *const root = content->json(content->context, names, outputs->n + 1);
+    free(names);
+    char *text;
+    const enum wb_status status = wb_json_format(root, &text);
+    wb_json_destroy(root);
+    if (status != WB_OK)
+        return status;
+    wb_text_append_bytes(add_output(outputs, "", "report", "json"), text, strlen(text));
+    free(text);
+    return WB_OK;
+}
+
+static enum wb_status draw(struct outputs *outputs, const struct wb_files_content *content)
+{
+    outputs->items = calloc(2 * (size_t)content->figures->n + 3, sizeof *outputs->items);
+    if (!outputs->items)
+        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
+    WB_TRY(wb_pdf_render(content->document, add_output(outputs, "", "report", "pdf")));
+    WB_TRY(wb_html_render(content->document, add_output(outputs, "", "report", "html")));
+    for (int i = 0; i < content->figures->n; i++) {
+        const struct wb_figure *const figure = content->figures->items[i].figure;
+        const char *const name = wb_figure_name(figure);
+        WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
+        WB_TRY(wb_figure_png(figure, png_scale, add_output(outputs, "figures/", name, "png")));
+    }
+    WB_TRY(draw_json(outputs, content));
+    for (int i = 0; i < outputs->n; i++) {
+        if (outputs->items[i].bytes.failed)
+            return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
+    }
+    return WB_OK;
+}
+
+static void release(struct outputs *outputs)
+{
+    for (int i = 0; outputs->items && i < outputs->n; i++)
+        wb_text_release(&outputs->items[i].bytes);
+    free(outputs->items);
+}
+
+/* --- writing --- */
+
+static enum wb_status fail_errno(const char *what, const char *path)
+{
+    const int error = errno;
+    return wb_fail(WB_ERR_IO, "cannot %s '%s': %s", what, path, strerror(error));
+}
+
+/* Writes all into a new folder within the report's, from where it is moved when all is there. */
+static enum wb_status write_all(const struct outputs *outputs, const char *folder)
+{
+    char path[WB_PATH];
+    WB_TRY(wb_file_join(path, folder, "figures"));
+    WB_TRY(wb_file_make_folder(path));
+    for (int i = 0; i < outputs->n; i++) {
+        const struct output *const output = &outputs->items[i];
+        WB_TRY(wb_file_join(path, folder, output->name));
+        WB_TRY(wb_file_write(path, wb_text_string(&output->bytes), output->bytes.length));
+    }
+    return WB_OK;
+}
+
+static void remove_all(const struct outputs *outputs, const char *folder)
+{
+    char path[WB_PATH];
+    for (int i = 0; i < outputs->n; i++) {
+        if (wb_file_join(path, folder, outputs->items[i].name) == WB_OK)
+            unlink(path);
+    }
+    if (wb_file_join(path, folder, "figures") == WB_OK)
+        rmdir(path);
+    rmdir(folder);
+}
+
+static bool is_made(const struct outputs *outputs, const char *name)
+{
+    for (int i = 0; i < outputs->n; i++) {
+        if (strcmp(outputs->items[i].name, name) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Files that the report before made and this one does not, as its report.json lists them. */
+static void remove_stale(const struct outputs *outputs, const char *folder)
+{
+    char path[WB_PATH];
+    struct wb_json *before = NULL;
+    if (wb_file_join(path, folder, "report.json") != WB_OK || !wb_file_exists(path) ||
+        wb_json_read(&before, path) != WB_OK)
+        return;
+    const struct wb_json *const files = wb_json_get(before, "files");
+    for (size_t i = 0; i < wb_json_length(files); i++) {
+        const char *name;
+        /* Only names that this program gives: nothing outside of the folder. */
+        if (wb_json_text(wb_json_item(files, i), &name) && !strstr(name, "..") && name[0] != '/' &&
+            (strncmp(name, "figures/", 8) == 0 || !strchr(name, '/')) && !is_made(outputs, name) &&
+            wb_file_join(path, folder, name) == WB_OK)
+            unlink(path);
+    }
+    wb_json_destroy(before);
+}
+
+/* Moves the new files over the old ones, each at once. */
+static enum wb_status move_all(const struct outputs *outputs, const char *from, const char *to)
+{
+    char source[WB_PATH], target[WB_PATH];
+    WB_TRY(wb_file_join(target, to, "figures"));
+    WB_TRY(wb_file_make_folder(target));
+    remove_stale(outputs, to);
+    for (int i = 0; i < outputs->n; i++) {
+        WB_TRY(wb_file_join(source, from, outputs->items[i].name));
+        WB_TRY(wb_file_join(target, to, outputs->items[i].name));
+        if (rename(source, target) != 0)
+            return fail_errno("write", target);
+    }
+    return WB_OK;
+}
+
+static enum wb_status write_folder(const struct outputs *outputs, const char *folder, bool force)
+{
+    char beside[WB_PATH];
+    WB_TRY(wb_file_join(beside, folder, ".new-XXXXXX"));
+    WB_TRY(wb_file_prepare_output(folder, force));
+    if (!mkdtemp(beside))
+        return fail_errno("write into", folder);
+    enum wb_status status = write_all(outputs, beside);
+    if (status == WB_OK)
+        status = move_all(outputs, beside, folder);
+    remove_all(outputs, beside);
+    if (status != WB_OK)
+        rmdir(folder); /* succeeds only when it is empty, that is, when it was just made */
+    return status;
+}
+
+enum wb_status wb_files_write(const struct wb_files_content *content, const char *folder,
+                              bool force)
+{
+    struct outputs outputs = {0};
+    enum wb_status status = draw(&outputs, content);
+    if (status == WB_OK)
+        status = write_folder(&outputs, folder, force);
+    release(&outputs);
+    return status;
+}

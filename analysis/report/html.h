@@ -1,0 +1,13 @@
+/* A document as one HTML file that needs nothing else: style and figures (SVG) stand in it. */
+#ifndef WB_ANALYSIS_REPORT_HTML_H
+#define WB_ANALYSIS_REPORT_HTML_H
+
+#include "analysis/report/document.h"
+#include "base/status.h"
+#include "base/text.h"
+
+/* Appends the whole file to `html`. */
+WB_MUST_CHECK enum wb_status wb_html_render(const struct wb_document *document,
+                                            struct wb_text *html);
+
+#endif

@@ -1,0 +1,17 @@
+/* A document as PDF: A4 pages, vector figures, searchable text, bookmarks. */
+#ifndef WB_ANALYSIS_REPORT_PDF_H
+#define WB_ANALYSIS_REPORT_PDF_H
+
+#include "analysis/report/document.h"
+#include "base/status.h"
+#include "base/text.h"
+
+/* Width of the text, pt: what a figure over the whole width should have, and one of two beside
+ * each other. */
+#define WB_PDF_WIDTH 487.0
+#define WB_PDF_HALF_WIDTH 237.0
+
+/* Appends the whole file to `pdf`. */
+WB_MUST_CHECK enum wb_status wb_pdf_render(const struct wb_document *document, struct wb_text *pdf);
+
+#endif

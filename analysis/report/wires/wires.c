@@ -1,0 +1,301 @@
+#include "analysis/report/wires/wires.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/campaign.h"
+#include "base/config.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "campaign"
+
+static const char shipped[] = "simulations";
+
+/* What reading needs besides the campaign itself. */
+struct reading {
+    struct wb_wires *comparison;
+    char folder[WB_PATH];      /* of the campaign file */
+    char simulations[WB_PATH]; /* as the file gives it; "": the shipped ones */
+};
+
+const char *wb_wires_command(enum wb_wires_solver solver)
+{
+    return solver == WB_WIRES_SOLID ? "wire3d" : "wire1d";
+}
+
+/* How a path from the campaign file is told, in commands that are run in its folder: as it is
+ * given, or its last part where it says where on this machine it is. */
+static const char *as_told(const char *given)
+{
+    if (given[0] == '/' || strstr(given, ".."))
+        given = wb_file_name(given);
+    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
+}
+
+/* --- datasets --- */
+
+/* A name lies among the simulations; whatever holds a '/' is a path from the campaign file. */
+static enum wb_status find_dataset(const struct reading *reading, const char *given,
+                                   struct wb_wires_dataset *dataset)
+{
+    char folder[WB_PATH], name[WB_PATH];
+    dataset->wanted = true;
+    if (strchr(given, '/')) {
+        snprintf(dataset->name, sizeof dataset->name, "%.250s", as_told(given));
+        return wb_file_join(dataset->path, reading->folder, given);
+    }
+    const char *const folder_told = as_told(reading->simulations);
+    const bool has_name = folder_told[0] && strcmp(folder_told, ".") != 0;
+    snprintf(dataset->name, sizeof dataset->name, "%.120s/%.120s", has_name ? folder_told : shipped,
+             given);
+    if (reading->simulations[0]) {
+        WB_TRY(wb_file_join(folder, reading->folder, reading->simulations));
+        return wb_file_join(dataset->path, folder, given);
+    }
+    WB_TRY(wb_file_join(name, shipped, given));
+    if (wb_file_find_data(dataset->path, name) != WB_OK)
+        snprintf(dataset->path, sizeof dataset->path, "%s", name);
+    return WB_OK;
+}
+
+/* --- cases --- */
+
+static enum wb_status read_model(const struct reading *reading, const struct wb_config_node *node,
+                                 const char *name, struct wb_wires_case *item)
+{
+    char path[WB_PATH], named_in[WB_PATH + 32];
+    snprintf(named_in, sizeof named_in, "%s:%d: model", wb_config_origin(node),
+             wb_config_line(wb_config_find(node, "model")));
+    WB_TRY(wb_file_find_named(path, "models", name, reading->folder, named_in));
+    const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
+    snprintf(item->model_name, sizeof item->model_name,
+             is_shipped ? "fixtures/models/%s.yaml" : "%s", is_shipped ? name : as_told(name));
+    item->model = calloc(1, sizeof *item->model);
+    if (!item->model)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
+    return wb_wire_model_read(item->model, path);
+}
+
+static enum wb_status read_case(const struct reading *reading, const struct wb_config_node *node,
+                                bool has_rod, struct wb_wires_case *item)
+{
+    char model[256], solid[256] = "", rod[256] = "";
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_TEXT("label", item->label),
+        WB_CONFIG_TEXT("model", model),
+        WB_CONFIG_OPTIONAL_TEXT("solid", solid),
+        WB_CONFIG_OPTIONAL_TEXT("rod", rod),
+    };
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    WB_TRY(read_model(reading, node, model, item));
+    if (!solid[0])
+        snprintf(solid, sizeof solid, "%.240s-3d", item->model->name);
+    WB_TRY(find_dataset(reading, solid, &item->datasets[WB_WIRES_SOLID]));
+    if (!has_rod && rod[0])
+        return wb_config_refuse(node, "rod", "a rod knows no contact");
+    if (!rod[0])
+        snprintf(rod, sizeof rod, "%.240s-1d", item->model->name);
+    return has_rod ? find_dataset(reading, rod, &item->datasets[WB_WIRES_ROD]) : WB_OK;
+}
+
+static bool is_loaded_by_follower(const struct wb_wire_model *model)
+{
+    const double *const follower = model->step[model->n_steps - 1].loads.follower;
+    return follower[0] == 0.0 && follower[1] != 0.0 && follower[2] == 0.0;
+}
+
+/* The text of the report fits these models only. */
+static enum wb_status check_case(const struct wb_config_node *node, const struct wb_wires *all,
+                                 const struct wb_wires_case *item, bool elastic)
+{
+    const struct wb_wire_model *const model = item->model;
+    const struct wb_wire_model *const first = all->cases[WB_WIRES_ELASTIC].model;
+    if (model->is_elastic != elastic)
+        return wb_config_refuse(node, "model", "'%s' is %s", model->name,
+                                model->is_elastic ? "elastic" : "elastoplastic");
+    if (model->n_parts != 2)
+        return wb_config_refuse(node, "model", "'%s' has no core and jacket", model->name);
+    if (!is_loaded_by_follower(model))
+        return wb_config_refuse(node, "model", "'%s' does not end under a follower force along y",
+                                model->name);
+    if (fabs(model->length - first->length) > 1e-9 * first->length ||
+        model->step[model->n_steps - 1].loads.follower[1] !=
+            first->step[first->n_steps - 1].loads.follower[1])
+        return wb_config_refuse(node, "model", "'%s' has another length or force than '%s'",
+                                model->name, first->name);
+    return WB_OK;
+}
+
+/* The exact rod is loaded by the follower force alone, and so is the wire that a rod is fitted to.
+ */
+static enum wb_status check_alone(const struct wb_config_node *node,
+                                  const struct wb_wire_model *model)
+{
+    if (!wb_wire_model_is_follower(model))
+        return wb_config_refuse(node, "model", "'%s' is not loaded by a follower force alone",
+                                model->name);
+    if (model->gravity[0] != 0.0 || model->gravity[1] != 0.0 || model->gravity[2] != 0.0)
+        return wb_config_refuse(node, "model", "'%s' has weight: its gravity must be [0, 0, 0]",
+                                model->name);
+    return WB_OK;
+}
+
+static enum wb_status read_one(const struct reading *reading, const struct wb_config_node *node,
+                               int index)
+{
+    static const char *const labels[] = {"Elastic", "Elastic, friction", "Elastoplastic"};
+    struct wb_wires *const comparison = reading->comparison;
+    struct wb_wires_case *const item = &comparison->cases[index];
+    const bool is_contact = index == WB_WIRES_CONTACT;
+    snprintf(item->label, sizeof item->label, "%s", labels[index]);
+    WB_TRY(read_case(reading, node, !is_contact, item));
+    WB_TRY(check_case(node, comparison, item, index != WB_WIRES_ELASTOPLASTIC));
+    WB_TRY(check_alone(node, item->model));
+    if (item->model->has_contact != is_contact)
+        return wb_config_refuse(node, "model",
+                                is_contact ? "'%s' has no interface" : "'%s' is not bonded",
+                                item->model->name);
+    return WB_OK;
+}
+
+static enum wb_status read_residuals(const struct reading *reading,
+                                     const struct wb_config_node *list)
+{
+    struct wb_wires *const comparison = reading->comparison;
+    const int n = list ? wb_config_length(list) : 0;
+    if (n < 0 || n > WB_WIRES_RESIDUALS)
+        return wb_config_refuse(list, "residual", "expected a list of at most %d cases",
+                                WB_WIRES_RESIDUALS);
+    comparison->n_residual = n;
+    comparison->n_cases = WB_WIRES_RESIDUAL + n;
+    for (int i = 0; i < n; i++) {
+        const struct wb_config_node *const node = wb_config_item(list, i);
+        struct wb_wires_case *const item = &comparison->cases[WB_WIRES_RESIDUAL + i];
+        snprintf(item->label, sizeof item->label, "Residual %d", i + 1);
+        WB_TRY(read_case(reading, node, true, item));
+        WB_TRY(check_case(node, comparison, item, false));
+    }
+    return WB_OK;
+}
+
+/* --- the rest --- */
+
+static enum wb_status read_states(const struct wb_config_node *node, struct wb_wires *comparison)
+{
+    snprintf(comparison->loaded_state, sizeof comparison->loaded_state, "loaded");
+    snprintf(comparison->residual_state, sizeof comparison->residual_state, "unloaded");
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_TEXT("loaded", comparison->loaded_state),
+        WB_CONFIG_OPTIONAL_TEXT("residual", comparison->residual_state),
+    };
+    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+}
+
+static enum wb_status read_limits(const struct wb_config_node *node, struct wb_wires *comparison)
+{
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_NUMBER("tip_max", &comparison->tip_limit, 1.0, 1e-6, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("stress_max", &comparison->stress_limit, 1.0, 1e-6, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("cost_max", &comparison->cost_limit, 1.0, 1e-6, 10.0),
+    };
+    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+}
+
+static enum wb_status read_printed(const struct reading *reading, const struct wb_config_node *node)
+{
+    struct wb_wires *const comparison = reading->comparison;
+    char wire[256] = "", path[WB_PATH], named_in[WB_PATH + 32];
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_TEXT("wire", wire),
+        WB_CONFIG_TEXT("source", comparison->printed_source),
+        WB_CONFIG_OPTIONAL_NUMBER("stress_MPa", &comparison->printed_stress, WB_MPA, 1e-3, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("cost", &comparison->printed_cost, 1.0, 1e-6, 10.0),
+    };
+    if (!node)
+        return WB_OK;
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    if (!wire[0])
+        return WB_OK;
+    snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
+             wb_config_line(wb_config_find(node, "wire")));
+    WB_TRY(wb_file_find_named(path, "wires", wire, reading->folder, named_in));
+    WB_TRY(wb_wire_read(path, &comparison->printed_wire));
+    if (!comparison->printed_wire.has_properties)
+        return wb_config_refuse(node, "wire", "'%s' has no properties", wire);
+    comparison->has_printed_wire = true;
+    return WB_OK;
+}
+
+static enum wb_status read_root(struct reading *reading, const struct wb_config_node *root)
+{
+    static const char *const moduli[] = {"mixture", "curve", NULL};
+    struct wb_wires *const comparison = reading->comparison;
+    const struct wb_config_node *cases[WB_WIRES_RESIDUAL], *residual, *states, *fit, *limits,
+        *printed;
+    int modulus = 0;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_IGNORED("kind"),
+        WB_CONFIG_TEXT("title", comparison->title),
+        WB_CONFIG_OPTIONAL_TEXT("notes", comparison->notes),
+        WB_CONFIG_OPTIONAL_TEXT("simulations", reading->simulations),
+        WB_CONFIG_NODE("elastic", &cases[WB_WIRES_ELASTIC]),
+        WB_CONFIG_OPTIONAL_NODE("contact", &cases[WB_WIRES_CONTACT]),
+        WB_CONFIG_NODE("elastoplastic", &cases[WB_WIRES_ELASTOPLASTIC]),
+        WB_CONFIG_OPTIONAL_NODE("residual", &residual),
+        WB_CONFIG_OPTIONAL_NUMBER("section_mm", &comparison->section, WB_MM, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_NODE("states", &states),
+        WB_CONFIG_OPTIONAL_CHOICE("fit_modulus", &modulus, moduli),
+        WB_CONFIG_OPTIONAL_NODE("fit", &fit),
+        WB_CONFIG_OPTIONAL_NODE("limits", &limits),
+        WB_CONFIG_OPTIONAL_NODE("printed", &printed),
+    };
+    comparison->section = (double)NAN;
+    WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
+    comparison->mixture = modulus == 0;
+    for (int i = 0; i < WB_WIRES_RESIDUAL; i++) {
+        if (cases[i])
+            WB_TRY(read_one(reading, cases[i], i));
+    }
+    WB_TRY(read_residuals(reading, residual));
+    if (isnan(comparison->section))
+        comparison->section = comparison->cases[0].model->part[0].outer_diameter;
+    WB_TRY(read_states(states, comparison));
+    WB_TRY(wb_campaign_read_settings(fit, &comparison->fit));
+    WB_TRY(read_limits(limits, comparison));
+    return read_printed(reading, printed);
+}
+
+enum wb_status wb_wires_read(struct wb_wires *comparison, const char *path)
+{
+    memset(comparison, 0, sizeof *comparison);
+    wb_calibrate_default_settings(&comparison->fit);
+    WB_TRY(wb_hash_file(path, comparison->sha256));
+    wb_campaign_set_name(comparison->name, sizeof comparison->name, path);
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path));
+    struct reading reading = {.comparison = comparison};
+    wb_file_folder(reading.folder, path);
+    const enum wb_status status = read_root(&reading, wb_config_root(config));
+    wb_config_destroy(config);
+    if (status != WB_OK)
+        wb_wires_release(comparison);
+    return status;
+}
+
+void wb_wires_release(struct wb_wires *comparison)
+{
+    for (int i = 0; i < WB_WIRES_CASES; i++)
+        free(comparison->cases[i].model);
+    memset(comparison, 0, sizeof *comparison);
+}
+
+bool wb_wires_has_substitutes(const struct wb_wires *comparison)
+{
+    const struct wb_wire_model *const model = comparison->cases[WB_WIRES_ELASTOPLASTIC].model;
+    bool any = false;
+    for (int i = 0; i < model->n_parts; i++)
+        any |= model->part[i].is_substitute;
+    return any;
+}

@@ -1,0 +1,924 @@
+/* The report of wires, in order: summary, linear elastic, elastoplastic, residual stresses, cost,
+ * provenance. */
+#include "analysis/report/wires/wires_pages.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/report/pages.h"
+#include "analysis/report/wires/wires_figures.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "base/version.h"
+
+/* --- what is missing, what is exceeded --- */
+
+static void put_missing(struct wb_document *document, const struct wb_wires_results *results)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    if (results->is_complete)
+        return;
+    char text[1700], name[600], problem[900];
+    const int n = results->n_wanted - results->n_usable;
+    if (n > 0)
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> %d of %d datasets %s missing or cannot be used. The report "
+                 "shows what the others give.",
+                 n, results->n_wanted, wb_pages_plural(n, "is", "are"));
+    else
+        snprintf(text, sizeof text,
+                 "<b>Incomplete.</b> All datasets are there, but not every step could be done.");
+    wb_document_notice(document, WB_TONE_WARNING, text);
+    for (int i = 0; i < comparison->n_cases; i++) {
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
+            const struct wb_wires_run *const run = &results->runs[i][k];
+            if (run->state == WB_WIRES_NOT_WANTED || run->state == WB_WIRES_USABLE)
+                continue;
+            snprintf(text, sizeof text, "<b>%s</b>: %s. To make it:",
+                     wb_pages_escape(name, sizeof name, comparison->cases[i].datasets[k].name),
+                     wb_pages_escape(problem, sizeof problem, wb_text_string(&run->problem)));
+            wb_document_item(document, WB_TONE_WARNING, text);
+            wb_document_code(document, run->command);
+        }
+    }
+    if (results->fit_state != WB_WIRES_USABLE) {
+        snprintf(text, sizeof text, "<b>No fitted rod</b>: %s",
+                 wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
+        wb_document_item(document, WB_TONE_WARNING, text);
+    }
+}
+
+/* One sentence for each limit; `value` NaN: not known. */
+static void put_limit(struct wb_document *document, const char *what, double value, double limit)
+{
+    char text[400];
+    if (!(limit > 0.0) || isnan(value))
+        return;
+    const bool kept = value <= limit;
+    snprintf(text, sizeof text, "<b>%s</b> %s: %.3g %%, limit %.3g %%.",
+             kept ? "Limit kept." : "Limit exceeded.", what, value / WB_PERCENT,
+             limit / WB_PERCENT);
+    wb_document_item(document, kept ? WB_TONE_GOOD : WB_TONE_WARNING, text);
+}
+
+static void put_limits(struct wb_document *document, const struct wb_wires_results *results)
+{
+    static const char *const names[] = {
+        "Tip of the elastic solid from the exact one, over its displacement",
+        "Tip of the elastic rod from the exact one, over its displacement"};
+    const struct wb_wires *const comparison = results->comparison;
+    for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
+        const struct wb_wires_run *const run =
+            wb_wires_usable(results, WB_WIRES_ELASTIC, (enum wb_wires_solver)k);
+        put_limit(document, names[k], run ? wb_wires_tip_error(results, run) : (double)NAN,
+                  comparison->tip_limit);
+    }
+    double largest = (double)NAN;
+    for (int i = 0; i < results->n_stresses; i++)
+        largest =
+            fmax(largest, fabs(results->stresses[i].core.stress / results->stresses[i].beam - 1.0));
+    put_limit(document, "Elastic stress of the core's outer fibre from <i>E\xce\xba</i><i>r</i>",
+              largest, comparison->stress_limit);
+    put_limit(document, "CPU seconds of the elastic rod over those of the solid",
+              wb_wires_cost(results, WB_WIRES_ELASTIC), comparison->cost_limit);
+}
+
+/* --- what came out --- */
+
+struct fact {
+    const char *what, *unit;
+    double ours;
+    int decimals;
+    const char *paper; /* NULL or "": nothing */
+};
+
+static void put_fact(struct wb_document *document, struct wb_document_table *table,
+                     const struct fact *fact)
+{
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", fact->what);
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", fact->unit);
+    wb_pages_cell_number(&row, fact->ours, fact->decimals);
+    if (fact->paper && fact->paper[0])
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, fact->paper);
+    else
+        wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static double angle_of(const struct wb_wires_run *run)
+{
+    return run ? run->tip_angle / WB_DEGREE : (double)NAN;
+}
+
+static double largest_stress(const struct wb_wires_results *results, int index)
+{
+    const struct wb_wires_run *const run = wb_wires_usable(results, index, WB_WIRES_SOLID);
+    const struct wb_field *const field =
+        run ? wb_fields_find(&run->fields, results->comparison->loaded_state, (double)NAN) : NULL;
+    return wb_wires_find_peak(field, 0).stress / WB_MPA;
+}
+
+static double distance_between(const struct wb_wires_run *one, const struct wb_wires_run *other)
+{
+    return one && other ? wb_wires_distance(one, other) / WB_MM : (double)NAN;
+}
+
+static void put_facts(struct wb_document *document, const struct wb_wires_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "Simulated at the full force", .wraps = true},
+        {"Unit"},
+        {.heading = "Here", .right = true},
+        {.heading = "Paper", .right = true},
+    };
+    const struct wb_wires *const comparison = results->comparison;
+    const struct wb_wires_run *runs[WB_WIRES_RESIDUAL][WB_WIRES_SOLVERS];
+    for (int i = 0; i < WB_WIRES_RESIDUAL; i++) {
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++)
+            runs[i][k] = wb_wires_usable(results, i, (enum wb_wires_solver)k);
+    }
+    const struct wb_wires_run *const elastic = runs[WB_WIRES_ELASTIC][0];
+    const struct wb_wires_run *const plastic = runs[WB_WIRES_ELASTOPLASTIC][0];
+    const bool fitted = results->fit_state == WB_WIRES_USABLE && results->fitted.reached;
+    const double none = (double)NAN;
+    char stress[40] = "", cost[40] = "";
+    if (comparison->printed_stress > 0.0)
+        snprintf(stress, sizeof stress, "%.0f", comparison->printed_stress / WB_MPA);
+    if (comparison->printed_cost > 0.0)
+        snprintf(cost, sizeof cost, "below %g", comparison->printed_cost / WB_PERCENT);
+    const struct fact facts[] = {
+        {"Elastic: largest von Mises stress of the core, 3D", "MPa",
+         largest_stress(results, WB_WIRES_ELASTIC), 0, stress},
+        {"Elastic: largest distance of the axes, 1D from 3D", "mm",
+         distance_between(elastic, runs[WB_WIRES_ELASTIC][1]), 3, NULL},
+        {"Elastic: largest distance of the axes, friction from bond", "mm",
+         distance_between(elastic, runs[WB_WIRES_CONTACT][0]), 3, NULL},
+        {"Elastic: angle of the tip, 3D", "degrees", angle_of(elastic), 2, NULL},
+        {"Elastoplastic: angle of the tip, 3D", "degrees", angle_of(plastic), 1, NULL},
+        {"Elastoplastic: largest distance of the axes, 1D fibres from 3D", "mm",
+         distance_between(plastic, runs[WB_WIRES_ELASTOPLASTIC][1]), 2, NULL},
+        {"Elastoplastic: largest distance of the axes, 1D fitted from 3D", "mm",
+         fitted && plastic ? wb_wires_rod_distance(plastic, &results->fitted) / WB_MM : none, 2,
+         NULL},
+        {"Elastoplastic: angle of the tip, 1D with the printed properties", "degrees",
+         results->printed.reached ? results->printed.tip_angle / WB_DEGREE : none, 0, NULL},
+        {"Cost of the elastic rod over the solid's", "%",
+         wb_wires_cost(results, WB_WIRES_ELASTIC) / WB_PERCENT, 2, cost},
+    };
+    wb_document_heading(document, 2, "facts", "What came out");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        comparison->printed_source[0]
+            ? "Paper: what it prints. It has no numbers for the rest, and its figures are lost."
+            : NULL,
+        4, columns);
+    for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
+        put_fact(document, table, &facts[i]);
+}
+
+static void put_summary(struct wb_document *document, const struct wb_wires_results *results)
+{
+    wb_document_heading(document, 1, "summary", "Summary");
+    wb_document_notice(
+        document, WB_TONE_ORIGIN,
+        wb_wires_has_substitutes(results->comparison)
+            ? "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and "
+              "as a 1D rod. No wire was tested. The materials of the solid stand in for the "
+              "paper's Table 1, which is lost, so its numbers cannot be had again; what can be "
+              "shown is how solid and rod compare."
+            : "<b>Simulations.</b> Everything in this report is computed: a wire as a 3D solid and "
+              "as a 1D rod. No wire was tested.");
+    put_missing(document, results);
+    put_limits(document, results);
+    put_facts(document, results);
+}
+
+static void put_paragraph(struct wb_document *document, struct wb_text *text)
+{
+    wb_document_paragraph(document, wb_text_string(text));
+    document->failed |= text->failed;
+    wb_text_release(text);
+}
+
+/* --- tips --- */
+
+static const char distances[] =
+    "Tip from 3D: distance of the tips. Largest distance: of points at the same arc length.";
+
+static struct wb_document_table *start_tips(struct wb_document *document, const char *caption)
+{
+    static const struct wb_document_column columns[] = {
+        {"Model"},
+        {.heading = "Tip <i>x</i> (mm)", .right = true, .wraps = true},
+        {.heading = "<i>y</i> (mm)", .right = true, .wraps = true},
+        {.heading = "<i>z</i> (mm)", .right = true, .wraps = true},
+        {.heading = "Angle (degrees)", .right = true, .wraps = true},
+        {.heading = "Tip from 3D (mm)", .right = true, .wraps = true},
+        {.heading = "Largest distance (mm)", .right = true, .wraps = true},
+    };
+    return wb_document_table(document, caption ? caption : distances, 7, columns);
+}
+
+struct tip {
+    const char *label;
+    double place[3], angle; /* m, rad */
+    double largest;         /* m, of the axis from the solid's */
+};
+
+static void put_tip(struct wb_document *document, struct wb_document_table *table,
+                    const struct tip *tip, const struct wb_wires_run *solid, bool begins)
+{
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, tip->label);
+    for (int i = 0; i < 3; i++)
+        wb_pages_cell_number(&row, tip->place[i] / WB_MM, 3);
+    wb_pages_cell_number(&row, tip->angle / WB_DEGREE, 3);
+    double away = (double)NAN;
+    if (solid && isfinite(tip->largest))
+        away = hypot(hypot(tip->place[0] - solid->tip[0], tip->place[1] - solid->tip[1]),
+                     tip->place[2] - solid->tip[2]);
+    wb_pages_cell_number(&row, away / WB_MM, 3);
+    wb_pages_cell_number(&row, tip->largest / WB_MM, 3);
+    wb_pages_put_row(document, table, begins, &row);
+}
+
+static void put_tip_of(struct wb_document *document, struct wb_document_table *table,
+                       const char *label, const struct wb_wires_run *run,
+                       const struct wb_wires_run *solid)
+{
+    if (!run)
+        return;
+    struct tip tip = {.label = label, .angle = run->tip_angle, .largest = (double)NAN};
+    memcpy(tip.place, run->tip, sizeof tip.place);
+    if (solid && run != solid)
+        tip.largest = wb_wires_distance(solid, run);
+    put_tip(document, table, &tip, solid, run == solid);
+}
+
+static void put_rod(struct wb_document *document, struct wb_document_table *table,
+                    const char *label, const struct wb_wires_rod *rod,
+                    const struct wb_wires_run *solid)
+{
+    const int last = WB_WIRES_POINTS - 1;
+    if (!rod->reached)
+        return;
+    const struct tip tip = {.label = label,
+                            .place = {rod->x[last], rod->y[last], 0.0},
+                            .angle = rod->tip_angle,
+                            .largest = solid ? wb_wires_rod_distance(solid, rod) : (double)NAN};
+    put_tip(document, table, &tip, solid, false);
+}
+
+/* --- linear elastic --- */
+
+static void put_stresses(struct wb_document *document, const struct wb_wires_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "From the clamp (mm)", .right = true, .wraps = true},
+        {.heading = "Core, 3D (MPa)", .right = true, .wraps = true},
+        {.heading = "<i>E\xce\xba</i><i>r</i> (MPa)", .right = true, .wraps = true},
+        {.heading = "Ratio", .right = true},
+        {.heading = "<i>\xce\xba</i> (1/mm)", .right = true, .wraps = true},
+        {.heading = "Jacket, 3D (MPa)", .right = true, .wraps = true},
+    };
+    const double limit = results->comparison->stress_limit;
+    if (results->n_stresses == 0)
+        return;
+    wb_document_heading(document, 2, "stresses", "Stress beside beam theory");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Largest von Mises stress of a cross section. <i>E\xce\xba</i><i>r</i>: Young's modulus of "
+        "the core, curvature of the exact elastic rod under the follower force, and the core's "
+        "radius.",
+        6, columns);
+    for (int i = 0; i < results->n_stresses; i++) {
+        const struct wb_wires_stress *const stress = &results->stresses[i];
+        const double ratio = stress->core.stress / stress->beam;
+        struct wb_pages_row row = {.n = 0};
+        wb_pages_cell_number(&row, stress->x / WB_MM, 2);
+        wb_pages_cell_number(&row, stress->core.stress / WB_MPA, 1);
+        wb_pages_cell_number(&row, stress->beam / WB_MPA, 1);
+        if (limit > 0.0)
+            wb_pages_cell(&row, fabs(ratio - 1.0) <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.4f",
+                          ratio);
+        else
+            wb_pages_cell_number(&row, ratio, 4);
+        wb_pages_cell_number(&row, stress->curvature * WB_MM, 6);
+        wb_pages_cell_number(&row, stress->jacket.stress / WB_MPA, 2);
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+static void put_largest(struct wb_document *document, const struct wb_wires_results *results,
+                        const struct wb_wires_run *run)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    const struct wb_wire_model_part *const core =
+        &comparison->cases[WB_WIRES_ELASTIC].model->part[0];
+    const struct wb_field *const field =
+        wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN);
+    const struct wb_wire_model *const plastic = comparison->cases[WB_WIRES_ELASTOPLASTIC].model;
+    const struct wb_wires_peak peak = wb_wires_find_peak(field, 0);
+    const double root =
+        core->material.youngs_modulus * results->exact.curvature[0] * 0.5 * core->outer_diameter;
+    struct wb_text text = {0};
+    if (!isfinite(peak.stress))
+        return;
+    wb_text_append(&text,
+                   "The largest von Mises stress of the core is <b>%.0f MPa</b>, %.2f mm from the "
+                   "clamp: %.1f times its yield stress of %.0f MPa, so that the linear elastic "
+                   "model does not hold. Beam theory has %.0f MPa at the clamp.",
+                   peak.stress / WB_MPA, peak.reference[0] / WB_MM,
+                   peak.stress / plastic->part[0].material.yield_stress,
+                   plastic->part[0].material.yield_stress / WB_MPA, root / WB_MPA);
+    if (comparison->printed_stress > 0.0)
+        wb_text_append(&text, " The paper prints %.0f MPa.", comparison->printed_stress / WB_MPA);
+    if (comparison->printed_stress > 0.0 && wb_wires_has_substitutes(comparison))
+        wb_text_append(&text,
+                       " Its Young's modulus of copper is lost, and the core's was chosen so "
+                       "that beam theory gives that stress.");
+    put_paragraph(document, &text);
+}
+
+static void put_elastic(struct wb_document *document, const struct wb_wires_results *results,
+                        const struct wb_figures *figures)
+{
+    const struct wb_wires_run *const solid =
+        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const contact =
+        wb_wires_usable(results, WB_WIRES_CONTACT, WB_WIRES_SOLID);
+    const struct wb_wires_run *const rod = wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_ROD);
+    const struct wb_wire_model *const model = results->comparison->cases[WB_WIRES_ELASTIC].model;
+    wb_document_heading(document, 1, "elastic", "Linear elastic: solid and rod");
+    wb_figures_put(figures, document, "elastic", 0);
+    if (solid)
+        put_largest(document, results, solid);
+    put_stresses(document, results);
+    wb_document_heading(document, 2, "elastic-shapes", "Shapes");
+    wb_figures_put(figures, document, "elastic-shapes", 0);
+    struct wb_document_table *const table = start_tips(
+        document, "Tip from 3D: distance of the tips. Largest distance: of points at the same arc "
+                  "length. Exact: the elastica under the follower force, which neither shears nor "
+                  "stretches.");
+    put_tip_of(document, table, "3D, bonded", solid, solid);
+    put_tip_of(document, table, "3D, friction", contact, solid);
+    put_tip_of(document, table, "1D", rod, solid);
+    put_rod(document, table, "1D, exact", &results->exact, solid);
+    struct wb_text text = {0};
+    wb_text_append(&text,
+                   "The rod's effective Young's modulus is %.2f GPa (eq. 8), its Poisson's ratio "
+                   "%.3f (eq. 9).",
+                   wb_wire_model_youngs_modulus(model) / (1e3 * WB_MPA),
+                   wb_wire_model_poissons_ratio(model));
+    if (contact && solid)
+        wb_text_append(&text,
+                       " Friction (<i>\xce\xbc</i> = %g) instead of a bond moves the axis by %.4f "
+                       "mm at most.",
+                       results->comparison->cases[WB_WIRES_CONTACT].model->jacket_contact.friction,
+                       wb_wires_distance(solid, contact) / WB_MM);
+    if (contact && isfinite(contact->slip))
+        wb_text_append(&text, " Core and jacket slip by %.4f mm at most.", contact->slip / WB_MM);
+    put_paragraph(document, &text);
+}
+
+/* --- elastoplastic --- */
+
+/* Printed properties under which the wire curls up. */
+static void append_misprint(struct wb_text *text, const struct wb_wires_results *results,
+                            bool solid_curls)
+{
+    if (!(results->printed.tip_angle / WB_DEGREE > 90.0))
+        return;
+    wb_text_append(text, " The paper's text suggests no such curl, so its <i>K</i> is taken for a "
+                         "misprint");
+    if (results->tenfold.reached)
+        wb_text_append(text, " (ten times as much gives %.0f degrees)",
+                       results->tenfold.tip_angle / WB_DEGREE);
+    wb_text_append(text, ".");
+    if (solid_curls)
+        wb_text_append(text, " That the solid of copper as soft as the literature has it curls up "
+                             "too says that the paper's figures need a harder copper than this, or "
+                             "show a curl that its text does not mention; without its Table 1 "
+                             "neither can be told.");
+}
+
+/* What the reader must know before comparing with the paper. */
+static void put_curl(struct wb_document *document, const struct wb_wires_results *results,
+                     const struct wb_wires_run *solid)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    const struct wb_material *const copper =
+        &comparison->cases[WB_WIRES_ELASTOPLASTIC].model->part[0].material;
+    struct wb_text text = {0};
+    if (wb_wires_has_substitutes(comparison))
+        wb_text_append(&text, "<b>The materials are substitutes</b> for the paper's Table 1, which "
+                              "is lost; their hardening is that of the literature. ");
+    wb_text_append(&text,
+                   "With <i>\xcf\x83</i><sub>Y</sub> = %.0f MPa, <i>K</i> = %.0f MPa and <i>n</i> "
+                   "= %.2f of the core the solid%s: at %g N its tip has turned by <b>%.0f "
+                   "degrees</b>, where the elastic one turns by %.0f.",
+                   copper->yield_stress / WB_MPA, copper->strength_coefficient / WB_MPA,
+                   copper->hardening_exponent,
+                   solid->tip_angle / WB_DEGREE > 90.0 ? " itself curls up" : " yields",
+                   solid->force, solid->tip_angle / WB_DEGREE,
+                   results->exact.tip_angle / WB_DEGREE);
+    if (results->printed.done) {
+        const struct wb_material *const printed = &comparison->printed_wire.material;
+        wb_text_append(
+            &text,
+            " With the effective properties that the paper prints (<i>\xcf\x83</i><sub>Y</sub> = "
+            "%g MPa, <i>K</i> = %g MPa, <i>n</i> = %g) the 1D wire curls to <b>%.0f degrees</b>",
+            printed->yield_stress / WB_MPA, printed->strength_coefficient / WB_MPA,
+            printed->hardening_exponent, results->printed.tip_angle / WB_DEGREE);
+        if (!results->printed.reached)
+            wb_text_append(&text, " at %.1f N, where its computation ended",
+                           results->printed.force[results->printed.n_curve - 1]);
+        wb_text_append(&text, "; without hardening it would give way at %.1f N.",
+                       results->collapse_force);
+        append_misprint(&text, results, solid->tip_angle / WB_DEGREE > 90.0);
+    }
+    wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
+    document->failed |= text.failed;
+    wb_text_release(&text);
+}
+
+static void put_property(struct wb_document *document, struct wb_document_table *table,
+                         const struct wb_wires_results *results, int i)
+{
+    const struct wb_pages_property *const property = &wb_pages_properties[i];
+    const int decimals = i == 2 ? 1 : property->decimals; /* K is small here */
+    const bool fitted = results->fit_state == WB_WIRES_USABLE;
+    const bool printed = results->comparison->has_printed_wire;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
+    wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
+    wb_pages_cell_number(
+        &row, fitted ? wb_pages_value(&results->fit.material, i) / property->factor : (double)NAN,
+        decimals);
+    wb_pages_cell_number(&row,
+                         printed ? wb_pages_value(&results->comparison->printed_wire.material, i) /
+                                       property->factor
+                                 : (double)NAN,
+                         decimals);
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_fit(struct wb_document *document, const struct wb_wires_results *results,
+                    const struct wb_wires_run *solid)
+{
+    static const struct wb_document_column columns[] = {
+        {"Property"},
+        {"Unit"},
+        {.heading = "Fitted", .right = true},
+        {.heading = "Printed", .right = true},
+    };
+    const struct wb_wires *const comparison = results->comparison;
+    char source[400], caption[900];
+    wb_document_heading(document, 2, "fit", "Properties of the rod, fitted to the solid");
+    if (results->fit_state != WB_WIRES_USABLE) {
+        char problem[900], item[1000];
+        snprintf(item, sizeof item, "<b>No fit</b>: %s",
+                 wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
+        wb_document_item(document, WB_TONE_WARNING, item);
+    }
+    snprintf(
+        caption, sizeof caption,
+        "%s, <i>\xcf\x83</i><sub>Y</sub> of eq. 11, <i>K</i> and <i>n</i> by the search of "
+        "section 4.1 on the solid's deflection at equal forces. Printed: %s; the materials behind "
+        "both differ, so that they need not agree.",
+        comparison->mixture ? "<i>E</i> of eq. 8" : "<i>E</i> of eq. 10",
+        wb_pages_escape(source, sizeof source,
+                        comparison->has_printed_wire ? comparison->printed_source : "none"));
+    struct wb_document_table *const table = wb_document_table(document, caption, 4, columns);
+    for (int i = 0; i < 4; i++)
+        put_property(document, table, results, i);
+    if (results->fit_state != WB_WIRES_USABLE)
+        return;
+    struct wb_text text = {0};
+    wb_text_append(&text,
+                   "At equal forces the fitted rod's deflection follows the solid's with an RMS "
+                   "error of %.2f %% of the largest (%.1f mm)",
+                   results->fit.rms / WB_PERCENT, results->fit.max_deflection / WB_MM);
+    if (results->fitted.reached)
+        wb_text_append(&text, "; at %g N its axis is within %.2f mm of the solid's.", solid->force,
+                       wb_wires_rod_distance(solid, &results->fitted) / WB_MM);
+    else
+        wb_text_append(&text, "; its computation ended at %.1f N.",
+                       results->fitted.force[results->fitted.n_curve - 1]);
+    if (results->fit.end != WB_CALIBRATE_SIZE && results->fit.end != WB_CALIBRATE_ERROR)
+        wb_text_append(&text, " The search ended because %s.",
+                       wb_calibrate_end_text(results->fit.end));
+    const char *remarks[WB_CALIBRATE_MOST_REMARKS];
+    const int n = wb_calibrate_remarks(&results->fit, remarks);
+    for (int i = 0; i < n; i++)
+        wb_text_append(&text, " Remark: %s.", remarks[i]);
+    put_paragraph(document, &text);
+}
+
+static void put_split(struct wb_document *document, const struct wb_wires_results *results)
+{
+    const struct wb_wire_model *const model =
+        results->comparison->cases[WB_WIRES_ELASTOPLASTIC].model;
+    const struct wb_wire_model_part *const core = &model->part[0], *const jacket = &model->part[1];
+    const double most = wb_wire_model_youngs_modulus(model) *
+                        pow(jacket->outer_diameter / core->outer_diameter, 4.0);
+    struct wb_text text = {0};
+    wb_text_append(
+        &text,
+        "<b>The split between core and jacket is ill-conditioned.</b> Eq. 8 with "
+        "<i>E</i><sub>eff</sub> = %.2f GPa leaves %.0f MPa for the jacket when the core "
+        "has %.1f GPa; 1 %% of the core's modulus moves the jacket's by <b>%.0f MPa</b>, "
+        "and above %.2f GPa of the core nothing is left for it.",
+        wb_wire_model_youngs_modulus(model) / (1e3 * WB_MPA),
+        jacket->material.youngs_modulus / WB_MPA, core->material.youngs_modulus / (1e3 * WB_MPA),
+        wb_wires_split(model, 0.01) / WB_MPA, most / (1e3 * WB_MPA));
+    put_paragraph(document, &text);
+}
+
+static void put_elastoplastic(struct wb_document *document, const struct wb_wires_results *results,
+                              const struct wb_figures *figures)
+{
+    const struct wb_wires_run *const solid =
+        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const rod =
+        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
+    wb_document_heading(document, 1, "elastoplastic", "Elastoplastic: solid and rod");
+    if (solid)
+        put_curl(document, results, solid);
+    wb_figures_put(figures, document, "elastoplastic", 0);
+    wb_document_heading(document, 2, "elastoplastic-shapes", "Shapes");
+    struct wb_document_table *const table = start_tips(document, NULL);
+    put_tip_of(document, table, "3D", solid, solid);
+    put_tip_of(document, table, "1D fibres", rod, solid);
+    if (results->fit_state == WB_WIRES_USABLE)
+        put_rod(document, table, "1D fitted", &results->fitted, solid);
+    put_rod(document, table, "1D as printed", &results->printed, solid);
+    put_fit(document, results, solid);
+    wb_figures_put(figures, document, "loading", 0);
+    put_split(document, results);
+}
+
+/* --- residual stresses: pre-loads, what they leave, what that does under the force --- */
+
+static bool is_zero(const double vector[3])
+{
+    return vector[0] == 0.0 && vector[1] == 0.0 && vector[2] == 0.0;
+}
+
+static void append_vector(struct wb_text *text, const char *what, const double vector[3],
+                          const char *unit)
+{
+    if (!is_zero(vector))
+        wb_text_append(text, "%s (%g, %g, %g) %s", what, vector[0], vector[1], vector[2], unit);
+}
+
+/* A step as what acts at its end. */
+static void append_step(struct wb_text *text, const struct wb_tip_loads *loads)
+{
+    append_vector(text, " force", loads->force, "N");
+    append_vector(text, !is_zero(loads->force) ? " and moment" : " moment", loads->moment, "N m");
+    if (loads->follower[1] != 0.0)
+        wb_text_append(text, " follower force %g N", loads->follower[1]);
+    else if (is_zero(loads->force) && is_zero(loads->moment))
+        wb_text_append(text, " nothing");
+}
+
+static void put_preloads(struct wb_document *document, const struct wb_wires *comparison)
+{
+    for (int i = 0; i < comparison->n_residual; i++) {
+        const struct wb_wires_case *const item = &comparison->cases[WB_WIRES_RESIDUAL + i];
+        char label[200];
+        struct wb_text text = {0};
+        wb_text_append(&text, "<b>%s.</b> At the tip act, step by step:",
+                       wb_pages_escape(label, sizeof label, item->label));
+        for (int k = 0; k < item->model->n_steps; k++) {
+            wb_text_append(&text, "%s", k > 0 ? ";" : "");
+            append_step(&text, &item->model->step[k].loads);
+        }
+        wb_text_append(&text, ".");
+        wb_document_item(document, WB_TONE_PLAIN, wb_text_string(&text));
+        document->failed |= text.failed;
+        wb_text_release(&text);
+    }
+}
+
+/* Largest and smallest axial stress of the core, Pa. */
+static void find_axial(const struct wb_field *field, double range[2])
+{
+    range[0] = range[1] = (double)NAN;
+    for (int i = 0; field && i < field->n_faces; i++) {
+        for (int k = 0; k < 8 && field->faces[i].part == 0; k++) {
+            range[0] = fmin(range[0], field->faces[i].node[k].axial);
+            range[1] = fmax(range[1], field->faces[i].node[k].axial);
+        }
+    }
+}
+
+static void put_residual_row(struct wb_document *document, struct wb_document_table *table,
+                             const struct wb_wires_results *results, int index,
+                             enum wb_wires_solver solver)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    const struct wb_wires_run *const run = wb_wires_usable(results, index, solver);
+    const struct wb_wires_run *const without =
+        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, solver);
+    const struct wb_field *const field =
+        run ? wb_fields_find(&run->fields, comparison->residual_state, comparison->section) : NULL;
+    double axial[2];
+    if (!run)
+        return;
+    find_axial(field, axial);
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, comparison->cases[index].label);
+    wb_pages_cell(&row, WB_TONE_PLAIN, solver == WB_WIRES_SOLID ? "3D" : "1D fibres");
+    wb_pages_cell_number(&row, field ? field->x / WB_MM : (double)NAN, 2);
+    wb_pages_cell_number(&row, axial[1] / WB_MPA, 1);
+    wb_pages_cell_number(&row, axial[0] / WB_MPA, 1);
+    wb_pages_cell_number(&row, wb_wires_find_peak(field, 0).stress / WB_MPA, 1);
+    wb_pages_cell_number(&row, without ? wb_wires_effect(run, without) / WB_MM : (double)NAN, 3);
+    wb_pages_cell_number(&row, without ? wb_wires_distance(without, run) / WB_MM : (double)NAN, 3);
+    wb_pages_put_row(document, table, solver == WB_WIRES_SOLID, &row);
+}
+
+static void put_residual_stresses(struct wb_document *document,
+                                  const struct wb_wires_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Case"},
+        {"Model"},
+        {.heading = "Section at (mm)", .right = true, .wraps = true},
+        {.heading = "Axial, largest (MPa)", .right = true, .wraps = true},
+        {.heading = "Axial, smallest (MPa)", .right = true, .wraps = true},
+        {.heading = "von Mises, largest (MPa)", .right = true, .wraps = true},
+        {.heading = "Tip moved, at most (mm)", .right = true, .wraps = true},
+        {.heading = "Axis moved at the end (mm)", .right = true, .wraps = true},
+    };
+    const struct wb_wires *const comparison = results->comparison;
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Stresses of the core on the section that is drawn, without load. Moved: distance from the "
+        "same model without residual stress, of the tip at any force on the way and of the axis at "
+        "the full one.",
+        8, columns);
+    for (int i = 0; i < comparison->n_residual; i++) {
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++)
+            put_residual_row(document, table, results, WB_WIRES_RESIDUAL + i,
+                             (enum wb_wires_solver)k);
+    }
+}
+
+/* The paper's finding beside ours. */
+static void put_finding(struct wb_document *document, const struct wb_wires_results *results)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    const struct wb_wires_run *const without =
+        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    double moved = (double)NAN, stress = (double)NAN;
+    char text[500];
+    for (int i = 0; i < comparison->n_residual; i++) {
+        const struct wb_wires_run *const run =
+            wb_wires_usable(results, WB_WIRES_RESIDUAL + i, WB_WIRES_SOLID);
+        if (!run || !without)
+            continue;
+        moved = fmax(moved, wb_wires_effect(run, without));
+        stress =
+            fmax(stress, wb_wires_find_peak(wb_fields_find(&run->fields, comparison->residual_state,
+                                                           comparison->section),
+                                            0)
+                             .stress);
+    }
+    if (!isfinite(moved) || !isfinite(stress))
+        return;
+    snprintf(text, sizeof text,
+             "%s pre-loads leave at most <b>%.0f MPa</b> in the solid's core on that section, "
+             "and move its tip by at most <b>%.2f mm</b> while the follower force grows.",
+             comparison->printed_source[0]
+                 ? "The paper finds the shapes notably different. Here the"
+                 : "The",
+             stress / WB_MPA, moved / WB_MM);
+    wb_document_paragraph(document, text);
+}
+
+static void put_residual(struct wb_document *document, const struct wb_wires_results *results,
+                         const struct wb_figures *figures)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    if (comparison->n_residual == 0)
+        return;
+    wb_document_heading(document, 1, "residual", "Residual stresses");
+    wb_document_paragraph(document,
+                          "Loads at the tip bend and twist the wire out of the plane, and are "
+                          "taken off. What stays is the residual stress; with it the follower "
+                          "force is applied. All of it is simulated.");
+    put_preloads(document, comparison);
+    wb_document_heading(document, 2, "residual-stresses", "Residual stress and its effect");
+    for (int i = 0; i < comparison->n_residual; i++)
+        wb_figures_put(figures, document, "residual", i);
+    put_residual_stresses(document, results);
+    put_finding(document, results);
+    wb_figures_put(figures, document, "residual-effect", 0);
+    wb_document_heading(document, 2, "residual-shapes", "Shapes");
+    struct wb_document_table *const table = start_tips(document, NULL);
+    for (int i = 0; i <= comparison->n_residual; i++) {
+        const int index = WB_WIRES_ELASTOPLASTIC + i;
+        const char *const name = i == 0 ? "None" : comparison->cases[index].label;
+        const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
+        char label[100];
+        snprintf(label, sizeof label, "%s, 3D", name);
+        put_tip_of(document, table, label, solid, solid);
+        snprintf(label, sizeof label, "%s, 1D fibres", name);
+        put_tip_of(document, table, label, wb_wires_usable(results, index, WB_WIRES_ROD), solid);
+    }
+}
+
+/* --- cost --- */
+
+static void put_simulation(struct wb_document *document, struct wb_document_table *table,
+                           const struct wb_wires_results *results, int i, int k)
+{
+    static const char *const models[] = {"3D solid", "1D rod"};
+    const struct wb_wires_run *const run = &results->runs[i][k];
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN,
+                        k == WB_WIRES_SOLID ? results->comparison->cases[i].label : "");
+    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", models[k]);
+    wb_pages_cell_number(&row, run->elements, 0);
+    wb_pages_cell_number(&row, run->unknowns, 0);
+    wb_pages_cell_number(&row, run->iterations, 0);
+    wb_pages_cell_number(&row, run->cpu_s, run->cpu_s < 0.1 ? 3 : run->cpu_s < 10.0 ? 2 : 0);
+    wb_pages_cell_number(&row, run->memory_MB, 0);
+    if (run->state == WB_WIRES_USABLE)
+        wb_pages_cell(&row, WB_TONE_GOOD, "converged");
+    else
+        wb_pages_cell(&row, WB_TONE_WARNING, "%s",
+                      run->is_stale                    ? "model changed"
+                      : run->is_cut_short              ? "cut short"
+                      : run->state == WB_WIRES_MISSING ? "missing"
+                                                       : "not used");
+    wb_pages_cell_number(
+        &row, k == WB_WIRES_ROD ? wb_wires_cost(results, i) / WB_PERCENT : (double)NAN, 2);
+    wb_pages_put_row(document, table, k == WB_WIRES_SOLID, &row);
+}
+
+static void put_cost(struct wb_document *document, const struct wb_wires_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Simulation"},
+        {"Model"},
+        {.heading = "Elements", .right = true},
+        {.heading = "Unknowns", .right = true},
+        {.heading = "Iterations", .right = true},
+        {.heading = "CPU (s)", .right = true},
+        {.heading = "Memory (MB)", .right = true, .wraps = true},
+        {"State"},
+        {.heading = "1D over 3D (%)", .right = true, .wraps = true},
+    };
+    const struct wb_wires *const comparison = results->comparison;
+    wb_document_heading(document, 1, "cost", "Cost");
+    struct wb_text caption = {0};
+    wb_text_append(&caption, "CPU seconds and memory are those that each simulation stored when it "
+                             "was made, on the machine that made it.");
+    if (comparison->printed_cost > 0.0)
+        wb_text_append(&caption,
+                       " The paper: the elastic rod costs below %g %% of the bonded solid.",
+                       comparison->printed_cost / WB_PERCENT);
+    struct wb_document_table *const table =
+        wb_document_table(document, wb_text_string(&caption), 9, columns);
+    document->failed |= caption.failed;
+    wb_text_release(&caption);
+    for (int i = 0; i < comparison->n_cases; i++) {
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
+            if (results->runs[i][k].state != WB_WIRES_NOT_WANTED)
+                put_simulation(document, table, results, i, k);
+        }
+    }
+}
+
+/* --- provenance --- */
+
+static void put_material(struct wb_document *document, struct wb_document_table *table,
+                         const struct wb_wire_model_part *part)
+{
+    const struct wb_material *const m = &part->material;
+    struct wb_pages_row row = {.n = 0};
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, part->name);
+    wb_pages_cell_plain(&row, WB_TONE_PLAIN, part->material_name);
+    wb_pages_cell_number(&row, part->outer_diameter / WB_MM, 2);
+    wb_pages_cell_number(&row, m->youngs_modulus / WB_MPA, 0);
+    wb_pages_cell_number(&row, m->poissons_ratio, 2);
+    wb_pages_cell_number(&row, m->yield_stress / WB_MPA, 1);
+    wb_pages_cell_number(&row, m->strength_coefficient / WB_MPA, 1);
+    wb_pages_cell_number(&row, m->hardening_exponent, 2);
+    wb_pages_cell(&row, part->is_substitute ? WB_TONE_WARNING : WB_TONE_PLAIN, "%s",
+                  part->is_substitute ? "substitute" : "given");
+    wb_pages_put_row(document, table, false, &row);
+}
+
+static void put_materials(struct wb_document *document, const struct wb_wires *comparison)
+{
+    static const struct wb_document_column columns[] = {
+        {"Part"},
+        {"Material"},
+        {.heading = "Outside (mm)", .right = true},
+        {.heading = "<i>E</i> (MPa)", .right = true},
+        {.heading = "<i>\xce\xbd</i>", .right = true},
+        {.heading = "<i>\xcf\x83</i><sub>Y</sub> (MPa)", .right = true},
+        {.heading = "<i>K</i> (MPa)", .right = true},
+        {.heading = "<i>n</i>", .right = true},
+        {"Values"},
+    };
+    const struct wb_wire_model *const model = comparison->cases[WB_WIRES_ELASTOPLASTIC].model;
+    wb_document_heading(document, 2, "materials", "Materials");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        wb_wires_has_substitutes(comparison)
+            ? "Substitute: stands in for a value of the paper's Table 1, which is lost."
+            : NULL,
+        9, columns);
+    for (int i = 0; i < model->n_parts; i++)
+        put_material(document, table, &model->part[i]);
+    for (int i = 0; i < model->n_parts; i++) {
+        char name[300], source[1200], item[1600];
+        snprintf(item, sizeof item, "<b>%s</b>: %s",
+                 wb_pages_escape(name, sizeof name, model->part[i].material_name),
+                 wb_pages_escape(source, sizeof source, model->part[i].source));
+        wb_document_item(document, WB_TONE_PLAIN, item);
+    }
+}
+
+static void put_models(struct wb_document *document, const struct wb_wires *comparison)
+{
+    static const struct wb_document_column columns[] = {
+        {"Model"}, {.heading = "SHA-256 of model, wire and materials", .monospace = true}};
+    wb_document_heading(document, 2, "models", "Models");
+    struct wb_document_table *const table = wb_document_table(document, NULL, 2, columns);
+    for (int i = 0; i < comparison->n_cases; i++) {
+        const struct wb_wires_case *const item = &comparison->cases[i];
+        struct wb_pages_row row = {.n = 0};
+        if (!item->model)
+            continue;
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, item->model_name);
+        wb_pages_cell_plain(&row, WB_TONE_PLAIN, item->model->sha256);
+        wb_pages_put_row(document, table, false, &row);
+    }
+}
+
+static void put_datasets(struct wb_document *document, const struct wb_wires_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "Dataset", .wraps = true},
+        {"Revision"},
+        {.heading = "SHA-256 of force_deflection.csv", .monospace = true},
+    };
+    const struct wb_wires *const comparison = results->comparison;
+    wb_document_heading(document, 2, "datasets", "Datasets");
+    struct wb_document_table *const table =
+        wb_document_table(document, "Revision: of the program that made it.", 3, columns);
+    for (int i = 0; i < comparison->n_cases; i++) {
+        for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
+            const struct wb_wires_run *const run = &results->runs[i][k];
+            struct wb_pages_row row = {.n = 0};
+            if (run->state == WB_WIRES_NOT_WANTED)
+                continue;
+            wb_pages_cell_plain(&row, WB_TONE_PLAIN, comparison->cases[i].datasets[k].name);
+            if (run->state == WB_WIRES_USABLE)
+                wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->revision);
+            else
+                wb_pages_cell(&row, WB_TONE_WARNING, "not used");
+            wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->sha256);
+            wb_pages_put_row(document, table, false, &row);
+        }
+    }
+}
+
+static void put_provenance(struct wb_document *document, const struct wb_wires_results *results)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    wb_pages_put_origin(document, comparison->name, comparison->sha256, comparison->notes,
+                        "datasets");
+    put_materials(document, comparison);
+    put_models(document, comparison);
+    put_datasets(document, results);
+}
+
+/* --- all of it --- */
+
+void wb_wires_pages_build(struct wb_document *document, const struct wb_wires_results *results,
+                          const struct wb_figures *figures)
+{
+    char subtitle[300], footer[300];
+    snprintf(footer, sizeof footer, "wirebench %s, revision %s \xc2\xb7 simulations, no tests",
+             wb_version(), wb_version_revision());
+    snprintf(subtitle, sizeof subtitle, "%d of %d simulations \xc2\xb7 wirebench %s, revision %s",
+             results->n_usable, results->n_wanted, wb_version(), wb_version_revision());
+    wb_document_init(document, "Simulation report", results->comparison->title, subtitle, footer,
+                     "");
+    put_summary(document, results);
+    put_elastic(document, results, figures);
+    put_elastoplastic(document, results, figures);
+    put_residual(document, results, figures);
+    put_cost(document, results);
+    put_provenance(document, results);
+}

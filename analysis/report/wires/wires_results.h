@@ -1,0 +1,83 @@
+/* Everything that the report of a comparison tells: its datasets read and checked, the 1D
+ * properties fitted to the solid, and what is computed beside them.
+ */
+#ifndef WB_ANALYSIS_REPORT_WIRES_WIRES_RESULTS_H
+#define WB_ANALYSIS_REPORT_WIRES_WIRES_RESULTS_H
+
+#include <stdbool.h>
+
+#include "analysis/calibrate.h"
+#include "analysis/report/wires/wires.h"
+#include "analysis/report/wires/wires_rod.h"
+#include "analysis/report/wires/wires_run.h"
+#include "base/status.h"
+#include "base/text.h"
+
+/* Largest von Mises stress of a part on a section. */
+struct wb_wires_peak {
+    double stress;       /* Pa; NaN: no such part */
+    double reference[3]; /* m, on the straight wire */
+    double position[3];  /* m */
+};
+
+/* A cross section of the elastic solid beside beam theory. */
+struct wb_wires_stress {
+    double x; /* m */
+    struct wb_wires_peak core, jacket;
+    double curvature; /* 1/m, of the exact rod */
+    double beam;      /* Pa: E kappa r of the core's outer fibre */
+};
+
+#define WB_WIRES_STRESSES 8
+
+struct wb_wires_results {
+    const struct wb_wires *comparison; /* borrowed */
+    struct wb_wires_run runs[WB_WIRES_CASES][WB_WIRES_SOLVERS];
+    struct wb_wires_rod exact; /* elastic */
+
+    int n_stresses;
+    struct wb_wires_stress stresses[WB_WIRES_STRESSES];
+
+    enum wb_wires_state fit_state; /* refused: the calibration failed */
+    struct wb_text fit_problem;
+    struct wb_calibrate_result fit;
+    struct wb_wires_rod fitted;  /* the rod with the fitted properties */
+    struct wb_wires_rod printed; /* with the printed ones; not done: none are */
+    struct wb_wires_rod tenfold; /* with ten times the printed strength coefficient */
+    double collapse_force;       /* N: of the printed yield stress, without hardening */
+
+    int n_wanted, n_usable; /* datasets */
+    bool is_complete;
+    bool exceeds_limit;
+    bool interrupted;
+};
+
+typedef void wb_wires_progress(void *context, int done, int total, const char *what);
+
+/* How many steps wb_wires_compute() tells of. */
+int wb_wires_count(const struct wb_wires *comparison);
+
+/* Computes everything; WB_OK also when datasets are missing. */
+WB_MUST_CHECK enum wb_status wb_wires_compute(struct wb_wires_results *results,
+                                              const struct wb_wires *comparison,
+                                              wb_wires_progress *progress, void *context);
+void wb_wires_results_release(struct wb_wires_results *results); /* accepts a zeroed one */
+
+/* A run that is usable, else NULL. */
+const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *results, int index,
+                                           enum wb_wires_solver solver);
+
+/* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
+double wb_wires_cost(const struct wb_wires_results *results, int index);
+
+/* Distance of a usable run's tip from the exact elastic one, over that one's displacement. */
+double wb_wires_tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run);
+
+/* By how much E of the jacket moves when that of the core moves by a part `change` and the
+ * effective modulus of eq. 8 stays, Pa. */
+double wb_wires_split(const struct wb_wire_model *model, double change);
+
+/* The peak of a part (0 core, 1 jacket) on a field. */
+struct wb_wires_peak wb_wires_find_peak(const struct wb_field *field, int part);
+
+#endif

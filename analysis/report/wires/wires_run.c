@@ -1,0 +1,285 @@
+/* One dataset of a comparison: read, checked, and its end taken. */
+#include "analysis/report/wires/wires_run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/report/reasons.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+/* --- one dataset --- */
+
+static double number_of(const struct wb_json *object, const char *key)
+{
+    double value;
+    return wb_json_get_number(object, key, &value) ? value : (double)NAN;
+}
+
+static void read_simulation(struct wb_wires_run *run)
+{
+    const struct wb_json *const document = run->dataset.document;
+    const struct wb_json *const simulation = wb_json_get(document, "simulation");
+    const char *revision = "";
+    run->elements = number_of(simulation, "elements");
+    run->unknowns = number_of(simulation, "degrees_of_freedom");
+    run->iterations = number_of(simulation, "iterations");
+    run->cpu_s = number_of(simulation, "cpu_s");
+    run->memory_MB = number_of(simulation, "peak_memory_MB");
+    const struct wb_json *const interface = wb_json_get(simulation, "interface");
+    run->slip = number_of(interface, "slip_mm") * WB_MM;
+    run->slip_limit = number_of(interface, "slip_limit_mm") * WB_MM;
+    run->opening = number_of(interface, "opening_mm") * WB_MM;
+    (void)wb_json_get_text(wb_json_get(document, "tool"), "revision", &revision);
+    snprintf(run->revision, sizeof run->revision, "%s", revision);
+}
+
+/* Whether the dataset is of this model as it is now, and whole. */
+static enum wb_status check_simulation(struct wb_wires_run *run, const struct wb_wires_case *item,
+                                       enum wb_wires_solver solver)
+{
+    const struct wb_json *const simulation = wb_json_get(run->dataset.document, "simulation");
+    const struct wb_test_info *const info = &run->dataset.info;
+    const char *sha256 = "", *made_by = "", *problem = "";
+    if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "model", &made_by) ||
+        !wb_json_get_text(simulation, "sha256", &sha256))
+        return wb_fail(WB_ERR_DATA, "it does not say of which model it is a simulation");
+    if (strcmp(made_by, wb_wires_command(solver)) != 0)
+        return wb_fail(WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
+                       wb_wires_command(solver));
+    run->is_stale = strcmp(sha256, item->model->sha256) != 0;
+    if (run->is_stale)
+        return wb_fail(WB_ERR_DATA, "the model, its wire or its materials have changed since");
+    (void)wb_json_get_text(simulation, "problem", &problem);
+    run->is_cut_short = !wb_dataset_is_complete(&run->dataset);
+    if (run->is_cut_short)
+        return wb_fail(WB_ERR_DATA, "it did not converge to its end%s%s", problem[0] ? ": " : "",
+                       problem);
+    return WB_OK;
+}
+
+/* State and axis at the end of the history. */
+static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model)
+{
+    const struct wb_dataset *const dataset = &run->dataset;
+    const double force = model->step[model->n_steps - 1].loads.follower[1];
+    if (dataset->n_rows == 0 || dataset->n_shape_rows < 2)
+        return wb_fail(WB_ERR_DATA, "it has no rows or no shapes");
+    const struct wb_row *const last = &dataset->rows[dataset->n_rows - 1];
+    size_t first = dataset->n_shape_rows;
+    while (first > 0 && dataset->shape_rows[first - 1].t == last->t)
+        first--;
+    const size_t n = dataset->n_shape_rows - first;
+    if (n < 2)
+        return wb_fail(WB_ERR_DATA, "it has no shape of its last row");
+    run->s = malloc(n * sizeof *run->s);
+    run->shape = malloc(n * sizeof *run->shape);
+    if (!run->s || !run->shape)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading a dataset");
+    for (size_t i = 0; i < n; i++) {
+        const struct wb_shape_row *const row = &dataset->shape_rows[first + i];
+        const double z = isfinite(row->z) ? row->z : 0.0;
+        run->s[i] = row->s;
+        memcpy(run->shape[i], (double[3]){row->x, row->y, z}, sizeof run->shape[i]);
+    }
+    run->n_shape = (int)n;
+    memcpy(run->tip, run->shape[n - 1], sizeof run->tip);
+    run->force = force;
+    run->tip_angle = last->tip_angle;
+    if (fabs(run->s[n - 1] - model->length) > 1e-6 * model->length)
+        return wb_fail(WB_ERR_DATA, "its shapes end at %g mm, not at the wire's tip",
+                       run->s[n - 1] / WB_MM);
+    return WB_OK;
+}
+
+/* The row with which the step before the last one ended; -1 when the dataset does not say. */
+static int row_before_loading(const struct wb_wires_run *run)
+{
+    const struct wb_json *const steps =
+        wb_json_get(wb_json_get(run->dataset.document, "simulation"), "steps");
+    const size_t n = wb_json_length(steps);
+    int64_t row = 1;
+    if (n == 0 || (n > 1 && !wb_json_get_integer(wb_json_item(steps, n - 2), "last_row", &row)) ||
+        row < 1 || row >= (int64_t)run->dataset.n_rows)
+        return -1;
+    return (int)row - 1;
+}
+
+/* Tips along the last step. Its rows stand at equal steps of the force when there are as many as
+ * the model asks for; else the path was followed through a limit point. */
+static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wire_model *model)
+{
+    const struct wb_dataset *const dataset = &run->dataset;
+    const int first = row_before_loading(run), rows = model->step[model->n_steps - 1].rows;
+    if (first < 0 || first + 1 + rows != (int)dataset->n_rows)
+        return WB_OK;
+    run->loading = malloc(((size_t)rows + 1) * sizeof *run->loading);
+    run->loaded = malloc(((size_t)rows + 1) * sizeof *run->loaded);
+    if (!run->loading || !run->loaded)
+        return wb_fail(WB_ERR_MEMORY, "out of memory reading a dataset");
+    size_t at = 0;
+    for (int i = 0; i <= rows; i++) {
+        const double t = dataset->rows[first + i].t;
+        while (at < dataset->n_shape_rows && dataset->shape_rows[at].t <= t)
+            at++;
+        if (at == 0 || dataset->shape_rows[at - 1].t != t)
+            return WB_OK;
+        const struct wb_shape_row *const tip = &dataset->shape_rows[at - 1];
+        run->loading[i] = run->force * i / rows;
+        memcpy(run->loaded[i], (double[3]){tip->x, tip->y, isfinite(tip->z) ? tip->z : 0.0},
+               sizeof run->loaded[i]);
+    }
+    run->n_loading = rows + 1;
+    return WB_OK;
+}
+
+/* Stored fields are continued from inside the elements and overshoot where the plastic zone begins:
+ * no von Mises stress is told that the node's own plastic strain does not allow. */
+static void keep_to_law(struct wb_fields *fields, const struct wb_wire_model *model)
+{
+    for (int i = 0; i < fields->n; i++)
+        for (int f = 0; f < fields->items[i].n_faces; f++) {
+            struct wb_field_face *face = &fields->items[i].faces[f];
+            if (face->part < 0 || face->part >= model->n_parts)
+                continue;
+            for (int k = 0; k < 8; k++)
+                face->node[k].von_mises =
+                    fmin(face->node[k].von_mises,
+                         wb_material_flow_stress(&model->part[face->part].material,
+                                                 face->node[k].plastic));
+        }
+}
+
+static enum wb_status read_run(struct wb_wires_run *run, const struct wb_wires_case *item,
+                               enum wb_wires_solver solver)
+{
+    const char *const path = item->datasets[solver].path;
+    char rows[WB_PATH];
+    WB_TRY(wb_dataset_read(&run->dataset, path));
+    read_simulation(run);
+    WB_TRY(check_simulation(run, item, solver));
+    WB_TRY(take_end(run, item->model));
+    WB_TRY(take_loading(run, item->model));
+    WB_TRY(wb_file_join(rows, path, "force_deflection.csv"));
+    WB_TRY(wb_hash_file(rows, run->sha256));
+    WB_TRY(wb_fields_read(&run->fields, path));
+    keep_to_law(&run->fields, item->model);
+    return WB_OK;
+}
+
+void wb_wires_run_load(struct wb_wires_run *run, const struct wb_wires_case *item,
+                       enum wb_wires_solver solver)
+{
+    const struct wb_wires_dataset *const wanted = &item->datasets[solver];
+    char folder[WB_PATH];
+    run->elements = run->unknowns = run->iterations = (double)NAN;
+    run->cpu_s = run->memory_MB = run->slip = run->slip_limit = run->opening = (double)NAN;
+    if (!wanted->wanted)
+        return;
+    snprintf(run->command, sizeof run->command, "wirebench solve %s %s -o %s",
+             wb_wires_command(solver), item->model_name, wanted->name);
+    run->state = WB_WIRES_MISSING;
+    if (wb_file_join(folder, wanted->path, "dataset.json") != WB_OK || !wb_file_exists(folder)) {
+        wb_text_append(&run->problem, "there is no such dataset");
+        return;
+    }
+    struct wb_reasons reasons = {&run->problem, wanted->path, wanted->name, true};
+    wb_reasons_begin(&reasons);
+    const enum wb_status status = read_run(run, item, solver);
+    wb_reasons_tell(&reasons);
+    run->state = status == WB_OK ? WB_WIRES_USABLE : WB_WIRES_REFUSED;
+    if (status != WB_OK && run->problem.length == 0)
+        wb_text_append(&run->problem, "%s", wb_status_text(status));
+}
+
+void wb_wires_run_release(struct wb_wires_run *run)
+{
+    wb_text_release(&run->problem);
+    wb_dataset_release(&run->dataset);
+    wb_fields_release(&run->fields);
+    free(run->s);
+    free(run->shape);
+    free(run->loading);
+    free(run->loaded);
+    memset(run, 0, sizeof *run);
+}
+
+/* --- comparing --- */
+
+void wb_wires_axis_point(const struct wb_wires_run *run, double s, double point[3])
+{
+    /* The cubic (or less) through the nearest points. */
+    const int n = run->n_shape < 4 ? run->n_shape : 4;
+    int first = 0;
+    while (first + n < run->n_shape && run->s[first + n / 2] < s)
+        first++;
+    point[0] = point[1] = point[2] = 0.0;
+    for (int i = first; i < first + n; i++) {
+        double weight = 1.0;
+        for (int k = first; k < first + n; k++) {
+            if (k != i)
+                weight *= (s - run->s[k]) / (run->s[i] - run->s[k]);
+        }
+        for (int k = 0; k < 3; k++)
+            point[k] += weight * run->shape[i][k];
+    }
+}
+
+static double apart(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+double wb_wires_distance_at(const struct wb_wires_run *run, double s, const double point[3])
+{
+    double own[3];
+    wb_wires_axis_point(run, s, own);
+    return apart(own, point);
+}
+
+double wb_wires_distance(const struct wb_wires_run *run, const struct wb_wires_run *other)
+{
+    double largest = 0.0;
+    for (int i = 0; i < other->n_shape; i++)
+        largest = fmax(largest, wb_wires_distance_at(run, other->s[i], other->shape[i]));
+    return largest;
+}
+
+double wb_wires_rod_distance(const struct wb_wires_run *run, const struct wb_wires_rod *rod)
+{
+    double largest = 0.0;
+    for (int i = 0; i < WB_WIRES_POINTS; i++) {
+        const double point[3] = {rod->x[i], rod->y[i], 0.0};
+        largest = fmax(largest, wb_wires_distance_at(run, rod->s[i], point));
+    }
+    return largest;
+}
+
+double wb_wires_tip_distance(const struct wb_wires_run *run, int row,
+                             const struct wb_wires_run *other)
+{
+    const double force = run->loading[row];
+    for (int i = 1; i < other->n_loading; i++) {
+        const double low = other->loading[i - 1], high = other->loading[i];
+        if (!(force >= low - 1e-9 * high && force <= high * (1.0 + 1e-9)))
+            continue;
+        const double part = (force - low) / (high - low);
+        double tip[3];
+        for (int k = 0; k < 3; k++)
+            tip[k] =
+                other->loaded[i - 1][k] + part * (other->loaded[i][k] - other->loaded[i - 1][k]);
+        return apart(tip, run->loaded[row]);
+    }
+    return (double)NAN;
+}
+
+double wb_wires_effect(const struct wb_wires_run *run, const struct wb_wires_run *other)
+{
+    double largest = (double)NAN;
+    for (int i = 0; i < run->n_loading; i++)
+        largest = fmax(largest, wb_wires_tip_distance(run, i, other));
+    return largest;
+}

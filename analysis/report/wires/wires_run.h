@@ -1,0 +1,69 @@
+/* A dataset of a comparison: read, checked against its model, with what it holds of the end of its
+ * history; and distances between the axes of two of them.
+ */
+#ifndef WB_ANALYSIS_REPORT_WIRES_WIRES_RUN_H
+#define WB_ANALYSIS_REPORT_WIRES_WIRES_RUN_H
+
+#include <stdbool.h>
+
+#include "analysis/dataset.h"
+#include "analysis/fields.h"
+#include "analysis/report/wires/wires.h"
+#include "analysis/report/wires/wires_rod.h"
+#include "base/text.h"
+
+enum wb_wires_state {
+    WB_WIRES_NOT_WANTED,
+    WB_WIRES_MISSING, /* there is no such dataset */
+    WB_WIRES_REFUSED, /* of a model that has changed, not converged, damaged, ... */
+    WB_WIRES_USABLE
+};
+
+/* A dataset, and what it says of its simulation; numbers are NaN where it does not. */
+struct wb_wires_run {
+    enum wb_wires_state state;
+    struct wb_text problem; /* why it cannot be used */
+    char command[800];      /* that makes it */
+    bool is_stale;          /* the model has changed since */
+    bool is_cut_short;      /* it did not converge, or was stopped */
+    double elements, unknowns, iterations, cpu_s, memory_MB;
+    double slip, slip_limit, opening; /* m, of an interface with friction */
+    char revision[64];                /* of the program that made it */
+    char sha256[WB_SHA256_TEXT];      /* of its force_deflection.csv */
+    struct wb_dataset dataset;        /* of a usable one, as all that follows */
+    struct wb_fields fields;
+    double force, tip_angle; /* N, rad: at its end */
+    double tip[3];           /* m */
+    int n_shape;
+    double *s;           /* (n_shape) m, owned */
+    double (*shape)[3];  /* (n_shape) m, owned */
+    int n_loading;       /* rows of the last step; 0 when its forces are not known */
+    double *loading;     /* (n_loading) N, the follower force, owned */
+    double (*loaded)[3]; /* (n_loading) m, the tip under it, owned */
+};
+
+/* Reads what a case wants of a solver into a zeroed run. Nothing fails: the run says what is wrong.
+ */
+void wb_wires_run_load(struct wb_wires_run *run, const struct wb_wires_case *item,
+                       enum wb_wires_solver solver);
+void wb_wires_run_release(struct wb_wires_run *run); /* accepts a zeroed one */
+
+/* A point of a run's axis at an arc length within it, m; smooth between those that it holds. */
+void wb_wires_axis_point(const struct wb_wires_run *run, double s, double point[3]);
+
+/* Distance of a point from that of a run's axis at an arc length, m. */
+double wb_wires_distance_at(const struct wb_wires_run *run, double s, const double point[3]);
+
+/* Distance of a run's tip from another's under the same follower force of its last step, m, at a
+ * row of `run`'s loading; NaN where the other has none. */
+double wb_wires_tip_distance(const struct wb_wires_run *run, int row,
+                             const struct wb_wires_run *other);
+
+/* The largest of them over all rows; NaN without any. */
+double wb_wires_effect(const struct wb_wires_run *run, const struct wb_wires_run *other);
+
+/* Largest distance of two axes at the same arc length, m, over the second one's points. */
+double wb_wires_distance(const struct wb_wires_run *run, const struct wb_wires_run *other);
+double wb_wires_rod_distance(const struct wb_wires_run *run, const struct wb_wires_rod *rod);
+
+#endif

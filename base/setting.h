@@ -1,0 +1,141 @@
+/* Settings: each is one row of a table in the module that owns it, and everything that treats a
+ * setting reads the row: the command line and its --help, YAML files, JSON documents, checks of a
+ * filled struct, the identity of a result, the test of the documentation.
+ *
+ *     static const struct wb_setting rows[] = {
+ *         {.name = "step_mm", .title = "step", .unit = "mm", .type = WB_SETTING_NUMBER,
+ *          .offset = offsetof(struct wb_example_settings, step), .scale = WB_MM,
+ *          .least = 0.01, .largest = 100.0, .fallback = 0.5,
+ *          .option = "step-mm", .argument = "H", .help = "Step of the comparison"},
+ *     };
+ *     const struct wb_setting_table wb_example_table = {.rows = rows, .n = WB_COUNT(rows)};
+ *
+ * To add a setting, add its field and its row. A field holds SI; a row's numbers are in the unit of
+ * files and options.
+ */
+#ifndef WB_BASE_SETTING_H
+#define WB_BASE_SETTING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/config.h"
+#include "base/json.h"
+#include "base/status.h"
+#include "base/text.h"
+
+enum wb_setting_type {
+    WB_SETTING_NUMBER,  /* double */
+    WB_SETTING_INTEGER, /* int */
+    WB_SETTING_BOOLEAN, /* bool; its option takes no argument and sets what the default is not */
+    WB_SETTING_TEXT,    /* char[size]; of size 0 a const char *, which is borrowed */
+    WB_SETTING_CHOICE,  /* int: an index of `choices` */
+    WB_SETTING_LIST     /* numbers, each a member with a row of its own: "0.4,0.1,2" */
+};
+
+struct wb_setting_table;
+
+struct wb_setting {
+    const char *name;  /* key in files, with its unit: "step_mm" */
+    const char *title; /* for messages, without article: "step"; NULL: the name */
+    const char *unit;  /* "mm"; NULL: none */
+    enum wb_setting_type type;
+    size_t offset;         /* of the field in its struct */
+    size_t size;           /* of a text's array */
+    double scale;          /* SI value of one unit; 0: 1 */
+    double least, largest; /* of numbers; both 0: any */
+    double fallback;       /* the default, also of a boolean (0, 1) and of a choice (its index) */
+    const char *otherwise; /* the default in words where its number says nothing: "as eq. 10" */
+    const char *const *choices; /* NULL-terminated */
+    bool required;              /* files must have it; it has no default */
+    /* On the command line. */
+    const char *option;   /* long name; NULL: none */
+    const char *argument; /* "H"; NULL: of a boolean */
+    const char *help;     /* without an end: range and default follow */
+    unsigned applies;     /* bits of the owner: where it may be given; 0: wherever its table may */
+    /* Of a list. */
+    const struct wb_setting_table *members; /* their fields lie in the struct at `offset` */
+    size_t given;                           /* offset of a bool that is set when it was given */
+    /* Completes the struct of the members after the first `n` of them were given, and judges it:
+     * -1, or the index of the member at fault with its `problem`. */
+    int (*complete)(void *members, int n, char *problem, size_t size);
+};
+
+struct wb_setting_table {
+    const struct wb_setting *rows;
+    size_t n;
+    size_t offset; /* of the rows' struct in a larger one */
+    const char
+        *otherwise; /* the default of all rows in words, in place of their own; may be NULL */
+};
+
+enum {
+    WB_SETTING_PROBLEM = 320, /* bytes of a message */
+    WB_SETTING_VALUE = 128    /* bytes of a value as text */
+};
+
+/* The row of that name or option; NULL when there is none. */
+const struct wb_setting *wb_setting_find(const struct wb_setting_table *table, const char *name);
+
+/* Whether the row may be given at a place, one bit; all rows may where `place` is 0. */
+bool wb_setting_applies(const struct wb_setting *row, unsigned place);
+
+/* Fills in the defaults of all rows; of a text, none. */
+void wb_setting_fill(const struct wb_setting_table *table, void *settings);
+
+/* Reads an option's argument (NULL: of a boolean) into the field. False with a `problem` that says
+ * what is expected and what came: "expected a number from 0.01 to 100, not '0'". */
+bool wb_setting_parse(const struct wb_setting *row, const char *argument, void *settings,
+                      char problem[WB_SETTING_PROBLEM]);
+
+/* Keys with which wb_config_map() reads the rows of a place, but lists; returns how many, at most
+ * the table's. What a file does not give stays. */
+size_t wb_setting_keys(const struct wb_setting_table *table, unsigned place, void *settings,
+                       struct wb_config_key *keys);
+
+/* Reads a list's value from a file: the first member alone, or a map of all. */
+WB_MUST_CHECK enum wb_status wb_setting_read_list(const struct wb_setting *row,
+                                                  const struct wb_config_node *node,
+                                                  void *settings);
+
+/* Checks a field, or a filled struct: numbers in their range, or as the default.
+ * WB_ERR_ARGUMENT. */
+WB_MUST_CHECK enum wb_status wb_setting_check_row(const struct wb_setting *row,
+                                                  const void *settings);
+WB_MUST_CHECK enum wb_status wb_setting_check(const struct wb_setting_table *table,
+                                              const void *settings);
+
+/* Whether the field of a struct that began as all zero holds anything. */
+bool wb_setting_is_given(const struct wb_setting *row, const void *settings);
+
+/* A number's or integer's field, in the row's unit. */
+double wb_setting_value(const struct wb_setting *row, const void *settings);
+
+/* The value as its option takes it, numbers to 10 digits; of a list, the first member alone where
+ * another one is not in its range. */
+void wb_setting_format(const struct wb_setting *row, const void *settings,
+                       char text[WB_SETTING_VALUE]);
+
+/* Sets the field as a member of an object, under the row's name. */
+void wb_setting_set_json(const struct wb_setting *row, const void *settings,
+                         struct wb_json *object);
+
+/* Compares the member of that name in an object with the field, numbers to 1e-9. False with a
+ * `problem`: "the step (mm) is 1 in it, and 0.5 is wanted". */
+bool wb_setting_is_same(const struct wb_setting *row, const void *settings,
+                        const struct wb_json *object, char problem[WB_SETTING_PROBLEM]);
+
+/* Appends "step_mm=0.0005;" for each row, exact, in SI: equal texts, equal settings. */
+void wb_setting_identify(const struct wb_setting_table *table, const void *settings,
+                         struct wb_text *text);
+
+/* "0.01 to 100 mm", "elastic or elastoplastic"; "" where any value serves. */
+void wb_setting_range(const struct wb_setting *row, char text[WB_SETTING_VALUE]);
+/* The default as options and files take it, or in words; "" where there is none. `otherwise`:
+ * wb_setting_table's. */
+void wb_setting_default(const struct wb_setting *row, const char *otherwise,
+                        char text[WB_SETTING_VALUE]);
+/* An option's help with range and default: "Step of the comparison, 0.01 to 100 mm (0.5)". */
+void wb_setting_describe(const struct wb_setting *row, const char *otherwise, struct wb_text *text);
+
+#endif

@@ -1,0 +1,42 @@
+/* What serial ports and pseudo-terminals share: their addresses, and how a device is opened, locked
+ * and waited for. */
+#ifndef WB_DAQ_STREAM_LINE_H
+#define WB_DAQ_STREAM_LINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+/* A write that takes longer fails. */
+#define WB_STREAM_WRITE_TIMEOUT_NS INT64_C(50000000)
+
+/* `PATH[,BAUD][,8n1][,dtr=on|off][,rts=on|off][,flow=none|xonxoff|rtscts]`, in any order after the
+ * path. */
+struct wb_stream_line {
+    char path[256];
+    int baud;    /* default 9600 */
+    int bits;    /* 5 to 8 */
+    char parity; /* 'n', 'e' or 'o' */
+    int stop;    /* 1 or 2 */
+    int dtr;     /* +1 on, -1 off, 0 as the driver leaves it */
+    int rts;     /* the same */
+    char flow;   /* 'n' none, 'x' XON/XOFF, 'r' RTS/CTS */
+};
+
+WB_MUST_CHECK enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line);
+
+/* Fails with the message for a device that cannot be opened with this errno; for a permission
+ * error it says which group to join. `hint` (may be "") is appended to "not found". */
+WB_MUST_CHECK enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint);
+
+/* Takes the advisory lock that keeps a second wirebench off the device. */
+WB_MUST_CHECK enum wb_status wb_stream_lock(int descriptor, const char *path);
+
+/* After a read of 0 bytes: true when the device hung up or went away. */
+bool wb_stream_gone(int descriptor);
+
+/* Waits until the descriptor takes bytes or `deadline_ns` (host monotonic) passed; false then. */
+bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns);
+
+#endif

@@ -1,0 +1,17 @@
+#include "fe/linear/trial.h"
+
+const char *wb_trial_phase_name(enum wb_phase phase)
+{
+    static const char *const names[] = {"load", "unload", "slack"};
+    return names[phase];
+}
+
+void wb_trial_default_jacket_contact(struct wb_jacket_contact_law *law, double youngs_modulus,
+                                     double poissons_ratio, double thickness, double friction)
+{
+    const double nu = poissons_ratio;
+    const double confined = youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    law->normal_stiffness = confined / thickness;
+    law->tangential_stiffness = law->normal_stiffness / 3.0;
+    law->friction = friction;
+}

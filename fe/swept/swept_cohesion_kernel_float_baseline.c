@@ -1,4 +1,0 @@
-#include "fe/swept/swept_cohesion_kernel.inc"
-
-const struct wb_swept_cohesion_kernel wb_swept_cohesion_kernel_float_baseline = {
-    "baseline", false, runs_here, add_forces};

@@ -1,4 +1,0 @@
-#include "fe/swept/swept_hex_kernel.inc"
-
-const struct wb_swept_hex_kernel wb_swept_hex_kernel_float_avx512 = {"avx512", false, runs_here,
-                                                                     four_points, one_point};

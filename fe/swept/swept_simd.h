@@ -1,0 +1,397 @@
+/* Vectors of numbers for kernels: what the compiler's vector types lack.
+ *
+ * For kernels only (swept_..._kernel.c): its names are short. meson.build defines REAL_IS_DOUBLE (0
+ * or 1) and INSTRUCTIONS (the name of the instruction set whose flags it gives to the compiler);
+ * the width of a vector is the widest of that set. Without these definitions the header is that of
+ * float and the baseline.
+ */
+#ifndef WB_FE_SWEPT_SWEPT_SIMD_H
+#define WB_FE_SWEPT_SWEPT_SIMD_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include "fe/swept/swept.h"
+
+#ifndef REAL_IS_DOUBLE
+#define REAL_IS_DOUBLE 0
+#endif
+#ifndef INSTRUCTIONS
+#define INSTRUCTIONS baseline
+#endif
+
+#define INLINE static inline __attribute__((always_inline))
+
+/* The name of a kernel's version: wb_swept_hex_kernel and so on, then precision, then instructions
+ * (swept_kernel.h). */
+#define KERNEL_VERSION(kernel) JOIN(kernel, PRECISION, INSTRUCTIONS)
+#define JOIN(kernel, precision, instructions) JOIN_EXPANDED(kernel, precision, instructions)
+#define JOIN_EXPANDED(kernel, precision, instructions) kernel##_##precision##_##instructions
+
+#if REAL_IS_DOUBLE
+typedef double real;
+#define PRECISION double
+typedef long long bits;
+#define MANTISSA 52
+#define ONE_BITS 0x3FF0000000000000LL
+#define BELOW_TWO 0x1.fffffffffffffp0
+#else
+typedef float real;
+#define PRECISION float
+typedef int bits;
+#define MANTISSA 23
+#define ONE_BITS 0x3F800000
+#define BELOW_TWO 0x1.fffffep0f
+#endif
+
+#if defined(__AVX512F__)
+#define BYTES 64
+#elif defined(__AVX2__)
+#define BYTES 32
+#else
+#define BYTES 16
+#endif
+
+enum {
+    LANES = BYTES / (int)sizeof(real),
+    PART_LANES = BYTES / (int)sizeof(double),
+    PARTS = LANES / PART_LANES /* vectors of double in one of real */
+};
+
+typedef real vec __attribute__((vector_size(BYTES), may_alias));
+typedef bits vec_bits __attribute__((vector_size(BYTES), may_alias));
+typedef double part __attribute__((vector_size(BYTES), may_alias));
+typedef double part_anywhere __attribute__((vector_size(BYTES), may_alias, aligned(8)));
+
+/* Numbers of double precision on their way to real. */
+struct wide {
+    part of[PARTS];
+};
+
+INLINE vec splat(real x)
+{
+    return x - (vec){0};
+}
+
+INLINE vec load(const real *at)
+{
+    return *(const vec *)at;
+}
+
+INLINE void store(real *at, vec v)
+{
+    *(vec *)at = v;
+}
+
+/* From any address. */
+INLINE struct wide load_wide(const double *at)
+{
+    struct wide out;
+    for (int i = 0; i < PARTS; i++)
+        out.of[i] = *(const part_anywhere *)(at + i * PART_LANES);
+    return out;
+}
+
+INLINE struct wide add(struct wide a, struct wide b)
+{
+    for (int i = 0; i < PARTS; i++)
+        a.of[i] += b.of[i];
+    return a;
+}
+
+INLINE struct wide subtract(struct wide a, struct wide b)
+{
+    for (int i = 0; i < PARTS; i++)
+        a.of[i] -= b.of[i];
+    return a;
+}
+
+/* 1 / sqrt(x) for x > 0, to about round-off. */
+INLINE vec inverse_root(vec x)
+{
+#if BYTES == 64 && !REAL_IS_DOUBLE
+    const vec y = (vec)_mm512_rsqrt14_ps((__m512)x);
+    return y * (splat(1.5f) - splat(0.5f) * x * y * y);
+#elif BYTES == 64
+    return 1.0 / (vec)_mm512_sqrt_pd((__m512d)x);
+#elif BYTES == 32 && !REAL_IS_DOUBLE
+    return 1.0f / (vec)_mm256_sqrt_ps((__m256)x);
+#elif BYTES == 32
+    return 1.0 / (vec)_mm256_sqrt_pd((__m256d)x);
+#elif defined(__SSE2__) && !REAL_IS_DOUBLE
+    return 1.0f / (vec)_mm_sqrt_ps((__m128)x);
+#elif defined(__SSE2__)
+    return 1.0 / (vec)_mm_sqrt_pd((__m128d)x);
+#else
+    vec out;
+    for (int i = 0; i < LANES; i++)
+        out[i] = (real)1 / (real)sqrt((double)x[i]);
+    return out;
+#endif
+}
+
+INLINE part part_root(part x)
+{
+#if BYTES == 64
+    return (part)_mm512_sqrt_pd((__m512d)x);
+#elif BYTES == 32
+    return (part)_mm256_sqrt_pd((__m256d)x);
+#elif defined(__SSE2__)
+    return (part)_mm_sqrt_pd((__m128d)x);
+#else
+    for (int i = 0; i < PART_LANES; i++)
+        x[i] = sqrt(x[i]);
+    return x;
+#endif
+}
+
+/* What comparisons give, and how it chooses. A comparison with NaN is false. */
+#if BYTES == 64 && !REAL_IS_DOUBLE
+typedef __mmask16 mask;
+INLINE mask above(vec a, vec b)
+{
+    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_GT_OQ);
+}
+INLINE bool any(mask m)
+{
+    return m != 0;
+}
+INLINE vec choose(mask m, vec a, vec b)
+{
+    return (vec)_mm512_mask_blend_ps(m, (__m512)b, (__m512)a);
+}
+INLINE vec maximum(vec a, vec b)
+{
+    return (vec)_mm512_max_ps((__m512)a, (__m512)b);
+}
+INLINE vec minimum(vec a, vec b)
+{
+    return (vec)_mm512_min_ps((__m512)a, (__m512)b);
+}
+INLINE vec narrow(struct wide a)
+{
+    const __m256 low = _mm512_cvtpd_ps((__m512d)a.of[0]);
+    const __m256 high = _mm512_cvtpd_ps((__m512d)a.of[1]);
+    return (vec)_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+}
+#elif BYTES == 64
+typedef __mmask8 mask;
+INLINE mask above(vec a, vec b)
+{
+    return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_GT_OQ);
+}
+INLINE bool any(mask m)
+{
+    return m != 0;
+}
+INLINE vec choose(mask m, vec a, vec b)
+{
+    return (vec)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
+}
+INLINE vec maximum(vec a, vec b)
+{
+    return (vec)_mm512_max_pd((__m512d)a, (__m512d)b);
+}
+INLINE vec minimum(vec a, vec b)
+{
+    return (vec)_mm512_min_pd((__m512d)a, (__m512d)b);
+}
+#elif BYTES == 32 && !REAL_IS_DOUBLE
+typedef __m256 mask;
+INLINE mask above(vec a, vec b)
+{
+    return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_GT_OQ);
+}
+INLINE bool any(mask m)
+{
+    return _mm256_movemask_ps(m) != 0;
+}
+INLINE vec choose(mask m, vec a, vec b)
+{
+    return (vec)_mm256_blendv_ps((__m256)b, (__m256)a, m);
+}
+INLINE vec maximum(vec a, vec b)
+{
+    return (vec)_mm256_max_ps((__m256)a, (__m256)b);
+}
+INLINE vec minimum(vec a, vec b)
+{
+    return (vec)_mm256_min_ps((__m256)a, (__m256)b);
+}
+INLINE vec narrow(struct wide a)
+{
+    const __m128 low = _mm256_cvtpd_ps((__m256d)a.of[0]);
+    const __m128 high = _mm256_cvtpd_ps((__m256d)a.of[1]);
+    return (vec)_mm256_set_m128(high, low);
+}
+#elif BYTES == 32
+typedef __m256d mask;
+INLINE mask above(vec a, vec b)
+{
+    return _mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_GT_OQ);
+}
+INLINE bool any(mask m)
+{
+    return _mm256_movemask_pd(m) != 0;
+}
+INLINE vec choose(mask m, vec a, vec b)
+{
+    return (vec)_mm256_blendv_pd((__m256d)b, (__m256d)a, m);
+}
+INLINE vec maximum(vec a, vec b)
+{
+    return (vec)_mm256_max_pd((__m256d)a, (__m256d)b);
+}
+INLINE vec minimum(vec a, vec b)
+{
+    return (vec)_mm256_min_pd((__m256d)a, (__m256d)b);
+}
+#elif defined(__SSE2__) && !REAL_IS_DOUBLE
+typedef __m128 mask;
+INLINE mask above(vec a, vec b)
+{
+    return _mm_cmpgt_ps((__m128)a, (__m128)b);
+}
+INLINE bool any(mask m)
+{
+    return _mm_movemask_ps(m) != 0;
+}
+INLINE vec choose(mask m, vec a, vec b)
+{
+    return (vec)_mm_or_ps(_mm_and_ps(m, (__m128)a), _mm_andnot_ps(m, (__m128)b));
+}
+INLINE vec maximum(vec a, vec b)
+{
+    return (vec)_mm_max_ps((__m128)a, (__m128)b);
+}
+INLINE vec minimum(vec a, vec b)
+{
+    return (vec)_mm_min_ps((__m128)a, (__m128)b);
+}
+INLINE vec narrow(struct wide a)
+{
+    return (vec)_mm_movelh_ps(_mm_cvtpd_ps((__m128d)a.of[0]), _mm_cvtpd_ps((__m128d)a.of[1]));
+}
+#elif defined(__SSE2__)
+typedef __m128d mask;
+INLINE mask above(vec a, vec b)
+{
+    return _mm_cmpgt_pd((__m128d)a, (__m128d)b);
+}
+INLINE bool any(mask m)
+{
+    return _mm_movemask_pd(m) != 0;
+}
+INLINE vec choose(mask m, vec a, vec b)
+{
+    return (vec)_mm_or_pd(_mm_and_pd(m, (__m128d)a), _mm_andnot_pd(m, (__m128d)b));
+}
+INLINE vec maximum(vec a, vec b)
+{
+    return (vec)_mm_max_pd((__m128d)a, (__m128d)b);
+}
+INLINE vec minimum(vec a, vec b)
+{
+    return (vec)_mm_min_pd((__m128d)a, (__m128d)b);
+}
+#else
+typedef vec_bits mask;
+INLINE mask above(vec a, vec b)
+{
+    return a > b;
+}
+INLINE bool any(mask m)
+{
+    bits sum = 0;
+    for (int i = 0; i < LANES; i++)
+        sum |= m[i];
+    return sum != 0;
+}
+INLINE vec choose(mask m, vec a, vec b)
+{
+    return (vec)((m & (vec_bits)a) | (~m & (vec_bits)b));
+}
+INLINE vec maximum(vec a, vec b)
+{
+    return choose(above(a, b), a, b);
+}
+INLINE vec minimum(vec a, vec b)
+{
+    return choose(above(b, a), a, b);
+}
+#if !REAL_IS_DOUBLE
+INLINE vec narrow(struct wide a)
+{
+    vec out;
+    for (int i = 0; i < LANES; i++)
+        out[i] = (real)a.of[i / PART_LANES][i % PART_LANES];
+    return out;
+}
+#endif
+#endif
+
+#if REAL_IS_DOUBLE
+INLINE vec narrow(struct wide a)
+{
+    return a.of[0];
+}
+#endif
+
+INLINE vec size_of(vec a)
+{
+    return maximum(a, -a);
+}
+
+INLINE vec dot(const vec a[3], const vec b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Which lanes are elements: the first `n`. */
+INLINE mask first_lanes(int n)
+{
+    vec lane;
+    for (int i = 0; i < LANES; i++)
+        lane[i] = (real)i;
+    return above(splat((real)n - (real)0.5), lane);
+}
+
+/* Of the lanes that are stations from `j` on, those in a range. */
+INLINE struct wb_swept_range lanes_counted(const struct wb_swept_range *range, int j)
+{
+    const int first = range->first - j, end = range->end - j;
+    return (struct wb_swept_range){first > 0 ? first : 0, end < LANES ? end : LANES};
+}
+
+/* v where lanes, stations from `j` on, are in the range, else 0. */
+INLINE vec only_counted(const struct wb_swept_range *range, int j, vec v)
+{
+    vec lane;
+    for (int i = 0; i < LANES; i++)
+        lane[i] = (real)i;
+    const vec begin = splat((real)(range->first - j) - (real)0.5);
+    const vec end = splat((real)(range->end - j) - (real)0.5);
+    return choose(above(lane, begin), choose(above(end, lane), v, (vec){0}), (vec){0});
+}
+
+/* The last lane of `before`, then v without its last. */
+INLINE vec shift_in(vec before, vec v)
+{
+#if BYTES == 64 && !REAL_IS_DOUBLE
+    return __builtin_shufflevector(before, v, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27,
+                                   28, 29, 30);
+#elif BYTES == 64 || (BYTES == 32 && !REAL_IS_DOUBLE)
+    return __builtin_shufflevector(before, v, 7, 8, 9, 10, 11, 12, 13, 14);
+#elif BYTES == 32 || (BYTES == 16 && !REAL_IS_DOUBLE)
+    return __builtin_shufflevector(before, v, 3, 4, 5, 6);
+#else
+    return __builtin_shufflevector(before, v, 1, 2);
+#endif
+}
+
+#endif

@@ -1,4 +1,0 @@
-#include "fe/swept/swept_tape_contact_kernel.inc"
-
-const struct wb_swept_tape_contact_kernel wb_swept_tape_contact_kernel_float_avx2 = {"avx2", false,
-                                                                                     add_forces};

@@ -1,0 +1,436 @@
+/* Slurm job arrays with commands in the place of Slurm's: what is submitted, what a task's script
+ * does, and how answers of the queue are understood. test_jobs_slurm.c has a real Slurm. */
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/interrupt.h"
+#include "tests/analysis/jobs/jobs_fixture.h"
+#include "tests/check.h"
+
+static const struct wb_jobs_options slurm = {.where = WB_JOBS_SLURM, .poll_interval = 0.05};
+
+/* Notes its arguments; runs the tasks of a list "1,3-4" at once unless there is a file `hold`. Of
+ * the clusters that a file of this name lists, each takes one array, the number of all is 12. With
+ * a file `forget` squeue is told nothing. */
+static const char sbatch[] =
+    "#!/bin/sh\n"
+    "cd \"$FAKE\" || exit 1\n"
+    "[ ! -e refuse ] || { echo 'sbatch: error: invalid partition: nowhere' >&2; exit 1; }\n"
+    "printf '%s\\n' \"$@\" >> sbatch.said\n"
+    "echo . >> sbatch.count\n"
+    "id=$((11 + $(wc -l < sbatch.count)))\n"
+    "cluster=\n"
+    "[ ! -e clusters ] || { cluster=$(sed -n \"$((id - 11))p\" clusters); id=12; }\n"
+    "for a in \"$@\"; do\n"
+    "    case $a in --array=*) tasks=${a#--array=} ;; --chdir=*) folder=${a#--chdir=} ;; esac\n"
+    "done\n"
+    "while [ $# -gt 3 ]; do shift; done\n"
+    "for range in $(echo \"${tasks%\\%*}\" | tr , ' '); do\n"
+    "    for task in $(seq \"${range%-*}\" \"${range#*-}\"); do\n"
+    "        state=PENDING\n"
+    "        [ -e \"hold$cluster\" ] || {\n"
+    "            state=FAILED\n"
+    "            (cd \"$folder\" && SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=3 sh \"$@\") \\\n"
+    "                && state=COMPLETED\n"
+    "        }\n"
+    "        [ -e forget ] || echo \"${id}_$task|$state|None|$1\" >> queue.$id$cluster\n"
+    "    done\n"
+    "done\n"
+    "echo \"$id${cluster:+;$cluster}\"\n";
+
+/* Answers from the file that sbatch wrote, or as long as the file `mute` is not empty takes a line
+ * of it and fails. */
+static const char squeue[] =
+    "#!/bin/sh\n"
+    "cd \"$FAKE\" || exit 1\n"
+    "if [ -s mute ]; then\n"
+    "    sed -i 1d mute\n"
+    "    echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2\n"
+    "    exit 1\n"
+    "fi\n"
+    "for a in \"$@\"; do\n"
+    "    case $a in --jobs=*) id=${a#--jobs=} ;; --clusters=*) cluster=${a#--clusters=} ;; esac\n"
+    "done\n"
+    "id=$id$cluster\n"
+    "[ -e \"queue.$id\" ] || {\n"
+    "    echo 'slurm_load_jobs error: Invalid job id specified' >&2\n"
+    "    exit 1\n"
+    "}\n"
+    "cat \"queue.$id\"\n";
+
+static const char scontrol[] = "#!/bin/sh\n"
+                               "echo 'MaxArraySize            = '$(cat \"$FAKE/largest\")\n";
+
+static const char sacct[] = "#!/bin/sh\n"
+                            "[ -e \"$FAKE/accounting\" ] || exit 1\n"
+                            "cat \"$FAKE/accounting\"\n";
+
+static char old_path[4096];
+
+static void write_command(const char *path, const char *text)
+{
+    jobs_fixture_write(path, text);
+    assert_int_equal(chmod(path, 0755), 0);
+}
+
+static int make_slurm(void **state)
+{
+    char path[8192];
+    if (jobs_fixture_make_folder(state) != 0 || mkdir("fake", 0777) != 0)
+        return -1;
+    write_command("fake/sbatch", sbatch);
+    write_command("fake/squeue", squeue);
+    write_command("fake/scontrol", scontrol);
+    write_command("fake/sacct", sacct);
+    jobs_fixture_write("fake/largest", "1001");
+    snprintf(path, sizeof path, "%s/fake", jobs_fixture_folder);
+    setenv("FAKE", path, 1);
+    snprintf(old_path, sizeof old_path, "%s", getenv("PATH"));
+    snprintf(path, sizeof path, "%s/fake:%s", jobs_fixture_folder, old_path);
+    return setenv("PATH", path, 1);
+}
+
+static int remove_slurm(void **state)
+{
+    setenv("PATH", old_path, 1);
+    return jobs_fixture_remove_folder(state);
+}
+
+static void expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
+                   int left)
+{
+    if (outcome->present != present || outcome->done != done || outcome->failed != failed ||
+        outcome->left != left)
+        fail_msg("%d present, %d done, %d failed, %d left; said: %s", outcome->present,
+                 outcome->done, outcome->failed, outcome->left, jobs_fixture_said);
+}
+
+static const struct jobs_fixture_run five[] = {
+    {.name = "a", .words = {"make", "1"}},
+    {.name = "b", .words = {"fail"}},
+    {.name = "c", .words = {"make", "it's \"so\" $HOME"}},
+    {.name = "d", .words = {"threads"}},
+    {.name = "e", .words = {"nothing"}}};
+
+static void only_what_is_missing_is_submitted(void **unused)
+{
+    (void)unused;
+    struct jobs_fixture_run runs[5];
+    struct wb_jobs_outcome outcome = jobs_fixture_run(five, 5, &slurm, WB_OK);
+    expect(&outcome, 0, 3, 2, 0);
+    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=1-5\n"));
+    assert_string_equal(jobs_fixture_text("c/dataset.json"), "it's \"so\" $HOME");
+    assert_string_equal(jobs_fixture_text("d/dataset.json"), "3");
+    assert_false(jobs_fixture_is_there("logs/slurm.json"));
+    assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is FAILED"));
+    assert_non_null(
+        strstr(jobs_fixture_said, "\n    line 9 of what went wrong\n    exit code 1\n"));
+    assert_non_null(strstr(jobs_fixture_said, "run 'e' failed: Slurm's task 12_5 is FAILED"));
+    assert_non_null(strstr(jobs_fixture_said, "\n    it made no dataset\n"));
+
+    memcpy(runs, five, sizeof runs);
+    runs[1].words[0] = runs[4].words[0] = "make";
+    runs[1].words[1] = runs[4].words[1] = "x";
+    unlink("a/dataset.json");
+    rmdir("a");
+    jobs_fixture_write("fake/sbatch.said", "");
+    outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
+    expect(&outcome, 2, 3, 0, 0);
+    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=1-2,5\n"));
+    outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
+    expect(&outcome, 5, 0, 0, 0);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
+}
+
+static void options_are_passed_on(void **unused)
+{
+    (void)unused;
+    static const char *extra[] = {"--qos=long", "--exclude=a b"};
+    const struct wb_jobs_options options = {.where = WB_JOBS_SLURM,
+                                            .poll_interval = 0.05,
+                                            .title = "my bundles",
+                                            .workers = 7,
+                                            .cores_per_job = 3,
+                                            .partition = "fast",
+                                            .account = "wires",
+                                            .time = "1:30:00",
+                                            .memory = "2G",
+                                            .extra = extra,
+                                            .n_extra = 2,
+                                            .folder = "100 %"};
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 1, &options, WB_OK);
+    expect(&outcome, 0, 1, 0, 0);
+    char expected[4096];
+    snprintf(expected, sizeof expected,
+             "--parsable\n--array=1%%7\n--job-name=my bundles\n--chdir=%s\n"
+             "--output=%s/100 %%%%/slurm-1/%%A_%%a.out\n--ntasks=1\n--cpus-per-task=3\n"
+             "--partition=fast\n--account=wires\n--time=1:30:00\n--mem=2G\n--qos=long\n"
+             "--exclude=a b\n%s/100 %%/slurm-1/array.sh\n%s/100 %%/slurm-1/jobs.txt\n0\n",
+             jobs_fixture_folder, jobs_fixture_folder, jobs_fixture_folder, jobs_fixture_folder);
+    assert_string_equal(jobs_fixture_text("fake/sbatch.said"), expected);
+}
+
+static void dry_run_writes_and_submits_nothing(void **unused)
+{
+    (void)unused;
+    struct wb_jobs_options options = slurm;
+    options.dry_run = true;
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 3, &options, WB_OK);
+    expect(&outcome, 0, 0, 0, 3);
+    assert_false(jobs_fixture_is_there("fake/sbatch.said"));
+    assert_non_null(strstr(jobs_fixture_said, "3 runs not submitted; to do that:\n    sbatch "));
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("logs/slurm-1/jobs.txt"), "\n"), 3);
+    /* The command it says does it. */
+    const char *const said = strstr(jobs_fixture_said, "    sbatch ");
+    char command[4096];
+    assert_non_null(said);
+    snprintf(command, sizeof command, "%.*s >/dev/null", (int)strcspn(said, "\n"), said);
+    assert_int_equal(system(command), 0);
+    assert_true(jobs_fixture_is_there("a/dataset.json"));
+    assert_false(jobs_fixture_is_there("b"));
+    assert_true(jobs_fixture_is_there("c/dataset.json"));
+}
+
+static void large_lists_become_several_arrays(void **unused)
+{
+    (void)unused;
+    struct jobs_fixture_run runs[5];
+    static const char *const names[] = {"a", "b", "c", "d", "e"};
+    for (int i = 0; i < 5; i++)
+        runs[i] = (struct jobs_fixture_run){.name = names[i], .words = {"make", names[i]}};
+    jobs_fixture_write("fake/largest", "3");
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
+    expect(&outcome, 0, 5, 0, 0);
+    assert_string_equal(jobs_fixture_text("e/dataset.json"), "e");
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array=1-2\n"), 2);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array=1\n"), 1);
+    assert_string_equal(jobs_fixture_text("b/dataset.json"), "b");
+    assert_string_equal(jobs_fixture_text("d/dataset.json"), "d");
+}
+
+static void outdated_output_is_replaced_by_a_task(void **unused)
+{
+    (void)unused;
+    struct jobs_fixture_run run = {.name = "a", .words = {"make", "old"}};
+    jobs_fixture_run(&run, 1, &slurm, WB_OK);
+    run.replace = true;
+    run.words[0] = "fail";
+    struct wb_jobs_outcome outcome = jobs_fixture_run(&run, 1, &slurm, WB_OK);
+    expect(&outcome, 0, 0, 1, 0);
+    assert_string_equal(jobs_fixture_text("a/dataset.json"), "old");
+    run.words[0] = "make";
+    run.words[1] = "new";
+    outcome = jobs_fixture_run(&run, 1, &slurm, WB_OK);
+    expect(&outcome, 0, 1, 0, 0);
+    assert_string_equal(jobs_fixture_text("a/dataset.json"), "new");
+    assert_false(jobs_fixture_is_there("a.outdated"));
+}
+
+static void without_slurm_the_message_says_what_to_do(void **unused)
+{
+    (void)unused;
+    setenv("PATH", "/nowhere", 1);
+    jobs_fixture_run(five, 2, &slurm, WB_ERR_NOT_FOUND);
+    setenv("PATH", old_path, 1);
+    assert_non_null(strstr(jobs_fixture_said, "there is no sbatch in PATH"));
+    assert_non_null(strstr(jobs_fixture_said, "--solve"));
+    assert_int_equal(jobs_fixture_count(jobs_fixture_said, "\n"), 1);
+}
+
+static void refused_submission_says_why(void **unused)
+{
+    (void)unused;
+    jobs_fixture_write("fake/refuse", "");
+    jobs_fixture_run(five, 2, &slurm, WB_ERR_IO);
+    assert_non_null(strstr(jobs_fixture_said, "sbatch refused the array (exit code 1): sbatch: "
+                                              "error: invalid partition: nowhere\n"));
+    assert_false(jobs_fixture_is_there("logs/slurm.json"));
+}
+
+static void silent_queue_is_waited_for(void **unused)
+{
+    (void)unused;
+    jobs_fixture_write("fake/mute", "1\n2\n3\n");
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(&five[1], 1, &slurm, WB_OK);
+    expect(&outcome, 0, 0, 1, 0);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_said, "Slurm does not answer, still waiting"),
+                     1);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_said, "Slurm answers again"), 1);
+    assert_string_equal(jobs_fixture_text("fake/mute"), "");
+}
+
+/* Interrupts the waiting once the tasks are submitted. */
+static void interrupt_a_call(const struct jobs_fixture_run *runs, int n)
+{
+    wb_interrupt_install();
+    const pid_t parent = getpid(), helper = fork();
+    if (helper == 0) {
+        for (int i = 0; i < 1000 && !jobs_fixture_is_there("logs/slurm.json"); i++)
+            usleep(10000);
+        kill(parent, SIGTERM);
+        _exit(0);
+    }
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, n, &slurm, WB_OK);
+    waitpid(helper, NULL, 0);
+    wb_interrupt_set(false);
+    assert_true(outcome.interrupted);
+    assert_int_equal(outcome.left, n);
+    assert_non_null(strstr(jobs_fixture_said, "`scancel 12` ends them"));
+}
+
+static void next_call_waits_for_what_an_interrupted_one_submitted(void **unused)
+{
+    (void)unused;
+    jobs_fixture_write("fake/hold", "");
+    interrupt_a_call(five, 3);
+    /* Meanwhile two of three end, one of them well. */
+    char queue[1024];
+    snprintf(queue, sizeof queue,
+             "12_1|COMPLETED|None|%s/logs/slurm-1/array.sh\n"
+             "12_2|RUNNING|None|%s/logs/slurm-1/array.sh\n"
+             "12_3|TIMEOUT|TimeLimit|%s/logs/slurm-1/array.sh\n",
+             jobs_fixture_folder, jobs_fixture_folder, jobs_fixture_folder);
+    jobs_fixture_write("fake/queue.12", queue);
+    assert_int_equal(mkdir("a", 0777), 0);
+    jobs_fixture_write("a/dataset.json", "by Slurm");
+
+    /* Computing here leaves the one that runs there alone. */
+    const struct wb_jobs_options local = {.where = WB_JOBS_LOCAL};
+    struct jobs_fixture_run runs[3];
+    memcpy(runs, five, sizeof runs);
+    struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 2, &local, WB_OK);
+    expect(&outcome, 1, 0, 0, 1);
+    assert_non_null(strstr(jobs_fixture_said, "1 run is still with Slurm from an earlier call"));
+
+    /* The one that ended badly is submitted again, the other one ends in the queue. */
+    unlink("fake/hold");
+    snprintf(queue, sizeof queue,
+             "(sleep 0.5; mkdir b; echo x >b/dataset.json; sed -i s/RUNNING/COMPLETED/ "
+             "fake/queue.12) &");
+    assert_int_equal(system(queue), 0);
+    outcome = jobs_fixture_run(runs, 3, &slurm, WB_OK);
+    expect(&outcome, 1, 2, 0, 0);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
+    assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=3\n"));
+    assert_false(jobs_fixture_is_there("logs/slurm.json"));
+}
+
+static void forgotten_tasks_are_judged_by_their_outputs(void **unused)
+{
+    (void)unused;
+    jobs_fixture_write("fake/hold", "");
+    interrupt_a_call(five, 2);
+    /* In the time between two looks one is made, and then Slurm knows neither. */
+    assert_int_equal(system("(sleep 0.4; mkdir a; echo x >a/dataset.json; rm fake/queue.12) &"), 0);
+    jobs_fixture_write("fake/accounting", "CANCELLED by 1000\n");
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 2, &slurm, WB_OK);
+    expect(&outcome, 0, 1, 1, 0);
+    assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is CANCELLED"));
+}
+
+static void number_of_somebody_elses_job_is_not_ours(void **unused)
+{
+    (void)unused;
+    jobs_fixture_write("fake/hold", "");
+    interrupt_a_call(five, 1);
+    unlink("fake/hold");
+    jobs_fixture_write("fake/queue.12", "12_1|RUNNING|None|/home/other/array.sh\n");
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 1, &slurm, WB_OK);
+    expect(&outcome, 0, 1, 0, 0);
+    assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
+}
+
+static void arrays_of_two_clusters_may_have_one_number(void **unused)
+{
+    (void)unused;
+    struct jobs_fixture_run runs[4] = {five[0], five[2], five[3], five[1]};
+    jobs_fixture_write("fake/largest", "3");
+    jobs_fixture_write("fake/clusters", "east\nwest\n");
+    /* The east ends long after the west. */
+    jobs_fixture_write("fake/holdeast", "");
+    assert_int_equal(system("(sleep 1; mkdir a c; echo x >a/dataset.json; echo x >c/dataset.json; "
+                            "sed -i s/PENDING/COMPLETED/ fake/queue.12east) &"),
+                     0);
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 4, &slurm, WB_OK);
+    expect(&outcome, 0, 3, 1, 0);
+    assert_true(jobs_fixture_is_there("fake/queue.12east"));
+    assert_true(jobs_fixture_is_there("fake/queue.12west"));
+    assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is FAILED"));
+}
+
+/* Nothing is known of the second array but what accounting says. */
+static void how_an_earlier_task_ended_is_not_told_of_the_next(void **unused)
+{
+    (void)unused;
+    char queue[256];
+    jobs_fixture_write("fake/hold", "");
+    interrupt_a_call(&five[1], 1);
+    unlink("fake/hold");
+    snprintf(queue, sizeof queue, "12_1|TIMEOUT|TimeLimit|%s/logs/slurm-1/array.sh\n",
+             jobs_fixture_folder);
+    jobs_fixture_write("fake/queue.12", queue);
+    jobs_fixture_write("fake/forget", "");
+    jobs_fixture_write("fake/accounting", "OUT_OF_MEMORY\n");
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(&five[1], 1, &slurm, WB_OK);
+    expect(&outcome, 0, 0, 1, 0);
+    assert_non_null(strstr(jobs_fixture_said, "Slurm's task 13_1 is OUT_OF_MEMORY"));
+}
+
+static void reason_that_may_last_for_ever_is_told_once(void **unused)
+{
+    (void)unused;
+    jobs_fixture_write("fake/hold", "");
+    assert_int_equal(system("(for i in 1 2 3 4 5 6 7 8 9 10; do sleep 0.1; "
+                            "[ ! -e fake/queue.12 ] || break; done; "
+                            "sed -i s/None/PartitionTimeLimit/ fake/queue.12; sleep 1; "
+                            "sed -i s/PENDING/CANCELLED/ fake/queue.12) &"),
+                     0);
+    const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 1, &slurm, WB_OK);
+    expect(&outcome, 0, 0, 1, 0);
+    assert_int_equal(
+        jobs_fixture_count(jobs_fixture_said, "tasks wait in Slurm's queue: PartitionTimeLimit"),
+        1);
+}
+
+static void queue_that_cannot_be_asked_about_earlier_runs_stops_the_call(void **unused)
+{
+    (void)unused;
+    const struct wb_jobs_options local = {.where = WB_JOBS_LOCAL};
+    jobs_fixture_write("fake/hold", "");
+    interrupt_a_call(five, 1);
+    jobs_fixture_write("fake/mute", "1\n2\n");
+    jobs_fixture_run(five, 1, &slurm, WB_ERR_BUSY);
+    jobs_fixture_run(five, 1, &local, WB_ERR_BUSY);
+    assert_non_null(strstr(jobs_fixture_said, "Unable to contact slurm controller"));
+    assert_non_null(strstr(jobs_fixture_said, "/logs/slurm.json'"));
+    assert_false(jobs_fixture_is_there("a"));
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1 && strcmp(argv[1], "worker") == 0)
+        return jobs_fixture_worker(argc, argv);
+    alarm(50); /* a signal that only sets a flag does not end a test that waits for ever */
+#define WITH_SLURM(fact) cmocka_unit_test_setup_teardown(fact, make_slurm, remove_slurm)
+    const struct CMUnitTest tests[] = {
+        WITH_SLURM(only_what_is_missing_is_submitted),
+        WITH_SLURM(options_are_passed_on),
+        WITH_SLURM(dry_run_writes_and_submits_nothing),
+        WITH_SLURM(large_lists_become_several_arrays),
+        WITH_SLURM(outdated_output_is_replaced_by_a_task),
+        WITH_SLURM(without_slurm_the_message_says_what_to_do),
+        WITH_SLURM(refused_submission_says_why),
+        WITH_SLURM(silent_queue_is_waited_for),
+        WITH_SLURM(next_call_waits_for_what_an_interrupted_one_submitted),
+        WITH_SLURM(forgotten_tasks_are_judged_by_their_outputs),
+        WITH_SLURM(number_of_somebody_elses_job_is_not_ours),
+        WITH_SLURM(arrays_of_two_clusters_may_have_one_number),
+        WITH_SLURM(how_an_earlier_task_ended_is_not_told_of_the_next),
+        WITH_SLURM(reason_that_may_last_for_ever_is_told_once),
+        WITH_SLURM(queue_that_cannot_be_asked_about_earlier_runs_stops_the_call),
+    };
+    return cmocka_run_group_tests_name("jobs_array", tests, NULL, NULL);
+}

@@ -1,0 +1,266 @@
+/* Campaign files and the index of recordings. */
+#include "tests/analysis/beam_data.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "analysis/report/bench/index.h"
+#include "analysis/report/bench/recordings.h"
+#include "base/file.h"
+
+#define SHA_A "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+
+static char folder[] = "/tmp/wb-campaign-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    last_message_install();
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    char command[256];
+    snprintf(command, sizeof command, "rm -r '%s'", folder);
+    return system(command);
+}
+
+static const char *write_file(const char *name, const char *text)
+{
+    static char path[WB_PATH];
+    assert_int_equal(wb_file_join(path, folder, name), WB_OK);
+    assert_int_equal(wb_file_write(path, text, strlen(text)), WB_OK);
+    return path;
+}
+
+static const char index_text[] =
+    "recordings:\n"
+    "  - file: one.wbr.zst\n    wire: type1\n    length_mm: 85\n    sample: 2\n    seed: 4\n"
+    "    sha256: " SHA_A "\n    virtual: true\n"
+    "  - file: two.wbr.zst\n    wire: type1\n    length_mm: 85\n    sample: 1\n"
+    "    sha256: " SHA_A "\n"
+    "  - file: three.wbr.zst\n    wire: type1\n    length_mm: 100\n    sample: 1\n"
+    "    sha256: " SHA_A "\n    date_utc: 2026-11-20T11:40:00Z\n    tool_revision: abc\n";
+
+static const char head[] = "title: Some wires\n"
+                           "index: index.yaml\n"
+                           "calibration_length_mm: 85\n"
+                           "validation_length_mm: 100\n"
+                           "samples: 2\n";
+
+static enum wb_status read_text(struct wb_recordings *campaign, const char *tail)
+{
+    char text[4096];
+    snprintf(text, sizeof text, "%s%s", head, tail);
+    return wb_recordings_read(campaign, write_file("campaign.yaml", text));
+}
+
+static void recordings_come_from_the_index_and_missing_ones_are_named(void **state)
+{
+    (void)state;
+    write_file("index.yaml", index_text);
+    write_file("one.wbr.zst", "x");
+    struct wb_recordings campaign;
+    assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n    label: Type 1\n"), WB_OK);
+    assert_int_equal(campaign.n_wires, 1);
+    const struct wb_recordings_tests *const calibration = &campaign.wires[0].calibration;
+    assert_int_equal(calibration->n, 2);
+    /* In the order of the samples, not of the index. */
+    assert_string_equal(calibration->items[0].name, "two.wbr.zst");
+    assert_non_null(strstr(calibration->items[0].missing, "not there"));
+    assert_string_equal(calibration->items[1].name, "one.wbr.zst");
+    assert_string_equal(calibration->items[1].missing, "");
+    assert_string_equal(calibration->items[1].sha256, SHA_A);
+    assert_int_equal(calibration->items[1].seed, 4);
+    const struct wb_recordings_tests *const validation = &campaign.wires[0].validation;
+    assert_int_equal(validation->n, 2);
+    assert_string_equal(validation->items[1].name, "Type 1, 100 mm, sample 2");
+    assert_non_null(strstr(validation->items[1].missing, "not in the index"));
+    int n_missing;
+    assert_int_equal(wb_recordings_count(&campaign, &n_missing), 4);
+    assert_int_equal(n_missing, 3);
+    wb_recordings_release(&campaign);
+}
+
+static void the_wire_files_properties_are_the_reference_unless_another_is_given(void **state)
+{
+    (void)state;
+    struct wb_recordings campaign;
+    assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
+    assert_true(campaign.wires[0].has_reference);
+    assert_close(campaign.wires[0].reference[0], 5021e6, 1.0);
+    assert_close(campaign.wires[0].reference[3], 0.99, 1e-12);
+    assert_string_equal(campaign.wires[0].label, "type1");
+    wb_recordings_release(&campaign);
+    assert_int_equal(read_text(&campaign,
+                               "wires:\n  - wire: type1\n    reference:\n"
+                               "      source: a catalogue\n      youngs_modulus_MPa: 4000\n"
+                               "      yield_stress_MPa: 3\n      strength_coefficient_MPa: 100\n"
+                               "      hardening_exponent: 0.5\n"),
+                     WB_OK);
+    assert_string_equal(campaign.wires[0].reference_source, "a catalogue");
+    assert_close(campaign.wires[0].reference[2], 1e8, 1e-3);
+    wb_recordings_release(&campaign);
+}
+
+static void settings_and_limits_are_read_and_have_defaults(void **state)
+{
+    (void)state;
+    struct wb_recordings campaign;
+    struct wb_calibrate_settings defaults;
+    wb_calibrate_default_settings(&defaults);
+    assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
+    assert_close(campaign.calibrate.elastic_zone, defaults.elastic_zone, 0.0);
+    assert_close(campaign.calibration_limit, 0.0, 0.0);
+    wb_recordings_release(&campaign);
+    assert_int_equal(
+        read_text(&campaign, "settings:\n  yield_point: 0.04\n  step_mm: 0.25\n  straight: true\n  "
+                             "bow_corrected: true\n"
+                             "  elements: 20\n"
+                             "limits:\n  calibration_rms_max: 1e-2\n  validation_rms_max: 3.65e-2\n"
+                             "reference:\n  source: Fig. 15\n  validation_rms: [0.01, 0.03]\n"
+                             "wires:\n  - wire: type2\n"),
+        WB_OK);
+    assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
+    assert_close(campaign.calibrate.step, 0.25e-3, 1e-15);
+    assert_true(campaign.calibrate.straight);
+    assert_true(campaign.calibrate.bow_corrected);
+    assert_int_equal(campaign.calibrate.n_elements, 20);
+    assert_close(campaign.calibration_limit, 0.01, 1e-15);
+    assert_close(campaign.validation_limit, 0.0365, 1e-15);
+    assert_close(campaign.reference_rms[1], 0.03, 1e-15);
+    wb_recordings_release(&campaign);
+}
+
+static void recordings_may_be_named_by_path_and_glob(void **state)
+{
+    (void)state;
+    write_file("own-b.wbr", "x");
+    write_file("own-a.wbr", "x");
+    struct wb_recordings campaign;
+    assert_int_equal(read_text(&campaign,
+                               "wires:\n  - wire: type1\n"
+                               "    calibration: [\"own-*.wbr\", one.wbr.zst, none.wbr]\n"
+                               "    validation: []\n"),
+                     WB_OK);
+    const struct wb_recordings_tests *const tests = &campaign.wires[0].calibration;
+    assert_int_equal(tests->n, 4);
+    assert_string_equal(tests->items[0].name, "own-a.wbr");
+    assert_string_equal(tests->items[1].name, "own-b.wbr");
+    assert_string_equal(tests->items[2].sha256, SHA_A);
+    assert_string_equal(tests->items[3].missing, "no such file");
+    assert_int_equal(campaign.wires[0].validation.n, 0);
+    wb_recordings_release(&campaign);
+}
+
+static void without_an_index_all_recordings_are_missing(void **state)
+{
+    (void)state;
+    struct wb_recordings campaign;
+    const char *const path = write_file("no-index.yaml", "title: t\nindex: none.yaml\n"
+                                                         "calibration_length_mm: 85\nsamples: 3\n"
+                                                         "wires:\n  - wire: type1\n");
+    assert_int_equal(wb_recordings_read(&campaign, path), WB_OK);
+    int n_missing;
+    assert_int_equal(wb_recordings_count(&campaign, &n_missing), 3);
+    assert_int_equal(n_missing, 3);
+    assert_non_null(strstr(campaign.wires[0].calibration.items[0].missing, "no index"));
+    wb_recordings_release(&campaign);
+}
+
+static void errors_name_file_line_and_key(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *tail, *said;
+    } cases[] = {
+        {"wires:\n  - wire: type1\nspeed: 3\n", "speed"},
+        {"wires:\n  - wire: type1\n    paper: 3\n", "paper"},
+        {"wires: []\n", "wires"},
+        {"wires: type1\n", "wires"},
+        {"", "wires"},
+        {"wires:\n  - wire: nobody-knows\n", "nobody-knows"},
+        {"wires:\n  - wire: type1\n  - wire: type1\n", "twice"},
+        {"wires:\n  - wire: type1\n    calibration: all\n", "list"},
+        {"wires:\n  - wire: type1\n    calibration: [[1]]\n", "name or path"},
+        {"limits:\n  calibration_rms_max: -1\nwires:\n  - wire: type1\n", "calibration_rms_max"},
+        {"settings:\n  yield_point: 0.04 mm\nwires:\n  - wire: type1\n", "yield_point"},
+        {"settings:\n  elastic_zone: 0.31\nwires:\n  - wire: type1\n", "elastic_zone"},
+        {"settings:\n  yield_point: 0.31\nwires:\n  - wire: type1\n", ":7: yield_point: 0.31"},
+        {"reference:\n  source: s\n  validation_rms: [1]\nwires:\n  - wire: type1\n",
+         "validation_rms"},
+        {"samples: 2\nwires:\n  - wire: type1\n", "samples"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct wb_recordings campaign;
+        last_message_install();
+        assert_int_not_equal(read_text(&campaign, cases[i].tail), WB_OK);
+        assert_said(cases[i].said);
+        assert_int_equal(message_count, 1);
+        assert_null(campaign.wires);
+    }
+    struct wb_recordings campaign;
+    assert_int_equal(wb_recordings_read(&campaign, "/nowhere/campaign.yaml"), WB_ERR_NOT_FOUND);
+}
+
+static void a_damaged_index_is_an_error(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *said;
+    } cases[] = {
+        {"- {file: a, wire: w, length_mm: 85, sample: 1}\n", "sha256"},
+        {"- {file: a, wire: w, length_mm: 85, sample: 1, sha256: 12}\n", "64 hexadecimal"},
+        {"- {file: a, wire: w, length_mm: 85 mm, sample: 1, sha256: " SHA_A "}\n", "length_mm"},
+        {"- {file: a, wire: w, length_mm: 85, sample: 1, sha256: " SHA_A "}\n"
+         "- {file: a, wire: w, length_mm: 85, sample: 2, sha256: " SHA_A "}\n",
+         "twice"},
+        {"entries: []\n", "entries"},
+        {"just text\n", "keys with values"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct wb_index index;
+        last_message_install();
+        assert_int_equal(wb_index_read(&index, write_file("bad.yaml", cases[i].text)),
+                         WB_ERR_FORMAT);
+        assert_said(cases[i].said);
+        assert_null(index.entries);
+    }
+}
+
+static void
+the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void **state)
+{
+    (void)state;
+    char path[WB_PATH];
+    assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/single-wires.yaml"), WB_OK);
+    struct wb_recordings campaign;
+    assert_int_equal(wb_recordings_read(&campaign, path), WB_OK);
+    assert_string_equal(campaign.name, "fixtures/campaigns/single-wires.yaml");
+    assert_int_equal(campaign.n_wires, 3);
+    assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
+    for (int i = 0; i < 3; i++) {
+        assert_true(campaign.wires[i].has_reference);
+        assert_int_equal(campaign.wires[i].calibration.n, 3);
+        assert_int_equal(campaign.wires[i].validation.n, 3);
+    }
+    wb_recordings_release(&campaign);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(recordings_come_from_the_index_and_missing_ones_are_named),
+        cmocka_unit_test(the_wire_files_properties_are_the_reference_unless_another_is_given),
+        cmocka_unit_test(settings_and_limits_are_read_and_have_defaults),
+        cmocka_unit_test(recordings_may_be_named_by_path_and_glob),
+        cmocka_unit_test(without_an_index_all_recordings_are_missing),
+        cmocka_unit_test(errors_name_file_line_and_key),
+        cmocka_unit_test(a_damaged_index_is_an_error),
+        cmocka_unit_test(
+            the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

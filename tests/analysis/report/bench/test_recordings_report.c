@@ -1,0 +1,565 @@
+/* The report of small campaigns: its files, their bytes, and what is told when things are missing
+ * or exceeded. The good one is made of the beam's own curves, the others of made-up recordings. */
+#include "tests/analysis/beam_data.h"
+
+#include <dirent.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "analysis/align.h"
+#include "analysis/report/bench/recordings_figures.h"
+#include "analysis/report/bench/recordings_report.h"
+#include "base/file.h"
+#include "base/interrupt.h"
+#include "base/json.h"
+#include "tests/analysis/synthetic.h"
+
+static char folder[] = "/tmp/wb-report-XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    last_message_install();
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    char command[256];
+    snprintf(command, sizeof command, "rm -r '%s'", folder);
+    return system(command);
+}
+
+static const char *in_folder(const char *name)
+{
+    static char paths[4][WB_PATH];
+    static int next;
+    char *const path = paths[next++ % 4];
+    assert_int_equal(wb_file_join(path, folder, name), WB_OK);
+    return path;
+}
+
+static void write_text(const char *name, const char *text)
+{
+    assert_int_equal(wb_file_write(in_folder(name), text, strlen(text)), WB_OK);
+}
+
+static char *read_text(const char *name, size_t *size)
+{
+    char *bytes;
+    assert_int_equal(wb_file_read(in_folder(name), &bytes, size), WB_OK);
+    return bytes;
+}
+
+static bool says(const char *name, const char *part)
+{
+    size_t size;
+    char *const bytes = read_text(name, &size);
+    const bool found = memmem(bytes, size, part, strlen(part)) != NULL;
+    free(bytes);
+    return found;
+}
+
+/* --- a good campaign, of the beam's own curves --- */
+
+static const char good_campaign[] = "title: Wires <A> & B\n"
+                                    "notes: a note & more\n"
+                                    "index: none.yaml\n"
+                                    "calibration_length_mm: 85\n"
+                                    "validation_length_mm: 100\n"
+                                    "samples: 2\n"
+                                    "settings: {yield_point: 0.04, step_mm: 1, elements: 10}\n"
+                                    "limits: {calibration_rms_max: 0.01, validation_rms_max: "
+                                    "0.0365}\n"
+                                    "wires:\n"
+                                    "  - wire: type1\n"
+                                    "    label: Type <1>\n";
+
+struct good {
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
+};
+
+/* As the alignment tells of a gap. */
+static void add_gap(struct wb_recordings_results_test *test, double longest_gap)
+{
+    struct wb_json *const checks = wb_json_set_object(test->dataset.document, "checks");
+    struct wb_json *const rows = wb_json_set_object(checks, "rows");
+    struct wb_json *const warnings = wb_json_set_array(test->dataset.document, "warnings");
+    wb_json_set_integer(rows, "gaps", 1);
+    wb_json_set_number(rows, "longest_gap_s", 10.0 * longest_gap);
+    wb_json_append_text(warnings, "1 gap " WB_ALIGN_GAPS_TEXT " 0.85 s");
+}
+
+static void fill_tests(struct wb_recordings_results_tests *tests, double length, double factor)
+{
+    const struct wb_material truth = beam_material(0);
+    for (int i = 0; i < tests->n; i++) {
+        struct wb_recordings_results_test *const test = &tests->items[i];
+        struct wb_test_info info = beam_info(0, length, i == 0 ? 3e-3 : -2e-3);
+        info.sample = i + 1;
+        info.is_simulation = false;
+        beam_dataset(&test->dataset, &info, &truth, 1e-3, 50e-3, factor * (i == 0 ? 0.97 : 1.03));
+        test->usable = true;
+        test->is_virtual = true;
+        snprintf(test->start_utc, sizeof test->start_utc, "2026-11-%02dT10:11:12Z", 10 + i);
+        snprintf(test->tool_revision, sizeof test->tool_revision, "abc<%d>", i);
+        snprintf(test->sha256, sizeof test->sha256, "%064d", i);
+        snprintf(test->rig.name, sizeof test->rig.name, "a bench");
+        /* 20 g on a bench whose gravity is not the standard one. */
+        test->rig.gravity = 9.780;
+        test->rig.load_cell.capacity = 20e-3 * 9.780;
+        test->specimen.n_markers = 7;
+        if (i == 0)
+            add_gap(test, length);
+    }
+}
+
+static void make_good(struct good *good, double validation_factor)
+{
+    write_text("good.yaml", good_campaign);
+    assert_int_equal(wb_recordings_read(&good->campaign, in_folder("good.yaml")), WB_OK);
+    assert_int_equal(wb_recordings_results_init(&good->results, &good->campaign), WB_OK);
+    struct wb_recordings_results_wire *const wire = &good->results.wires[0];
+    fill_tests(&wire->calibration_tests, 0.085, 1.0);
+    fill_tests(&wire->validation_tests, 0.100, validation_factor);
+    const struct wb_dataset *const calibration[] = {&wire->calibration_tests.items[0].dataset,
+                                                    &wire->calibration_tests.items[1].dataset};
+    const struct wb_dataset *const validation[] = {&wire->validation_tests.items[0].dataset,
+                                                   &wire->validation_tests.items[1].dataset};
+    assert_int_equal(
+        wb_calibrate_run(&wire->calibration, calibration, 2, &good->campaign.calibrate), WB_OK);
+    wb_properties_from_result(&wire->calibration, &wire->properties);
+    assert_int_equal(
+        wb_validate_run(&wire->fit, &wire->properties, calibration, 2, &good->campaign.calibrate),
+        WB_OK);
+    assert_int_equal(wb_validate_run(&wire->validation, &wire->properties, validation, 2,
+                                     &good->campaign.calibrate),
+                     WB_OK);
+    wire->calibration_state = wire->validation_state = WB_RECORDINGS_DONE;
+    wb_recordings_results_judge(&good->results);
+}
+
+static void release_good(struct good *good)
+{
+    wb_recordings_results_release(&good->results);
+    wb_recordings_release(&good->campaign);
+}
+
+static const char *const good_files[] = {
+    "report.pdf",
+    "report.html",
+    "report.json",
+    "figures/all-bench.svg",
+    "figures/all-calibration.svg",
+    "figures/all-validation.svg",
+    "figures/all-errors.svg",
+    "figures/type1-cycles.svg",
+    "figures/type1-samples.svg",
+    "figures/type1-shapes.svg",
+    "figures/type1-calibration.svg",
+    "figures/type1-validation.svg",
+    "figures/type1-error.svg",
+    "figures/type1-optimiser.svg",
+    "figures/type1-cycles.png",
+    "figures/type1-optimiser.png",
+};
+
+static int count_files(const char *name)
+{
+    int n = 0;
+    DIR *const open = opendir(in_folder(name));
+    assert_non_null(open);
+    for (struct dirent *entry; (entry = readdir(open));)
+        n += entry->d_name[0] != '.' || strncmp(entry->d_name, ".new", 4) == 0;
+    closedir(open);
+    return n;
+}
+
+static void the_same_results_give_the_same_bytes_in_all_files(void **state)
+{
+    const struct good *const good = *state;
+    assert_true(good->results.is_complete);
+    assert_false(good->results.exceeds_limit);
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), false), WB_OK);
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("twice/deep"), false),
+                     WB_OK);
+    for (size_t i = 0; i < sizeof good_files / sizeof good_files[0]; i++) {
+        char a[128], b[128];
+        size_t n, m;
+        snprintf(a, sizeof a, "once/%s", good_files[i]);
+        snprintf(b, sizeof b, "twice/deep/%s", good_files[i]);
+        char *const once = read_text(a, &n), *const twice = read_text(b, &m);
+        assert_int_equal(n, m);
+        assert_memory_equal(once, twice, n);
+        assert_true(n > 1000);
+        assert_null(memmem(once, n, folder, strlen(folder)));
+        free(once);
+        free(twice);
+    }
+    /* All there is, and nothing left over from writing. */
+    assert_int_equal(count_files("once"), 4);
+    assert_int_equal(count_files("once/figures"), 22);
+}
+
+static void every_output_says_virtual_rig_and_none_says_experiment(void **state)
+{
+    (void)state;
+    assert_true(says("once/report.html", "<b>Virtual rig.</b>"));
+    assert_true(says("once/report.html", "measured (virtual rig)"));
+    assert_true(says("once/report.json", "\"virtual_rig\": true"));
+    assert_true(says("once/report.json", "\"data\": \"measured (virtual rig)\""));
+    /* Every figure as well, each in a file of its own. */
+    int n_figures = 0;
+    DIR *const figures = opendir(in_folder("once/figures"));
+    assert_non_null(figures);
+    for (const struct dirent *entry; (entry = readdir(figures));) {
+        char name[300];
+        if (!strstr(entry->d_name, ".svg"))
+            continue;
+        snprintf(name, sizeof name, "once/figures/%s", entry->d_name);
+        if (!says(name, "virtual rig"))
+            fail_msg("%s does not say 'virtual rig'", name);
+        n_figures++;
+    }
+    closedir(figures);
+    assert_true(n_figures >= 8);
+    assert_false(says("once/report.html", "xperiment"));
+    assert_false(says("once/report.json", "xperiment"));
+}
+
+static void the_html_page_needs_no_other_file_and_escapes_what_comes_from_files(void **state)
+{
+    (void)state;
+    size_t size;
+    char *const html = read_text("once/report.html", &size);
+    assert_null(strstr(html, "src="));
+    assert_null(strstr(html, "url(http"));
+    assert_null(strstr(html, "<link"));
+    assert_null(strstr(html, "<script"));
+    assert_non_null(strstr(html, "Wires &lt;A&gt; &amp; B"));
+    assert_non_null(strstr(html, "Type &lt;1&gt;"));
+    assert_null(strstr(html, "Type <1>"));
+    assert_non_null(strstr(html, "abc&lt;0&gt;"));
+    int n = 0;
+    for (const char *c = html; (c = strstr(c, "<svg")); c++)
+        n++;
+    assert_int_equal(n, 11);
+    /* Ids are unique over all figures. */
+    assert_non_null(strstr(html, "id=\"type1-cycles-0\""));
+    assert_non_null(strstr(html, "id=\"type1-samples-0\""));
+    assert_null(strstr(html, "id=\"glyph"));
+    free(html);
+}
+
+static int count_of(const char *text, const char *part)
+{
+    int n = 0;
+    for (; (text = strstr(text, part)); text += strlen(part))
+        n++;
+    return n;
+}
+
+static void recordings_with_gaps_are_counted_in_one_line(void **state)
+{
+    (void)state;
+    char *html;
+    assert_int_equal(wb_file_read(in_folder("once/report.html"), &html, NULL), WB_OK);
+    assert_int_equal(
+        count_of(html, "2 of 4 recordings have gaps in the rows, the longest of 1.00 s"), 1);
+    /* Each stands on its wire's page, and not on the first one as well. */
+    assert_int_equal(count_of(html, "1 gap " WB_ALIGN_GAPS_TEXT), 2);
+    free(html);
+}
+
+static void the_capacity_is_what_weighs_so_much_on_that_bench(void **state)
+{
+    (void)state;
+    assert_true(says("once/report.html", "20 g, reads on to"));
+    const struct wb_rig unknown = {.gravity = 0.0};
+    assert_true(isnan(wb_recordings_results_capacity(&unknown)));
+}
+
+/* How often the lines of the figure of all cycles are begun. */
+static int begun_lines(const struct wb_recordings_results *results)
+{
+    struct wb_figures figures;
+    struct wb_text svg = {0};
+    assert_int_equal(
+        wb_figures_create(&figures, wb_recordings_figures, WB_RECORDINGS_FIGURES, results), WB_OK);
+    const struct wb_figure *cycles = NULL;
+    for (int i = 0; i < figures.n; i++) {
+        if (strstr(wb_figure_name(figures.items[i].figure), "-cycles"))
+            cycles = figures.items[i].figure;
+    }
+    assert_non_null(cycles);
+    assert_int_equal(wb_figure_svg(cycles, &svg), WB_OK);
+    const int n = count_of(wb_text_string(&svg), "M ");
+    wb_text_release(&svg);
+    wb_figures_release(&figures);
+    return n;
+}
+
+static void a_slack_strand_or_a_gap_breaks_the_line(void **state)
+{
+    (void)state;
+    struct good good;
+    make_good(&good, 1.0);
+    struct wb_dataset *const dataset = &good.results.wires[0].calibration_tests.items[0].dataset;
+    const int whole = begun_lines(&good.results);
+    assert_true(dataset->n_rows > 40);
+    for (size_t i = 20; i < 25; i++)
+        dataset->rows[i].phase = WB_PHASE_SLACK;
+    assert_int_equal(begun_lines(&good.results), whole + 1);
+    /* And so does a gap in time. */
+    for (size_t i = 30; i < dataset->n_rows; i++)
+        dataset->rows[i].t += 20.0;
+    assert_int_equal(begun_lines(&good.results), whole + 2);
+    release_good(&good);
+}
+
+static void the_json_file_holds_the_computed_numbers(void **state)
+{
+    const struct good *const good = *state;
+    const struct wb_recordings_results_wire *const wire = &good->results.wires[0];
+    struct wb_json *root;
+    assert_int_equal(wb_json_read(&root, in_folder("once/report.json")), WB_OK);
+    const struct wb_json *const entry = wb_json_item(wb_json_get(root, "wires"), 0);
+    const struct wb_json *const calibration = wb_json_get(entry, "calibration");
+    double value = 0.0;
+    assert_true(wb_json_get_number(wb_json_get(calibration, "properties"),
+                                   "strength_coefficient_MPa", &value));
+    assert_close_relative(value * WB_MPA, wire->calibration.material.strength_coefficient, 1e-12);
+    assert_true(wb_json_get_number(calibration, "rms_over_F_max", &value));
+    assert_close(value, wire->calibration.rms, 1e-15);
+    const struct wb_json *const validation = wb_json_get(entry, "validation");
+    assert_true(
+        wb_json_get_number(wb_json_get(validation, "elastoplastic"), "rms_over_F_max", &value));
+    assert_close(value, wire->validation.elastoplastic.rms, 1e-15);
+    assert_true(wb_json_get_number(validation, "F_max_mN", &value));
+    assert_close_relative(value * WB_MN, wire->validation.curve.max_force, 1e-12);
+    assert_int_equal(wb_json_length(wb_json_get(root, "recordings")), 4);
+    assert_int_equal(wb_json_length(wb_json_get(root, "files")), 25);
+    wb_json_destroy(root);
+}
+
+static void the_pdf_text_can_be_searched(void **state)
+{
+    (void)state;
+    size_t size;
+    char *const pdf = read_text("once/report.pdf", &size);
+    assert_memory_equal(pdf, "%PDF-1.", 7);
+    /* The date of the latest recording, not of the run. */
+    assert_non_null(memmem(pdf, size, "(20261111101112Z)", 17));
+    free(pdf);
+    if (system("command -v pdftotext >/dev/null 2>&1") != 0)
+        skip();
+    char command[3 * WB_PATH];
+    snprintf(command, sizeof command, "pdftotext -layout '%s' '%s'", in_folder("once/report.pdf"),
+             in_folder("report.txt"));
+    assert_int_equal(system(command), 0);
+    assert_true(says("report.txt", "Wires <A> & B"));
+    assert_true(says("report.txt", "Virtual rig."));
+    assert_true(says("report.txt", "Strength coefficient"));
+    assert_true(says("report.txt", "measured (virtual rig)"));
+    assert_true(says("report.txt", "wirebench report good.yaml -o DIR"));
+    assert_true(says("report.txt", "0000000000000000000000000000000000000000000000000000000000000"
+                                   "001"));
+}
+
+static void a_full_folder_is_refused_and_force_replaces_only_the_reports_own_files(void **state)
+{
+    const struct good *const good = *state;
+    last_message_install();
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), false),
+                     WB_ERR_EXISTS);
+    assert_said("--force");
+    write_text("once/mine.txt", "mine");
+    write_text("once/figures/mine.svg", "mine");
+    write_text("once/figures/stale.svg", "an old figure");
+    write_text("once/report.json", "{\"files\": [\"figures/stale.svg\", \"../good.yaml\"]}");
+    assert_int_equal(wb_recordings_report_write(&good->results, in_folder("once"), true), WB_OK);
+    assert_true(says("once/mine.txt", "mine"));
+    assert_true(says("once/figures/mine.svg", "mine"));
+    assert_false(wb_file_exists(in_folder("once/figures/stale.svg")));
+    assert_true(wb_file_exists(in_folder("good.yaml")));
+    assert_true(says("once/report.json", "properties"));
+}
+
+static void a_folder_that_cannot_be_written_leaves_nothing(void **state)
+{
+    const struct good *const good = *state;
+    write_text("file", "a file");
+    assert_int_not_equal(wb_recordings_report_write(&good->results, in_folder("file"), false),
+                         WB_OK);
+    assert_int_not_equal(wb_recordings_report_write(&good->results, in_folder("file/below"), true),
+                         WB_OK);
+    assert_true(says("file", "a file"));
+}
+
+static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state)
+{
+    (void)state;
+    struct good bad;
+    make_good(&bad, 1.12);
+    assert_true(bad.results.exceeds_limit);
+    assert_true(bad.results.is_complete);
+    const struct wb_recordings_results_wire *const wire = &bad.results.wires[0];
+    const double share = wb_recordings_results_validation_share(wire);
+    const double r_v = fmin(wire->validation.scatter_rms, wire->validation.residual_scatter_rms);
+    const double r_c = fmin(wire->calibration.scatter_rms, wire->calibration.residual_scatter_rms);
+    const double rms = wire->validation.elastoplastic.rms;
+    assert_close(share, fmin(1.0, (r_v * r_v + r_c * r_c) / 2.0 / (rms * rms)), 1e-12);
+    assert_true(share > 0.01 && share < 0.9);
+    assert_int_equal(wb_recordings_report_write(&bad.results, in_folder("bad"), false), WB_OK);
+    char text[80];
+    snprintf(text, sizeof text, "explains at most %.0f %% of the mean square error", 100.0 * share);
+    assert_true(says("bad/report.html", "Limit exceeded."));
+    assert_true(says("bad/report.html", text));
+    assert_true(says("bad/report.json", "\"limit_exceeded\": true"));
+    release_good(&bad);
+}
+
+/* --- campaigns that lack something --- */
+
+static void compute(const char *name, const char *text, int threads, struct wb_recordings *campaign,
+                    struct wb_recordings_results *results)
+{
+    write_text(name, text);
+    assert_int_equal(wb_recordings_read(campaign, in_folder(name)), WB_OK);
+    assert_int_equal(wb_recordings_results_compute(results, campaign, threads, NULL, NULL), WB_OK);
+}
+
+static void a_campaign_without_any_recording_still_reports(void **state)
+{
+    (void)state;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
+    compute("empty.yaml", good_campaign, 2, &campaign, &results);
+    assert_false(results.is_complete);
+    assert_false(results.any_virtual);
+    assert_int_equal(results.n_tests, 4);
+    assert_int_equal(results.n_usable, 0);
+    assert_int_equal(wb_recordings_report_write(&results, in_folder("empty"), false), WB_OK);
+    assert_true(says("empty/report.html", "4 of 4 recordings are missing"));
+    assert_true(says("empty/report.html", "there is no index of recordings"));
+    assert_true(says("empty/report.json", "\"complete\": false"));
+    assert_false(says("empty/report.html", "irtual rig"));
+    wb_recordings_results_release(&results);
+    wb_recordings_release(&campaign);
+}
+
+static const char made_up_campaign[] = "title: Made up\n"
+                                       "index: made-up.yaml\n"
+                                       "calibration_length_mm: 85\n"
+                                       "samples: 3\n"
+                                       "wires:\n"
+                                       "  - wire: ./synthetic.yaml\n";
+
+/* Three recordings: good, not the one that the index lists, not a recording at all. Their wire is
+ * elastic, so that its calibration is refused. */
+static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **state)
+{
+    (void)state;
+    struct syn syn;
+    syn_default(&syn);
+    syn_record(&syn, in_folder("a.wbr"));
+    syn_default(&syn);
+    syn.bow = 2e-3;
+    syn_record(&syn, in_folder("b.wbr"));
+    write_text("c.wbr", "this is no recording");
+    write_text("synthetic.yaml", syn_wire);
+    char sha256[65], index[1024];
+    assert_int_equal(wb_recording_sha256(in_folder("a.wbr"), sha256), WB_OK);
+    snprintf(index, sizeof index,
+             "- {file: a.wbr, wire: synthetic, length_mm: 85, sample: 1, sha256: %s}\n"
+             "- {file: b.wbr, wire: synthetic, length_mm: 85, sample: 2, sha256: %s}\n"
+             "- {file: c.wbr, wire: synthetic, length_mm: 85, sample: 3, sha256: %s}\n",
+             sha256, sha256, sha256);
+    write_text("made-up.yaml", index);
+    char *texts[2];
+    for (int threads = 1; threads <= 2; threads++) {
+        struct wb_recordings campaign;
+        struct wb_recordings_results results;
+        compute("campaign.yaml", made_up_campaign, threads, &campaign, &results);
+        assert_int_equal(results.n_usable, 1);
+        assert_true(results.all_virtual);
+        assert_false(results.is_complete);
+        const struct wb_recordings_results_wire *const wire = &results.wires[0];
+        const struct wb_recordings_results_test *const tests = wire->calibration_tests.items;
+        assert_true(tests[0].usable);
+        assert_string_equal(tests[0].start_utc, "2026-01-01T00:00:00Z");
+        assert_non_null(strstr(wb_text_string(&tests[1].problem), "not the recording"));
+        assert_non_null(strstr(wb_text_string(&tests[2].problem), "not a recording"));
+        assert_null(strstr(wb_text_string(&tests[2].problem), folder));
+        assert_int_equal(wire->calibration_state, WB_RECORDINGS_FAILED);
+        assert_true(wire->calibration_problem.length > 10);
+        assert_int_equal(wire->validation_state, WB_RECORDINGS_NOT_WANTED);
+        assert_int_equal(wb_recordings_report_write(&results, in_folder("made-up"), threads > 1),
+                         WB_OK);
+        texts[threads - 1] = read_text("made-up/report.json", NULL);
+        if (threads == 2) {
+            assert_true(says("made-up/report.html", "2 of 3 recordings are missing"));
+            assert_true(wb_file_exists(in_folder("made-up/figures/synthetic-cycles.svg")));
+            assert_false(says("made-up/report.html", folder));
+            assert_false(says("made-up/report.json", folder));
+        }
+        wb_recordings_results_release(&results);
+        wb_recordings_release(&campaign);
+    }
+    /* The numbers do not depend on the number of threads. */
+    assert_string_equal(texts[0], texts[1]);
+    free(texts[0]);
+    free(texts[1]);
+}
+
+static void an_interrupt_ends_the_computation(void **state)
+{
+    (void)state;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
+    wb_interrupt_set(true);
+    compute("campaign.yaml", made_up_campaign, 2, &campaign, &results);
+    wb_interrupt_set(false);
+    assert_true(results.interrupted);
+    wb_recordings_results_release(&results);
+    wb_recordings_release(&campaign);
+}
+
+static int setup(void **state)
+{
+    static struct good good;
+    if (make_folder(state) != 0)
+        return -1;
+    make_good(&good, 1.0);
+    *state = &good;
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    release_good(*state);
+    return remove_folder(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_same_results_give_the_same_bytes_in_all_files),
+        cmocka_unit_test(every_output_says_virtual_rig_and_none_says_experiment),
+        cmocka_unit_test(the_html_page_needs_no_other_file_and_escapes_what_comes_from_files),
+        cmocka_unit_test(recordings_with_gaps_are_counted_in_one_line),
+        cmocka_unit_test(the_capacity_is_what_weighs_so_much_on_that_bench),
+        cmocka_unit_test(a_slack_strand_or_a_gap_breaks_the_line),
+        cmocka_unit_test(the_json_file_holds_the_computed_numbers),
+        cmocka_unit_test(the_pdf_text_can_be_searched),
+        cmocka_unit_test(a_full_folder_is_refused_and_force_replaces_only_the_reports_own_files),
+        cmocka_unit_test(a_folder_that_cannot_be_written_leaves_nothing),
+        cmocka_unit_test(a_miss_of_a_limit_is_told_with_the_share_of_the_scatter),
+        cmocka_unit_test(a_campaign_without_any_recording_still_reports),
+        cmocka_unit_test(what_cannot_be_used_or_calibrated_is_told_with_the_reason),
+        cmocka_unit_test(an_interrupt_ends_the_computation),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
