@@ -16,14 +16,14 @@ static const double poissons_ratio = 0.3; /* of the homogenised beam, as the pap
 
 /* --- rows --- */
 
-static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundle_history *history)
+static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundle_result *result)
 {
     double t = 0.0;
 
-    for (int i = 0; i < history->n_rows; i++) {
-        const struct wb_bundle_row *row = &history->rows[i];
+    for (int i = 0; i < result->n_rows; i++) {
+        const struct wb_bundle_row *row = &result->rows[i];
         if (i > 0)
-            t += wb_simulated_time(history->rows[i - 1].tip, row->tip);
+            t += wb_simulated_time(result->rows[i - 1].tip, row->tip);
         const struct wb_row out = {
             .t = t,
             .cycle = row->cycle,
@@ -36,9 +36,8 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundl
             .tip_angle = row->tip_angle,
         };
         WB_TRY(wb_dataset_add_row(dataset, &out));
-        WB_TRY(wb_simulated_add_shape(dataset, t, row->deflection, history->n_shape,
-                                      history->shape_s,
-                                      history->shape + (size_t)i * (size_t)history->n_shape));
+        WB_TRY(wb_simulated_add_shape(dataset, t, row->deflection, result->n_shape, result->shape_s,
+                                      result->shape + (size_t)i * (size_t)result->n_shape));
     }
     return WB_OK;
 }
@@ -107,7 +106,7 @@ static void describe_energies(struct wb_json *object, const struct wb_bundle_ene
 
 static void describe_largest(struct wb_json *object, const struct wb_simulated_bundle *bundle)
 {
-    const struct wb_bundle_history *h = bundle->history;
+    const struct wb_bundle_result *h = bundle->result;
     struct wb_json *const largest = wb_json_set_object(object, "largest");
 
     wb_json_set_number(largest, "kinetic_over_internal", h->largest.kinetic);
@@ -126,7 +125,7 @@ static void describe_setting(struct wb_json *object, const struct wb_bundle_mode
 
 void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simulated_bundle *bundle)
 {
-    const struct wb_bundle_history *h = bundle->history;
+    const struct wb_bundle_result *h = bundle->result;
     const double element_steps = (double)h->all_steps * (double)h->hexahedra;
 
     describe_mesh(object, bundle);
@@ -149,7 +148,7 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
     wb_json_set_boolean(object, "converged", h->converged);
     wb_json_set_boolean(object, "stopped", h->stopped);
     if (!h->converged)
-        wb_json_set_text(object, "problem", h->problem);
+        wb_json_set_text(object, "problem", h->reason.text);
     wb_json_set_number(object, "zero_force_N", h->zero_force);
     wb_json_set_integer(object, "threads", h->parts > 0 ? h->parts / wb_team_ranks() : 1);
     wb_json_set_integer(object, "ranks", wb_team_ranks());
@@ -183,7 +182,7 @@ static void describe(struct wb_json *document, const struct wb_simulated_bundle 
     snprintf(name, sizeof name, "%s, simulated bundle", model->name);
     wb_json_set_text(document, "name", name);
     wb_json_set_boolean(document, "complete",
-                        bundle->history->converged && !bundle->history->stopped);
+                        bundle->result->converged && !bundle->result->stopped);
 
     struct wb_json *const simulation = wb_json_set_object(document, "simulation");
     wb_json_set_text(simulation, "model", "bundle");
@@ -209,7 +208,7 @@ enum wb_status wb_simulated_bundle_fill(struct wb_dataset *dataset,
                                         const struct wb_simulated_bundle *bundle)
 {
     set_info(&dataset->info, bundle->model);
-    WB_TRY(add_rows(dataset, bundle->history));
+    WB_TRY(add_rows(dataset, bundle->result));
     describe(dataset->document, bundle);
     return WB_OK;
 }
@@ -256,7 +255,7 @@ enum wb_status wb_simulated_bundle_write_energies(const struct wb_dataset *datas
                                                   const struct wb_simulated_bundle *bundle,
                                                   const char *folder)
 {
-    const struct wb_bundle_history *h = bundle->history;
+    const struct wb_bundle_result *h = bundle->result;
     struct wb_text text = {0};
 
     if (dataset->n_rows != (size_t)h->n_rows)

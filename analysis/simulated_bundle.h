@@ -20,7 +20,7 @@
 struct wb_simulated_bundle {
     const struct wb_bundle_model *model; /* as it was run: with what was overridden */
     const struct wb_bundle_mesh *mesh;
-    const struct wb_bundle_history *history;
+    const struct wb_bundle_result *result;
     const struct wb_bundle_override *override; /* what was overridden; NULL: nothing */
     double surface_deflection;                 /* m, of surface.csv; 0: there is none */
     double wall, cpu;                          /* s */

@@ -62,12 +62,6 @@ void wb_log_set_tap(wb_log_sink *tap, void *context)
     tap_context = context;
 }
 
-wb_log_sink *wb_log_get_tap(void **context)
-{
-    *context = tap_context;
-    return thread_tap;
-}
-
 enum wb_log_level wb_log_set_gravest(enum wb_log_level level)
 {
     const enum wb_log_level before = gravest;

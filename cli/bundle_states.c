@@ -57,17 +57,17 @@ static enum wb_status take(struct wb_bundle_states *states, int number,
 }
 
 enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
-                                     const struct wb_bundle_history *history,
+                                     const struct wb_bundle_result *result,
                                      const struct wb_bundle_row *row,
                                      const struct wb_bundle *bundle)
 {
     const struct wb_solve_time start = wb_solve_now();
     enum wb_status status = WB_OK;
 
-    if (history->attempts != states->attempt)
-        status = begin_anew(states, history->attempts);
+    if (result->attempts != states->attempt)
+        status = begin_anew(states, result->attempts);
     if (status == WB_OK)
-        status = take(states, history->n_rows, row, bundle);
+        status = take(states, result->n_rows, row, bundle);
     const struct wb_solve_time end = wb_solve_now();
     states->spent.wall += end.wall - start.wall;
     states->spent.cpu += end.cpu - start.cpu;

@@ -1,5 +1,5 @@
-/* What `wirebench solve bundle` keeps of a run's states on the way: VTK files, and the surface at
- * the largest deflection.
+/* What `wirebench solve bundle` keeps of the bundle's states while it runs: VTK files, and the
+ * surface at the largest deflection.
  */
 #ifndef WB_CLI_BUNDLE_STATES_H
 #define WB_CLI_BUNDLE_STATES_H
@@ -16,7 +16,7 @@
 struct wb_bundle_states {
     bool wants_surface, wants_vtk; /* set by the caller */
     int every;                     /* rows between VTK files; from 1 */
-    int turn;                      /* rows from turn to turn of the history, which have files too */
+    int turn;                      /* rows from turn to turn of the loading, which have files too */
     struct wb_vtk_file_series series; /* initialised by the caller */
     /* The members below are filled in by wb_bundle_states_take(). */
     int attempt;
@@ -29,10 +29,10 @@ struct wb_bundle_states {
 
 /* Keeps or writes what is wanted of a row's state; for wb_bundle_observer's `place`. */
 WB_MUST_CHECK enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
-                                                   const struct wb_bundle_history *history,
+                                                   const struct wb_bundle_result *result,
                                                    const struct wb_bundle_row *row,
                                                    const struct wb_bundle *bundle);
-/* For wb_bundle_observer's `visit`. */
+/* Saves or restores all that; called by wb_bundle_observer's `visit`. */
 void wb_bundle_states_visit(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint);
 void wb_bundle_states_release(struct wb_bundle_states *states); /* accepts a zeroed one */
 

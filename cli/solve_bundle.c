@@ -29,7 +29,7 @@ struct run {
     const struct wb_solve_options *options;
     struct wb_bundle_model model;
     const struct wb_bundle_mesh *mesh;
-    struct wb_bundle_history history;
+    struct wb_bundle_result result;
     struct wb_progress progress;
     int attempt; /* shown by the live line */
     struct wb_bundle_states states;
@@ -98,7 +98,7 @@ static enum wb_status prepare(struct run *run)
     WB_TRY(wb_bundle_model_read(&run->model, path));
     WB_TRY(wb_bundle_override_apply(&o->override, &run->model));
     run->mesh = wb_bundle_model_mesh(&run->model, run->model.run.mesh);
-    WB_TRY(wb_bundle_run_init(&run->history, &run->model, MARKERS));
+    WB_TRY(wb_bundle_result_init(&run->result, &run->model, MARKERS));
     return is_first() ? prepare_output(run) : WB_OK;
 }
 
@@ -119,7 +119,7 @@ static bool report_progress(void *context, const struct wb_bundle_progress *now)
         wb_progress_resume(&run->progress, now->done * rows);
         run->attempt = now->attempt;
     }
-    snprintf(note, sizeof note, "T %.3g s, step %lld, %.2f mm%s", run->history.duration, now->steps,
+    snprintf(note, sizeof note, "T %.3g s, step %lld, %.2f mm%s", run->result.duration, now->steps,
              now->deflection / WB_MM, now->rests ? ", coming to rest" : "");
     if (isfinite(now->kinetic)) {
         const size_t used = strlen(note);
@@ -130,11 +130,11 @@ static bool report_progress(void *context, const struct wb_bundle_progress *now)
     return !wb_interrupted();
 }
 
-static enum wb_status report_place(void *context, const struct wb_bundle_history *history,
+static enum wb_status report_place(void *context, const struct wb_bundle_result *result,
                                    const struct wb_bundle_row *row, const struct wb_bundle *bundle)
 {
     struct run *run = context;
-    return is_first() ? wb_bundle_states_take(&run->states, history, row, bundle) : WB_OK;
+    return is_first() ? wb_bundle_states_take(&run->states, result, row, bundle) : WB_OK;
 }
 
 static void visit_states(void *context, struct wb_checkpoint *checkpoint)
@@ -158,13 +158,13 @@ static enum wb_status compute(struct run *run)
         .checkpoint_interval = run->options->checkpoint_interval,
         .observer = &observer,
     };
-    const enum wb_status status = wb_bundle_run_with(&run->history, &run->model, &options);
+    const enum wb_status status = wb_bundle_run(&run->result, &run->model, &options);
 
     if (run->attempt > 0)
         wb_progress_finish(&run->progress);
     /* Time spent on fields and files is not the solver's. */
-    run->spent.wall = run->history.wall - run->states.spent.wall;
-    run->spent.cpu = run->history.cpu - run->states.spent.cpu;
+    run->spent.wall = run->result.wall - run->states.spent.wall;
+    run->spent.cpu = run->result.cpu - run->states.spent.cpu;
     return status;
 }
 
@@ -175,7 +175,7 @@ static struct wb_simulated_bundle simulated(const struct run *run)
     return (struct wb_simulated_bundle){
         .model = &run->model,
         .mesh = run->mesh,
-        .history = &run->history,
+        .result = &run->result,
         .override = &run->options->override,
         .surface_deflection = run->states.deflection,
         .wall = run->spent.wall,
@@ -223,11 +223,11 @@ static int print_json(const struct run *run)
     struct wb_json *const root = wb_json_create();
     struct wb_json *const points = wb_json_set_array(root, "points");
 
-    for (int i = 0; i < run->history.n_rows; i++) {
-        const struct wb_solve_point point = point_of(&run->history.rows[i]);
+    for (int i = 0; i < run->result.n_rows; i++) {
+        const struct wb_solve_point point = point_of(&run->result.rows[i]);
         struct wb_json *const object = wb_json_append_object(points);
         wb_solve_set_point(object, &point);
-        wb_json_set_number(object, "tip_z_mm", run->history.rows[i].tip[2] / WB_MM);
+        wb_json_set_number(object, "tip_z_mm", run->result.rows[i].tip[2] / WB_MM);
     }
     wb_simulated_bundle_describe(root, &bundle);
     return wb_command_print_json(root);
@@ -236,8 +236,8 @@ static int print_json(const struct run *run)
 static void print_csv(const struct run *run)
 {
     wb_solve_print_header();
-    for (int i = 0; i < run->history.n_rows; i++) {
-        const struct wb_solve_point point = point_of(&run->history.rows[i]);
+    for (int i = 0; i < run->result.n_rows; i++) {
+        const struct wb_solve_point point = point_of(&run->result.rows[i]);
         wb_solve_print_point(&point);
     }
 }
@@ -245,11 +245,11 @@ static void print_csv(const struct run *run)
 /* Warns of what a reader of the curve must know. */
 static void warn(const struct run *run)
 {
-    const struct wb_bundle_history *h = &run->history;
+    const struct wb_bundle_result *h = &run->result;
     const char *name = run->model.name;
 
     if (!h->converged)
-        wb_warn("%s: the run was lost: %s; %d of %d rows were computed", name, h->problem,
+        wb_warn("%s: the run was lost: %s; %d of %d rows were computed", name, h->reason.text,
                 h->n_rows, h->capacity);
     if (h->stopped)
         wb_warn("stopped after %d rows", h->n_rows);
@@ -269,7 +269,7 @@ static int deliver(const struct run *run)
 {
     const struct wb_command_common *common = &run->options->common;
     const char *checkpoint = run->options->checkpoint;
-    const struct wb_bundle_history *h = &run->history;
+    const struct wb_bundle_result *h = &run->result;
     int code = WB_EXIT_OK;
 
     if (h->kept) {
@@ -312,7 +312,7 @@ static int solve(const struct wb_solve_options *options)
     if (run->made_vtk)
         (void)rmdir(options->vtk);
     wb_bundle_states_release(&run->states);
-    wb_bundle_run_release(&run->history);
+    wb_bundle_result_release(&run->result);
     free(run);
     return code;
 }

@@ -6,6 +6,7 @@
 
 #include "fe/bundle/bundle_part.h"
 #include "fe/bundle/bundle_parts.h"
+#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -116,9 +117,9 @@ const struct wb_bundle_part *wb_bundle_whole(const struct wb_bundle *bundle)
 
 /* --- steps --- */
 
-enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n)
+enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n, struct wb_reason *reason)
 {
-    return wb_bundle_parts_advance(bundle->parts, n);
+    return wb_bundle_parts_advance(bundle->parts, n, reason);
 }
 
 void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration)
@@ -133,16 +134,10 @@ void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration
     };
 }
 
-/* Of the tip's force and the weight. */
-static double external_work(const struct wb_bundle *bundle)
-{
-    return bundle->whole->account.tip_work + bundle->weight_zero -
-           wb_bundle_parts_potential(bundle->parts);
-}
-
 /* Motion is stopped whenever its energy begins to fall, until it is small beside the work that was
  * done; whoever stops it takes its energy away. */
-static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bundle_watch *watch)
+static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
+                                   struct wb_reason *reason)
 {
     struct wb_bundle_account *account = &bundle->whole->account;
     double last = 0.0;
@@ -150,12 +145,12 @@ static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bun
 
     for (int done = 0; quiet < SETTLE_QUIET; done += SETTLE_BLOCK) {
         if (done > SETTLE_MOST)
-            return wb_fail(WB_ERR_CONVERGENCE,
-                           "%s: the bundle does not come to rest within %d steps",
-                           bundle->whole->bodies.model->path, SETTLE_MOST);
+            return wb_fail_to(reason, WB_ERR_CONVERGENCE,
+                              "%s: the bundle does not come to rest within %d steps",
+                              bundle->whole->bodies.model->path, SETTLE_MOST);
         if (watch && done % SETTLE_WATCH == 0 && !watch->goes_on(watch->context))
             return WB_OK;
-        WB_TRY(wb_bundle_advance(bundle, SETTLE_BLOCK));
+        WB_TRY(wb_bundle_advance(bundle, SETTLE_BLOCK, reason));
         if (account->kinetic >= last) {
             last = account->kinetic;
             continue;
@@ -170,7 +165,8 @@ static enum wb_status come_to_rest(struct wb_bundle *bundle, const struct wb_bun
     return WB_OK;
 }
 
-enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle_watch *watch)
+enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
+                                struct wb_reason *reason)
 {
     struct wb_bundle_part *whole = bundle->whole;
     struct wb_bundle_energies now;
@@ -181,7 +177,7 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle
     bundle->weight_zero = wb_bundle_parts_potential(bundle->parts);
     if (whole->bodies.gravity == 0.0)
         return WB_OK;
-    WB_TRY(come_to_rest(bundle, watch));
+    WB_TRY(come_to_rest(bundle, watch, reason));
     /* The account begins here. */
     wb_bundle_get_energies(bundle, &now);
     whole->account.tip_work +=
@@ -191,12 +187,13 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle
     return WB_OK;
 }
 
-enum wb_status wb_bundle_let_go(struct wb_bundle *bundle, const struct wb_bundle_watch *watch)
+enum wb_status wb_bundle_let_go(struct wb_bundle *bundle, const struct wb_bundle_watch *watch,
+                                struct wb_reason *reason)
 {
     struct wb_bundle_state state;
 
     bundle->whole->way.let_go = true;
-    WB_TRY(come_to_rest(bundle, watch));
+    WB_TRY(come_to_rest(bundle, watch, reason));
     wb_bundle_get_state(bundle, &state);
     bundle->whole->way.from = bundle->whole->way.to = state.deflection;
     return WB_OK;
@@ -236,7 +233,8 @@ void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_ene
             account->touching.normal + account->touching.tangential + account->bonded.contact,
         .friction = account->friction_work,
         .cohesive = account->bonded.stored + account->damage_work,
-        .external = external_work(bundle),
+        .external =
+            account->tip_work + bundle->weight_zero - wb_bundle_parts_potential(bundle->parts),
     };
 }
 
@@ -272,13 +270,6 @@ void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outs
         add_outside(bodies, &bodies->wire[w], outside);
     if (bodies->has_tape)
         add_outside(bodies, &bodies->ring, outside);
-}
-
-double wb_bundle_kinetic_ratio(const struct wb_bundle *bundle)
-{
-    const double kinetic = bundle->whole->account.kinetic;
-    const double internal = external_work(bundle) - kinetic;
-    return internal > 0.0 ? kinetic / internal : (double)INFINITY;
 }
 
 void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, double (*shape)[3])

@@ -1,20 +1,25 @@
-/* A taped bundle bent as a cantilever, in explicit dynamics: section 5 of the paper.
+/* A taped bundle of wires, clamped at one end and bent at the other, in explicit dynamics: section
+ * 5 of the paper.
  *
- * Wires are swept hexahedra (fe/swept/swept_hex.h), the tape a sleeve of shells
- * (fe/swept/swept_tape.h), with contact and friction between wires (fe/swept/swept_contact.h),
- * cohesion between tape and wires (fe/swept/swept_cohesion.h), and contact and friction between
- * them where they are not bonded, or no longer (fe/swept/swept_tape_contact.h). Central differences
- * (fe/swept/swept_step.h), masses scaled by f_m, the weight not. The clamp holds all that is at its
- * end; the mean height of the other end is led along a smooth step by one vertical force, or by a
- * strand that only pulls; it is free, or capped: one rigid body (fe/bundle/bundle_cap.h), pulled at
- * its centre of mass.
+ * Wires are meshes of hexahedra swept along the axis (fe/swept/swept_hex.h); the tape is a sleeve
+ * or a helix of shells (fe/swept/swept_tape.h). Wires touch each other and rub
+ * (fe/swept/swept_contact.h). A cohesive interface bonds the tape to the wires
+ * (fe/swept/swept_cohesion.h); where there is no bond, or it is broken, tape and wires touch and
+ * rub (fe/swept/swept_tape_contact.h). Time is integrated by central differences
+ * (fe/swept/swept_step.h); masses are scaled by f_m, the weight is not.
  *
- * It may be computed in parts along its axis, by threads and by the ranks of an MPI run
- * (fe/bundle/bundle_parts.h). With several ranks all call the functions that take a bundle alike,
- * and get the same; results do not depend on the number of parts but for round-off.
+ * The clamp holds everything within its length. A vertical force, or a strand that only pulls,
+ * leads the mean height of the tip along a smooth step from one deflection to the next. The tip is
+ * free, or capped: then it is one rigid body (fe/bundle/bundle_cap.h), pulled at its centre of
+ * mass.
  *
- * Use: create, settle (the weight comes on, at zero deflection), then advance step by step; the
- * caller owns the loop, rows and the choice of the duration.
+ * The bundle may be cut along its axis into parts, which threads and the ranks of an MPI run
+ * compute side by side (fe/bundle/bundle_parts.h). With several ranks every rank calls each
+ * function that takes a bundle, and gets the same results. The number of parts changes results by
+ * round-off only.
+ *
+ * Create a bundle, settle it (the weight comes on while the tip is held at zero), then lead the tip
+ * and advance step by step. The caller owns the loop and chooses durations and what to record.
  */
 #ifndef WB_FE_BUNDLE_BUNDLE_H
 #define WB_FE_BUNDLE_BUNDLE_H
@@ -22,17 +27,18 @@
 #include <stdbool.h>
 
 #include "base/checkpoint.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/model/bundle_model.h"
 
 struct wb_bundle_settings {
     const char *mesh;   /* name; NULL: the model's own */
-    double duration;    /* s, of a way from zero to the deflection; > 0 */
-    double step_safety; /* of the stable step's bound; 0: 0.9 */
-    int threads;        /* of each rank; 0: 1. More than there is room for are not started */
+    double duration;    /* s, from zero to the full deflection; > 0 */
+    double step_safety; /* time step over the bound of the stable one; 0: 0.9 */
+    int threads;        /* of each rank; 0: 1. Fewer are started where parts would be too short */
 };
 
-/* J, since the virgin bundle. */
+/* Energies since the bundle was straight and free of stress, J. */
 struct wb_bundle_energies {
     double kinetic; /* of the scaled masses */
     double stored;  /* elastic, of wires and tape */
@@ -41,11 +47,11 @@ struct wb_bundle_energies {
     double contact;    /* stored in contact, normal and tangential */
     double friction;   /* dissipated */
     double cohesive;   /* stored in the interface, and dissipated by its damage */
-    double external;   /* work of the tip's force, of the weight, of what stops a slack tip */
+    double external;   /* work of the tip's force, of the weight, and of stopping a slack tip */
 };
-/* stored + plastic + contact + cohesive. */
+/* The internal energy: stored + plastic + contact + cohesive. */
 double wb_bundle_internal(const struct wb_bundle_energies *energies);
-/* external less all the others: zero but for the integration's error. */
+/* The external work less all other energies: zero but for the error of the integration. */
 double wb_bundle_imbalance(const struct wb_bundle_energies *energies);
 
 /* The bundle at the present time. */
@@ -53,27 +59,29 @@ struct wb_bundle_state {
     double time;       /* s, since the end of settling */
     long long steps;   /* in all */
     double deflection; /* m: mean height of the tip, over masses */
-    double target;     /* m: where it is led to; a slack strand leaves the tip above it */
+    double target;     /* m: where it is led; with a slack strand the tip is elsewhere */
     double tip[3];     /* m: mean position of the tip */
-    double tension;    /* N, of the strand, or the vertical force, in the last step */
-    double vertical;   /* N, its vertical part */
+    double tension;    /* N: the strand's pull, or the vertical force, in the last step */
+    double vertical;   /* N: the vertical part of it */
     bool slack;
 };
 
 struct wb_bundle; /* opaque */
 struct wb_bundle_part;
 
-/* `model` is borrowed and must outlive it. On failure *out is NULL. */
+/* Makes a straight bundle at rest. `model` is borrowed and must outlive it. On failure *out is
+ * NULL.
+ */
 WB_MUST_CHECK enum wb_status wb_bundle_create(struct wb_bundle **out,
                                               const struct wb_bundle_model *model,
                                               const struct wb_bundle_settings *settings);
 void wb_bundle_destroy(struct wb_bundle *bundle); /* accepts NULL */
 
-/* Into how many parts it is cut, of all ranks (fe/bundle/bundle_parts.h). */
+/* The number of parts that compute it, in all ranks. */
 int wb_bundle_parts(const struct wb_bundle *bundle);
 
-/* All stations with fields and the states of materials, brought together from all parts where there
- * was a step since. */
+/* The bundle in one piece, with fields and the states of materials at every station. They are
+ * collected from all parts if there was a step since the last call. */
 const struct wb_bundle_part *wb_bundle_whole(const struct wb_bundle *bundle);
 
 /* Saves the state, or restores that of a bundle of the same model, settings and number of parts,
@@ -84,61 +92,52 @@ double wb_bundle_time_step(const struct wb_bundle *bundle); /* s */
 long wb_bundle_hexahedra(const struct wb_bundle *bundle);
 int wb_bundle_shells(const struct wb_bundle *bundle);
 
-/* Asked again and again while a bundle comes to rest; false: it stays as it is, not at rest. */
+/* Called again and again while a bundle comes to rest. False ends that before it is at rest. */
 struct wb_bundle_watch {
     bool (*goes_on)(void *context);
     void *context;
 };
 
-/* Brings the weight on with the tip held at zero, at rest: motion is stopped whenever its energy
- * begins to fall, until it is small. Nothing without weight. WB_ERR_CONVERGENCE when it does not
- * come to rest. `watch` may be NULL. */
+/* Applies the weight while the tip is held at zero, and waits for rest: all motion is stopped
+ * whenever the kinetic energy begins to fall, until that energy is small. Does nothing to a bundle
+ * without weight. WB_ERR_CONVERGENCE if it does not come to rest; WB_ERR_DATA as from
+ * wb_bundle_advance(). `reason` gets the reason of a failure; if it is NULL, the log gets it.
+ * `watch` may be NULL. */
 WB_MUST_CHECK enum wb_status wb_bundle_settle(struct wb_bundle *bundle,
-                                              const struct wb_bundle_watch *watch);
+                                              const struct wb_bundle_watch *watch,
+                                              struct wb_reason *reason);
 
-/* Lets go of the tip, as a slack strand does: it comes to rest where nothing acts on it but the
- * weight. Motion is stopped as in settling; the energy this takes is counted as work from outside.
- * The tip's target is where it rests. WB_ERR_CONVERGENCE when it does not come to rest. `watch` may
- * be NULL. */
+/* Lets go of the tip, as a slack strand does, and waits until it rests under the weight alone.
+ * Motion is stopped as in settling; the energy lost by that counts as external work. The tip's
+ * target is then the place where it rests. Fails as wb_bundle_settle() does. */
 WB_MUST_CHECK enum wb_status wb_bundle_let_go(struct wb_bundle *bundle,
-                                              const struct wb_bundle_watch *watch);
+                                              const struct wb_bundle_watch *watch,
+                                              struct wb_reason *reason);
 
-/* Leads the tip from its present target to `deflection` (m) within the time given (s), by a smooth
- * step, from now on. */
+/* From now on leads the tip along a smooth step from its present target to `deflection` (m), within
+ * `duration` (s). */
 void wb_bundle_lead(struct wb_bundle *bundle, double deflection, double duration);
 
-/* `n` steps. WB_ERR_DATA when the run is lost (a number is not finite, wires pass through each
- * other), with the reason. */
-WB_MUST_CHECK enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n);
+/* Makes `n` steps. WB_ERR_DATA if the run is lost (a number is not finite, or wires pass through
+ * each other): `reason` gets the reason; if it is NULL, the log gets it. */
+WB_MUST_CHECK enum wb_status wb_bundle_advance(struct wb_bundle *bundle, int n,
+                                               struct wb_reason *reason);
 
 void wb_bundle_get_state(const struct wb_bundle *bundle, struct wb_bundle_state *state);
 
-/* All energies as of the last step; costs about ten steps. */
+/* All energies after the last step; takes as long as about ten steps. */
 void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_energies *energies);
 
-/* What acts on the bundle from outside in the last step, N, and its momentum after it, kg m/s, of
- * the scaled masses: each step changes it by all three forces times the step. */
-struct wb_bundle_outside {
-    double clamp[3], tip[3], weight[3];
-    double momentum[3];
-};
-void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outside *outside);
-
-/* Kinetic over internal energy without the plastic part's cost: kinetic / (external less kinetic);
- * infinite where nothing is stored. */
-double wb_bundle_kinetic_ratio(const struct wb_bundle *bundle);
-
-/* Axis of the bundle at n arc lengths s (m): mean of the wires' section centres, over masses. */
+/* The bundle's axis at n arc lengths s (m): the centre of mass of all wires' sections. */
 void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, double (*shape)[3]);
 
-/* Elements whose strain went beyond what the kernels' logarithm is made for, in the last step that
- * was looked at; the largest strain. */
+/* How far the bundle is from where its model ends, in the last step of an advance. */
 struct wb_bundle_limits {
-    long long beyond;
-    double largest_strain;
-    double deepest;      /* m: penetration of wires into each other */
-    double tape_deepest; /* m: of the tape into wires, where it is not bonded */
-    double debonded;     /* share of the bonded area whose bond is broken */
+    long long beyond;      /* elements strained more than the kernels' logarithm is made for */
+    double largest_strain; /* of any element */
+    double deepest;        /* m: penetration of wires into each other */
+    double tape_deepest;   /* m: penetration of the tape into wires, where it is not bonded */
+    double debonded;       /* share of the bonded area whose bond is broken */
 };
 void wb_bundle_get_limits(const struct wb_bundle *bundle, struct wb_bundle_limits *limits);
 

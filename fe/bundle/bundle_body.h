@@ -34,7 +34,7 @@ struct wb_bundle_body {
     double start;                     /* m: mean height of the section, unscaled masses */
 };
 
-/* A place of the force field, N; bytes of one. */
+/* The force at an index of the field, N; the bytes of one force. */
 double wb_bundle_body_force(const struct wb_bundle_body *body, size_t at);
 void wb_bundle_body_add_force(struct wb_bundle_body *body, size_t at, double force);
 size_t wb_bundle_body_force_size(const struct wb_bundle_body *body);
@@ -81,16 +81,17 @@ struct wb_bundle_bodies {
     struct wb_bundle_body ring, directors;
 };
 
-/* The wires, straight and at rest; the tape is made by wb_bundle_tape_create(). To be released also
- * on failure. */
+/* Makes the wires, straight and at rest; wb_bundle_tape_create() adds the tape. The bodies must be
+ * released also after a failure. */
 WB_MUST_CHECK enum wb_status wb_bundle_bodies_init(struct wb_bundle_bodies *bodies,
                                                    const struct wb_bundle_model *model,
                                                    const struct wb_bundle_mesh *mesh,
                                                    const struct wb_bundle_extent *extent);
-/* With the tape; accepts zeroed ones. */
+/* Frees wires and tape; accepts zeroed bodies. */
 void wb_bundle_bodies_release(struct wb_bundle_bodies *bodies);
 
-/* Zeroed fields of another body; steps of a body, which must be destroyed. */
+/* Makes zeroed fields for another body; makes the integrator of a body, which the caller destroys.
+ */
 WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
                                                             struct wb_bundle_body *body,
                                                             struct wb_swept_layout layout);
@@ -102,21 +103,21 @@ WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle
 /* Holds all nodes of a station. */
 void wb_bundle_bodies_hold(const struct wb_bundle_bodies *bodies, int station);
 
-/* Wires, ring and directors; how many. */
+/* Lists wires, ring and directors; returns their number. */
 int wb_bundle_bodies_list(struct wb_bundle_bodies *bodies,
                           struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES]);
 
-/* The last station that the clamp holds, of the whole. */
+/* The last station of the whole bundle that the clamp holds. */
 int wb_bundle_bodies_last_held(const struct wb_bundle_bodies *bodies);
 
 /* Whether the tip is one of their own stations. */
 bool wb_bundle_bodies_have_tip(const struct wb_bundle_bodies *bodies);
 
-/* Kilograms of a body's station, scaled, half at the ends. */
+/* Mass of a body at a station, kg, scaled; half of it at the ends of the bundle. */
 double wb_bundle_bodies_station_mass(const struct wb_bundle_bodies *bodies,
                                      const struct wb_bundle_body *body, int station);
 
-/* All that moves stands still. */
+/* Sets all velocities to zero. */
 void wb_bundle_bodies_stop(struct wb_bundle_bodies *bodies);
 
 /* The weight's potential and the plastic work, J, of their own stations. */

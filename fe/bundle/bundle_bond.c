@@ -109,7 +109,8 @@ static enum wb_status make_cohesion(const struct wb_bundle_bodies *bodies,
 }
 
 static enum wb_status make_contact(struct wb_bundle_bond *bond,
-                                   const struct wb_swept_cohesion_wire *wires)
+                                   const struct wb_swept_cohesion_wire *wires,
+                                   struct wb_reason *reason)
 {
     const struct wb_bundle_bodies *bodies = bond->bodies;
     const struct wb_bundle_interface *interface = &bodies->model->interface;
@@ -122,6 +123,7 @@ static enum wb_status make_contact(struct wb_bundle_bond *bond,
     settings.friction_kinetic = interface->friction_kinetic;
     settings.friction_decay = interface->friction_decay;
     settings.refresh_interval = LOOK_INTERVAL;
+    settings.reason = reason;
     return wb_swept_tape_contact_create(&bond->contact, bodies->tape, bond->cohesion, &settings,
                                         bodies->n_wires, wires);
 }
@@ -143,7 +145,8 @@ static enum wb_status scale_masses(struct wb_bundle_bond *bond)
     return WB_OK;
 }
 
-enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bundle_bodies *bodies)
+enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bundle_bodies *bodies,
+                                     struct wb_reason *reason)
 {
     *out = NULL;
     struct wb_bundle_bond *bond = calloc(1, sizeof *bond);
@@ -157,7 +160,7 @@ enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bund
     if (status == WB_OK && bodies->model->tape.taping.kind == WB_TAPING_HELIX)
         status = make_cohesion(bodies, wires, true, &bond->windings);
     if (status == WB_OK)
-        status = make_contact(bond, wires);
+        status = make_contact(bond, wires, reason);
     if (status == WB_OK)
         status = scale_masses(bond);
     if (status != WB_OK)

@@ -28,6 +28,7 @@ static enum wb_status make_contact(struct wb_bundle_part *part)
     settings.friction_decay = interface->friction_decay;
     settings.counted = bodies->extent.own;
     settings.double_precision = model->run.double_precision;
+    settings.reason = &part->reason;
     for (int w = 0; w < bodies->n_wires; w++) {
         const struct wb_bundle_type *type = &bodies->type[model->type_of[w]];
         const struct wb_wire *wire = &model->type[model->type_of[w]];
@@ -64,7 +65,7 @@ static enum wb_status build(struct wb_bundle_part *part, const struct wb_bundle_
     WB_TRY(make_contact(part));
     if (model->has_tape) {
         WB_TRY(wb_bundle_tape_create(bodies, whole ? &whole->bodies : NULL));
-        WB_TRY(wb_bundle_bond_create(&part->bond, bodies));
+        WB_TRY(wb_bundle_bond_create(&part->bond, bodies, &part->reason));
     }
     hold_stations(bodies);
     /* Not where it is only in the halo. */
@@ -304,8 +305,8 @@ static enum wb_status lead_tip(struct wb_bundle_part *part, double half)
         lean[1] = -tip.position[2] / length;
         upright = sqrt(fmax(0.0, 1.0 - lean[0] * lean[0] - lean[1] * lean[1]));
         if (upright < least_upright)
-            return wb_fail(
-                WB_ERR_DATA,
+            return wb_fail_to(
+                &part->reason, WB_ERR_DATA,
                 "%s: the run is lost after %lld steps: the tip is %.3g mm from where the "
                 "strand of %.3g mm would hang upright; it has to be longer",
                 model->path, part->clock.steps, hypot(lean[0], lean[1]) * length / WB_MM,
@@ -456,9 +457,9 @@ enum wb_status wb_bundle_part_step(struct wb_bundle_part *part, bool look)
         count_tip_work(part, &before);
     return isfinite(account->vertical)
                ? WB_OK
-               : wb_fail(WB_ERR_DATA,
-                         "%s: the run is lost after %lld steps: the tip's force is not finite",
-                         bodies->model->path, part->clock.steps);
+               : wb_fail_to(&part->reason, WB_ERR_DATA,
+                            "%s: the run is lost after %lld steps: the tip's force is not finite",
+                            bodies->model->path, part->clock.steps);
 }
 
 void wb_bundle_part_stop(struct wb_bundle_part *part)

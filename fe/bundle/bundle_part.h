@@ -11,13 +11,14 @@
 #include <stdbool.h>
 
 #include "base/checkpoint.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_body.h"
 #include "fe/bundle/bundle_bond.h"
 #include "fe/bundle/bundle_cap.h"
 #include "fe/swept/swept_contact.h"
 
-/* The way of the tip: a smooth step from one deflection to another. */
+/* Where the tip is led: a smooth step from one deflection to another. */
 struct wb_bundle_way {
     double from, to;        /* m */
     double start, duration; /* s */
@@ -26,12 +27,12 @@ struct wb_bundle_way {
 
 /* How far the steps have come. */
 struct wb_bundle_clock {
-    double time; /* s, of all steps since creation but settling */
+    double time; /* s, of all steps since creation without those of settling */
     long long steps;
     bool has_moved; /* velocities are half a step behind positions */
 };
 
-/* What the last step tells; works are sums over steps. */
+/* Forces and energies of the last step; works are sums over all steps. */
 struct wb_bundle_account {
     double tension, vertical; /* N */
     double pull[3];           /* N, on the tip */
@@ -52,35 +53,38 @@ struct wb_bundle_part {
     struct wb_bundle_way way;
     struct wb_bundle_clock clock;
     struct wb_bundle_account account;
+    struct wb_reason reason; /* why the last step was lost */
 };
 
-/* The whole bundle as one part, straight and at rest. Its step is `safety` times the bound of the
- * stable one. On failure *out is NULL. */
+/* Makes the whole bundle as one part, straight and at rest. Its time step is `safety` times the
+ * bound of the stable one. On failure *out is NULL. */
 WB_MUST_CHECK enum wb_status wb_bundle_part_create_whole(struct wb_bundle_part **out,
                                                          const struct wb_bundle_model *model,
                                                          const struct wb_bundle_mesh *mesh,
                                                          double safety);
-/* The stations of the whole from `first` on, of which it owns some; its step is that of the whole.
- */
+/* Makes a part that has `n_stations` of the whole from `first` on, and owns the range `own` of
+ * these. Its time step is that of the whole. */
 WB_MUST_CHECK enum wb_status wb_bundle_part_create(struct wb_bundle_part **out,
                                                    const struct wb_bundle_part *whole, int first,
                                                    int n_stations, struct wb_swept_range own);
 void wb_bundle_part_destroy(struct wb_bundle_part *part); /* accepts NULL */
 
-/* One step; `look` keeps what energies need. WB_ERR_DATA when the run is lost. */
+/* Makes one step; with `look` the account gets what energies need. WB_ERR_DATA if the run is lost:
+ * part->reason says why. */
 WB_MUST_CHECK enum wb_status wb_bundle_part_step(struct wb_bundle_part *part, bool look);
 
-/* All that moves stands still. */
+/* Sets all velocities to zero. */
 void wb_bundle_part_stop(struct wb_bundle_part *part);
 
-/* Mean position of the tip over masses, m; its height less that of the straight bundle. */
+/* The centre of mass of the tip, m, with its height above that in the straight bundle. */
 void wb_bundle_part_tip(const struct wb_bundle_part *part, double position[3]);
 
 /* Where the tip is led to at a time, m. */
 double wb_bundle_part_target(const struct wb_bundle_part *part, double time);
 
-/* Saves or restores fields, the states of materials and contacts; and way, clock and account. */
+/* Saves or restores fields and the states of materials and contacts. */
 void wb_bundle_part_visit_fields(struct wb_bundle_part *part, struct wb_checkpoint *checkpoint);
+/* Saves or restores way, clock and account. */
 void wb_bundle_part_visit_progress(struct wb_bundle_part *part, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -1,12 +1,10 @@
 #include "fe/bundle/bundle_parts.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/log.h"
-#include "fe/bundle/bundle_parts_private.h"
+#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -22,7 +20,6 @@ enum {
 struct member {
     struct wb_bundle_part *part;
     enum wb_status status;
-    char problem[320];
     double plastic_work;
 };
 
@@ -178,7 +175,7 @@ static void swap(struct wb_bundle_parts *parts, int number)
 }
 
 /* Slip at the borders, which varies slowly along wires. */
-static enum wb_status check_slip(const struct wb_bundle_part *part, int halo)
+static enum wb_status check_slip(struct wb_bundle_part *part, int halo)
 {
     const struct wb_swept_range own = part->bodies.extent.own;
     double most = 0.0;
@@ -193,18 +190,11 @@ static enum wb_status check_slip(const struct wb_bundle_part *part, int halo)
     }
     if (most <= halo - BEYOND_SLIP)
         return WB_OK;
-    return wb_fail(WB_ERR_DATA,
-                   "%s: wires slip past each other by %.1f stations, more than the %d that parts "
-                   "of the bundle know of their neighbours; compute it with one thread",
-                   part->bodies.model->path, most, halo - BEYOND_SLIP);
-}
-
-static void keep_problem(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    struct member *member = context;
-    (void)level, (void)domain;
-    snprintf(member->problem, sizeof member->problem, "%s", message);
+    return wb_fail_to(
+        &part->reason, WB_ERR_DATA,
+        "%s: wires slip past each other by %.1f stations, more than the %d that parts "
+        "of the bundle know of their neighbours; compute it with one thread",
+        part->bodies.model->path, most, halo - BEYOND_SLIP);
 }
 
 /* A part that is lost goes on swapping: the others count on it. */
@@ -212,12 +202,9 @@ static void advance_part(void *context, int number)
 {
     struct wb_bundle_parts *parts = context;
     struct member *member = member_of(parts, number);
-    void *outer_context;
-    wb_log_sink *const outer = wb_log_get_tap(&outer_context);
-    const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
 
-    wb_log_set_tap(keep_problem, member);
     member->status = WB_OK;
+    member->part->reason.text[0] = '\0';
     for (int i = 0; i < parts->steps; i++) {
         if (member->status == WB_OK)
             member->status = wb_bundle_part_step(member->part, i == parts->steps - 1);
@@ -225,8 +212,6 @@ static void advance_part(void *context, int number)
     }
     if (member->status == WB_OK && parts->count > 1)
         member->status = check_slip(member->part, parts->halo);
-    wb_log_set_tap(outer, outer_context);
-    wb_log_set_gravest(before);
 }
 
 /* --- what the whole learns --- */
@@ -477,11 +462,11 @@ static void sum_up(struct wb_bundle_parts *parts)
 }
 
 /* The first failure along the bundle; its reason is told on all ranks. */
-static enum wb_status agree(struct wb_bundle_parts *parts)
+static enum wb_status agree(struct wb_bundle_parts *parts, struct wb_reason *reason)
 {
     const struct member *lost = NULL;
     double first = parts->count;
-    char problem[sizeof lost->problem] = "";
+    struct wb_reason of_first = {0};
 
     for (int i = parts->n_here - 1; i >= 0; i--) {
         if (parts->here[i].status != WB_OK) {
@@ -495,12 +480,14 @@ static enum wb_status agree(struct wb_bundle_parts *parts)
     first = -first;
     wb_team_greatest(&first, 1);
     if (lost)
-        memcpy(problem, lost->problem, sizeof problem);
-    wb_team_share(problem, sizeof problem, (int)-first / parts->n_here);
-    return wb_fail(status, "%s", problem);
+        of_first = lost->part->reason;
+    wb_team_share(&of_first, sizeof of_first, (int)-first / parts->n_here);
+    /* Failures that are not of the run, as a lack of memory, are in the log already. */
+    return of_first.text[0] ? wb_fail_to(reason, status, "%s", of_first.text) : status;
 }
 
-enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n)
+enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n,
+                                       struct wb_reason *reason)
 {
     const bool is_one = parts->count == 1;
 
@@ -511,7 +498,7 @@ enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n)
     parts->steps = n;
     parts->is_stale = !is_one;
     wb_team_run(parts->team, advance_part, parts);
-    WB_TRY(agree(parts));
+    WB_TRY(agree(parts, reason));
     if (!is_one)
         sum_up(parts);
     return WB_OK;

@@ -1,12 +1,18 @@
-#include "fe/bundle/bundle_run_private.h"
+#include "fe/bundle/bundle_run.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-#include "base/log.h"
+#include "base/checkpoint.h"
+#include "base/file.h"
+#include "base/hash.h"
 #include "base/units.h"
+#include "base/version.h"
+#include "fe/bundle/bundle_parts.h"
+#include "fe/swept/swept_hex.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -16,7 +22,8 @@ enum {
     MOST_BLOCK = 50,       /* steps between two samples of the force */
     SAMPLES_OF_A_ROW = 40, /* at least, where its steps allow it */
     LOOKS_OF_A_ROW = 4,    /* at all energies */
-    REST_SAMPLES = 40      /* of the force at zero */
+    REST_SAMPLES = 40,     /* of the force at zero */
+    MOST_IDENTITY = 512
 };
 
 static const double usual_from = 2.0 * WB_MM; /* where ratios begin to count */
@@ -28,6 +35,54 @@ static const double usual_interval = 600.0;   /* s between checkpoints */
 static const double slack_gap = 1e-3;         /* over the deflection: the strand is slack, surely */
 static const double lost_balance = 0.05;      /* imbalance over work: the run is no solution */
 
+/* The straight line through forces against the target, of one row. */
+struct line {
+    double n, x, y, xx, xy, yy;
+};
+
+/* Clocks of this process, s. */
+struct clocks {
+    double wall, cpu;
+};
+
+/* A test under way. */
+struct run {
+    struct wb_bundle_result *result;
+    const struct wb_bundle_model *model;
+    struct wb_bundle_run_options options;
+    struct wb_bundle *bundle;
+    enum wb_status status;
+    struct clocks begun, saved; /* clocks of this process */
+    double wall_before;         /* s, in the processes before */
+    double cpu_before;
+    bool may_resume;
+    char program[WB_SHA256_TEXT]; /* this binary's, where there are checkpoints */
+
+    /* From here on all is in a checkpoint: visit_place(). */
+    struct wb_bundle_state state;
+    double from;   /* m: ratios count from here on */
+    bool counting; /* the tip was there */
+    bool judged;   /* the duration is accepted */
+    double begin;  /* s of the bundle's time: the loading's */
+    double next;   /* s: duration of the next attempt */
+    double kinetic, artificial;
+    double most_external;
+
+    int branch;      /* ways made so far */
+    bool under_way;  /* on another */
+    int place;       /* the row that is passed, from 1; 0: the half step before them */
+    int looks;       /* the next look in it, from 1 */
+    long long left;  /* steps to there; -1: not begun */
+    double way[2];   /* m: from, to */
+    bool hangs;      /* the strand went slack on this way, the tip rests */
+    double way_time; /* s: its begin */
+    int block;       /* steps between samples */
+    struct line vertical, tension;
+    int slack_samples;        /* beside these */
+    bool samples_before;      /* the row's place */
+    struct wb_bundle_row row; /* passed, its mean not complete */
+};
+
 /* --- memory --- */
 
 int wb_bundle_run_planned_rows(const struct wb_bundle_model *model)
@@ -35,39 +90,211 @@ int wb_bundle_run_planned_rows(const struct wb_bundle_model *model)
     return 1 + model->run.rows * (model->run.cycles == 0 ? 1 : 2 * model->run.cycles);
 }
 
-enum wb_status wb_bundle_run_init(struct wb_bundle_history *history,
-                                  const struct wb_bundle_model *model, int n_shape)
+enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
+                                     const struct wb_bundle_model *model, int n_shape)
 {
-    *history = (struct wb_bundle_history){0};
+    *result = (struct wb_bundle_result){0};
     if (n_shape < 0 || n_shape == 1 || n_shape > MOST_SHAPE)
         return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected none or 2 to %d",
                        n_shape, MOST_SHAPE);
 
     const size_t rows = (size_t)wb_bundle_run_planned_rows(model), n = (size_t)n_shape;
-    history->rows = calloc(rows, sizeof *history->rows);
+    result->rows = calloc(rows, sizeof *result->rows);
     if (n_shape > 0) {
-        history->shape_s = calloc(n, sizeof *history->shape_s);
-        history->shape = calloc(rows * n, sizeof *history->shape);
+        result->shape_s = calloc(n, sizeof *result->shape_s);
+        result->shape = calloc(rows * n, sizeof *result->shape);
     }
-    if (!history->rows || (n_shape > 0 && (!history->shape_s || !history->shape))) {
-        wb_bundle_run_release(history);
+    if (!result->rows || (n_shape > 0 && (!result->shape_s || !result->shape))) {
+        wb_bundle_result_release(result);
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows of %d positions", rows, n_shape);
     }
-    history->capacity = (int)rows;
-    history->n_shape = n_shape;
+    result->capacity = (int)rows;
+    result->n_shape = n_shape;
     for (int i = 0; i < n_shape; i++)
-        history->shape_s[i] = model->length * i / (n_shape - 1);
+        result->shape_s[i] = model->length * i / (n_shape - 1);
     return WB_OK;
 }
 
-void wb_bundle_run_release(struct wb_bundle_history *history)
+void wb_bundle_result_release(struct wb_bundle_result *result)
 {
-    if (!history)
+    if (!result)
         return;
-    free(history->rows);
-    free(history->shape_s);
-    free(history->shape);
-    *history = (struct wb_bundle_history){0};
+    free(result->rows);
+    free(result->shape_s);
+    free(result->shape);
+    *result = (struct wb_bundle_result){0};
+}
+
+/* --- time --- */
+
+static double seconds_of(clockid_t clock)
+{
+    struct timespec time;
+    clock_gettime(clock, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static struct clocks read_clocks(void)
+{
+    return (struct clocks){seconds_of(CLOCK_MONOTONIC), seconds_of(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
+/* Into the result, what was spent so far. */
+static void take_time(struct run *r)
+{
+    const struct clocks at = read_clocks();
+    double cpu = at.cpu - r->begun.cpu;
+
+    wb_team_sum(&cpu, 1);
+    r->result->wall = r->wall_before + (at.wall - r->begun.wall);
+    r->result->cpu = r->cpu_before + cpu;
+}
+
+/* --- checkpoints --- */
+
+/* What a checkpoint belongs to: all that decides a single bit of the result. */
+static void identify(const struct run *r, char text[MOST_IDENTITY])
+{
+    const struct wb_bundle_model *m = r->model;
+    const char *mesh = r->options.mesh ? r->options.mesh : m->run.mesh;
+    char hash[WB_SHA256_TEXT];
+
+    wb_bundle_model_identify(m, hash);
+    snprintf(text, MOST_IDENTITY,
+             "bundle %s, mesh %s, settings %.12s, %d shape positions, %d parts (threads x ranks), "
+             "%s precision, %s, wirebench %s, program %.12s",
+             m->name, mesh, hash, r->result->n_shape,
+             wb_bundle_parts_of(m, mesh, r->options.threads),
+             m->run.double_precision ? "double" : "single", wb_swept_hex_best_instructions(),
+             wb_version_revision(), r->program);
+}
+
+/* Its memory stays; what it holds is saved or restored. */
+static void visit_result(struct wb_bundle_result *h, struct wb_checkpoint *c)
+{
+    const size_t rows = (size_t)h->capacity, places = rows * (size_t)h->n_shape;
+
+    wb_checkpoint_enter(c, "result");
+    wb_checkpoint_visit_member(c, h, n_rows);
+    wb_checkpoint_visit(c, "rows", h->rows, rows * sizeof *h->rows);
+    wb_checkpoint_visit(c, "shape", h->shape, places * sizeof *h->shape);
+    wb_checkpoint_visit_member(c, h, converged);
+    wb_checkpoint_visit_member(c, h, reason);
+    wb_checkpoint_visit_member(c, h, zero_force);
+    wb_checkpoint_visit_member(c, h, duration);
+    wb_checkpoint_visit_member(c, h, chosen);
+    wb_checkpoint_visit_member(c, h, exceeded);
+    wb_checkpoint_visit_member(c, h, attempts);
+    wb_checkpoint_visit_member(c, h, all_steps);
+    wb_checkpoint_visit_member(c, h, largest);
+    wb_checkpoint_visit_member(c, h, wall);
+    wb_checkpoint_visit_member(c, h, cpu);
+    wb_checkpoint_leave(c);
+}
+
+/* How far the test has come. */
+static void visit_place(struct run *r, struct wb_checkpoint *c)
+{
+    wb_checkpoint_visit_member(c, r, state);
+    wb_checkpoint_visit_member(c, r, from);
+    wb_checkpoint_visit_member(c, r, counting);
+    wb_checkpoint_visit_member(c, r, judged);
+    wb_checkpoint_visit_member(c, r, begin);
+    wb_checkpoint_visit_member(c, r, next);
+    wb_checkpoint_visit_member(c, r, kinetic);
+    wb_checkpoint_visit_member(c, r, artificial);
+    wb_checkpoint_visit_member(c, r, most_external);
+    wb_checkpoint_visit_member(c, r, branch);
+    wb_checkpoint_visit_member(c, r, under_way);
+    wb_checkpoint_visit_member(c, r, place);
+    wb_checkpoint_visit_member(c, r, looks);
+    wb_checkpoint_visit_member(c, r, left);
+    wb_checkpoint_visit_member(c, r, way);
+    wb_checkpoint_visit_member(c, r, hangs);
+    wb_checkpoint_visit_member(c, r, way_time);
+    wb_checkpoint_visit_member(c, r, block);
+    wb_checkpoint_visit_member(c, r, vertical);
+    wb_checkpoint_visit_member(c, r, tension);
+    wb_checkpoint_visit_member(c, r, slack_samples);
+    wb_checkpoint_visit_member(c, r, samples_before);
+    wb_checkpoint_visit_member(c, r, row);
+}
+
+/* All but the bundle. */
+static void visit_run(struct run *r, struct wb_checkpoint *c)
+{
+    const struct wb_bundle_observer *observer = r->options.observer;
+
+    visit_result(r->result, c);
+    if (observer && observer->visit) {
+        wb_checkpoint_enter(c, "observer");
+        observer->visit(observer->context, c);
+        wb_checkpoint_leave(c);
+    }
+    visit_place(r, c);
+}
+
+static enum wb_status save(struct run *r)
+{
+    struct wb_checkpoint c;
+    char identity[MOST_IDENTITY];
+
+    wb_checkpoint_init(&c);
+    take_time(r);
+    visit_run(r, &c);
+    wb_bundle_visit(r->bundle, &c);
+    enum wb_status status = wb_checkpoint_finish(&c);
+    identify(r, identity);
+    if (status == WB_OK && wb_team_rank() == 0)
+        status = wb_checkpoint_write(&c, r->options.checkpoint, identity);
+    wb_checkpoint_release(&c);
+    r->saved = read_clocks();
+    return wb_team_agree(status);
+}
+
+/* Reads what an earlier process left into `c`, which restores then; nothing where there is none.
+ * All ranks get what rank 0 reads. */
+static enum wb_status find_checkpoint(struct run *r, struct wb_checkpoint *c)
+{
+    char identity[MOST_IDENTITY];
+    enum wb_status status = WB_OK;
+    size_t size = 0;
+
+    if (!r->options.checkpoint || !r->may_resume)
+        return WB_OK;
+    r->may_resume = false;
+    identify(r, identity);
+    if (wb_team_rank() == 0 && wb_file_exists(r->options.checkpoint)) {
+        status = wb_checkpoint_read(c, r->options.checkpoint, identity);
+        size = c->size;
+    }
+    WB_TRY(wb_team_agree(status));
+    wb_team_share(&size, sizeof size, 0);
+    if (wb_team_rank() > 0 && size > 0) {
+        c->bytes = malloc(size);
+        c->size = size;
+        wb_checkpoint_rewind(c);
+        if (!c->bytes)
+            status = wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint of %zu bytes", size);
+    }
+    WB_TRY(wb_team_agree(status));
+    wb_team_share(c->bytes, size, 0);
+    return WB_OK;
+}
+
+/* Restores the bundle, after all else. */
+static enum wb_status resume(struct run *r, struct wb_checkpoint *c)
+{
+    struct wb_bundle_result *h = r->result;
+
+    wb_bundle_visit(r->bundle, c);
+    WB_TRY(wb_team_agree(wb_checkpoint_finish(c)));
+    h->resumed = true;
+    r->wall_before = h->wall;
+    r->cpu_before = h->cpu;
+    wb_info("%s: goes on at %.2f mm, step %lld, of a run of %.0f s so far", r->options.checkpoint,
+            r->state.deflection / WB_MM, r->state.steps, h->wall);
+    return WB_OK;
 }
 
 /* --- one attempt --- */
@@ -84,28 +311,24 @@ static int branches_of(const struct wb_bundle_model *model)
     return model->run.cycles == 0 ? 1 : 2 * model->run.cycles;
 }
 
-/* A run that is lost keeps the reason that was given. */
-static void keep_reason(void *context, enum wb_log_level level, const char *domain,
-                        const char *message)
+static enum verdict lose(struct run *r)
 {
-    struct wb_bundle_run_now *r = context;
-    (void)level, (void)domain;
-    snprintf(r->history->problem, sizeof r->history->problem, "%s", message);
-}
+    const struct wb_reason *const reason = &r->result->reason;
 
-static enum verdict lose(struct wb_bundle_run_now *r)
-{
-    if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE)
+    if (r->status != WB_ERR_DATA && r->status != WB_ERR_CONVERGENCE) {
+        if (reason->text[0])
+            wb_error("%s", reason->text);
         return NO_MEMORY;
+    }
     r->status = WB_OK;
-    r->history->converged = false;
+    r->result->converged = false;
     return DONE;
 }
 
 /* Whether the caller wants to go on. */
-static bool is_wanted(const struct wb_bundle_run_now *r, bool rests)
+static bool is_wanted(const struct run *r, bool rests)
 {
-    const struct wb_bundle_history *h = r->history;
+    const struct wb_bundle_result *h = r->result;
     const struct wb_bundle_observer *observer = r->options.observer;
     const double whole = h->duration * branches_of(r->model);
     const struct wb_bundle_progress progress = {
@@ -125,12 +348,12 @@ static bool is_wanted(const struct wb_bundle_run_now *r, bool rests)
  * where there are. Rank 0 decides. */
 static bool rest_is_wanted(void *context)
 {
-    struct wb_bundle_run_now *r = context;
+    struct run *r = context;
 
     wb_bundle_get_state(r->bundle, &r->state);
-    bool wanted = is_wanted(r, true) || r->history->n_rows > 0;
+    bool wanted = is_wanted(r, true) || r->result->n_rows > 0;
     wb_team_share(&wanted, sizeof wanted, 0);
-    r->history->stopped = !wanted;
+    r->result->stopped = !wanted;
     return wanted;
 }
 
@@ -140,33 +363,30 @@ enum motion {
     LETTING_GO
 };
 
-static enum verdict move(struct wb_bundle_run_now *r, enum motion motion, int n)
+static enum verdict move(struct run *r, enum motion motion, int n)
 {
     const struct wb_bundle_watch watch = {rest_is_wanted, r};
+    struct wb_reason *const reason = &r->result->reason;
 
-    r->history->problem[0] = '\0';
-    wb_log_set_tap(keep_reason, r);
-    const enum wb_log_level before = wb_log_set_gravest(WB_LOG_DEBUG);
+    *reason = (struct wb_reason){0};
     switch (motion) {
     case STEPS:
-        r->status = wb_bundle_advance(r->bundle, n);
+        r->status = wb_bundle_advance(r->bundle, n, reason);
         break;
     case SETTLING:
-        r->status = wb_bundle_settle(r->bundle, &watch);
+        r->status = wb_bundle_settle(r->bundle, &watch, reason);
         break;
     case LETTING_GO:
-        r->status = wb_bundle_let_go(r->bundle, &watch);
+        r->status = wb_bundle_let_go(r->bundle, &watch, reason);
         break;
     }
-    wb_log_set_gravest(before);
-    wb_log_set_tap(NULL, NULL);
     if (r->status != WB_OK)
         return lose(r);
     wb_bundle_get_state(r->bundle, &r->state);
-    return r->history->stopped ? DONE : GO_ON;
+    return r->result->stopped ? DONE : GO_ON;
 }
 
-static enum verdict advance(struct wb_bundle_run_now *r, int n)
+static enum verdict advance(struct run *r, int n)
 {
     return move(r, STEPS, n);
 }
@@ -178,9 +398,9 @@ static double over(double part, double whole)
     return whole > 0.0 ? part / whole : (double)INFINITY;
 }
 
-static void count_limits(struct wb_bundle_run_now *r)
+static void count_limits(struct run *r)
 {
-    struct wb_bundle_extremes *largest = &r->history->largest;
+    struct wb_bundle_extremes *largest = &r->result->largest;
     struct wb_bundle_limits limits;
 
     wb_bundle_get_limits(r->bundle, &limits);
@@ -190,9 +410,9 @@ static void count_limits(struct wb_bundle_run_now *r)
 }
 
 /* What a ratio says of the duration while the first loading goes on. */
-static enum verdict judge(struct wb_bundle_run_now *r)
+static enum verdict judge(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
     const double limit = r->model->run.kinetic_limit;
     const double needed = h->duration * sqrt(h->largest.kinetic / limit);
     const bool last = h->attempts == WB_BUNDLE_RUN_ATTEMPTS;
@@ -212,9 +432,9 @@ static enum verdict judge(struct wb_bundle_run_now *r)
     return GO_ON;
 }
 
-static enum verdict look(struct wb_bundle_run_now *r, struct wb_bundle_energies *e)
+static enum verdict look(struct run *r, struct wb_bundle_energies *e)
 {
-    struct wb_bundle_extremes *largest = &r->history->largest;
+    struct wb_bundle_extremes *largest = &r->result->largest;
 
     wb_bundle_get_energies(r->bundle, e);
     const double internal = wb_bundle_internal(e);
@@ -231,10 +451,10 @@ static enum verdict look(struct wb_bundle_run_now *r, struct wb_bundle_energies 
     largest->artificial = fmax(largest->artificial, r->artificial);
     largest->imbalance = fmax(largest->imbalance, imbalance);
     if (!(imbalance <= lost_balance)) {
-        snprintf(r->history->problem, sizeof r->history->problem,
-                 "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
-                 "are missing or too much",
-                 r->state.deflection / WB_MM, r->state.steps, imbalance);
+        wb_reason_set(&r->result->reason,
+                      "energy is not kept: at %.3g mm, after %lld steps, %.3g of the external work "
+                      "are missing or too much",
+                      r->state.deflection / WB_MM, r->state.steps, imbalance);
         r->status = WB_ERR_DATA;
         return lose(r);
     }
@@ -243,7 +463,7 @@ static enum verdict look(struct wb_bundle_run_now *r, struct wb_bundle_energies 
 
 /* --- rows --- */
 
-static void add_to_line(struct wb_bundle_run_line *line, double x, double y)
+static void add_to_line(struct line *line, double x, double y)
 {
     line->n += 1.0;
     line->x += x;
@@ -254,7 +474,7 @@ static void add_to_line(struct wb_bundle_run_line *line, double x, double y)
 }
 
 /* Its value at x; at one place only, or with too few points, the mean. */
-static double value_at(const struct wb_bundle_run_line *line, double x, double *deviation)
+static double value_at(const struct line *line, double x, double *deviation)
 {
     const double mean = line->y / line->n, at = line->x / line->n;
     const double spread = line->xx / line->n - at * at;
@@ -266,12 +486,12 @@ static double value_at(const struct wb_bundle_run_line *line, double x, double *
     return mean + slope * (x - at);
 }
 
-static enum wb_phase phase_of(const struct wb_bundle_run_now *r)
+static enum wb_phase phase_of(const struct run *r)
 {
     return r->branch % 2 == 0 ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
 }
 
-static void take_place(struct wb_bundle_run_now *r)
+static void take_place(struct run *r)
 {
     struct wb_bundle_row *row = &r->row;
     const double length = r->model->length, last = 0.01 * length;
@@ -287,14 +507,13 @@ static void take_place(struct wb_bundle_run_now *r)
         .tip = {ends[1][0], ends[1][1], ends[1][2]},
         .tip_angle = atan2(ends[1][1] - ends[0][1], ends[1][0] - ends[0][0]),
     };
-    if (r->history->n_shape > 0)
-        wb_bundle_shape(r->bundle, r->history->n_shape, r->history->shape_s,
-                        r->history->shape +
-                            (size_t)r->history->n_rows * (size_t)r->history->n_shape);
+    if (r->result->n_shape > 0)
+        wb_bundle_shape(r->bundle, r->result->n_shape, r->result->shape_s,
+                        r->result->shape + (size_t)r->result->n_rows * (size_t)r->result->n_shape);
     r->samples_before = r->vertical.n + r->slack_samples > 0.0;
 }
 
-static void sample(struct wb_bundle_run_now *r)
+static void sample(struct run *r)
 {
     if (r->state.slack) {
         r->slack_samples++;
@@ -304,15 +523,15 @@ static void sample(struct wb_bundle_run_now *r)
     add_to_line(&r->tension, r->state.target, r->state.tension);
 }
 
-static void begin_line(struct wb_bundle_run_now *r)
+static void begin_line(struct run *r)
 {
-    r->vertical = r->tension = (struct wb_bundle_run_line){0};
+    r->vertical = r->tension = (struct line){0};
     r->slack_samples = 0;
 }
 
-static void finish_row(struct wb_bundle_run_now *r)
+static void finish_row(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
     struct wb_bundle_row *row = &r->row;
     double ignored;
 
@@ -337,21 +556,21 @@ static void finish_row(struct wb_bundle_run_now *r)
 }
 
 /* Rank 0 decides: clocks and signals differ. */
-static enum verdict report(struct wb_bundle_run_now *r)
+static enum verdict report(struct run *r)
 {
     const char *file = r->options.checkpoint;
     const bool wanted = is_wanted(r, false);
-    bool choice[2] = {wanted, file && (!wanted || wb_bundle_run_clock().wall - r->saved.wall >=
+    bool choice[2] = {wanted, file && (!wanted || read_clocks().wall - r->saved.wall >=
                                                       r->options.checkpoint_interval)};
 
     wb_team_share(choice, sizeof choice, 0);
-    const bool saved = choice[1] && wb_bundle_run_save(r) == WB_OK;
+    const bool saved = choice[1] && save(r) == WB_OK;
     if (choice[1] && !saved)
         wb_warn("%s: this checkpoint is not written", file);
     if (choice[0])
         return GO_ON;
-    r->history->stopped = true;
-    r->history->kept = saved;
+    r->result->stopped = true;
+    r->result->kept = saved;
     return DONE;
 }
 
@@ -372,13 +591,13 @@ static double time_of(double share)
     return 0.5 * (low + high);
 }
 
-static bool unloads(const struct wb_bundle_run_now *r)
+static bool unloads(const struct run *r)
 {
     return r->branch % 2 == 1;
 }
 
 /* The target at a place of the way, m: 0 is its begin, the rows are at 1, 2, ... */
-static double target_of(const struct wb_bundle_run_now *r, double place)
+static double target_of(const struct run *r, double place)
 {
     const double share = place / r->model->run.rows;
     return r->model->run.deflection * (unloads(r) ? 1.0 - share : share);
@@ -386,7 +605,7 @@ static double target_of(const struct wb_bundle_run_now *r, double place)
 
 /* On its way back a strand is slack when the tip stays behind the target; a single force below
  * zero is an oscillation. */
-static bool went_slack(const struct wb_bundle_run_now *r)
+static bool went_slack(const struct run *r)
 {
     return unloads(r) && r->model->loads.strand_length > 0.0 && !r->hangs &&
            r->state.deflection - r->state.target > slack_gap * r->model->run.deflection;
@@ -395,12 +614,12 @@ static bool went_slack(const struct wb_bundle_run_now *r)
 /* Goes on to a place of the way, sampling; energies are looked at four times a row. Here, between
  * two blocks of steps, checkpoints are made, and here a run goes on from one. Where the strand goes
  * slack the tip comes to rest, and nothing moves any more on this way. */
-static enum verdict go_to(struct wb_bundle_run_now *r, double place, bool look_there)
+static enum verdict go_to(struct run *r, double place, bool look_there)
 {
-    const double dt = r->history->time_step;
+    const double dt = r->result->time_step;
     const double share =
         fmin(1.0, fmax(0.0, (target_of(r, place) - r->way[0]) / (r->way[1] - r->way[0])));
-    const double end = r->way_time + r->history->duration * time_of(share);
+    const double end = r->way_time + r->result->duration * time_of(share);
     struct wb_bundle_energies energies;
 
     if (r->left < 0)
@@ -427,19 +646,19 @@ static enum verdict go_to(struct wb_bundle_run_now *r, double place, bool look_t
     return look_there ? look(r, &energies) : GO_ON;
 }
 
-static enum verdict show_place(struct wb_bundle_run_now *r)
+static enum verdict show_place(struct run *r)
 {
     const struct wb_bundle_observer *observer = r->options.observer;
 
     if (!observer || !observer->place)
         return GO_ON;
     (void)wb_bundle_whole(r->bundle); /* all ranks take part in that */
-    r->status = wb_team_agree(observer->place(observer->context, r->history, &r->row, r->bundle));
+    r->status = wb_team_agree(observer->place(observer->context, r->result, &r->row, r->bundle));
     return r->status == WB_OK ? GO_ON : NO_MEMORY;
 }
 
 /* From half a step before a row's place to half a step after it. */
-static enum verdict pass_row(struct wb_bundle_run_now *r)
+static enum verdict pass_row(struct run *r)
 {
     enum verdict verdict = GO_ON;
 
@@ -461,11 +680,11 @@ static enum verdict pass_row(struct wb_bundle_run_now *r)
     return verdict;
 }
 
-static void begin_way(struct wb_bundle_run_now *r)
+static void begin_way(struct run *r)
 {
-    const double duration = r->history->duration;
+    const double duration = r->result->duration;
     const double steps =
-        duration / (1.875 * r->model->run.rows * r->history->time_step * SAMPLES_OF_A_ROW);
+        duration / (1.875 * r->model->run.rows * r->result->time_step * SAMPLES_OF_A_ROW);
 
     r->block = (int)fmin(fmax(steps, 1.0), MOST_BLOCK);
     r->way_time = r->state.time;
@@ -478,7 +697,7 @@ static void begin_way(struct wb_bundle_run_now *r)
     r->left = -1;
 }
 
-static enum verdict make_way(struct wb_bundle_run_now *r)
+static enum verdict make_way(struct run *r)
 {
     const int rows = r->model->run.rows;
     enum verdict verdict = GO_ON;
@@ -506,7 +725,7 @@ static enum verdict make_way(struct wb_bundle_run_now *r)
 }
 
 /* Row 0: at rest, with the weight on. The strand is taut: it carries part of it. */
-static enum verdict rest(struct wb_bundle_run_now *r)
+static enum verdict rest(struct run *r)
 {
     enum verdict verdict = move(r, SETTLING, 0);
 
@@ -531,9 +750,9 @@ static enum verdict rest(struct wb_bundle_run_now *r)
     return GO_ON;
 }
 
-static void begin_attempt(struct wb_bundle_run_now *r)
+static void begin_attempt(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
 
     h->n_rows = 0;
     h->exceeded = false;
@@ -546,24 +765,24 @@ static void begin_attempt(struct wb_bundle_run_now *r)
     r->branch = 0;
 }
 
-static enum verdict attempt(struct wb_bundle_run_now *r)
+static enum verdict attempt(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
     struct wb_checkpoint checkpoint = {.bytes = NULL};
     enum verdict verdict = GO_ON;
 
-    r->status = wb_bundle_run_find(r, &checkpoint);
+    r->status = find_checkpoint(r, &checkpoint);
     const bool resumes = r->status == WB_OK && checkpoint.restores;
     if (r->status == WB_OK && !resumes)
         begin_attempt(r);
     else if (resumes)
-        wb_bundle_run_visit(r, &checkpoint);
+        visit_run(r, &checkpoint);
     const struct wb_bundle_settings settings = {
         .mesh = r->options.mesh, .duration = h->duration, .threads = r->options.threads};
     if (r->status == WB_OK)
         r->status = wb_bundle_create(&r->bundle, r->model, &settings);
     if (r->status == WB_OK && resumes)
-        r->status = wb_bundle_run_resume(r, &checkpoint);
+        r->status = resume(r, &checkpoint);
     wb_checkpoint_release(&checkpoint);
     if (r->status != WB_OK) {
         wb_bundle_destroy(r->bundle);
@@ -609,28 +828,27 @@ static double guess_duration(const struct wb_bundle_model *model, double from)
     return 0.5 * sqrt(ratio / model->run.kinetic_limit);
 }
 
-static void begin_history(struct wb_bundle_run_now *r)
+static void begin_result(struct run *r)
 {
-    struct wb_bundle_history *h = r->history;
+    struct wb_bundle_result *h = r->result;
 
     h->chosen = r->model->run.duration == 0.0;
     h->duration = h->chosen ? guess_duration(r->model, r->from) : r->model->run.duration;
     h->converged = true;
     h->stopped = h->kept = h->resumed = false;
-    h->problem[0] = '\0';
+    h->reason = (struct wb_reason){0};
     h->attempts = 0;
     h->all_steps = 0;
 }
 
-enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
-                                  const struct wb_bundle_model *model,
-                                  const struct wb_bundle_run_options *options)
+enum wb_status wb_bundle_run(struct wb_bundle_result *result, const struct wb_bundle_model *model,
+                             const struct wb_bundle_run_options *options)
 {
-    struct wb_bundle_run_now r = {
-        .history = history,
+    struct run r = {
+        .result = result,
         .model = model,
-        .begun = wb_bundle_run_clock(),
-        .saved = wb_bundle_run_clock(),
+        .begun = read_clocks(),
+        .saved = read_clocks(),
         .may_resume = true,
         .from = fmin(usual_from, 0.5 * model->run.deflection),
         .left = -1,
@@ -641,24 +859,17 @@ enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
         r.options = *options;
     if (r.options.checkpoint_interval == 0.0)
         r.options.checkpoint_interval = usual_interval;
-    if (history->capacity < wb_bundle_run_planned_rows(model))
-        return wb_fail(WB_ERR_ARGUMENT, "a history of %d rows for a test of %d", history->capacity,
+    if (result->capacity < wb_bundle_run_planned_rows(model))
+        return wb_fail(WB_ERR_ARGUMENT, "a result of %d rows for a test of %d", result->capacity,
                        wb_bundle_run_planned_rows(model));
     if (r.options.checkpoint)
         WB_TRY(wb_team_agree(wb_hash_file("/proc/self/exe", r.program)));
-    begin_history(&r);
+    begin_result(&r);
     do {
         verdict = attempt(&r);
         if (verdict == ANEW)
-            history->duration = r.next;
+            result->duration = r.next;
     } while (verdict == ANEW);
-    wb_bundle_run_take_time(&r);
+    take_time(&r);
     return r.status;
-}
-
-enum wb_status wb_bundle_run(struct wb_bundle_history *history, const struct wb_bundle_model *model,
-                             const char *mesh, const struct wb_bundle_observer *observer)
-{
-    const struct wb_bundle_run_options options = {.mesh = mesh, .observer = observer};
-    return wb_bundle_run_with(history, model, &options);
 }

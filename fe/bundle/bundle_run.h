@@ -1,27 +1,28 @@
-/* A whole test of a bundle: settling, loading by a smooth step to the model's deflection, unloading
- * and cycles where it asks for them; rows, shapes and energies on the way.
+/* A whole bending test of a bundle: it settles under its weight, is loaded to the model's
+ * deflection along a smooth step, and is unloaded and loaded again where the model asks for cycles.
+ * The result holds rows (force against deflection), shapes and energies.
  *
- * Rows: the first at zero with the weight on, then run.rows in equal steps of the tip's target, up
- * and, with cycles, down to zero again. Shapes, energies and the tip's place are those of the
- * moment at which the target is there. The force is a mean: the value there of the straight line
- * through the forces against the target from half a step before to half a step after, so that
- * vibration averages out (at both ends of a way the half on its side). What is slack in a window is
- * left out. Where the strand goes slack on the way back the tip comes to rest: in slack rows it
- * hangs there, and the next loading begins there.
+ * Rows: row 0 is at zero deflection with the weight on. The others are run.rows equal steps of the
+ * tip's target up to the deflection and, with cycles, down to zero again. The shape, the energies
+ * and the place of the tip are those of the moment at which the target is reached. The force is a
+ * mean over the time from half a row before to half a row after, so that vibration averages out: a
+ * straight line is fitted through force against target, and its value at the row taken (at both
+ * ends of a way only one half exists). Samples with a slack strand are left out. If the strand goes
+ * slack while unloading, the tip comes to rest: it hangs there in all slack rows, and the next
+ * loading begins there.
  *
- * Quasi-static control: where the model leaves the duration open it is chosen so that kinetic over
- * internal energy stays below run.kinetic_limit from 2 mm on (half the deflection, if that is
- * less). The ratio goes as duration^-2: a run that shows by 3 mm that it is too fast, or much too
- * slow, begins anew with the duration that follows, and so does one that is found too fast later,
- * at most WB_BUNDLE_RUN_ATTEMPTS times in all.
+ * Duration: if the model leaves it open, it is chosen so that kinetic over internal energy stays
+ * below run.kinetic_limit from 2 mm on (from half the deflection on, if that is less). This ratio
+ * goes as duration^-2. A run that shows by 3 mm that it is too fast, or much too slow, begins anew
+ * with the duration that follows from its ratio; so does a run that turns out too fast later. There
+ * are at most WB_BUNDLE_RUN_ATTEMPTS attempts.
  *
- * Checkpoints: every so often all that a run needs to go on is written to a file
- * (base/checkpoint.h). A run of the same model and settings that finds the file goes on from there,
- * to the same result bit for bit; what is not the same (model, mesh, overrides, number of parts,
- * program) is refused. At the end the file is removed; a run that its observer stops leaves a last
- * one.
+ * Checkpoints: from time to time everything that the run needs to go on is written to a file
+ * (base/checkpoint.h). A later run of the same model and settings that finds the file goes on from
+ * there, to the same result bit for bit. A file of another model, mesh, number of parts or program,
+ * or with other overrides, is refused. A run that its observer stops leaves a last checkpoint.
  *
- * With several ranks (fe/team/team.h) all call these functions alike and have the same history; the
+ * With several ranks (fe/team/team.h) every rank calls these functions and has the same result; the
  * observer of rank 0 decides.
  */
 #ifndef WB_FE_BUNDLE_BUNDLE_RUN_H
@@ -29,6 +30,7 @@
 
 #include <stdbool.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/bundle/bundle.h"
 #include "fe/linear/trial.h"
@@ -52,7 +54,7 @@ struct wb_bundle_row {
     struct wb_bundle_energies energies;
 };
 
-/* Largest values from 2 mm on (see above). */
+/* Largest values of a run, ratios from 2 mm on (see above). */
 struct wb_bundle_extremes {
     double kinetic, artificial; /* over internal energy */
     double imbalance;           /* |imbalance| over the largest external work so far */
@@ -61,27 +63,27 @@ struct wb_bundle_extremes {
     bool beyond;                /* strain went beyond what the elements' logarithm is made for */
 };
 
-struct wb_bundle_history {
+struct wb_bundle_result {
     int n_rows, capacity;
     struct wb_bundle_row *rows; /* (n_rows), owned; only those reached */
     int n_shape;
-    double *shape_s;     /* (n_shape) m, reference arc lengths, owned */
-    double (*shape)[3];  /* (n_rows x n_shape), m, owned */
-    bool converged;      /* false: ends early */
-    bool stopped;        /* by the observer */
-    bool kept;           /* stopped, and the checkpoint holds all until then */
-    bool resumed;        /* from a checkpoint */
-    char problem[320];   /* where and why it was lost; "" otherwise */
-    double zero_force;   /* N: subtracted from `force` */
-    double duration;     /* s, of a loading */
-    bool chosen;         /* the duration, by the limit */
-    bool exceeded;       /* the limit, by the last attempt */
-    int attempts;        /* the runs begun; those before the last gave no rows */
-    double time_step;    /* s */
-    long hexahedra;      /* in all wires */
-    int shells;          /* of the tape */
-    long long steps;     /* of the last attempt, with settling */
-    long long all_steps; /* of all attempts */
+    double *shape_s;         /* (n_shape) m, reference arc lengths, owned */
+    double (*shape)[3];      /* (n_rows x n_shape), m, owned */
+    bool converged;          /* false: ends early */
+    bool stopped;            /* by the observer */
+    bool kept;               /* stopped, and the checkpoint holds all until then */
+    bool resumed;            /* from a checkpoint */
+    struct wb_reason reason; /* where and why it was lost */
+    double zero_force;       /* N: subtracted from `force` */
+    double duration;         /* s, of a loading */
+    bool chosen;             /* the duration, by the limit */
+    bool exceeded;           /* the limit, by the last attempt */
+    int attempts;            /* the runs begun; those before the last gave no rows */
+    double time_step;        /* s */
+    long hexahedra;          /* in all wires */
+    int shells;              /* of the tape */
+    long long steps;         /* of the last attempt, with settling */
+    long long all_steps;     /* of all attempts */
     struct wb_bundle_extremes largest;
     int parts;        /* along the axis, each with a thread of its own (of all ranks) */
     double wall, cpu; /* s, of all attempts, also before a checkpoint; cpu of all ranks */
@@ -91,33 +93,35 @@ struct wb_bundle_history {
 struct wb_bundle_progress {
     int attempt;                /* from 1 */
     long long steps;            /* of this attempt */
-    double done;                /* of this attempt's whole history, 0 to 1 */
+    double done;                /* of this attempt, 0 to 1 */
     bool rests;                 /* it comes to rest, under its weight or let go by the strand */
     double deflection;          /* m */
     double kinetic, artificial; /* over internal energy, as last looked at; NaN at first */
 };
 
 struct wb_bundle_observer {
-    /* Several times a row. False stops the run: completed rows stay. May be NULL. */
+    /* Called several times a row. False stops the run; completed rows stay. May be NULL. */
     bool (*progress)(void *context, const struct wb_bundle_progress *progress);
-    /* The bundle at the place of each row, whose forces are not known yet: `row` is to become
-     * number history->n_rows. A new attempt begins at 0 again. An error ends the run. May be NULL.
+    /* Called when the bundle is at the place of a row, before the row's forces are known; it
+     * becomes row number result->n_rows. A new attempt begins at 0 again. An error ends the run.
+     * May be NULL.
      */
-    enum wb_status (*place)(void *context, const struct wb_bundle_history *history,
+    enum wb_status (*place)(void *context, const struct wb_bundle_result *result,
                             const struct wb_bundle_row *row, const struct wb_bundle *bundle);
     /* Saves or restores what the observer itself keeps in a checkpoint. May be NULL. */
     void (*visit)(void *context, struct wb_checkpoint *checkpoint);
     void *context;
 };
 
-/* Rows that a model gives when it runs through. */
+/* The number of rows of a complete test. */
 int wb_bundle_run_planned_rows(const struct wb_bundle_model *model);
 
 /* Takes memory for a model's rows and n_shape equally spaced positions from 0 to its length (none,
  * or 2 to 1000). */
-WB_MUST_CHECK enum wb_status wb_bundle_run_init(struct wb_bundle_history *history,
-                                                const struct wb_bundle_model *model, int n_shape);
-void wb_bundle_run_release(struct wb_bundle_history *history); /* accepts a zeroed one */
+WB_MUST_CHECK enum wb_status wb_bundle_result_init(struct wb_bundle_result *result,
+                                                   const struct wb_bundle_model *model,
+                                                   int n_shape);
+void wb_bundle_result_release(struct wb_bundle_result *result); /* accepts a zeroed one */
 
 struct wb_bundle_run_options {
     const char *mesh;                          /* NULL: the model's own */
@@ -127,16 +131,11 @@ struct wb_bundle_run_options {
     const struct wb_bundle_observer *observer; /* may be NULL */
 };
 
-/* Runs the model's test on its mesh `mesh` (NULL: its own). A run that is lost on the way is a
- * result: converged is false, completed rows stay. `observer` may be NULL. */
-WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_history *history,
-                                           const struct wb_bundle_model *model, const char *mesh,
-                                           const struct wb_bundle_observer *observer);
-
-/* The same, with all that can be chosen; NULL: nothing is. The checkpoint's file stays: the caller
- * removes it when a run that was not stopped is safe elsewhere. */
-WB_MUST_CHECK enum wb_status wb_bundle_run_with(struct wb_bundle_history *history,
-                                                const struct wb_bundle_model *model,
-                                                const struct wb_bundle_run_options *options);
+/* Runs the model's test; `options` may be NULL. A run that is lost on the way is a result:
+ * converged is false, completed rows stay. The checkpoint's file stays, too: the caller removes it
+ * when a run that was not stopped is safe elsewhere. */
+WB_MUST_CHECK enum wb_status wb_bundle_run(struct wb_bundle_result *result,
+                                           const struct wb_bundle_model *model,
+                                           const struct wb_bundle_run_options *options);
 
 #endif

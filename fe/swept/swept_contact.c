@@ -718,7 +718,8 @@ enum wb_status wb_swept_contact_refresh(struct wb_swept_contact *contact)
     for (int b = 0; b < contact->model.n_blocks; b++)
         check += contact->model.sums[b].check;
     if (!isfinite(check))
-        return wb_fail(WB_ERR_DATA, "a wire's surface is nowhere (step %lld)", contact->step);
+        return wb_fail_to(contact->settings.reason, WB_ERR_DATA,
+                          "a wire's surface is nowhere (step %lld)", contact->step);
     if (contact->step % contact->settings.refresh_interval != 0)
         return WB_OK;
     return search(contact);
@@ -753,10 +754,12 @@ enum wb_status wb_swept_contact_finish(struct wb_swept_contact *contact,
     contact->step++;
     contact->model.started = true;
     if (!isfinite(sum.normal + sum.tangential + sum.friction + sum.damping))
-        return wb_fail(WB_ERR_DATA, "contact energies are not finite (step %lld)", contact->step);
+        return wb_fail_to(contact->settings.reason, WB_ERR_DATA,
+                          "contact energies are not finite (step %lld)", contact->step);
     if (!(sum.deepest <= deepest_part * contact->smallest_radius))
-        return wb_fail(WB_ERR_DATA, "wires penetrate by %.3g mm (step %lld)", 1e3 * sum.deepest,
-                       contact->step);
+        return wb_fail_to(contact->settings.reason, WB_ERR_DATA,
+                          "wires penetrate by %.3g mm (step %lld)", 1e3 * sum.deepest,
+                          contact->step);
     *energies = sum;
     return WB_OK;
 }

@@ -142,7 +142,8 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
         }
     }
     if (!isfinite(check))
-        return wb_fail(WB_ERR_DATA, "positions of a wire under the tape are not finite");
+        return wb_fail_to(c->settings.reason, WB_ERR_DATA,
+                          "positions of a wire under the tape are not finite");
     find_axes(c);
     return WB_OK;
 }
@@ -422,13 +423,13 @@ static enum wb_status look_at(struct wb_swept_tape_contact *c,
     read_node(c, fields->tape.position, k, j, x);
     read_node(c, fields->tape.director, k, j, d);
     if (!isfinite(wb_vec3_dot(x, x) + wb_vec3_dot(d, d)))
-        return wb_fail(WB_ERR_DATA, "positions of the tape are not finite");
+        return wb_fail_to(c->settings.reason, WB_ERR_DATA, "positions of the tape are not finite");
     now->wire = -1;
     if (!find_wire(c, x, k, j, &near, centre, axis))
         return WB_OK;
     if (near.gap < -0.5 * c->surface[near.wire].radius)
-        return wb_fail(WB_ERR_DATA, "the tape is %.3g mm deep in wire %d", -1e3 * near.gap,
-                       near.wire + 1);
+        return wb_fail_to(c->settings.reason, WB_ERR_DATA, "the tape is %.3g mm deep in wire %d",
+                          -1e3 * near.gap, near.wire + 1);
     const double *position = fields->position[near.wire];
     if (before.wire == near.wire && is_still_there(c, position, &before, j, x, d)) {
         near = before;

@@ -21,6 +21,7 @@
 
 #include <stddef.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/swept/swept_cohesion.h"
 
@@ -34,6 +35,8 @@ struct wb_swept_tape_contact_settings {
                                 smallest radius. Nodes must not come nearer by more between
                                 refreshes */
     int refresh_interval;    /* steps; 0: 100 */
+
+    struct wb_reason *reason; /* gets why a step was lost, borrowed; NULL: the log gets it */
 };
 
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings);

@@ -27,10 +27,10 @@ struct made_up_bundle {
     int rows;                            /* of the model's that were computed; 0: all */
 };
 
-static inline void made_up_fill_row(struct wb_bundle_history *history, int i,
+static inline void made_up_fill_row(struct wb_bundle_result *result, int i,
                                     const struct wb_cantilever_point *point, double factor)
 {
-    struct wb_bundle_row *const row = &history->rows[i];
+    struct wb_bundle_row *const row = &result->rows[i];
     *row = (struct wb_bundle_row){
         .time = 0.01 * i,
         .cycle = 1,
@@ -54,7 +54,7 @@ static inline void made_up_fill_row(struct wb_bundle_history *history, int i,
 }
 
 static inline void made_up_bend(const struct made_up_bundle *bundle,
-                                struct wb_bundle_history *history)
+                                struct wb_bundle_result *result)
 {
     const struct wb_bundle_model *const m = bundle->model;
     const struct wb_wire *const beam = &m->published.beam;
@@ -75,13 +75,13 @@ static inline void made_up_bend(const struct made_up_bundle *bundle,
         assert_int_equal(wb_cantilever_move(cantilever, WB_CONTROL_DEFLECTION,
                                             m->run.deflection * i / m->run.rows, &point),
                          WB_OK);
-        made_up_fill_row(history, i, &point, bundle->factor);
-        wb_cantilever_shape(cantilever, MADE_UP_SHAPE, history->shape_s, x, y, NULL);
+        made_up_fill_row(result, i, &point, bundle->factor);
+        wb_cantilever_shape(cantilever, MADE_UP_SHAPE, result->shape_s, x, y, NULL);
         for (int k = 0; k < MADE_UP_SHAPE; k++) {
-            double *const at = history->shape[i * MADE_UP_SHAPE + k];
+            double *const at = result->shape[i * MADE_UP_SHAPE + k];
             at[0] = x[k], at[1] = y[k], at[2] = 0.0;
         }
-        history->n_rows = i + 1;
+        result->n_rows = i + 1;
     }
     wb_cantilever_destroy(cantilever);
     wb_section_release(&section);
@@ -92,11 +92,11 @@ enum {
 };
 
 /* One tube of the bundle's diameter along its last axis, with a stress that falls to the tip. */
-static inline void made_up_write_surface(const struct wb_bundle_history *history, double diameter,
+static inline void made_up_write_surface(const struct wb_bundle_result *result, double diameter,
                                          const char *folder)
 {
     const double(*const axis)[3] =
-        (const double(*)[3])history->shape + (size_t)(history->n_rows - 1) * MADE_UP_SHAPE;
+        (const double(*)[3])result->shape + (size_t)(result->n_rows - 1) * MADE_UP_SHAPE;
     struct wb_surface_node nodes[MADE_UP_SHAPE * MADE_UP_AROUND];
     struct wb_surface_body body = {
         .closed = true, .n_around = MADE_UP_AROUND, .n_along = MADE_UP_SHAPE, .nodes = nodes};
@@ -120,26 +120,26 @@ static inline void made_up_write_surface(const struct wb_bundle_history *history
 static inline void made_up_write(const struct made_up_bundle *bundle, const char *folder)
 {
     const struct wb_bundle_model *const m = bundle->model;
-    struct wb_bundle_history history = {0};
+    struct wb_bundle_result result = {0};
     struct wb_dataset dataset;
-    assert_int_equal(wb_bundle_run_init(&history, m, MADE_UP_SHAPE), WB_OK);
-    made_up_bend(bundle, &history);
-    history.converged = history.n_rows == m->run.rows + 1;
-    snprintf(history.problem, sizeof history.problem, "made up");
-    history.duration = m->run.duration > 0.0 ? m->run.duration : 1.5;
-    history.chosen = !(m->run.duration > 0.0);
-    history.attempts = 1;
-    history.time_step = 4e-6;
-    history.steps = history.all_steps = 400000;
-    history.hexahedra = 6720;
-    history.largest.kinetic = bundle->kinetic;
-    history.largest.artificial = 0.004;
-    history.largest.imbalance = bundle->imbalance;
-    history.largest.strain = 0.03;
+    assert_int_equal(wb_bundle_result_init(&result, m, MADE_UP_SHAPE), WB_OK);
+    made_up_bend(bundle, &result);
+    result.converged = result.n_rows == m->run.rows + 1;
+    wb_reason_set(&result.reason, "made up");
+    result.duration = m->run.duration > 0.0 ? m->run.duration : 1.5;
+    result.chosen = !(m->run.duration > 0.0);
+    result.attempts = 1;
+    result.time_step = 4e-6;
+    result.steps = result.all_steps = 400000;
+    result.hexahedra = 6720;
+    result.largest.kinetic = bundle->kinetic;
+    result.largest.artificial = 0.004;
+    result.largest.imbalance = bundle->imbalance;
+    result.largest.strain = 0.03;
     const struct wb_simulated_bundle simulated = {
         .model = m,
         .mesh = wb_bundle_model_mesh(m, m->run.mesh),
-        .history = &history,
+        .result = &result,
         .wall = bundle->cpu,
         .cpu = bundle->cpu,
     };
@@ -147,9 +147,9 @@ static inline void made_up_write(const struct made_up_bundle *bundle, const char
     assert_int_equal(wb_simulated_bundle_fill(&dataset, &simulated), WB_OK);
     assert_int_equal(wb_dataset_write(&dataset, folder, true), WB_OK);
     assert_int_equal(wb_simulated_bundle_write_energies(&dataset, &simulated, folder), WB_OK);
-    made_up_write_surface(&history, m->published.outer_diameter, folder);
+    made_up_write_surface(&result, m->published.outer_diameter, folder);
     wb_dataset_release(&dataset);
-    wb_bundle_run_release(&history);
+    wb_bundle_result_release(&result);
 }
 
 #endif

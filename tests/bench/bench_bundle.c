@@ -74,14 +74,14 @@ static double step_cost(clockid_t clock, const struct wb_bundle_settings *settin
         return -1.0;
     *time_step = wb_bundle_time_step(bundle);
     wb_bundle_lead(bundle, model.run.deflection, settings->duration);
-    if (wb_bundle_advance(bundle, (int)(after / *time_step)) != WB_OK) {
+    if (wb_bundle_advance(bundle, (int)(after / *time_step), NULL) != WB_OK) {
         wb_bundle_destroy(bundle);
         return -1.0;
     }
     for (int round = 0; round <= rounds; round++) {
         const int n = round == 0 ? 1 + steps / 10 : steps;
         const double start = seconds(clock);
-        if (wb_bundle_advance(bundle, n) != WB_OK) {
+        if (wb_bundle_advance(bundle, n, NULL) != WB_OK) {
             cost = -1.0;
             break;
         }
@@ -179,41 +179,42 @@ static bool watch(void *context, const struct wb_bundle_progress *progress)
 }
 
 /* A loading to the model's deflection on its mesh; CPU seconds, projected when it stopped. */
-static double run_loading(struct wb_bundle_history *history, double stop_at)
+static double run_loading(struct wb_bundle_result *result, double stop_at)
 {
     struct stop stop = {.at = stop_at};
     const struct wb_bundle_observer observer = {.progress = watch, .context = &stop};
+    const struct wb_bundle_run_options options = {.observer = &observer};
     const double start = cpu_now();
 
-    if (wb_bundle_run(history, &model, NULL, &observer) != WB_OK || !history->converged) {
-        printf("lost: %s\n", history->problem);
+    if (wb_bundle_run(result, &model, &options) != WB_OK || !result->converged) {
+        printf("lost: %s\n", result->reason.text);
         return -1.0;
     }
     const double end = cpu_now();
-    return history->stopped ? stop.begin - start + (end - stop.begin) / stop.done : end - start;
+    return result->stopped ? stop.begin - start + (end - stop.begin) / stop.done : end - start;
 }
 
 static int bench_loading(const char *name, double stop_at)
 {
-    struct wb_bundle_history history;
-    if (read_model(name) || wb_bundle_run_init(&history, &model, 0) != WB_OK)
+    struct wb_bundle_result result;
+    if (read_model(name) || wb_bundle_result_init(&result, &model, 0) != WB_OK)
         return 1;
-    const double cpu = run_loading(&history, stop_at);
-    if (cpu > 0.0 && !history.stopped)
+    const double cpu = run_loading(&result, stop_at);
+    if (cpu > 0.0 && !result.stopped)
         printf("%d wires, engineering mesh, to %g mm: %.1f s of CPU time (goal: 60); %.2f s long "
                "after %d attempts, time step %.3g s, %lld steps in all, %.1f ns per hexahedron and "
                "step; balance within %.2g\n",
-               model.packing.n, 1e3 * model.run.deflection, cpu, history.duration, history.attempts,
-               history.time_step, history.all_steps,
-               1e9 * cpu / ((double)history.all_steps * (double)history.hexahedra),
-               history.largest.imbalance);
+               model.packing.n, 1e3 * model.run.deflection, cpu, result.duration, result.attempts,
+               result.time_step, result.all_steps,
+               1e9 * cpu / ((double)result.all_steps * (double)result.hexahedra),
+               result.largest.imbalance);
     else if (cpu > 0.0)
         printf(
             "%d wires, engineering mesh, to %g mm: %.0f s of CPU time projected, %.1f min on two "
             "cores if they share it evenly (goal: 5); %.2f s long, time step %.3g s\n",
-            model.packing.n, 1e3 * model.run.deflection, cpu, cpu / 120.0, history.duration,
-            history.time_step);
-    wb_bundle_run_release(&history);
+            model.packing.n, 1e3 * model.run.deflection, cpu, cpu / 120.0, result.duration,
+            result.time_step);
+    wb_bundle_result_release(&result);
     return cpu > 0.0 ? 0 : 1;
 }
 

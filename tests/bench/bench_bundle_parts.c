@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "fe/bundle/bundle.h"
 #include "fe/bundle/bundle_part.h"
-#include "fe/bundle/bundle_parts_private.h"
+#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 enum {
@@ -60,14 +60,14 @@ static int make(struct wb_bundle **out, int threads)
     if (wb_bundle_create(out, &model, &settings) != WB_OK)
         return 1;
     wb_bundle_lead(*out, model.run.deflection, settings.duration);
-    return wb_bundle_advance(*out, steps) != WB_OK;
+    return wb_bundle_advance(*out, steps, NULL) != WB_OK;
 }
 
 /* Least seconds of a step in a block. */
 static int time_block(struct wb_bundle *bundle, double *best)
 {
     const double start = now();
-    if (wb_bundle_advance(bundle, steps) != WB_OK)
+    if (wb_bundle_advance(bundle, steps, NULL) != WB_OK)
         return 1;
     *best = fmin(*best, (now() - start) / steps);
     return 0;

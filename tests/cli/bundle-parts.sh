@@ -58,7 +58,7 @@ same threads killed
 same_states vtk threads-vtk
 
 # Another run's checkpoint is refused, and left alone.
-printf 'wirebench checkpoint 1\nanother\n0\n0\nend\n' >state
+printf 'wirebench checkpoint 2\nanother\n0\n0\nend\n' >state
 ! "$tool" solve bundle three.yaml --threads 2 -o other --checkpoint state 2>log || exit 1
 grep -q 'another run' log || { cat log; exit 1; }
 [ -f state ] || exit 1

@@ -15,10 +15,10 @@ static void static_and_explicit_curves_agree_within_five_percent(void **unused)
                      "duration_s: 2}\nloads: {weight: false}\n");
     model.interface.friction_static = model.interface.friction_kinetic = 0.1;
     run_model(NULL);
-    assert_true(history.converged && !history.exceeded);
+    assert_true(result.converged && !result.exceeded);
     assert_int_equal(wb_bundle_static_create(&bundle, &model, &settings), WB_OK);
     for (int i = 2; i <= 53; i++) {
-        const struct wb_bundle_row *row = &history.rows[i];
+        const struct wb_bundle_row *row = &result.rows[i];
         struct wb_bundle_static_point point;
         assert_int_equal(wb_bundle_static_move(bundle, row->deflection, &point), WB_OK);
         assert_int_equal(point.end, WB_BUNDLE_STATIC_CONVERGED);

@@ -10,7 +10,7 @@
 
 static char folder[] = "/tmp/wirebench-bundle-XXXXXX";
 static struct wb_bundle_model model;
-static struct wb_bundle_history history;
+static struct wb_bundle_result result;
 
 static inline int make_folder(void **state)
 {
@@ -29,7 +29,7 @@ static inline int remove_folder(void **state)
 static inline int release(void **state)
 {
     (void)state;
-    wb_bundle_run_release(&history);
+    wb_bundle_result_release(&result);
     return 0;
 }
 
@@ -54,9 +54,10 @@ static inline void read_model(const char *lines)
 
 static inline void run_model(const struct wb_bundle_observer *observer)
 {
-    wb_bundle_run_release(&history);
-    assert_int_equal(wb_bundle_run_init(&history, &model, 21), WB_OK);
-    assert_int_equal(wb_bundle_run(&history, &model, NULL, observer), WB_OK);
+    const struct wb_bundle_run_options options = {.observer = observer};
+    wb_bundle_result_release(&result);
+    assert_int_equal(wb_bundle_result_init(&result, &model, 21), WB_OK);
+    assert_int_equal(wb_bundle_run(&result, &model, &options), WB_OK);
 }
 
 #define ONE "wires: [{wire: type3}]\npacking: hexagon\n"
@@ -77,7 +78,7 @@ static inline struct wb_cantilever_model bundle_beam(const struct test_wire *wir
 }
 
 /* The external work is the area under the rows' forces. */
-static inline void check_work(const struct wb_bundle_history *h)
+static inline void check_work(const struct wb_bundle_result *h)
 {
     double work = 0.0;
     for (int i = 1; i < h->n_rows; i++)

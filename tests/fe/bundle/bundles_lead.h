@@ -2,6 +2,7 @@
 #ifndef WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 #define WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 
+#include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
 
 /* Leads the tip to a deflection. Energies are kept to the part given of the largest work, momentum
@@ -17,7 +18,7 @@ static inline void lead_and_check(struct wb_bundle *bundle, double deflection, d
     wb_bundle_lead(bundle, deflection, duration);
     for (int i = 0; i < steps; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
-        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
         for (int c = 0; c < 3; c++) {
             const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];

@@ -1,5 +1,6 @@
 /* Bundles in explicit dynamics, on meshes that are coarse so that it is fast: against the 1D beam,
  * statics, and what has to be kept. */
+#include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
 
 /* --- one wire --- */
@@ -15,10 +16,10 @@ static void one_wire_bends_as_the_beam(void **unused)
 
     read_model(ONE RUN("deflection_mm: 40, rows: 4") "loads: {weight: false}\n");
     run_model(NULL);
-    assert_true(history.converged);
-    assert_int_equal(history.n_rows, 5);
+    assert_true(result.converged);
+    assert_int_equal(result.n_rows, 5);
     for (int i = 1; i <= 4; i++) {
-        const struct wb_bundle_row *row = &history.rows[i];
+        const struct wb_bundle_row *row = &result.rows[i];
         struct wb_cantilever_point point;
         assert_close(row->deflection, 10e-3 * i, 2e-6);
         assert_int_equal(
@@ -48,7 +49,7 @@ static void under_its_weight_it_hangs_as_a_propped_beam(void **unused)
 
     read_model(ONE RUN("deflection_mm: 40") "loads: {weight: true}\n");
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    assert_int_equal(wb_bundle_settle(bundle, NULL), WB_OK);
+    assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
     for (int i = 0; i < 19; i++)
         s[i] = L * (i + 1) / 20;
     wb_bundle_shape(bundle, 19, s, shape);
@@ -83,7 +84,7 @@ static void momentum_comes_from_outside_alone(void **unused)
     wb_bundle_lead(bundle, 20e-3, settings.duration);
     for (int i = 0; i < 2000; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
-        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
         for (int c = 0; c < 3; c++) {
             const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];
@@ -110,10 +111,10 @@ static void a_stopped_run_keeps_its_rows(void **unused)
     const struct wb_bundle_observer observer = {.progress = stop_beyond, .context = &limit};
     read_model(ONE RUN("deflection_mm: 10, rows: 10, duration_s: 0.5") "loads: {weight: false}\n");
     run_model(&observer);
-    assert_true(history.stopped && history.converged);
-    assert_int_equal(history.n_rows, 5);
-    assert_close(history.rows[4].deflection, 4e-3, 1e-5);
-    assert_true(history.rows[4].force > history.rows[3].force);
+    assert_true(result.stopped && result.converged);
+    assert_int_equal(result.n_rows, 5);
+    assert_close(result.rows[4].deflection, 4e-3, 1e-5);
+    assert_true(result.rows[4].force > result.rows[3].force);
 }
 
 struct rest {
@@ -137,9 +138,9 @@ static void a_run_can_be_stopped_while_its_weight_comes_on(void **unused)
     const struct wb_bundle_observer observer = {.progress = stop_at_rest, .context = &rest};
     read_model(ONE RUN("deflection_mm: 10, rows: 10") "loads: {weight: true}\n");
     run_model(&observer);
-    assert_true(history.stopped && history.converged);
+    assert_true(result.stopped && result.converged);
     assert_int_equal(rest.looks, 3);
-    assert_int_equal(history.n_rows, 0);
+    assert_int_equal(result.n_rows, 0);
 }
 
 static void a_strand_that_is_too_short_is_told(void **unused)
@@ -150,8 +151,8 @@ static void a_strand_that_is_too_short_is_told(void **unused)
     wb_log_set_sink(discard_message, NULL);
     run_model(NULL);
     wb_log_set_sink(NULL, NULL);
-    assert_false(history.converged);
-    assert_non_null(strstr(history.problem, "the strand of 10 mm"));
+    assert_false(result.converged);
+    assert_non_null(strstr(result.reason.text, "the strand of 10 mm"));
 }
 
 /* As a wire that is shorter by what the epoxy holds. */
@@ -168,10 +169,10 @@ static void a_potted_wire_is_a_shorter_one(void **unused)
         model.length -= i == 0 ? held * element : 0.0;
         model.potted_length = i == 0 ? 0.0 : held * element;
         run_model(NULL);
-        assert_int_equal(history.n_rows, 5);
+        assert_int_equal(result.n_rows, 5);
         for (int row = 0; row < 5; row++)
-            force[i][row] = history.rows[row].force;
-        clamp[i] = history.rows[4].tip[0] - (i == 0 ? 0.0 : held * element);
+            force[i][row] = result.rows[row].force;
+        clamp[i] = result.rows[4].tip[0] - (i == 0 ? 0.0 : held * element);
     }
     for (int row = 1; row < 5; row++)
         assert_close_relative(force[1][row], force[0][row], 1e-4);
@@ -190,9 +191,9 @@ static void in_double_the_curve_is_the_same(void **unused)
         assert_false(model.run.double_precision);
         model.run.double_precision = i == 1;
         run_model(NULL);
-        assert_true(history.converged);
+        assert_true(result.converged);
         for (int row = 0; row < 5; row++)
-            force[i][row] = history.rows[row].force;
+            force[i][row] = result.rows[row].force;
     }
     for (int row = 1; row < 5; row++)
         assert_close_relative(force[1][row], force[0][row], 1e-3);
@@ -213,7 +214,7 @@ static void what_cannot_be_computed_is_refused(void **unused)
                "taping: {layout: helix, width_mm: 19}\n" RUN("rows: 1") "loads: {weight: false}\n");
     assert_int_equal(wb_bundle_create(&bundle, &model, &usual), WB_ERR_ARGUMENT);
     assert_null(bundle);
-    assert_int_equal(wb_bundle_run_init(&history, &model, 1), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_bundle_result_init(&result, &model, 1), WB_ERR_ARGUMENT);
     wb_log_set_sink(NULL, NULL);
 }
 

@@ -19,10 +19,10 @@ static void set_mesh(int core, int rings, int along)
 static void get_forces(double force[MOST_ROWS])
 {
     run_model(NULL);
-    assert_true(history.converged && history.n_rows <= MOST_ROWS);
-    assert_true(history.largest.imbalance < 0.01);
-    for (int i = 0; i < history.n_rows; i++)
-        force[i] = history.rows[i].force;
+    assert_true(result.converged && result.n_rows <= MOST_ROWS);
+    assert_true(result.largest.imbalance < 0.01);
+    for (int i = 0; i < result.n_rows; i++)
+        force[i] = result.rows[i].force;
 }
 
 /* Of three results, each with half the size (or twice the duration) of the one before. */
@@ -114,7 +114,7 @@ static void inertia_goes_with_the_square_of_the_duration(void **unused)
                        "rows: 10}\nloads: {weight: false}\n");
         model.run.duration = duration[m];
         get_forces(force[m]);
-        kinetic[m] = history.largest.kinetic;
+        kinetic[m] = result.largest.kinetic;
         print_message("%g s: kinetic over internal energy %.4f; N:", duration[m], kinetic[m]);
         for (int i = 1; i <= 10; i++)
             print_message(" %.5f", force[m][i]);

@@ -30,7 +30,7 @@ static void bend(const char *taping, double force[FORCES], double *imbalance)
         int n = 0;
         force[i] = 0.0;
         do {
-            assert_int_equal(wb_bundle_advance(bundle, 20), WB_OK);
+            assert_int_equal(wb_bundle_advance(bundle, 20, NULL), WB_OK);
             wb_bundle_get_state(bundle, &state);
             to = state.target / deflection;
             if (to > (i + 0.9) / FORCES) {

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "fe/bundle/bundle_parts.h"
+#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 enum {
@@ -58,7 +59,7 @@ static struct wb_bundle *create(int threads)
 static void advance(struct wb_bundle *bundle, int rounds)
 {
     for (int i = 0; i < rounds; i++)
-        assert_int_equal(wb_bundle_advance(bundle, STEPS), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, STEPS, NULL), WB_OK);
 }
 
 static void bend(int threads, struct result *out)
@@ -193,7 +194,7 @@ static void momentum_comes_from_outside_alone(void **unused)
     struct wb_bundle *bundle = create(3);
     wb_bundle_lead(bundle, way, duration);
     for (int i = 0; i < 400; i++) {
-        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
         const double force = outside.clamp[1] + outside.tip[1] + outside.weight[1];
         impulse += force * wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
@@ -236,18 +237,18 @@ static void a_capped_end_in_a_halo_is_none(void **unused)
 static void parts_settle_under_the_weight(void **unused)
 {
     (void)unused;
-    struct result result[2];
+    struct result settled[2];
     read_model(CAPPED);
     for (int i = 0; i < 2; i++) {
         struct wb_bundle *bundle = create(i + 1);
-        assert_int_equal(wb_bundle_settle(bundle, NULL), WB_OK);
-        take(bundle, &result[i]);
+        assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
+        take(bundle, &settled[i]);
         wb_bundle_destroy(bundle);
     }
-    assert_close_relative(result[1].state.vertical, result[0].state.vertical, 5e-3);
-    assert_close_relative(result[1].outside.weight[1], result[0].outside.weight[1], 1e-12);
+    assert_close_relative(settled[1].state.vertical, settled[0].state.vertical, 5e-3);
+    assert_close_relative(settled[1].outside.weight[1], settled[0].outside.weight[1], 1e-12);
     for (int i = 0; i < SHAPE; i++)
-        assert_close(result[1].shape[i][1], result[0].shape[i][1], 1e-7);
+        assert_close(settled[1].shape[i][1], settled[0].shape[i][1], 1e-7);
 }
 
 static void there_are_no_more_parts_than_there_is_room_for(void **unused)
@@ -274,27 +275,38 @@ static void keep_message(void *context, enum wb_log_level level, const char *dom
     snprintf((char *)context + used, 1024 - used, "%s\n", message);
 }
 
-/* A part that is lost keeps nobody waiting, and its reason is told once. */
+static enum wb_status advance_to_the_end(struct wb_reason *reason)
+{
+    const struct wb_bundle_settings settings = {
+        .duration = duration, .threads = 3, .step_safety = 3.0};
+    struct wb_bundle *bundle;
+    enum wb_status status = WB_OK;
+    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
+    wb_bundle_lead(bundle, way, duration);
+    for (int i = 0; i < 100 && status == WB_OK; i++)
+        status = wb_bundle_advance(bundle, STEPS, reason);
+    wb_bundle_destroy(bundle);
+    return status;
+}
+
+/* A part that is lost keeps nobody waiting; its reason is told once, to the log or to the caller.
+ */
 static void a_lost_part_ends_the_run(void **unused)
 {
     (void)unused;
-    const struct wb_bundle_settings settings = {
-        .duration = duration, .threads = 3, .step_safety = 3.0};
-    char messages[1024] = "";
-    struct wb_bundle *bundle;
-    enum wb_status status = WB_OK;
+    struct wb_reason reason = {0};
+    char messages[1024] = "", none[1024] = "";
     read_model(FINE);
-    assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    wb_bundle_lead(bundle, way, duration);
     wb_log_set_sink(keep_message, messages);
-    for (int i = 0; i < 100 && status == WB_OK; i++)
-        status = wb_bundle_advance(bundle, STEPS);
+    assert_int_equal(advance_to_the_end(NULL), WB_ERR_DATA);
+    wb_log_set_sink(keep_message, none);
+    assert_int_equal(advance_to_the_end(&reason), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
-    assert_int_equal(status, WB_ERR_DATA);
     assert_non_null(strchr(messages, '\n'));
     assert_string_equal(strchr(messages, '\n'), "\n");
     assert_true(strlen(messages) > 10);
-    wb_bundle_destroy(bundle);
+    assert_string_equal(none, "");
+    assert_memory_equal(reason.text, messages, strlen(messages) - 1);
 }
 
 /* --- checkpoints --- */
@@ -310,7 +322,7 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
         struct wb_checkpoint checkpoint;
         struct wb_bundle *bundle = create(threads);
         wb_bundle_lead(bundle, way, duration);
-        assert_int_equal(wb_bundle_advance(bundle, 137), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 137, NULL), WB_OK);
         wb_checkpoint_init(&checkpoint);
         wb_bundle_visit(bundle, &checkpoint);
         assert_int_equal(wb_checkpoint_finish(&checkpoint), WB_OK);
@@ -363,10 +375,10 @@ static bool stop_after(void *context, const struct wb_bundle_progress *progress)
 
 static void run_with(const struct wb_bundle_run_options *options)
 {
-    wb_bundle_run_release(&history);
-    assert_int_equal(wb_bundle_run_init(&history, &model, 5), WB_OK);
-    assert_int_equal(wb_bundle_run_with(&history, &model, options), WB_OK);
-    assert_true(history.converged);
+    wb_bundle_result_release(&result);
+    assert_int_equal(wb_bundle_result_init(&result, &model, 5), WB_OK);
+    assert_int_equal(wb_bundle_run(&result, &model, options), WB_OK);
+    assert_true(result.converged);
 }
 
 static void a_lost_run_tells_its_reason(void **unused)
@@ -376,17 +388,17 @@ static void a_lost_run_tells_its_reason(void **unused)
         const struct wb_bundle_run_options options = {.threads = threads};
         read_model(FINE);
         model.run.duration = 1e-4;
-        wb_bundle_run_release(&history);
-        assert_int_equal(wb_bundle_run_init(&history, &model, 0), WB_OK);
-        assert_int_equal(wb_bundle_run_with(&history, &model, &options), WB_OK);
-        assert_int_equal(history.parts, threads);
-        assert_false(history.converged);
-        assert_true(strlen(history.problem) > 10);
+        wb_bundle_result_release(&result);
+        assert_int_equal(wb_bundle_result_init(&result, &model, 0), WB_OK);
+        assert_int_equal(wb_bundle_run(&result, &model, &options), WB_OK);
+        assert_int_equal(result.parts, threads);
+        assert_false(result.converged);
+        assert_true(strlen(result.reason.text) > 10);
     }
 }
 
 /* Rows and shapes; the times it took differ. */
-static void check_history(const struct wb_bundle_history *a, const struct wb_bundle_history *b)
+static void check_result(const struct wb_bundle_result *a, const struct wb_bundle_result *b)
 {
     assert_int_equal(a->n_rows, b->n_rows);
     for (int i = 0; i < a->n_rows; i++) {
@@ -423,10 +435,10 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
                    "loads: {weight: true, strand_mm: 760}\n");
         const struct wb_bundle_run_options plain = {.threads = threads};
         run_with(&plain);
-        assert_int_equal(history.parts, threads);
-        assert_int_equal(history.rows[8].phase, WB_PHASE_SLACK);
-        const struct wb_bundle_history straight = history;
-        history = (struct wb_bundle_history){0};
+        assert_int_equal(result.parts, threads);
+        assert_int_equal(result.rows[8].phase, WB_PHASE_SLACK);
+        const struct wb_bundle_result straight = result;
+        result = (struct wb_bundle_result){0};
 
         int left, stops = 0;
         const struct wb_bundle_observer observer = {.progress = stop_after, .context = &left};
@@ -435,15 +447,15 @@ static void a_stopped_run_ends_with_the_same_result(void **unused)
         do {
             left = 7 + 200 * (++stops % 3);
             run_with(&options);
-            assert_true(history.stopped == history.kept && wb_file_exists(file));
-            assert_true(history.resumed == (stops > 1));
-        } while (history.stopped);
+            assert_true(result.stopped == result.kept && wb_file_exists(file));
+            assert_true(result.resumed == (stops > 1));
+        } while (result.stopped);
         assert_true(stops > 3);
-        check_history(&history, &straight);
-        assert_true(history.wall > 0.0 && history.cpu > 0.0);
+        check_result(&result, &straight);
+        assert_true(result.wall > 0.0 && result.cpu > 0.0);
         assert_int_equal(unlink(file), 0);
-        wb_bundle_run_release(&history);
-        history = straight;
+        wb_bundle_result_release(&result);
+        result = straight;
     }
     wb_log_set_sink(NULL, NULL);
 }
@@ -458,10 +470,10 @@ static void another_models_checkpoint_is_refused(void **unused)
     struct wb_bundle_run_options options = {.checkpoint = file, .observer = &observer};
     read_model(ONE RUN("rows: 2, duration_s: 0.5") "loads: {weight: false}\n");
     run_with(&options);
-    assert_true(history.stopped && wb_file_exists(file));
+    assert_true(result.stopped && wb_file_exists(file));
     wb_log_set_sink(keep_message, messages);
     model.interface.friction_static = 0.3;
-    assert_int_equal(wb_bundle_run_with(&history, &model, &options), WB_ERR_DATA);
+    assert_int_equal(wb_bundle_run(&result, &model, &options), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
     assert_non_null(strstr(messages, "another run"));
     assert_true(wb_file_exists(file));
@@ -480,7 +492,7 @@ static void a_stop_without_its_checkpoint_is_told(void **unused)
     wb_log_set_sink(keep_message, messages);
     run_with(&options);
     wb_log_set_sink(NULL, NULL);
-    assert_true(history.stopped && !history.kept);
+    assert_true(result.stopped && !result.kept);
     assert_non_null(strstr(messages, file));
 }
 

@@ -1,7 +1,7 @@
 /* Bundles in explicit dynamics, where it takes minutes. */
 #include "tests/fe/bundle/bundles.h"
 
-/* Runs the model and, with the 1D beam, the same history: each row's force is within `limit` of
+/* Runs the model and, with the 1D beam, the same loading: each row's force is within `limit` of
  * the largest. Returns the slack rows. */
 static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles, double limit)
 {
@@ -17,12 +17,12 @@ static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles,
     assert_int_equal(wb_loading_steps_init(&expected, &plan), WB_OK);
     assert_int_equal(wb_loading_steps_run(&expected, &plan, cantilever), WB_OK);
     run_model(NULL);
-    assert_true(history.converged);
-    assert_int_equal(history.n_rows, 1 + 2 * cycles * STEPS);
-    assert_int_equal(history.n_rows, expected.n_rows);
+    assert_true(result.converged);
+    assert_int_equal(result.n_rows, 1 + 2 * cycles * STEPS);
+    assert_int_equal(result.n_rows, expected.n_rows);
     const double largest = expected.rows[STEPS].force;
-    for (int i = 0; i < history.n_rows; i++) {
-        const struct wb_bundle_row *row = &history.rows[i];
+    for (int i = 0; i < result.n_rows; i++) {
+        const struct wb_bundle_row *row = &result.rows[i];
         const double error = (row->force - expected.rows[i].force) / largest;
         assert_int_equal(row->phase, expected.rows[i].phase);
         assert_int_equal(row->cycle, expected.rows[i].cycle);
@@ -35,8 +35,8 @@ static int compare_with_beam(const struct wb_cantilever_model *beam, int cycles,
         }
     }
     print_message("largest error of %d rows, %d of them slack: %.2f %% of the largest force\n",
-                  history.n_rows, slack, 100.0 * worst);
-    assert_true(history.largest.imbalance < 0.01);
+                  result.n_rows, slack, 100.0 * worst);
+    assert_true(result.largest.imbalance < 0.01);
     wb_loading_steps_release(&expected);
     wb_cantilever_destroy(cantilever);
     return slack;
@@ -70,7 +70,7 @@ static void cycles_follow_the_beam(void **unused)
     read_model(ONE RUN("deflection_mm: 50, rows: 5, cycles: 2, duration_s: 2.5") "loads: {weight: "
                                                                                  "false}\n");
     assert_int_equal(compare_with_beam(&beam, 2, 0.015), 0);
-    assert_true(history.rows[10].force < -0.5 * history.rows[5].force);
+    assert_true(result.rows[10].force < -0.5 * result.rows[5].force);
     wb_section_release(&section);
 }
 
@@ -81,21 +81,21 @@ static void energies_are_kept_and_motion_is_slow_enough(void **unused)
     read_model(SEVEN "run: {mesh: four, selective_mass_scaling: 100, deflection_mm: 8, rows: 16}\n"
                      "loads: {weight: false}\n");
     run_model(NULL);
-    assert_true(history.converged && history.chosen && !history.exceeded);
-    assert_true(history.attempts <= 3);
-    const double chosen = history.duration, ratio = history.largest.kinetic;
+    assert_true(result.converged && result.chosen && !result.exceeded);
+    assert_true(result.attempts <= 3);
+    const double chosen = result.duration, ratio = result.largest.kinetic;
     assert_true(ratio > 0.02 && ratio <= 0.05);
-    assert_true(history.largest.imbalance < 0.01);
-    assert_true(history.largest.artificial < 0.05);
-    check_work(&history);
-    const struct wb_bundle_energies *e = &history.rows[history.n_rows - 1].energies;
+    assert_true(result.largest.imbalance < 0.01);
+    assert_true(result.largest.artificial < 0.05);
+    check_work(&result);
+    const struct wb_bundle_energies *e = &result.rows[result.n_rows - 1].energies;
     assert_true(e->friction > 0.0 && e->plastic > 0.0 && e->cohesive > 0.0 && e->contact > 0.0);
 
     model.run.duration = 0.5 * chosen;
     run_model(NULL);
-    assert_true(!history.chosen && history.exceeded);
-    assert_int_equal(history.attempts, 1);
-    assert_close_relative(history.largest.kinetic, 4.0 * ratio, 0.3);
+    assert_true(!result.chosen && result.exceeded);
+    assert_int_equal(result.attempts, 1);
+    assert_close_relative(result.largest.kinetic, 4.0 * ratio, 0.3);
 }
 
 /* Side by side two wires are twice as stiff as one; one above the other they slide on each
@@ -118,10 +118,10 @@ static void two_wires_are_twice_as_stiff_as_one(void **unused)
                  RUN("deflection_mm: 15, rows: 15, duration_s: 1") "loads: {weight: false}\n");
         read_model(text);
         run_model(NULL);
-        assert_true(history.converged);
-        assert_true(history.largest.imbalance < 0.01);
-        check_work(&history);
-        force[i] = history.rows[ROWS_OF_TWO].force;
+        assert_true(result.converged);
+        assert_true(result.largest.imbalance < 0.01);
+        check_work(&result);
+        force[i] = result.rows[ROWS_OF_TWO].force;
     }
     const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(&model);
     assert_close_relative(force[1], 2.0 * force[0], 1e-3);
@@ -142,17 +142,17 @@ static void one_wire_is_within_the_mesh_error_of_the_beam(void **unused)
     read_model(ONE "run: {deflection_mm: 53, rows: 53, selective_mass_scaling: 100}\n"
                    "loads: {weight: false}\n");
     run_model(NULL);
-    assert_true(history.converged && !history.exceeded);
-    assert_int_equal(history.hexahedra, 960);
+    assert_true(result.converged && !result.exceeded);
+    assert_int_equal(result.hexahedra, 960);
     for (int i = 10; i <= 53; i++) {
-        const struct wb_bundle_row *row = &history.rows[i];
+        const struct wb_bundle_row *row = &result.rows[i];
         struct wb_cantilever_point point;
         assert_int_equal(
             wb_cantilever_move(cantilever, WB_CONTROL_DEFLECTION, row->deflection, &point), WB_OK);
         worst = fmax(worst, fabs(row->force / point.tension - 1.0));
     }
     print_message("largest error from 10 to 53 mm: %.2f %%, %lld steps\n", 100.0 * worst,
-                  history.steps);
+                  result.steps);
     assert_true(worst < 0.015);
     wb_cantilever_destroy(cantilever);
     wb_section_release(&section);
@@ -172,11 +172,11 @@ static void seven_wires_are_between_sliding_and_bonded(void **unused)
     model.run.deflection = 4e-3;
     model.run.rows = 8;
     run_model(NULL);
-    assert_true(history.converged && !history.exceeded);
-    assert_true(history.largest.imbalance < 0.01);
+    assert_true(result.converged && !result.exceeded);
+    assert_true(result.largest.imbalance < 0.01);
     const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(&model);
     for (int i = 5; i <= 8; i++) {
-        const struct wb_bundle_row *row = &history.rows[i];
+        const struct wb_bundle_row *row = &result.rows[i];
         const double EI = row->force * pow(model.length, 3.0) / (3.0 * row->deflection);
         print_message("%g mm: E I between %g and %g N mm2: %g\n", row->deflection * 1e3,
                       rigidity.sliding[0] * 1e6, rigidity.bonded[0] * 1e6, EI * 1e6);

@@ -78,7 +78,7 @@ static void a_helix_keeps_energy_and_momentum(void **unused)
             model.mesh[m].elements_along = 40;
         assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
         assert_int_equal(wb_bundle_shells(bundle), 60 * 40);
-        assert_int_equal(wb_bundle_advance(bundle, 1), WB_OK);
+        assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
         wb_bundle_get_outside(bundle, &outside);
         const double mass = wb_bundle_model_wire_mass(&model) + wb_bundle_model_tape_mass(&model);
         const double tape = wb_bundle_model_tape_mass(&model);

@@ -14,10 +14,10 @@ static struct wb_bundle *bend(const char *lines, double deflection, double durat
     struct wb_bundle *bundle;
     read_model(lines);
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
-    assert_int_equal(wb_bundle_settle(bundle, NULL), WB_OK);
+    assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
     wb_bundle_lead(bundle, deflection, duration);
     const double steps = duration / wb_bundle_time_step(bundle);
-    assert_int_equal(wb_bundle_advance(bundle, (int)steps), WB_OK);
+    assert_int_equal(wb_bundle_advance(bundle, (int)steps, NULL), WB_OK);
     return bundle;
 }
 
@@ -180,9 +180,10 @@ static void taking_again_is_as_beginning_anew(void **unused)
     read_model(THREE RUN("deflection_mm: 20") "loads: {weight: false}\n");
     assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
     assert_int_equal(wb_bundle_fields_init(&again, bundle), WB_OK);
-    assert_int_equal(wb_bundle_settle(bundle, NULL), WB_OK);
+    assert_int_equal(wb_bundle_settle(bundle, NULL, NULL), WB_OK);
     wb_bundle_lead(bundle, 20e-3, 0.2);
-    assert_int_equal(wb_bundle_advance(bundle, (int)(0.1 / wb_bundle_time_step(bundle))), WB_OK);
+    assert_int_equal(wb_bundle_advance(bundle, (int)(0.1 / wb_bundle_time_step(bundle)), NULL),
+                     WB_OK);
     assert_int_equal(wb_bundle_fields_take(&again, bundle), WB_OK);
     assert_int_equal(wb_bundle_fields_init(&once, bundle), WB_OK);
     const size_t n = (size_t)once.n_points;
