@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/material/hardening.h"
+
 #define WB_LOG_DOMAIN "solid"
 
 static enum wb_status number_equations(struct wb_solid_body *body,

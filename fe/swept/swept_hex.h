@@ -91,15 +91,13 @@ void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */
 void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
 
-/* Writes the forces on the nodes (less the energy's derivatives) at the stations of blocks `first`
- * to `end` - 1 and takes the histories there to the present positions. The blocks of a step go in
- * order, each once, in one call or several: forces of a block are complete when it is done, and its
- * positions are not read again. `sums`, when not NULL, are added to. `force` is float, or double of
- * double precision. Threads may work on different states. */
-void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                         int first, int end, struct wb_swept_hex_sums *sums);
-/* The same, but on nodes from wb_swept_hex_first_added() on, the section's outline among them,
- * forces are added to what is there. */
+/* Computes the forces on the nodes (the energy's derivatives with the opposite sign) at the
+ * stations of blocks `first` to `end` - 1, and takes the plastic histories there to the present
+ * positions. Forces on nodes before wb_swept_hex_first_added() are written; on those from there on,
+ * the section's outline among them, they are added to what contact has put there. The blocks of a
+ * step go in order, each once, in one call or several: forces of a block are complete when it is
+ * done, and its positions are not read again. `sums`, when not NULL, are added to. Threads may work
+ * on different states. */
 int wb_swept_hex_first_added(const struct wb_swept_hex *hex);
 void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
                              const struct wb_swept_hex_fields *fields, int first, int end,
