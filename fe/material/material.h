@@ -1,8 +1,9 @@
-/* Uniaxial elastoplastic material laws, and the wire's homogenised properties.
+/* An elastoplastic material, and the stress of one of its points under an axial strain.
  *
- * The paper's law (eqs. 1-6, corrected: eq. 6 is Ludwik's form, plastic strain only):
+ * The paper's law (eqs. 1-6, corrected: eq. 6 is Ludwik's form, of the plastic strain only) is
  *     |sigma| = sigma_Y + K ep^n   while yielding, with J2 flow and isotropic hardening.
  * Linear kinematic hardening (Prager) with modulus K is there for wires richer than that model.
+ * What the laws are made of is in fe/material/hardening.h.
  */
 #ifndef WB_FE_MATERIAL_MATERIAL_H
 #define WB_FE_MATERIAL_MATERIAL_H
@@ -16,7 +17,7 @@ enum wb_hardening {
 struct wb_material {
     enum wb_hardening hardening;
     double youngs_modulus;       /* E, Pa, > 0 */
-    double poissons_ratio;       /* 1; used for the shear stiffness only */
+    double poissons_ratio;       /* 1; beams use it for their shear stiffness only */
     double yield_stress;         /* sigma_Y, Pa, > 0 unless elastic */
     double strength_coefficient; /* K, Pa, >= 0 */
     double hardening_exponent;   /* n, > 0, at most 2 */

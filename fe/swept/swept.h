@@ -1,18 +1,21 @@
-/* Node fields of swept bodies: a plane section of nodes, repeated at stations along an axis.
+/* Node fields of swept bodies, and the instruction sets of the kernels that work on them.
  *
- * Every wire of a bundle and its tape are such bodies, all with the same stations. A field holds
- * component c of section node k at station j at
+ * A swept body is a plane section of nodes, repeated at stations along an axis. Each wire of a
+ * bundle and the tape round it is such a body; all have the same stations. A field has three
+ * numbers for each node of the body. Component c of section node k at station j is
  *
  *     field[(3 k + c) stride + j],      c = 0, 1, 2 for x (along the axis), y, z,
  *
- * so that neighbours along the axis are neighbours in memory: kernels work on several consecutive
- * elements of one place in the section at a time, without gathering. The stride is a multiple of
- * WB_SWEPT_LANES and larger than the number of stations; fields are aligned to WB_SWEPT_ALIGNMENT
- * bytes. Entries from the last station to the stride are padding: finite, read but of no effect.
+ * so that neighbours along the axis are neighbours in memory: a kernel loads consecutive stations
+ * of one section node into the lanes of a vector. WB_SWEPT_LANES stations are a block, the unit in
+ * which work is shared among threads. The stride is a multiple of that and larger than the number
+ * of stations; fields are aligned to WB_SWEPT_ALIGNMENT bytes. Entries behind the last station are
+ * padding: they are finite, and are read without effect.
  *
  * Positions and velocities are double; differences of positions are formed in double, then kernels
  * may go on in float (a displacement of 50 mm in float has no digit left for a strain of 1e-6).
- * Forces are float: a sum of few terms, made anew in every step.
+ * Forces are float, or double where a model asks for double precision: they are sums of few terms,
+ * computed anew in each step.
  */
 #ifndef WB_FE_SWEPT_SWEPT_H
 #define WB_FE_SWEPT_SWEPT_H
@@ -40,13 +43,14 @@ struct wb_swept_layout {
     int stride;     /* of stations */
 };
 
-/* The stations, and the elements that begin there, that sums are over: a body that is an axial part
- * of another counts what is its own, not what it shares with its neighbours. `end` 0: all. */
+/* Stations `first` to `end` - 1, and the elements that begin there: those that sums such as
+ * energies are over. A body that is one axial part of a longer one computes also what it shares
+ * with its neighbours, but counts only its own. `end` 0: all. */
 struct wb_swept_range {
     int first, end;
 };
 
-/* The layout, and the number of entries of a field. */
+/* The layout of a body, and the number of entries of its fields. */
 struct wb_swept_layout wb_swept_layout(int n_nodes, int n_stations);
 size_t wb_swept_size(const struct wb_swept_layout *layout);
 

@@ -12,10 +12,10 @@
  * energy that no rotation changes: forces and moments balance, also where the tape's thickness is a
  * lever for the shear. Normal opening and shear do not couple.
  *
- * Damage, bilinear: with the normal part of an opening only where it opens, and with
- * l = sqrt((K_nn g_n / strength)^2 + (K_ss |g_s| / shear_strength)^2), linear up to l = 1, then
- * falling so that the area below is the fracture energy, of any mode. Pressure is borne undamaged
- * until the bond is broken altogether; then fe/swept/swept_tape_contact.h takes over.
+ * Damage is bilinear in l = sqrt((K_nn g_n / strength)^2 + (K_ss |g_s| / shear_strength)^2), in
+ * which g_n counts only where it opens. Tractions are linear up to l = 1 and then fall, so that the
+ * area below them is the fracture energy in any mix of opening and shear. Pressure is borne as if
+ * undamaged until the bond is broken altogether; then fe/swept/swept_tape_contact.h takes over.
  */
 #ifndef WB_FE_SWEPT_SWEPT_COHESION_H
 #define WB_FE_SWEPT_SWEPT_COHESION_H

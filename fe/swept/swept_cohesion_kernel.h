@@ -1,8 +1,8 @@
 /* The kernels behind fe/swept/swept_cohesion.h: the forces of the bonds. Lanes are
  * stations.
  *
- * A strip is the part of a ring node's bonds in one block of stations that goes to one pair of a
- * surface's nodes; where stations of the block do otherwise, its area is zero.
+ * A strip is those bonds of a ring node in one block of stations that go to the same pair of
+ * surface nodes; at the other stations of the block its area is zero.
  */
 #ifndef WB_FE_SWEPT_SWEPT_COHESION_KERNEL_H
 #define WB_FE_SWEPT_SWEPT_COHESION_KERNEL_H

@@ -23,7 +23,7 @@
  * of space: they cancel in sum and moment to round-off, and a rigid motion of wires that touch
  * makes neither slip nor force.
  *
- * Sections are not squeezed: a normal force goes to all surface nodes alike, a couple as least
+ * Sections are not squeezed: a normal force goes to all surface nodes alike, a couple by least
  * squares. The stiffness k stands for the flattening of two cylinders.
  *
  * Stations are numbered from 0; blocks are WB_SWEPT_LANES of them.

@@ -1,10 +1,10 @@
 /* An upper bound of a swept wire's frequencies, for the stable step 2 / omega.
  *
- * A layer, all elements between two stations with half of these stations' mass, has the same
+ * A layer is all elements between two stations with half of these stations' mass. It has the same
  * matrices everywhere along the wire, and no wire of such layers vibrates faster than one of them
  * alone (B. M. Irons, Applications of a theorem on eigenvalues to finite element problems, 1970):
- * its largest frequency is computed as it is. It is that of the straight, stress-free wire;
- * yielding lowers it, and compressing an element's side by 1 % raises it by about that.
+ * so the largest frequency of one layer is computed. It is that of the straight, stress-free wire;
+ * yielding lowers it, and compressing an element's side by 1 % raises it by about as much.
  */
 #ifndef WB_FE_SWEPT_SWEPT_FREQUENCY_H
 #define WB_FE_SWEPT_SWEPT_FREQUENCY_H

@@ -1,20 +1,20 @@
 /* Internal forces of a wire of 8-node hexahedra swept along its axis, for explicit dynamics.
  *
- * Total Lagrangian, logarithmic strain, J2 plasticity with the power law: nothing is integrated in
- * time but the plastic strain, so rigid motions make no stress, in any number of steps. Two
- * formulations:
+ * Total Lagrangian, logarithmic strain, J2 plasticity with isotropic hardening. Only the plastic
+ * strain is integrated in time, so a rigid motion makes no stress in any number of steps. There are
+ * two formulations:
  *
- * - four points (2x2x1, the default): what the axial vectors of the section's four corners say,
- *   axial strain and the two shears with the axis, at 2 x 2 points with plastic histories of their
- *   own; the section's own strains at the centre. One hourglass vector is left, the section's.
+ * - four points (2x2x1, the default): the axial strain and the two shears with the axis are taken
+ *   at 2 x 2 points, each with a plastic history of its own; the strains within the section are
+ *   taken at the centre. One hourglass vector is left, that of the section.
  * - one point: mean gradients (Flanagan and Belytschko 1981), four hourglass vectors.
  *
- * Hourglass stiffness is elastic. Four points yield in bending with few elements, one point needs
- * about 60 a section for it. Details are in swept_hex_kernel.c.
+ * The hourglass stiffness is elastic. With four points a few elements a section yield in bending as
+ * they should; with one point that takes about 60. Details are in swept_hex_kernel.c.
  *
  * The logarithm is a polynomial: at a strain of 5 % along the axes forces are 0.2 % off, with a
  * shear strain of 5 % 1.3 %, and with strains of 3 % 0.04 and 0.5 %. Elements with a component of
- * Green's strain beyond WB_SWEPT_HEX_STRAIN_LIMIT are counted; whoever runs the model must say so.
+ * Green's strain beyond WB_SWEPT_HEX_STRAIN_LIMIT are counted; the caller reports their number.
  *
  * Node fields are those of fe/swept/swept.h, stations `element_length` apart in the reference
  * state, forces float or, of a model of double precision, double. Fields must come from
@@ -40,13 +40,13 @@ enum wb_swept_hex_formulation {
 
 struct wb_swept_hex_model {
     const struct wb_swept_section *section; /* borrowed; must outlive the hex */
-    struct wb_material material;            /* elastic or power law */
+    struct wb_material material;            /* one whose yield surface does not move */
     int n_elements;                         /* along the axis */
     double element_length;                  /* m */
     enum wb_swept_hex_formulation formulation;
-    struct wb_swept_range counted; /* in sums and the plastic work; all is computed */
-    double hourglass; /* coefficient, 1; 0: 0.05. Of one point, 1 gives the fields that bend an
-                         element their elastic stiffness */
+    struct wb_swept_range counted; /* elements in sums and the plastic work; all are computed */
+    double hourglass; /* coefficient; 0: 0.05. With one point, 1 gives the fields that bend
+                         an element their elastic stiffness */
     bool double_precision;
     enum wb_swept_instructions instructions;
 };
@@ -54,7 +54,7 @@ struct wb_swept_hex_model {
 struct wb_swept_hex_fields {
     const double *position;
     void *force;        /* float, or double of double precision */
-    const double *soon; /* NULL, or what the caller goes through next, block by block, such as
+    const double *soon; /* NULL, or a field that the caller reads next, block by block, such as
                            velocities: it is fetched into the processor's cache meanwhile */
 };
 
@@ -76,7 +76,7 @@ void wb_swept_hex_destroy(struct wb_swept_hex *hex);
 const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex);
 struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
 int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
-/* Of those that this processor has the best. */
+/* The best of those that this processor has. */
 const char *wb_swept_hex_best_instructions(void);
 
 /* Stiffness of the section's hourglass vector, N/m, and of the three along, xi, eta, xi eta, which
@@ -91,15 +91,13 @@ void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */
 void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
 
-/* Writes the forces on the nodes (less the energy's derivatives) at the stations of blocks `first`
- * to `end` - 1 and takes the histories there to the present positions. The blocks of a step go in
- * order, each once, in one call or several: forces of a block are complete when it is done, and its
- * positions are not read again. `sums`, when not NULL, are added to. `force` is float, or double of
- * double precision. Threads may work on different states. */
-void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                         int first, int end, struct wb_swept_hex_sums *sums);
-/* The same, but on nodes from wb_swept_hex_first_added() on, the section's outline among them,
- * forces are added to what is there. */
+/* Computes the forces on the nodes (the energy's derivatives with the opposite sign) at the
+ * stations of blocks `first` to `end` - 1, and takes the plastic histories there to the present
+ * positions. Forces on nodes before wb_swept_hex_first_added() are written; on those from there on,
+ * the section's outline among them, they are added to what contact has put there. The blocks of a
+ * step go in order, each once, in one call or several: forces of a block are complete when it is
+ * done, and its positions are not read again. `sums`, when not NULL, are added to. Threads may work
+ * on different states. */
 int wb_swept_hex_first_added(const struct wb_swept_hex *hex);
 void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
                              const struct wb_swept_hex_fields *fields, int first, int end,
@@ -110,7 +108,7 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);
 
 /* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not
  * pi d^2 / 4: of four points 1.2 % less with 4 elements, 0.5 % less with 12, 0.1 % less with 84; of
- * one point 17, 4.8 and 0.6 % more. Masses are whoever makes them to correct. */
+ * one point 17, 4.8 and 0.6 % more. The caller corrects the masses for that. */
 void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
                              enum wb_swept_hex_formulation formulation,
                              const struct wb_material *material);

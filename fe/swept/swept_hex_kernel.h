@@ -1,8 +1,8 @@
 /* The force kernels behind fe/swept/swept_hex.h. Lanes are elements along the wire.
  *
- * Everything that a kernel multiplies with is prepared in its own type: constants of the section's
- * elements in rows of WB_SWEPT_HEX_KERNEL_CONSTANTS, and the table of the hardening law. Histories
- * are in blocks of WB_SWEPT_LANES elements along the wire:
+ * All that a kernel multiplies with is prepared in the kernel's type: the constants of the
+ * section's elements, a row of WB_SWEPT_HEX_KERNEL_CONSTANTS each, and the table of the hardening
+ * law. Histories are in blocks of WB_SWEPT_LANES elements along the wire:
  *
  *     history[(((block n_quads + quad) n_points + point) 6 + component) WB_SWEPT_LANES + lane],
  *

@@ -21,6 +21,10 @@ WB_MUST_CHECK enum wb_status wb_swept_section_init(struct wb_swept_section *sect
 
 const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex);
 
+/* wb_swept_hex_add_forces() with the forces of all nodes written, none added to. */
+void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
+                         int first, int end, struct wb_swept_hex_sums *sums);
+
 /* Virgin, as after creation. */
 void wb_swept_hex_state_reset(struct wb_swept_hex_state *state);
 

@@ -1,8 +1,8 @@
 /* Sections of swept bodies: a plane mesh of quadrilaterals, and its integrals.
  *
  * Coordinates of a section are y and z. Corners of a quadrilateral go counter-clockwise from y to
- * z. In its bilinear map, shape functions N_a are 1 at corner a; its quadrature are the 2 x 2
- * points of Gauss, which are exact for all integrals below but the second moment.
+ * z. Shape functions N_a of its bilinear map are 1 at corner a. Integrals are taken at the 2 x 2
+ * Gauss points, which are exact for all that are here but the second moment.
  */
 #ifndef WB_FE_SWEPT_SWEPT_SECTION_H
 #define WB_FE_SWEPT_SWEPT_SECTION_H
@@ -21,7 +21,7 @@ struct wb_swept_section {
     double area;    /* m2 */
 };
 
-/* What a quadrilateral adds to the matrices of its elements. */
+/* Integrals over a quadrilateral, of which the matrices of its elements are made. */
 struct wb_swept_quad {
     double area;            /* m2 */
     double mean[4];         /* integral of N_a over the area, divided by it */

@@ -7,11 +7,11 @@
  *
  *     a = mean + (a - mean) / beta,  mean = sum f / sum m,
  *
- * which is a mass matrix M' = beta M - (beta - 1) M 1 1^T M / (1^T M 1): the section deforms and
- * turns more slowly, the wire's axis moves as before.
+ * which corresponds to a mass matrix M' = beta M - (beta - 1) M 1 1^T M / (1^T M 1): the section
+ * deforms and turns more slowly, the wire's axis moves as before.
  *
- * A held component of a station keeps its velocity, whatever the force: what is prescribed is
- * written into the velocity field. It has no part in the sums.
+ * A held component of a station keeps its velocity, whatever the force: to prescribe a motion, the
+ * caller holds the component and writes its velocity into the field. It has no part in the sums.
  */
 #ifndef WB_FE_SWEPT_SWEPT_STEP_H
 #define WB_FE_SWEPT_SWEPT_STEP_H

@@ -3,18 +3,19 @@
  *
  * The ring lies on the tape's middle surface and is repeated at all stations, straight (a sleeve)
  * or winding (a helix); it is closed, or open with two free edges. Besides its position a node has
- * a director, a vector of three components across the tape, of length 1 but for a stiff spring: two
- * node fields that are integrated alike, directors with the inertia of wb_swept_tape_masses().
+ * a director, a vector across the tape whose length a stiff spring keeps at 1. Both are node fields
+ * and are integrated alike, directors with the inertia of wb_swept_tape_masses().
  *
- * One point in the plane for membrane and bending, with several points of plane stress through the
- * thickness (J2 with the power law, logarithmic strains); transverse shear from the edges, elastic.
- * Hourglass stiffness is elastic, of what bends an element in its plane and of its directors. Total
- * Lagrangian: nothing is integrated in time but the plastic strain. Stresses are per reference area
- * (of Kirchhoff): as plastic flow keeps the volume, that a stretched tape gets thinner is in them.
- * Details are in swept_tape_kernel.c.
+ * Membrane and bending are taken at one point in the plane, with several points of plane stress
+ * through the thickness (J2 with isotropic hardening, logarithmic strains); transverse shear is
+ * taken from the edges and is elastic. So is the hourglass stiffness, against bending of an element
+ * in its plane and against what its directors do likewise. Total Lagrangian: only the plastic
+ * strain is integrated in time. Stresses are those of Kirchhoff, per reference area: as plastic
+ * flow keeps the volume, they include that a stretched tape gets thinner. Details are in
+ * swept_tape_kernel.c.
  *
  * The logarithm is a polynomial: at a strain of 10 % it is 0.03 % off, forces 0.2 %. Elements with
- * a larger strain are counted; whoever runs the model must say so.
+ * a larger strain are counted; the caller reports their number.
  *
  * Node fields are those of fe/swept/swept.h, forces float or, of a model of double precision,
  * double. Fields must come from wb_swept_allocate(): what lies behind the last number is read.
@@ -32,7 +33,7 @@
 #define WB_SWEPT_TAPE_STRAIN_LIMIT 0.1
 
 struct wb_swept_tape_model {
-    struct wb_material material; /* elastic or power law */
+    struct wb_material material; /* one whose yield surface does not move */
     double density;              /* kg/m3 */
     double thickness;            /* m, of all layers */
     int sheets; /* into which it is split in bending, that slide on each other freely; 0: 1, layers

@@ -2,19 +2,20 @@
  * spans a gap and comes to lie on a wire, and after its bond broke (fe/swept/swept_cohesion.h).
  *
  * A node of the ring touches the nearest wire, a circle of its contact radius round the centre of
- * its surface nodes. Pressure is K_nn times the depth, half the tape's thickness and the radius
- * less the distance from that centre, and the derivative of its energy: it acts along the radius,
- * and wherever the tape slides, what it does is what is stored. The place y that the node faces,
- * between two surface nodes and between stations, and its distance from the tape's middle surface
- * there, o, are found when it comes near, and anew whenever it has slid by a fiftieth of the radius
- * (looked at every so many steps). The centre is seen from these two nodes until then. Friction
- * acts against what g = x - o d - y slides across d, an elastic spring returned to
+ * its surface nodes. Pressure is K_nn times the depth, which is half the tape's thickness and the
+ * radius less the distance from that centre. It is the derivative of an energy: it acts along the
+ * radius, and its work is what is stored, wherever the tape slides. The node faces a place y
+ * between two surface nodes and between stations, at a distance o from the tape's middle surface.
+ * Both are found when the node comes near, and anew whenever it has slid by a fiftieth of the
+ * radius, which is looked at every so many steps. Until then the centre is found from these two
+ * surface nodes. Friction is that of an elastic spring between the surfaces, stretched by the part
+ * of g = x - o d - y across d and returned to
  *
  *     mu = mu_k + (mu_s - mu_k) exp(-decay slip rate)                               (eq. 20).
  *
- * Forces on both sides balance exactly, moments of pressure to round-off of places that are found
- * anew, of friction to g beside o. A node
- * may slip by four stations along a wire; then it loses it.
+ * Forces on both sides balance exactly, moments of pressure to the round-off of places that are
+ * found anew, moments of friction as far as g is small beside o. A node may slip by four stations
+ * along a wire; then it is in contact with it no more.
  */
 #ifndef WB_FE_SWEPT_SWEPT_TAPE_CONTACT_H
 #define WB_FE_SWEPT_SWEPT_TAPE_CONTACT_H

@@ -1,8 +1,8 @@
 /* The kernels behind fe/swept/swept_tape_contact.h: forces between tape and wires. Lanes are
  * stations.
  *
- * A strip is the part of a ring node's stations in one block that face the same pair of a wire's
- * surface nodes at stations as far along; elsewhere in the block its area is zero.
+ * A strip is those stations of a ring node in one block that face the same pair of surface nodes of
+ * a wire, at stations as far ahead; at the other stations of the block its area is zero.
  */
 #ifndef WB_FE_SWEPT_SWEPT_TAPE_CONTACT_KERNEL_H
 #define WB_FE_SWEPT_SWEPT_TAPE_CONTACT_KERNEL_H

@@ -8,8 +8,8 @@
  *
  * At the middle, in the orthonormal frame of the reference state (B turns derivatives to it),
  *
- *     a_1, a_2 = dx,  d_1, d_2 = dd,  E(z) = 1/2 (a_i.a_j) - reference + z sym(a_i.d_j) -
- * reference,
+ *     a_1, a_2 = dx,  d_1, d_2 = dd,
+ *     E(z) = (1/2 (a_i.a_j) - reference) + z (sym(a_i.d_j) - reference),
  *
  * z from the middle surface (z^2 d_i.d_j / 2 and what curvature does to volumes are left out). Each
  * point through the thickness has the logarithmic strain E - E^2 + 4/3 E^3 - 2 E^4 and plane
