@@ -13,7 +13,7 @@
 /* All zero: there is none. A text that does not fit is cut at the end of a UTF-8 character and ends
  * in "...". */
 struct wb_reason {
-    char text[400];
+    char text[1024];
 };
 
 /* Replaces the text. It may be made of the present one. */
