@@ -1,9 +1,8 @@
-/* Datasets made by the 1D beam itself with the paper's properties, for tests of the calibration;
- * and a log sink that keeps the last message. */
+/* Datasets made by the 1D beam itself with the paper's properties, for tests of the calibration. */
 #ifndef WB_TESTS_ANALYSIS_BEAM_DATA_H
 #define WB_TESTS_ANALYSIS_BEAM_DATA_H
 
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include <stdlib.h>
 
@@ -117,33 +116,5 @@ static inline void plain_dataset(struct wb_dataset *dataset, double (*force)(dou
         assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
     }
 }
-
-/* The last message logged while last_message_install() holds. */
-static char last_message[512];
-static int message_count;
-
-static inline void keep_message(void *context, enum wb_log_level level, const char *domain,
-                                const char *message)
-{
-    (void)context;
-    (void)domain;
-    if (level <= WB_LOG_WARNING) {
-        snprintf(last_message, sizeof last_message, "%s", message);
-        message_count++;
-    }
-}
-
-static inline void last_message_install(void)
-{
-    last_message[0] = '\0';
-    message_count = 0;
-    wb_log_set_sink(keep_message, NULL);
-}
-
-#define assert_said(part)                                                                          \
-    do {                                                                                           \
-        if (!strstr(last_message, (part)))                                                         \
-            fail_msg("expected a message with '%s', got '%s'", (part), last_message);              \
-    } while (0)
 
 #endif

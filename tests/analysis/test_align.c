@@ -4,25 +4,15 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "tests/analysis/synthetic.h"
-#include "tests/check.h"
+#include "tests/messages.h"
 
 static char folder[64];
 static int n_recordings;
-static char last_message[512];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context;
-    (void)level;
-    (void)domain;
-    snprintf(last_message, sizeof last_message, "%s", message);
-}
 
 static int start(void **state)
 {
     (void)state;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     /* In memory where there is such a place: recordings are synchronised to the disk. */
     snprintf(folder, sizeof folder, "%s/wirebench-align-XXXXXX",
              access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
@@ -51,7 +41,7 @@ static void align(struct syn *syn, struct wb_dataset *dataset)
     wb_align_default_settings(&settings);
     record(syn, path);
     if (wb_align_run(dataset, path, &settings) != WB_OK)
-        fail_msg("not aligned: %s", last_message);
+        fail_msg("not aligned: %s", kept.last);
 }
 
 static void refuse(struct syn *syn, const char *expected)
@@ -62,8 +52,7 @@ static void refuse(struct syn *syn, const char *expected)
     wb_align_default_settings(&settings);
     record(syn, path);
     assert_int_equal(wb_align_run(&dataset, path, &settings), WB_ERR_DATA);
-    if (!strstr(last_message, expected))
-        fail_msg("'%s' does not say '%s'", last_message, expected);
+    assert_message(expected);
     wb_dataset_release(&dataset);
 }
 

@@ -11,6 +11,7 @@
 #include "fixtures/virtual/live_wire.h"
 #include "fixtures/virtual/sim_cell.h"
 #include "fixtures/virtual/sim_mocap.h"
+#include "tests/messages.h"
 #include "tests/virtual/setup.h"
 
 #define HOST_ZERO_NS INT64_C(900000000000)
@@ -43,21 +44,11 @@ struct session {
 
 static struct session session;
 static char folder[64];
-static char last_message[512];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context;
-    (void)level;
-    (void)domain;
-    snprintf(last_message, sizeof last_message, "%s", message);
-}
 
 static int start(void **state)
 {
     (void)state;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     snprintf(folder, sizeof folder, "%s/wirebench-align-XXXXXX",
              access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
     return mkdtemp(folder) ? 0 : -1;
@@ -297,7 +288,7 @@ static void assert_aligned(const struct plan *plan)
     wb_align_default_settings(&settings);
     record(plan, path);
     if (wb_align_run(&dataset, path, &settings) != WB_OK)
-        fail_msg("not aligned: %s", last_message);
+        fail_msg("not aligned: %s", kept.last);
 
     double n = 0.0, level = 0.0, squares = 0.0, tension = 0.0, tension_squares = 0.0;
     for (size_t i = 0; i < dataset.n_rows; i++) {
@@ -401,7 +392,7 @@ static void what_is_stated_of_downward_bows_holds(void **state)
             continue;
         record(&plan, path);
         if (wb_align_run(&dataset, path, &settings) != WB_OK)
-            fail_msg("%s, seed %d not aligned: %s", plan.specimen, seed, last_message);
+            fail_msg("%s, seed %d not aligned: %s", plan.specimen, seed, kept.last);
         const double off = wb_dataset_bow(&dataset.info) - session.setup.truth.bow;
         const double pull =
             off / (WB_MM * number_in(&dataset, "natural_shape", "bow_uncertainty_mm"));

@@ -9,7 +9,7 @@ static const double mm = WB_MM;
 static int silence(void **state)
 {
     (void)state;
-    last_message_install();
+    keep_messages();
     return 0;
 }
 
@@ -195,7 +195,7 @@ static void a_wire_that_did_not_yield_is_refused(void **state)
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     beam_dataset(&dataset, &info, &elastic, 1.0 * mm, 53 * mm, 1.0);
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
-    assert_said("linear elastic prediction");
+    assert_message("linear elastic prediction");
     wb_dataset_release(&dataset);
 
     /* Ends just past the yield point. */
@@ -203,7 +203,7 @@ static void a_wire_that_did_not_yield_is_refused(void **state)
     settings.step = 0.5 * mm;
     beam_dataset(&dataset, &info, &truth, 0.5 * mm, 5.5 * mm, 1.0);
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
-    assert_said("yield is not reached: the first loading ends at 5.50 mm");
+    assert_message("yield is not reached: the first loading ends at 5.50 mm");
     wb_dataset_release(&dataset);
 }
 
@@ -219,7 +219,7 @@ static void a_reason_travels_to_who_asked_for_it(void **state)
     struct wb_dataset dataset;
     const struct wb_dataset *const datasets[] = {&dataset};
     struct wb_reason why = {.text = ""};
-    last_message_install();
+    keep_messages();
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     beam_dataset(&dataset, &info, &elastic, 1.0 * mm, 53 * mm, 1.0);
     assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_DATA);
@@ -235,7 +235,7 @@ static void a_reason_travels_to_who_asked_for_it(void **state)
     assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_ARGUMENT);
     assert_non_null(strstr(why.text, "out of range"));
     wb_dataset_release(&dataset);
-    assert_string_equal(last_message, "");
+    assert_string_equal(kept.last, "");
 }
 
 static void unusable_data_and_settings_are_refused(void **state)
@@ -248,10 +248,10 @@ static void unusable_data_and_settings_are_refused(void **state)
     struct wb_dataset dataset;
     beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, -1.0);
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
-    assert_said("sign reversed");
+    assert_message("sign reversed");
     dataset.rows[3].force = (double)NAN;
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
-    assert_said("no finite");
+    assert_message("no finite");
     settings.elastic_zone = 0.0;
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_ARGUMENT);
     settings = quick_settings();

@@ -1,26 +1,18 @@
 /* Strict tables: analysis/csv_table.h. Files are in test_fields.c and test_surface.c. */
 #include "analysis/csv_table_private.h"
 #include "base/config.h"
-#include "tests/check.h"
+#include "tests/messages.h"
 
 enum {
     COLUMNS = 2
 };
 
-static char message[400];
 static int sum, taken;
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context, (void)level, (void)domain;
-    snprintf(message, sizeof message, "%s", text);
-}
 
 static int listen(void **state)
 {
     (void)state;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     return 0;
 }
 
@@ -78,10 +70,10 @@ static void what_is_wrong_is_told_with_its_line(void **state)
     };
     for (size_t i = 0; i < WB_COUNT(wrong); i++) {
         assert_int_equal(parse(wrong[i].text, strlen(wrong[i].text)), WB_ERR_FORMAT);
-        assert_string_equal(message, wrong[i].message);
+        assert_string_equal(kept.last, wrong[i].message);
     }
     assert_int_equal(parse("name,number\na,\0003\n", 17), WB_ERR_FORMAT);
-    assert_string_equal(message, "t.csv: a byte 0: not a text file");
+    assert_string_equal(kept.last, "t.csv: a byte 0: not a text file");
 }
 
 int main(void)

@@ -8,24 +8,14 @@
 #include "analysis/dataset_private.h"
 #include "base/file.h"
 #include "base/log.h"
-#include "tests/check.h"
+#include "tests/messages.h"
 
 static char folder[64];
-static char last_message[512];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context;
-    (void)level;
-    (void)domain;
-    snprintf(last_message, sizeof last_message, "%s", message);
-}
 
 static int start(void **state)
 {
     (void)state;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     snprintf(folder, sizeof folder, "%s/wirebench-dataset-XXXXXX",
              access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
     return mkdtemp(folder) ? 0 : -1;
@@ -311,8 +301,7 @@ static void a_follower_force_is_said(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         assert_int_equal(read_altered(path, cases[i].old, cases[i].new, &dataset), WB_ERR_FORMAT);
-        if (!strstr(last_message, cases[i].message))
-            fail_msg("'%s' does not say '%s'", last_message, cases[i].message);
+        assert_message(cases[i].message);
     }
     /* The other words, and files from before there was one. */
     assert_int_equal(read_altered(path, "\"follower\"", "\"general\"", &dataset), WB_OK);
@@ -340,8 +329,8 @@ static void a_row_without_force_is_not_written(void **state)
     fill(&dataset);
     dataset.rows[17].force = (double)NAN;
     assert_int_equal(wb_dataset_write(&dataset, path, false), WB_ERR_ARGUMENT);
-    assert_non_null(strstr(last_message, "row 18"));
-    assert_non_null(strstr(last_message, "force_N"));
+    assert_message("row 18");
+    assert_message("force_N");
     assert_false(wb_file_exists(path));
     wb_dataset_release(&dataset);
 }
@@ -385,8 +374,7 @@ static void bad_tables_are_refused_with_line_and_column(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_dataset dataset;
         assert_int_equal(parse_rows(cases[i].text, &dataset), WB_ERR_FORMAT);
-        if (!strstr(last_message, cases[i].message))
-            fail_msg("'%s' does not say '%s'", last_message, cases[i].message);
+        assert_message(cases[i].message);
         wb_dataset_release(&dataset);
     }
 }
@@ -483,8 +471,7 @@ static void damaged_folders_are_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         write_text(path, "dataset.json", cases[i].json);
         assert_int_not_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
-        if (!strstr(last_message, cases[i].message))
-            fail_msg("'%s' does not say '%s'", last_message, cases[i].message);
+        assert_message(cases[i].message);
         assert_null(dataset.document);
     }
 }
@@ -494,20 +481,20 @@ static void assert_reason(const char *path, const char *file, const char *text, 
 {
     struct wb_dataset dataset;
     struct wb_reason why = {.text = ""};
-    char whole[WB_PATH], *kept;
+    char whole[WB_PATH], *original;
     snprintf(whole, sizeof whole, "%s/%s", path, file);
-    assert_int_equal(wb_file_read(whole, &kept, NULL), WB_OK);
+    assert_int_equal(wb_file_read(whole, &original, NULL), WB_OK);
     if (text)
         write_text(path, file, text);
     else
         assert_int_equal(unlink(whole), 0);
-    last_message[0] = '\0';
+    kept.last[0] = '\0';
     assert_int_not_equal(wb_dataset_read(&dataset, path, &why), WB_OK);
-    assert_string_equal(last_message, "");
+    assert_string_equal(kept.last, "");
     if (!strstr(why.text, said))
         fail_msg("'%s' does not say '%s'", why.text, said);
-    write_text(path, file, kept);
-    free(kept);
+    write_text(path, file, original);
+    free(original);
 }
 
 static void a_reason_travels_to_who_asked_for_it(void **state)

@@ -1,5 +1,5 @@
 /* fields.csv: what is written is read again, and what is wrong is refused with line and column. */
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -8,16 +8,6 @@
 #include "base/file.h"
 
 static char folder[] = "/tmp/wirebench-fields-XXXXXX";
-static char message[1024];
-static int messages;
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context, (void)level, (void)domain;
-    messages++;
-    snprintf(message, sizeof message, "%s", text);
-}
 
 static void fill(struct wb_field *field, double seed)
 {
@@ -161,7 +151,7 @@ static void impossible_fields_are_refused(void **state)
     struct wb_field *field;
     static const char *const names[] = {"", "a,b", "a\"b", "a\nb",
                                         "a name of more than thirty-one bytes"};
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         assert_int_equal(wb_fields_add(&fields, names[i], 0.0, 1, &field), WB_ERR_ARGUMENT);
     assert_int_equal(wb_fields_add(&fields, "a", 0.0, 0, &field), WB_ERR_ARGUMENT);
@@ -169,11 +159,11 @@ static void impossible_fields_are_refused(void **state)
     make_fields(&fields);
     fields.items[1].faces[1].node[5].axial = (double)NAN;
     assert_int_equal(wb_fields_write(&fields, folder), WB_ERR_DATA);
-    assert_non_null(strstr(message, "state unloaded, face 1: axial_MPa"));
+    assert_message("state unloaded, face 1: axial_MPa");
     fields.items[1].faces[1].node[5].axial = 0.0;
     fields.items[3].faces[0].node[0].position[2] = HUGE_VAL;
     assert_int_equal(wb_fields_write(&fields, folder), WB_ERR_DATA);
-    assert_non_null(strstr(message, "state loaded, face 0: z_mm"));
+    assert_message("state loaded, face 0: z_mm");
     wb_fields_release(&fields);
     wb_log_set_sink(NULL, NULL);
 }
@@ -192,17 +182,15 @@ static enum wb_status read_bytes(const char *text, size_t size, struct wb_fields
     assert_non_null(file);
     assert_int_equal(fwrite(text, 1, size, file), size);
     assert_int_equal(fclose(file), 0);
-    messages = 0;
-    message[0] = '\0';
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     const enum wb_status status = wb_fields_read(fields, folder, NULL);
-    /* Who asks for the reason gets the same message, and the log gets nothing. */
+    /* Who asks for the reason gets the same kept.last, and the log gets nothing. */
     if (status != WB_OK) {
         struct wb_reason why = {.text = ""};
-        const int before = messages;
+        const int before = kept.n;
         assert_int_equal(wb_fields_read(fields, folder, &why), status);
-        assert_string_equal(why.text, message);
-        assert_int_equal(messages, before);
+        assert_string_equal(why.text, kept.last);
+        assert_int_equal(kept.n, before);
     }
     wb_log_set_sink(NULL, NULL);
     assert_int_equal(unlink(path), 0);
@@ -265,8 +253,8 @@ static void refusals_name_line_and_column(void **state)
         snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, cases[i].by,
                  at + strlen(cases[i].line));
         const enum wb_status status = read_bytes(changed, strlen(changed), &fields);
-        if (status != WB_ERR_FORMAT || messages != 1 || !strstr(message, cases[i].expected))
-            fail_msg("'%s': status %d, '%s' does not hold '%s'", cases[i].by, status, message,
+        if (status != WB_ERR_FORMAT || kept.n != 1 || !strstr(kept.last, cases[i].expected))
+            fail_msg("'%s': status %d, '%s' does not hold '%s'", cases[i].by, status, kept.last,
                      cases[i].expected);
         assert_int_equal(fields.n, 0);
         assert_null(fields.items);
@@ -281,7 +269,7 @@ static void fields_cut_short_or_given_twice_are_refused(void **state)
     append_face(text, sizeof text, "a,cross,5", 0, 0);
     assert_int_equal(read_bytes(text, (size_t)(strstr(text, "a,cross,5,0,0,7") - text), &fields),
                      WB_ERR_FORMAT);
-    assert_non_null(strstr(message, ":8: node: the last face ends before node 7"));
+    assert_message(":8: node: the last face ends before node 7");
     append_face(text, sizeof text, "a,longitudinal,", 0, 0);
     append_face(text, sizeof text, "a,cross,6", 0, 0);
     assert_int_equal(read_bytes(text, strlen(text), &fields), WB_OK);
@@ -289,7 +277,7 @@ static void fields_cut_short_or_given_twice_are_refused(void **state)
     wb_fields_release(&fields);
     append_face(text, sizeof text, "a,cross,5", 0, 0);
     assert_int_equal(read_bytes(text, strlen(text), &fields), WB_ERR_FORMAT);
-    assert_non_null(strstr(message, ":26: section: this field of state a stood before"));
+    assert_message(":26: section: this field of state a stood before");
 }
 
 static void broken_files_are_read_or_refused(void **state)
@@ -302,14 +290,14 @@ static void broken_files_are_read_or_refused(void **state)
     append_face(text, sizeof text, "a,cross,5", 1, 1);
     const size_t n = strlen(text);
     assert_int_equal(read_bytes(text, 0, &fields), WB_ERR_FORMAT);
-    assert_non_null(strstr(message, ":1: empty file"));
+    assert_message(":1: empty file");
     int refused = 0;
     for (size_t i = 1; i < n; i++) {
         memcpy(changed, text, n);
         changed[i] = strange[i % (sizeof strange - 1)];
         for (int way = 0; way < 2; way++) {
             const enum wb_status status = read_bytes(changed, way == 0 ? i : n, &fields);
-            assert_true(status == WB_OK || messages == 1);
+            assert_true(status == WB_OK || kept.n == 1);
             refused += status != WB_OK;
             wb_fields_release(&fields);
         }

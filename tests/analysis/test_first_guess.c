@@ -8,7 +8,7 @@ static const double mm = WB_MM, mpa = WB_MPA;
 static int silence(void **state)
 {
     (void)state;
-    last_message_install();
+    keep_messages();
     return 0;
 }
 
@@ -137,15 +137,15 @@ static void curves_that_cannot_serve_are_refused_with_the_reason(void **state)
     (void)state;
     struct wb_first_guess guess;
     assert_int_equal(guess_of(&guess, bilinear, 6 * mm, 0.05, 0.04), WB_ERR_DATA);
-    assert_said("yield is not reached");
+    assert_message("yield is not reached");
     assert_int_equal(guess_of(&guess, reversed, 50 * mm, 0.05, 0.05), WB_ERR_DATA);
-    assert_said("sign reversed");
+    assert_message("sign reversed");
     assert_int_equal(guess_of(&guess, falling, 50 * mm, 0.03, 0.05), WB_ERR_DATA);
-    assert_said("falls just past the yield point");
+    assert_message("falls just past the yield point");
     assert_int_equal(guess_of(&guess, wavy, 50 * mm, 0.05, 0.05), WB_ERR_DATA);
-    assert_said("does not rise steadily");
+    assert_message("does not rise steadily");
     assert_int_equal(guess_of(&guess, bilinear, 50 * mm, 0.005, 0.05), WB_ERR_DATA);
-    assert_said("too few points");
+    assert_message("too few points");
 }
 
 static double stiffening(double x)

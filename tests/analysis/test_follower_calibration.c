@@ -26,7 +26,7 @@ static int make_composite(void **state)
 {
     (void)state;
     const struct wb_test_info info = follower_info(0.1);
-    last_message_install();
+    keep_messages();
     follower_dataset(&composite, &info, last_force, STEPS);
     return 0;
 }
@@ -165,7 +165,7 @@ static void tests_of_both_kinds_are_not_averaged(void **state)
     struct wb_curve curve;
     int group[3];
     assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
-    assert_said("under a follower force");
+    assert_message("under a follower force");
     assert_int_equal(wb_curve_group(datasets, 3, group), 2);
     assert_true(group[0] == 0 && group[1] == 1 && group[2] == 0);
 }
@@ -212,7 +212,7 @@ static void turned_around_the_curve_is_what_the_deflection_control_finds(void **
     for (int i = 0; i < curve.n; i++)
         curve.deflection[i] = -curve.deflection[i];
     assert_int_equal(wb_curve_turn(&turned, &curve, 1.0 * mm, NULL), WB_ERR_DATA);
-    assert_said("is its sign reversed?");
+    assert_message("is its sign reversed?");
     wb_curve_release(&curve);
 }
 
@@ -322,12 +322,12 @@ static void a_follower_test_that_did_not_yield_is_refused(void **state)
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     homogenised_dataset(&dataset, &info, &elastic);
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
-    assert_said("of the linear elastic prediction's");
+    assert_message("of the linear elastic prediction's");
     wb_dataset_release(&dataset);
     /* 5.3 mm at 6 N. */
     follower_dataset(&dataset, &info, 6.0, STEPS);
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_DATA);
-    assert_said("yield is not reached: the first loading ends at 5.00 mm");
+    assert_message("yield is not reached: the first loading ends at 5.00 mm");
     wb_dataset_release(&dataset);
 }
 

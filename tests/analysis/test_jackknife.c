@@ -13,7 +13,7 @@ enum {
 static int silence(void **state)
 {
     (void)state;
-    last_message_install();
+    keep_messages();
     return 0;
 }
 
@@ -119,7 +119,7 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
     /* Afterwards errors are errors again. */
     wb_error("a test");
     assert_int_equal(n_errors, 1);
-    last_message_install();
+    keep_messages();
     for (int i = 0; i < 2; i++)
         wb_dataset_release(&dataset[i]);
 }

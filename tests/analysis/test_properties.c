@@ -11,7 +11,7 @@ static char path[WB_PATH];
 static int make_folder(void **state)
 {
     (void)state;
-    last_message_install();
+    keep_messages();
     if (!mkdtemp(folder))
         return -1;
     return wb_file_join(path, folder, "properties.yaml") == WB_OK ? 0 : -1;
@@ -141,7 +141,7 @@ static void an_existing_file_is_kept_without_force(void **state)
     wb_calibrate_default_settings(&settings);
     write_some(&result);
     assert_int_equal(wb_properties_write(path, &result, &settings, NULL, 0, false), WB_ERR_EXISTS);
-    assert_said("--force");
+    assert_message("--force");
 }
 
 static void errors_name_file_line_and_key(void **state)
@@ -151,13 +151,13 @@ static void errors_name_file_line_and_key(void **state)
     static const char unknown[] = "wire: mine\ncolour: red\n";
     assert_int_equal(wb_file_write(path, unknown, sizeof unknown - 1), WB_OK);
     assert_int_equal(wb_properties_read(path, &read), WB_ERR_FORMAT);
-    assert_said("properties.yaml:2");
-    assert_said("colour");
+    assert_message("properties.yaml:2");
+    assert_message("colour");
     static const char negative[] = "wire: mine\nouter_diameter_mm: 2\nmass_per_length_kg_m: 0.01\n"
                                    "youngs_modulus_MPa: -5\n";
     assert_int_equal(wb_file_write(path, negative, sizeof negative - 1), WB_OK);
     assert_int_equal(wb_properties_read(path, &read), WB_ERR_FORMAT);
-    assert_said("youngs_modulus_MPa");
+    assert_message("youngs_modulus_MPa");
     assert_int_not_equal(wb_properties_read("/nonexistent/p.yaml", &read), WB_OK);
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "tests/check.h"
+#include "tests/messages.h"
 
 static char folder[] = "/tmp/wirebench-surface-XXXXXX";
 
@@ -184,15 +184,6 @@ static void what_is_not_finite_is_not_written(void **unused)
     wb_bundle_fields_release(&f);
 }
 
-static char said[512];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context, (void)level, (void)domain;
-    snprintf(said, sizeof said, "%s", message);
-}
-
 #define HEAD "body,kind,station,node,x_mm,y_mm,z_mm,von_mises_MPa\n"
 #define AT(j, k, y, z) "0,wire," j "," k ",0," y "," z ",1\n"
 #define RING(j) "0,wire," j ",0,0,0,0,1\n0,wire," j ",1,0,1,0,1\n0,wire," j ",2,0,0,1,1\n"
@@ -226,7 +217,7 @@ static void bad_files_are_refused(void **unused)
         HEAD RING("0") "0,wire,1,0,0,0,0,1e10\n0,wire,1,1,0,1,0,1\n0,wire,1,2,0,0,1,1\n",
     };
     struct wb_surface surface;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct wb_reason why = {.text = ""};
         assert_int_equal(wb_file_write(path_of_file(), bad[i], strlen(bad[i])), WB_OK);
@@ -234,12 +225,12 @@ static void bad_files_are_refused(void **unused)
             fail_msg("was taken: %s", bad[i]);
         assert_int_equal(surface.n, 0);
         /* Who asks for the reason gets the same message, and the log gets nothing. */
-        char logged[sizeof said];
-        memcpy(logged, said, sizeof said);
-        said[0] = '\0';
+        char logged[sizeof kept.last];
+        memcpy(logged, kept.last, sizeof kept.last);
+        kept.last[0] = '\0';
         assert_int_equal(wb_surface_read(&surface, folder, &why), WB_ERR_FORMAT);
         assert_string_equal(why.text, logged);
-        assert_string_equal(said, "");
+        assert_string_equal(kept.last, "");
     }
     /* The place of a node that is beyond int, and 100000 modulo 2^32. */
     struct wb_text text = {0};
@@ -248,9 +239,9 @@ static void bad_files_are_refused(void **unused)
         wb_text_append(&text, "0,wire,0,%d,0,%d,0,1\n", k, k % 2);
     wb_text_append(&text, "0,wire,42950,67296,0,0,0,1\n");
     assert_int_equal(wb_file_write(path_of_file(), wb_text_string(&text), text.length), WB_OK);
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     assert_int_equal(wb_surface_read(&surface, folder, NULL), WB_ERR_FORMAT);
-    assert_non_null(strstr(said, ":100002: node: station 42950, node 67296 is not the next one"));
+    assert_message(":100002: node: station 42950, node 67296 is not the next one");
     wb_text_release(&text);
 
     static const char good[] = HEAD RING("0") RING("1");

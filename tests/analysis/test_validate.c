@@ -11,7 +11,7 @@ static const struct wb_calibrate_settings settings = {.step = 1e-3, .n_elements 
 static int silence(void **state)
 {
     (void)state;
-    last_message_install();
+    keep_messages();
     return 0;
 }
 
@@ -174,17 +174,17 @@ static void another_wire_is_refused_and_another_name_warned_about(void **state)
     const struct wb_dataset *const datasets[] = {&dataset};
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, NULL),
                      WB_ERR_DATA);
-    assert_said("wire 'type1' (1.1 mm across)");
+    assert_message("wire 'type1' (1.1 mm across)");
     struct wb_reason why = {.text = ""};
-    last_message_install();
+    keep_messages();
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, &why),
                      WB_ERR_DATA);
     assert_non_null(strstr(why.text, "wire 'type1' (1.1 mm across)"));
-    assert_string_equal(last_message, "");
+    assert_string_equal(kept.last, "");
     properties = true_properties(2);
     strcpy(properties.wire, "type3 of another roll");
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, NULL), WB_OK);
-    assert_said("of the same diameter");
+    assert_message("of the same diameter");
     wb_validate_result_release(&result);
     wb_dataset_release(&dataset);
 }
@@ -208,7 +208,7 @@ static void a_prediction_that_does_not_converge_is_an_error(void **state)
     const struct wb_dataset *const datasets[] = {&dataset};
     assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &coarse, NULL),
                      WB_ERR_CONVERGENCE);
-    assert_said("does not converge");
+    assert_message("does not converge");
     assert_int_equal(wb_validate_shape(&properties, &dataset.info, 1e9, 9, x, y),
                      WB_ERR_CONVERGENCE);
     wb_dataset_release(&dataset);

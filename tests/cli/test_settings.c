@@ -14,7 +14,7 @@
 #include "cli/solve.h"
 #include "daq/bend_test.h"
 #include "fe/model/bundle_override.h"
-#include "tests/check.h"
+#include "tests/messages.h"
 
 /* A command whose arguments end in a file that is not there: exit code 1, once its options are
  * read. */
@@ -127,7 +127,7 @@ static void try_option(const struct command *command, const struct wb_setting *r
     const int code = tool(arguments);
     snprintf(expected, sizeof expected, "--%s: expected ", row->option);
     if (code != (is_good ? 1 : 2) || (strstr(err, expected) != NULL) == is_good)
-        fail_msg("'%s': exit code %d, message '%s'", arguments, code, err);
+        fail_msg("'%s': exit code %d, kept.last '%s'", arguments, code, err);
 }
 
 static void try_options(const struct command *command, const struct wb_setting *row)
@@ -199,20 +199,11 @@ static void options_of_other_kinds_are_refused(void **unused)
                      row->option, row->type == WB_SETTING_BOOLEAN ? "" : "=1");
             snprintf(expected, sizeof expected, ", not for %s", kinds[k].name);
             if (tool(arguments) != 2 || !strstr(err, expected) || !strstr(err, row->option))
-                fail_msg("'%s': message '%s'", arguments, err);
+                fail_msg("'%s': kept.last '%s'", arguments, err);
         }
 }
 
 /* --- files --- */
-
-static char message[4096];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context, (void)level, (void)domain;
-    snprintf(message, sizeof message, "%s", text);
-}
 
 static void campaigns_have_the_rows_ranges(void **unused)
 {
@@ -232,7 +223,7 @@ static void campaigns_have_the_rows_ranges(void **unused)
             wb_calibrate_default_settings(&from_option);
             snprintf(text, sizeof text, "%.60s: %.60s\n", row->name, values[k].text);
             assert_int_equal(wb_config_parse(&config, text, "settings"), WB_OK);
-            wb_log_set_sink(keep_message, NULL);
+            keep_messages();
             const enum wb_status status =
                 wb_campaign_read_settings(wb_config_root(config), &from_file);
             wb_log_set_sink(NULL, NULL);
@@ -260,13 +251,12 @@ static bool is_out_of_range(const char *run, const char *interface)
             "interface: {%s}\nloads: {strand_mm: 760, weight: true}\nrun: {%s}\n",
             interface, run);
     fclose(file);
-    message[0] = '\0';
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     const enum wb_status status = wb_bundle_model_read(&model, path);
     wb_log_set_sink(NULL, NULL);
-    if (status != WB_OK && !message[0])
-        fail_msg("no message about '%s'", run);
-    return strstr(message, "is out of range") != NULL;
+    if (status != WB_OK && !kept.last[0])
+        fail_msg("no kept.last about '%s'", run);
+    return strstr(kept.last, "is out of range") != NULL;
 }
 
 /* The same in a campaign of bundles, for all its runs. */
@@ -301,9 +291,9 @@ static void try_bundle(const struct wb_setting *row, bool is_run, bool is_overri
                                               : ", friction: 0.4",
                  row == wb_bundle_model_cohesion_setting ? "" : ", cohesive_stiffness_N_mm3: 30");
         if (is_out_of_range(is_run ? setting : "rows: 5", interface) == values[k].is_good)
-            fail_msg("bundle file with '%s': message '%s'", setting, message);
+            fail_msg("bundle file with '%s': kept.last '%s'", setting, kept.last);
         if (is_overridden && is_out_of_range_in_a_campaign(setting) == values[k].is_good)
-            fail_msg("campaign with '%s': message '%s'", setting, err);
+            fail_msg("campaign with '%s': kept.last '%s'", setting, err);
     }
 }
 

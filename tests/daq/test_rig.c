@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/units.h"
-#include "tests/check.h"
+#include "tests/messages.h"
 
 static const char good[] = "name: paper bench\n"                         /* line 1 */
                            "gravity_m_s2: 9.81\n"                        /* 2 */
@@ -39,32 +39,17 @@ static const char good[] = "name: paper bench\n"                         /* line
                            "  force_mN: 280\n"                           /* 30 */
                            "  travel_mm: 58\n";                          /* 31 */
 
-static char last_message[1024];
-static int n_messages;
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context;
-    (void)level;
-    (void)domain;
-    snprintf(last_message, sizeof last_message, "%s", message);
-    n_messages++;
-}
-
-static int catch_messages(void **state)
+static int set_up(void **state)
 {
     (void)state;
-    n_messages = 0;
-    last_message[0] = '\0';
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     return 0;
 }
 
-static int release_messages(void **state)
+static int tear_down(void **state)
 {
     (void)state;
-    wb_log_set_sink(NULL, NULL);
+    release_messages();
     return 0;
 }
 
@@ -84,7 +69,7 @@ static struct wb_rig parse(const char *text)
     memset(&rig, 0xff, sizeof rig);
     const enum wb_status status = wb_rig_parse(text, "bench.yaml", &rig);
     if (status != WB_OK)
-        fail_msg("refused: %s", last_message);
+        fail_msg("refused: %s", kept.last);
     return rig;
 }
 
@@ -118,7 +103,7 @@ static void every_value_arrives_in_si(void **state)
     assert_close(rig.limits.stream_lost, 1.0, 0.0);
     assert_false(rig.is_virtual);
     assert_close(rig.time_scale, 1.0, 0.0);
-    assert_int_equal(n_messages, 0);
+    assert_int_equal(kept.n, 0);
 }
 
 static void line_protocol_keys_are_read(void **state)
@@ -193,8 +178,8 @@ static void a_tare_with_a_counterweight_needs_one(void **state)
     char *const at = strstr(text, "counterweight_g: 2.7");
     memcpy(at, "counterweight_g: 0.0", strlen("counterweight_g: 0.0"));
     assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig), WB_ERR_FORMAT);
-    assert_non_null(strstr(last_message, "tare"));
-    assert_non_null(strstr(last_message, "strand.counterweight_g"));
+    assert_message("tare");
+    assert_message("strand.counterweight_g");
 }
 
 static void strand_and_limits_may_be_left_out(void **state)
@@ -260,13 +245,12 @@ static void bad_files_are_refused_with_file_line_and_key(void **state)
         struct wb_rig rig, before;
         memset(&rig, 0x77, sizeof rig);
         before = rig;
-        n_messages = 0;
+        kept.n = 0;
         assert_int_equal(wb_rig_parse(edited(cases[i].from, cases[i].to), "bench.yaml", &rig),
                          WB_ERR_FORMAT);
-        if (!strstr(last_message, cases[i].expected))
-            fail_msg("message '%s' lacks '%s'", last_message, cases[i].expected);
-        assert_non_null(strstr(last_message, "bench.yaml:"));
-        assert_int_equal(n_messages, 1);
+        assert_message(cases[i].expected);
+        assert_message("bench.yaml:");
+        assert_int_equal(kept.n, 1);
         assert_memory_equal(&rig, &before, sizeof rig); /* results are written on success only */
     }
 }
@@ -286,7 +270,7 @@ static void missing_file_is_named(void **state)
     (void)state;
     struct wb_rig rig;
     assert_int_equal(wb_rig_read("/nowhere/bench.yaml", &rig), WB_ERR_NOT_FOUND);
-    assert_non_null(strstr(last_message, "/nowhere/bench.yaml"));
+    assert_message("/nowhere/bench.yaml");
 }
 
 static void a_virtual_rig_that_is_gone_is_told(void **state)
@@ -297,7 +281,7 @@ static void a_virtual_rig_that_is_gone_is_told(void **state)
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/rig.yaml", folder);
     assert_int_equal(wb_rig_read(path, &rig), WB_ERR_NOT_FOUND);
-    assert_non_null(strstr(last_message, "has it said ready?"));
+    assert_message("has it said ready?");
     char text[4096];
     snprintf(text, sizeof text, "virtual: true\n%s", good);
     char *const port = strstr(text, "serial:");
@@ -305,8 +289,8 @@ static void a_virtual_rig_that_is_gone_is_told(void **state)
     memcpy(port, "pty:/dv", 7); /* whatever follows: there is no such port */
     assert_int_equal(wb_file_write(path, text, strlen(text)), WB_OK);
     assert_int_equal(wb_rig_read(path, &rig), WB_ERR_NOT_FOUND);
-    assert_non_null(strstr(last_message, "no longer runs; start it again"));
-    assert_int_equal(n_messages, 2);
+    assert_non_null(strstr(kept.last, "no longer runs; start it again"));
+    assert_int_equal(kept.n, 2);
     unlink(path);
     rmdir(folder);
 }
@@ -322,33 +306,33 @@ static void checks_after_the_table_tell_the_line_of_their_key(void **state)
         line += *at == '\n';
     snprintf(place, sizeof place, "bench.yaml:%d: sign: expected +1 or -1", line);
     assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig), WB_ERR_FORMAT);
-    assert_non_null(strstr(last_message, place));
+    assert_message(place);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_value_arrives_in_si, catch_messages,
-                                        release_messages),
-        cmocka_unit_test_setup_teardown(line_protocol_keys_are_read, catch_messages,
-                                        release_messages),
+        cmocka_unit_test_setup_teardown(every_value_arrives_in_si, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(line_protocol_keys_are_read, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(virtual_rigs_are_marked_and_their_truth_is_ignored,
-                                        catch_messages, release_messages),
+                                        set_up, tear_down),
         cmocka_unit_test_setup_teardown(tare_is_unloaded_unless_it_is_with_the_counterweight,
-                                        catch_messages, release_messages),
-        cmocka_unit_test_setup_teardown(a_tare_with_a_counterweight_needs_one, catch_messages,
-                                        release_messages),
-        cmocka_unit_test_setup_teardown(strand_and_limits_may_be_left_out, catch_messages,
-                                        release_messages),
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_tare_with_a_counterweight_needs_one, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(strand_and_limits_may_be_left_out, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(bad_files_are_refused_with_file_line_and_key,
-                                        catch_messages, release_messages),
-        cmocka_unit_test_setup_teardown(balances_take_no_generic_keys, catch_messages,
-                                        release_messages),
-        cmocka_unit_test_setup_teardown(a_virtual_rig_that_is_gone_is_told, catch_messages,
-                                        release_messages),
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(balances_take_no_generic_keys, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_virtual_rig_that_is_gone_is_told, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(checks_after_the_table_tell_the_line_of_their_key,
-                                        catch_messages, release_messages),
-        cmocka_unit_test_setup_teardown(missing_file_is_named, catch_messages, release_messages),
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(missing_file_is_named, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,6 @@
 #include "daq/specimen.h"
 
-#include "tests/check.h"
-
-static char last_message[1024];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context;
-    (void)level;
-    (void)domain;
-    snprintf(last_message, sizeof last_message, "%s", message);
-}
+#include "tests/messages.h"
 
 static const char good[] = "wire: type1\n"
                            "length_mm: 85\n"
@@ -54,7 +43,7 @@ static void bad_files_are_refused_with_the_reason(void **state)
         {"56.7", "-56.7", "markers_mm: -56.7 is out of range"},
         {"marker_offset_mm: 1.0\n", "", "marker_offset_mm: this key is missing"},
     };
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char text[1024];
         struct wb_specimen specimen;
@@ -63,8 +52,7 @@ static void bad_files_are_refused_with_the_reason(void **state)
         snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, cases[i].to,
                  at + strlen(cases[i].from));
         assert_int_equal(wb_specimen_parse(text, "s.yaml", &specimen), WB_ERR_FORMAT);
-        if (!strstr(last_message, cases[i].expected))
-            fail_msg("message '%s' lacks '%s'", last_message, cases[i].expected);
+        assert_message(cases[i].expected);
     }
     wb_log_set_sink(NULL, NULL);
 }

@@ -10,24 +10,12 @@
 
 #include "base/log.h"
 #include "daq/stream.h"
-#include "tests/check.h"
-
-static char message[1024]; /* the last one logged */
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context;
-    (void)level;
-    (void)domain;
-    snprintf(message, sizeof message, "%s", text);
-}
+#include "tests/messages.h"
 
 static int set_up(void **state)
 {
     (void)state;
-    message[0] = '\0';
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     return 0;
 }
 
@@ -78,12 +66,10 @@ static void wrong_addresses_are_refused_with_what_is_expected(void **state)
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         struct wb_stream *stream = (struct wb_stream *)&stream;
-        message[0] = '\0';
+        kept.last[0] = '\0';
         assert_int_not_equal(wb_stream_open(&stream, wrong[i].address), WB_OK);
         assert_null(stream);
-        if (!strstr(message, wrong[i].word))
-            fail_msg("address '%s': message '%s' lacks '%s'", wrong[i].address, message,
-                     wrong[i].word);
+        assert_message(wrong[i].word);
     }
 }
 
@@ -92,7 +78,7 @@ static void unknown_host_is_named(void **state)
     (void)state;
     struct wb_stream *stream = NULL;
     assert_int_equal(wb_stream_open(&stream, "udp:no-such-host.invalid:1510"), WB_ERR_NOT_FOUND);
-    assert_non_null(strstr(message, "no-such-host.invalid"));
+    assert_message("no-such-host.invalid");
 }
 
 /* --- pseudo-terminals --- */
@@ -153,7 +139,7 @@ static void second_opener_of_a_pseudo_terminal_is_told_it_is_busy(void **state)
     struct wb_stream *first = NULL, *second = NULL;
     assert_int_equal(wb_stream_open(&first, address), WB_OK);
     assert_int_equal(wb_stream_open(&second, address), WB_ERR_BUSY);
-    assert_non_null(strstr(message, slave));
+    assert_message(slave);
     wb_stream_close(first);
     assert_int_equal(wb_stream_open(&second, address), WB_OK);
     wb_stream_close(second);
@@ -172,7 +158,7 @@ static void closed_master_is_a_lost_stream(void **state)
     size_t n = 0;
     wait_readable(stream);
     assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_ERR_IO);
-    assert_non_null(strstr(message, "went away"));
+    assert_message("went away");
     wb_stream_close(stream);
 }
 
@@ -195,13 +181,13 @@ static void missing_pseudo_terminal_and_plain_file_are_told_apart(void **state)
     (void)state;
     struct wb_stream *stream = NULL;
     assert_int_equal(wb_stream_open(&stream, "pty:/dev/pts/no-such"), WB_ERR_NOT_FOUND);
-    assert_non_null(strstr(message, "does not exist"));
+    assert_message("does not exist");
     char path[] = "/tmp/wb-stream-XXXXXX", address[64];
     int descriptor = mkstemp(path);
     assert_true(descriptor >= 0);
     snprintf(address, sizeof address, "pty:%s", path);
     assert_int_equal(wb_stream_open(&stream, address), WB_ERR_IO);
-    assert_non_null(strstr(message, "not a terminal"));
+    assert_message("not a terminal");
     close(descriptor);
     unlink(path);
 }
@@ -332,7 +318,7 @@ static void datagrams_of_strangers_are_ignored(void **state)
     assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
     assert_int_equal(n, 4);
     assert_memory_equal(got, "good", 4);
-    assert_non_null(strstr(message, "127.0.0.2 ignored"));
+    assert_message("127.0.0.2 ignored");
     wb_stream_close(stream);
     close(stranger);
     close(server);
@@ -388,7 +374,7 @@ static void multicast_data_and_unicast_answers_come_through_one_stream(void **st
              port, group_port);
     struct wb_stream *stream = NULL, *other = NULL;
     if (wb_stream_open(&stream, address) != WB_OK) {
-        print_message("no multicast on the loopback here: %s\n", message);
+        print_message("no multicast on the loopback here: %s\n", kept.last);
         skip();
     }
     struct in_addr loopback = {.s_addr = htonl(INADDR_LOOPBACK)};

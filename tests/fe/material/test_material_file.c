@@ -1,5 +1,5 @@
 /* Material files: every key, and every refusal with file, line and key. */
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -7,14 +7,6 @@
 #include "fe/material/material_file.h"
 
 static char path[] = "/tmp/wirebench-material-XXXXXX";
-static char message[1024];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context, (void)level, (void)domain;
-    snprintf(message, sizeof message, "%s", text);
-}
 
 static enum wb_status read_text(const char *text, struct wb_material_file *file)
 {
@@ -22,8 +14,7 @@ static enum wb_status read_text(const char *text, struct wb_material_file *file)
     assert_non_null(out);
     fputs(text, out);
     assert_int_equal(fclose(out), 0);
-    message[0] = '\0';
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     const enum wb_status status = wb_material_file_read(file, path);
     wb_log_set_sink(NULL, NULL);
     return status;
@@ -105,8 +96,8 @@ static void refusals_name_line_and_key(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_material_file file = {.name = "untouched"};
         assert_int_equal(read_text(cases[i].text, &file), WB_ERR_FORMAT);
-        if (strncmp(message, path, strlen(path)) != 0 || !strstr(message, cases[i].expected))
-            fail_msg("case %zu: '%s' does not hold '%s'", i, message, cases[i].expected);
+        if (strncmp(kept.last, path, strlen(path)) != 0 || !strstr(kept.last, cases[i].expected))
+            fail_msg("case %zu: '%s' does not hold '%s'", i, kept.last, cases[i].expected);
         assert_string_equal(file.name, "untouched");
     }
 }

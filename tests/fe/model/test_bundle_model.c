@@ -1,6 +1,6 @@
 /* Bundle models: every key of the file, every refusal with file, line and key, and what follows
  * from the section: the paper's diameters and densities, and bounds of the flexural rigidity. */
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -11,18 +11,8 @@
 
 static char folder[] = "/tmp/wirebench-bundle-XXXXXX";
 static char model_path[64];
-static char message[2048];
-static int messages;
 static struct wb_bundle_model model;
 static struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context, (void)level, (void)domain;
-    messages++;
-    snprintf(message, sizeof message, "%s", text);
-}
 
 static void write_beside(const char *name, const char *text)
 {
@@ -37,9 +27,7 @@ static void write_beside(const char *name, const char *text)
 static enum wb_status try_text(const char *text)
 {
     write_beside("model.yaml", text);
-    message[0] = '\0';
-    messages = 0;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     const enum wb_status status = wb_bundle_model_read(&model, model_path);
     wb_log_set_sink(NULL, NULL);
     return status;
@@ -48,7 +36,7 @@ static enum wb_status try_text(const char *text)
 static void read_text(const char *text)
 {
     if (try_text(text) != WB_OK)
-        fail_msg("refused: %s", message);
+        fail_msg("refused: %s", kept.last);
 }
 
 /* A copy with one part changed; `text` has room for 4096 bytes. */
@@ -525,10 +513,9 @@ static void refuse(const char *source, const char *old, const char *new_text, co
     replace(text, source, old, new_text);
     if (try_text(text) == WB_OK)
         fail_msg("'%s' is not refused", new_text);
-    if (!strstr(message, expected))
-        fail_msg("'%s' is not in '%s'", expected, message);
-    assert_int_equal(messages, 1);
-    assert_non_null(strstr(message, "model.yaml"));
+    assert_message(expected);
+    assert_int_equal(kept.n, 1);
+    assert_message("model.yaml");
 }
 
 static void wrong_wires_are_refused(void **state)

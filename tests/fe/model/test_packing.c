@@ -1,6 +1,6 @@
 /* Packings: lattices, the smallest enclosing circle, neighbours, and packings found by relaxation
  * against the densest ones known. */
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -157,25 +157,15 @@ static void the_thickest_wire_sets_the_pitch(void **state)
     }
 }
 
-static char message[512];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context, (void)level, (void)domain;
-    snprintf(message, sizeof message, "%s", text);
-}
-
 static void refuse(int n, const double *diameter, enum wb_packing_lattice lattice, const char *part)
 {
     struct wb_packing packing;
-    wb_log_set_sink(keep_message, NULL);
-    message[0] = '\0';
+    keep_messages();
+    kept.last[0] = '\0';
     const enum wb_status status = wb_packing_on_lattice(&packing, n, diameter, lattice);
     wb_log_set_sink(NULL, NULL);
     assert_int_equal(status, WB_ERR_ARGUMENT);
-    if (!strstr(message, part))
-        fail_msg("'%s' is not in '%s'", part, message);
+    assert_message(part);
 }
 
 static void what_is_no_whole_patch_is_refused(void **state)

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/units.h"
-#include "tests/check.h"
+#include "tests/messages.h"
 
 static const char *const good = "name: sample\n"
                                 "conductor_diameter_mm: 0.70\n"
@@ -16,19 +16,6 @@ static const char *const properties = "properties:\n"
                                       "  yield_stress_MPa: 3.90\n"
                                       "  strength_coefficient_MPa: 3222\n"
                                       "  hardening_exponent: 0.99\n";
-
-static char last_message[1024];
-static int messages;
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context;
-    (void)level;
-    (void)domain;
-    snprintf(last_message, sizeof last_message, "%s", message);
-    messages++;
-}
 
 static void file_is_read_into_si_units(void **unused)
 {
@@ -75,7 +62,7 @@ static void bad_wires_are_refused_by_file_line_and_key(void **unused)
         {"  youngs_modulus_MPa: 5021", "  youngs_modulus_MPa: nan", "youngs_modulus_MPa"},
         {"  yield_stress_MPa: 3.90", "", "yield_stress_MPa"},
     };
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char text[1024], changed[1024];
         struct wb_wire wire = {.name = "untouched"};
@@ -84,11 +71,11 @@ static void bad_wires_are_refused_by_file_line_and_key(void **unused)
         assert_non_null(at);
         snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, cases[i].instead,
                  at + strlen(cases[i].line));
-        messages = 0;
+        kept.n = 0;
         assert_int_not_equal(wb_wire_parse(changed, "bad.yaml", &wire), WB_OK);
-        assert_int_equal(messages, 1);
-        assert_non_null(strstr(last_message, "bad.yaml"));
-        assert_non_null(strstr(last_message, cases[i].expected));
+        assert_int_equal(kept.n, 1);
+        assert_message("bad.yaml");
+        assert_message(cases[i].expected);
         assert_string_equal(wire.name, "untouched");
     }
     wb_log_set_sink(NULL, NULL);

@@ -1,6 +1,6 @@
 /* Wire models: every key of the file, every refusal with file, line and key, what follows from a
  * model, and the shipped ones. */
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -10,17 +10,7 @@
 
 static char folder[] = "/tmp/wirebench-model-XXXXXX";
 static char model_path[64];
-static char message[2048];
-static int messages;
 static struct wb_wire_model model;
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *text)
-{
-    (void)context, (void)level, (void)domain;
-    messages++;
-    snprintf(message, sizeof message, "%s", text);
-}
 
 static void write_file(const char *path, const char *text, size_t size)
 {
@@ -40,9 +30,7 @@ static void write_beside(const char *name, const char *text)
 static enum wb_status read_bytes(const char *text, size_t size)
 {
     write_file(model_path, text, size);
-    message[0] = '\0';
-    messages = 0;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     const enum wb_status status = wb_wire_model_read(&model, model_path);
     wb_log_set_sink(NULL, NULL);
     return status;
@@ -51,7 +39,7 @@ static enum wb_status read_bytes(const char *text, size_t size)
 static void read_text(const char *text)
 {
     if (read_bytes(text, strlen(text)) != WB_OK)
-        fail_msg("refused: %s", message);
+        fail_msg("refused: %s", kept.last);
 }
 
 static const char full[] = "name: residual-1\n"
@@ -485,9 +473,9 @@ static void refusals_name_line_and_key(void **state)
         const enum wb_status status = read_bytes(text, strlen(text));
         snprintf(expected, sizeof expected, "%s%s", cases[i].expected[0] == ':' ? model_path : "",
                  cases[i].expected);
-        if (status == WB_OK || messages != 1 || !strstr(message, expected))
+        if (status == WB_OK || kept.n != 1 || !strstr(kept.last, expected))
             fail_msg("'%s': status %d, %d messages, '%s' does not hold '%s'", cases[i].by, status,
-                     messages, message, expected);
+                     kept.n, kept.last, expected);
         assert_int_equal(model.name[0], '?');
     }
 }
@@ -527,11 +515,11 @@ static void whole_models_are_refused_for_what_they_are(void **state)
                  "  hardening_exponent: 1\n");
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const enum wb_status status = read_bytes(cases[i].text, strlen(cases[i].text));
-        if (status == WB_OK || messages != 1 || !strstr(message, cases[i].expected))
+        if (status == WB_OK || kept.n != 1 || !strstr(kept.last, cases[i].expected))
             fail_msg("case %zu: status %d, %d messages, '%s' does not hold '%s'", i, status,
-                     messages, message, cases[i].expected);
+                     kept.n, kept.last, cases[i].expected);
     }
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     assert_int_equal(wb_wire_model_read(&model, "/nowhere/model.yaml"), WB_ERR_NOT_FOUND);
     wb_log_set_sink(NULL, NULL);
 
@@ -541,10 +529,10 @@ static void whole_models_are_refused_for_what_they_are(void **state)
         n += snprintf(text + n, sizeof text - (size_t)n, "  - name: s%d\n    force_N: [0, 1, 0]\n",
                       i);
     assert_int_equal(read_bytes(text, (size_t)n), WB_ERR_FORMAT);
-    assert_non_null(strstr(message, ":8: history: expected a list of 1 to 16 steps"));
+    assert_message(":8: history: expected a list of 1 to 16 steps");
 }
 
-/* What is read is right or refused with a message, however the file is broken. */
+/* What is read is right or refused with a kept.last, however the file is broken. */
 static void broken_files_are_read_or_refused(void **state)
 {
     (void)state;
@@ -557,8 +545,8 @@ static void broken_files_are_read_or_refused(void **state)
             memcpy(text, full, n);
             text[i] = strange[(i / 3) % (sizeof strange - 1)];
             const enum wb_status status = read_bytes(text, way == 0 ? i : n);
-            if (status != WB_OK && messages == 0)
-                fail_msg("refused without a message at byte %zu", i);
+            if (status != WB_OK && kept.n == 0)
+                fail_msg("refused without a kept.last at byte %zu", i);
             refused += status != WB_OK;
         }
     }

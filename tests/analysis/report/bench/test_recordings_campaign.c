@@ -15,7 +15,7 @@ static char folder[] = "/tmp/wb-campaign-XXXXXX";
 static int make_folder(void **state)
 {
     (void)state;
-    last_message_install();
+    keep_messages();
     return mkdtemp(folder) ? 0 : -1;
 }
 
@@ -195,10 +195,10 @@ static void errors_name_file_line_and_key(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_recordings campaign;
-        last_message_install();
+        keep_messages();
         assert_int_not_equal(read_text(&campaign, cases[i].tail), WB_OK);
-        assert_said(cases[i].said);
-        assert_int_equal(message_count, 1);
+        assert_message(cases[i].said);
+        assert_int_equal(kept.n, 1);
         assert_null(campaign.wires);
     }
     struct wb_recordings campaign;
@@ -222,10 +222,10 @@ static void a_damaged_index_is_an_error(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_index index;
-        last_message_install();
+        keep_messages();
         assert_int_equal(wb_index_read(&index, write_file("bad.yaml", cases[i].text)),
                          WB_ERR_FORMAT);
-        assert_said(cases[i].said);
+        assert_message(cases[i].said);
         assert_null(index.entries);
     }
 }

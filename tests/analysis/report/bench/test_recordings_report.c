@@ -20,7 +20,7 @@ static char folder[] = "/tmp/wb-report-XXXXXX";
 static int make_folder(void **state)
 {
     (void)state;
-    last_message_install();
+    keep_messages();
     return mkdtemp(folder) ? 0 : -1;
 }
 
@@ -375,10 +375,10 @@ static void the_pdf_text_can_be_searched(void **state)
 static void a_full_folder_is_refused_and_force_replaces_only_the_reports_own_files(void **state)
 {
     const struct good *const good = *state;
-    last_message_install();
+    keep_messages();
     assert_int_equal(wb_report_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
                      WB_ERR_EXISTS);
-    assert_said("--force");
+    assert_message("--force");
     write_text("once/mine.txt", "mine");
     write_text("once/figures/mine.svg", "mine");
     write_text("once/figures/stale.svg", "an old figure");

@@ -2,6 +2,7 @@
  * report. The datasets are made up: forces of the published beams times a factor, so that errors
  * and fits are known. */
 #include "tests/analysis/made_up_bundle.h"
+#include "tests/messages.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,20 +18,11 @@ static struct wb_bundles campaign;
 static struct wb_bundles_results results;
 static struct wb_bundles whole_campaign;
 static struct wb_bundles_results whole_results;
-static char last_error[2000];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context, (void)domain;
-    if (level == WB_LOG_ERROR)
-        snprintf(last_error, sizeof last_error, "%s", message);
-}
 
 static int make_folder(void **state)
 {
     (void)state;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     return mkdtemp(folder) ? 0 : -1;
 }
 
@@ -223,8 +215,8 @@ static void a_campaign_that_makes_no_sense_is_refused_with_its_line(void **state
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         assert_true(read_campaign(wrong[i].text) != WB_OK);
-        if (!strstr(last_error, wrong[i].message))
-            fail_msg("'%s' does not say '%s'", last_error, wrong[i].message);
+        if (!strstr(kept.error, wrong[i].message))
+            fail_msg("'%s' does not say '%s'", kept.error, wrong[i].message);
     }
 }
 

@@ -1,6 +1,7 @@
 /* Comparison campaigns: reading, what their datasets may be, what is computed from them, and the
  * report. The datasets are made up of beam theory, so its numbers must come out. */
 #include "tests/analysis/bent_wire.h"
+#include "tests/messages.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,20 +14,11 @@
 static char folder[] = "/tmp/wb-comparison-XXXXXX";
 static struct wb_wires whole_comparison;
 static struct wb_wires_results whole_results;
-static char last_error[2000];
-
-static void keep_message(void *context, enum wb_log_level level, const char *domain,
-                         const char *message)
-{
-    (void)context, (void)domain;
-    if (level == WB_LOG_ERROR)
-        snprintf(last_error, sizeof last_error, "%s", message);
-}
 
 static int make_folder(void **state)
 {
     (void)state;
-    wb_log_set_sink(keep_message, NULL);
+    keep_messages();
     return mkdtemp(folder) ? 0 : -1;
 }
 
@@ -159,8 +151,8 @@ static void a_campaign_that_cannot_be_compared_is_refused_with_its_line(void **s
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         assert_true(read_campaign(wrong[i].text) != WB_OK);
-        if (!strstr(last_error, wrong[i].message))
-            fail_msg("'%s' does not say '%s'", last_error, wrong[i].message);
+        if (!strstr(kept.error, wrong[i].message))
+            fail_msg("'%s' does not say '%s'", kept.error, wrong[i].message);
     }
 }
 
@@ -178,7 +170,7 @@ static void a_wire_with_weight_cannot_be_compared(void **state)
     free(bytes);
     assert_true(read_campaign("kind: comparison\ntitle: x\nelastic: {model: ./heavy.yaml}\n"
                               "elastoplastic: {model: follower-8awg}\n") != WB_OK);
-    assert_non_null(strstr(last_error, "c.yaml:3: model: 'follower-8awg-elastic' has weight"));
+    assert_non_null(strstr(kept.error, "c.yaml:3: model: 'follower-8awg-elastic' has weight"));
 }
 
 /* --- datasets --- */
