@@ -1,6 +1,6 @@
-/* Everything that a campaign's report tells: its recordings aligned, its wires calibrated and
- * validated. Alignment and the wires run side by side on several threads; the numbers do not depend
- * on how many.
+/* The results of a campaign of recordings: each recording aligned, each wire calibrated and
+ * validated. Recordings and wires are computed in parallel on several threads; the numbers do not
+ * depend on how many.
  */
 #ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_RESULTS_H
 #define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_RESULTS_H

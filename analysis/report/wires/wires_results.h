@@ -1,5 +1,5 @@
-/* Everything that the report of a comparison tells: its datasets read and checked, the 1D
- * properties fitted to the solid, and what is computed beside them.
+/* The results of a comparison of wires: its datasets read and checked, the properties of a 1D rod
+ * fitted to the solid, and the rods that are computed for comparison.
  */
 #ifndef WB_ANALYSIS_REPORT_WIRES_WIRES_RESULTS_H
 #define WB_ANALYSIS_REPORT_WIRES_WIRES_RESULTS_H
