@@ -77,13 +77,6 @@ WB_MUST_CHECK enum wb_status wb_recordings_results_compute(struct wb_recordings_
 void wb_recordings_results_release(
     struct wb_recordings_results *results); /* accepts a zeroed one */
 
-/* The two ends of wb_recordings_results_compute(), for results that come from elsewhere: makes all
- * places with nothing in them, and after they were filled counts and decides what is complete,
- * where it comes from and whether it keeps the limits. */
-WB_MUST_CHECK enum wb_status wb_recordings_results_init(struct wb_recordings_results *results,
-                                                        const struct wb_recordings *campaign);
-void wb_recordings_results_judge(struct wb_recordings_results *results);
-
 /* Capacity of a rig's load cell as its maker states it: the mass, kg, that weighs so much under the
  * rig's gravity; NaN when that is not known. */
 double wb_recordings_results_capacity(const struct wb_rig *rig);

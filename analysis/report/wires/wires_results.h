@@ -82,9 +82,6 @@ int wb_wires_results_judge(const struct wb_wires_results *results,
 /* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_wires_cost(const struct wb_wires_results *results, int index);
 
-/* Distance of a usable run's tip from the exact elastic one, over that one's displacement. */
-double wb_wires_tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run);
-
 /* By how much E of the jacket moves when that of the core moves by a part `change` and the
  * effective modulus of eq. 8 stays, Pa. */
 double wb_wires_split(const struct wb_wire_model *model, double change);
