@@ -11,28 +11,57 @@
 
 #define WB_LOG_DOMAIN "align"
 
-#define DEFAULT_LONGEST_GAP 0.1 /* s */
-#define DEFAULT_ROW_RATE 20.0   /* 1/s */
-#define DEFAULT_SHAPE_STEP (0.5 * WB_MM)
-#define DEFAULT_LOST_STEPS (0.3 * WB_MM)
+#define DEFAULT_ROW_RATE 20.0 /* 1/s */
+
+static const struct wb_setting setting_rows[] = {
+    {.name = "longest_gap_s",
+     .unit = "s",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, longest_gap),
+     .least = 1e-3,
+     .largest = 60.0,
+     .fallback = 0.1,
+     .option = "longest-gap-s",
+     .argument = "S",
+     .help = "Make no row where force or shape is missing for longer"},
+    {.name = "row_rate",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, row_rate),
+     .least = 0.1,
+     .largest = 1e4,
+     .otherwise = "20",
+     .option = "row-rate",
+     .argument = "N",
+     .help = "Rows per second of bench time"},
+    {.name = "shape_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, shape_step),
+     .scale = WB_MM,
+     .least = 0.0,
+     .largest = 1000.0,
+     .fallback = 0.5,
+     .option = "shape-step-mm",
+     .argument = "H",
+     .help = "Deflection between stored shapes"},
+    {.name = "lost_steps_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, lost_steps),
+     .scale = WB_MM,
+     .least = 0.01,
+     .largest = 100.0,
+     .fallback = 0.3,
+     .option = "lost-steps-mm",
+     .argument = "H",
+     .help = "Flag the stage when commanded and measured travel differ by more"},
+};
+
+const struct wb_setting_table wb_align_table = {.rows = setting_rows, .n = WB_COUNT(setting_rows)};
 
 void wb_align_default_settings(struct wb_align_settings *settings)
 {
-    *settings = (struct wb_align_settings){
-        .longest_gap = DEFAULT_LONGEST_GAP,
-        .row_rate = 0.0,
-        .shape_step = DEFAULT_SHAPE_STEP,
-        .lost_steps = DEFAULT_LOST_STEPS,
-    };
-}
-
-static enum wb_status check_settings(const struct wb_align_settings *settings)
-{
-    if (!(settings->longest_gap > 0.0) || !(settings->row_rate >= 0.0) ||
-        !(settings->shape_step >= 0.0) || !(settings->lost_steps > 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "longest gap and lost steps must be positive, row rate and "
-                                        "shape step not negative");
-    return WB_OK;
+    wb_setting_fill(&wb_align_table, settings);
 }
 
 /* To 1e-9 m, N, s and rad: far below all noise, and short in the file. */
@@ -170,7 +199,7 @@ enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_pa
                             const struct wb_align_settings *settings)
 {
     memset(dataset, 0, sizeof *dataset);
-    WB_TRY(check_settings(settings));
+    WB_TRY(wb_setting_check(&wb_align_table, settings, NULL));
     /* GSL's own handler aborts; its codes are looked at here. */
     gsl_set_error_handler_off();
     struct wb_align *const align = calloc(1, sizeof *align);

@@ -14,7 +14,7 @@
 /* After a jump a first-order filter of the known delay has settled to 3e-4. */
 #define SETTLE_DELAYS 8.0
 #define LEAST_SETTLE 0.2 /* s */
-/* A zero-load stretch must hold so many rows. */
+/* A stretch without load has at least this number of rows. */
 #define LEAST_ZERO_ROWS 6
 /* Part of the largest tension above which a strand is taut beyond doubt. */
 #define TAUT_PART 0.3
@@ -116,7 +116,7 @@ static bool hangs_slack(const struct wb_align *align, const struct wb_align_row 
 /* --- zero drift --- */
 
 /* Mean reading of a zero-load stretch, rows first..last-1, without what the filter still carries
- * at its ends; `begins` tells that it continues the tare. */
+ * at its ends; with `begins` it continues the tare. */
 static void add_zero(struct wb_align *align, size_t first, size_t last, bool begins)
 {
     const double settle = settle_time(align);
@@ -250,7 +250,7 @@ static void describe_drift(struct wb_align *align)
         return;
     }
     /* Only the tare and the rest of the time before the test (which may have moved the zero by its
-     * noise): nothing in the recording tells drift from load. */
+     * noise): nothing in the recording separates drift from load. */
     correction.value = zeros[0].value;
     const double rate = TYPICAL_DRIFT * align->rig.load_cell.capacity / 60.0;
     correction.uncertainty = rate * outside;

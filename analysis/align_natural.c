@@ -5,7 +5,7 @@
  *
  *     y(s) = n(s) + P/EI (L s^2/2 - s^3/6) - w/EI (s^4/24 - L s^3/6 + L^2 s^2/4)
  *
- * Wherever the tip is held (by strand or rest), its height Y = y(L) tells P, and then
+ * Wherever the tip is held (by strand or rest), P follows from its height Y = y(L), and then
  *
  *     y(s) - Y p(u) - w L^4/EI (p(u)/8 - g(u)) = n(s) - n(L) p(u)
  *
@@ -50,7 +50,7 @@
 /* An extrapolated bow is uncertain by this part of itself too: what yielded before the first row
  * was stiffer than all that is seen, and the parabola is too shallow there. */
 #define EXTRAPOLATION_ERROR 0.1
-/* A second term must be so many times its uncertainty. */
+/* A second term is kept when it is this number of times its uncertainty. */
 #define SIGNIFICANT 3.0
 #define MAX_TERMS 2
 #define MAX_OBSERVATIONS (WB_SPECIMEN_MAX_MARKERS + 1)
@@ -388,7 +388,7 @@ enum wb_status wb_align_natural(struct wb_align *align)
     observe_markers(align, weight, align->stiffness, &obs);
     if (obs.n > 0 && !estimate_terms(&obs, 0, 1, length, &from_markers))
         from_markers.bow = from_markers.bow_deviation = (double)NAN;
-    /* Force tells the bow only when the tare is known to be that of an unloaded cell. */
+    /* The bow follows from the force only when the tare is known to be that of an unloaded cell. */
     if (align->slack_seen) {
         struct loading loading;
         double path;

@@ -27,18 +27,21 @@
 #include "daq/specimen.h"
 #include "fe/model/wire.h"
 
+/* One reading of the load cell. */
 struct wb_align_reading {
     int64_t t_ns; /* arrival */
     double t;     /* s, bench time, filter delay removed */
     double force; /* N, as read; NaN when not valid */
 };
 
+/* What the stage reported of itself. */
 struct wb_align_report_point {
     int64_t t_ns;
     double t;      /* s, bench time of arrival */
     double travel; /* m, commanded, downwards from the first report */
 };
 
+/* A growing array; where one is declared stands what its items are. */
 struct wb_align_list {
     void *items; /* owned */
     size_t n, capacity;
@@ -136,7 +139,7 @@ struct wb_align {
 struct wb_align_reading *wb_align_readings(const struct wb_align *align);
 struct wb_align_report_point *wb_align_reports(const struct wb_align *align);
 
-/* The parts, in order. Each logs its failure. */
+/* The steps of the alignment, in the order in which they are made. Each logs its failure. */
 WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const char *path);
 WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_markers(struct wb_align *align);

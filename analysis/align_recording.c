@@ -14,7 +14,7 @@
 
 /* A device clock that jumps by more than this, s of host time, was restarted. */
 #define JUMP 0.5
-/* Stamps over less than this, s of device time, do not tell a skew. */
+/* Stamps over less than this, s of device time, are too short to find a skew from. */
 #define LEAST_SPAN 5.0
 
 /* Adds a copy of an item. */

@@ -14,7 +14,7 @@
 
 #define WB_LOG_DOMAIN "align"
 
-/* The clamp's path is smoothed over +- so many seconds of bench time. */
+/* The clamp's path is smoothed over this time before and after, s of bench time. */
 #define CLAMP_WINDOW 0.1
 /* A row whose markers miss the smooth axis by more is made without the worst of them. */
 #define BAD_RESIDUAL (0.6 * WB_MM)
@@ -22,11 +22,11 @@
 /* A turning point is one when the clamp then goes back by this part of its whole range. */
 #define TURN_PART 0.05
 #define LEAST_TURN (1.0 * WB_MM)
-/* The clamp's speed is taken over +- so many seconds of bench time. */
+/* The clamp's speed is taken over this time before and after, s of bench time. */
 #define SPEED_WINDOW 0.05
 /* Reports that the host read later than this, s of bench time, are left out. */
 #define MOST_LATENESS 0.1
-/* So many reports at either end of the test tell where the stage stands. */
+/* Reports at either end of the test from which the stage's place there is taken. */
 #define STANDING 5
 
 /* --- markers --- */
@@ -492,7 +492,7 @@ struct stage_fit {
     double lost_at;      /* m, commanded: where the difference passed half of `returned` */
 };
 
-/* Whether the stage went both ways, so that a lag can be told from an offset. */
+/* Whether the stage went both ways, so that a lag differs from an offset. */
 static bool goes_both_ways(const struct pair *pairs, size_t n)
 {
     double slowest = 0.0, fastest = 0.0;

@@ -135,7 +135,7 @@ enum wb_status wb_axis_fit(struct wb_axis_fit *fit, double length,
     if (n < 1)
         return WB_ERR_DATA;
     struct wb_axis_fit current = {.length = length};
-    /* Both coordinates of a marker count, but x hardly tells anything of a straight wire. */
+    /* Both coordinates of a marker count, but x hardly depends on the shape of a straight wire. */
     current.n_terms = n < WB_AXIS_FIT_TERMS ? n : WB_AXIS_FIT_TERMS;
     /* Start from the chord to the last marker: the angle of a uniformly bent wire is twice its. */
     current.terms[0] = 2.0 * atan2(markers->y[n - 1] - markers->offset, markers->x[n - 1]) *

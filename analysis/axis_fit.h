@@ -1,10 +1,10 @@
-/* A wire's axis from its markers.
+/* The axis of a wire, fitted to the markers that sit on it.
  *
  * A marker sits `offset` from the axis along the local normal (-sin theta, cos theta). The axis is
  * inextensible and leaves the clamp along x: its angle is theta(s) = sum_i a_i (s/L)^i, i = 1..m,
  *     x(s) = int cos theta,  y(s) = int sin theta,
- * fitted to all markers by least squares (Gauss-Newton). The fit serves for the slope only: a
- * marker's point on the axis is its measured place less offset times the fitted normal.
+ * fitted to all markers by least squares (Gauss-Newton). Only the slope of the fit is used:
+ * a marker's point on the axis is its measured place less offset times the fitted normal.
  */
 #ifndef WB_ANALYSIS_AXIS_FIT_H
 #define WB_ANALYSIS_AXIS_FIT_H
@@ -28,8 +28,8 @@ struct wb_axis_fit_markers {
     double offset;       /* m, from the axis along the local normal */
 };
 
-/* Fits the axis of a wire of `length` (m). WB_ERR_DATA, silent, when there is no marker or the fit
- * does not settle. */
+/* Fits the axis of a wire of `length` (m). WB_ERR_DATA without a message when there is no marker
+ * or the iteration does not converge. */
 WB_MUST_CHECK enum wb_status wb_axis_fit(struct wb_axis_fit *fit, double length,
                                          const struct wb_axis_fit_markers *markers);
 

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -51,19 +52,181 @@ struct objective {
     double first_strength, first_exponent;
     double *value;         /* (curve->n) */
     enum wb_status status; /* of the last evaluation that failed other than by convergence */
+    struct wb_reason *why; /* NULL: failures are logged */
     int evaluations, failed;
 };
 
+static const struct wb_setting rows[] = {
+    {.name = "elastic_zone",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, elastic_zone),
+     .least = 1e-3,
+     .largest = 0.3,
+     .fallback = 0.05,
+     .option = "elastic-zone",
+     .argument = "R",
+     .help = "Deflection over length for E, eq. 10",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "yield_point",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_point),
+     .least = 1e-3,
+     .largest = 0.3,
+     .otherwise = "as the elastic zone",
+     .option = "yield-point",
+     .argument = "R",
+     .help = "Deflection over length for the yield stress, eq. 11; the paper's tables show 0.04",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, step),
+     .scale = WB_MM,
+     .least = 1e-2,
+     .largest = 100.0,
+     .fallback = 0.5,
+     .option = "step-mm",
+     .argument = "H",
+     .help = "Deflection step of the comparison",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "straight",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, straight),
+     .option = "straight",
+     .help = "Ignore the natural shape (bow) of the samples",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "restart",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, restart),
+     .fallback = true,
+     .option = "no-restart",
+     .help = "Do not start once more from the optimum",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_elements),
+     .least = 2,
+     .largest = 2000,
+     .fallback = 50,
+     .option = "elements",
+     .argument = "N",
+     .help = "Beam elements",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "fibres",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, n_fibres),
+     .least = 4,
+     .largest = 1000,
+     .fallback = 20,
+     .option = "fibres",
+     .argument = "N",
+     .help = "Fibres over the diameter",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
+                WB_CALIBRATE_REPORT},
+    {.name = "size_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, size_tolerance),
+     .least = 1e-12,
+     .largest = 0.05,
+     .fallback = 1e-4,
+     .option = "size-tolerance",
+     .argument = "X",
+     .help = "Stop when the simplex is smaller, in units of K0 and n0",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "error_tolerance",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, error_tolerance),
+     .least = 0.0,
+     .largest = 1.0,
+     .fallback = 1e-4,
+     .option = "error-tolerance",
+     .argument = "X",
+     .help = "Stop when the error is smaller, over F_max",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_REPORT},
+    {.name = "max_iterations",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_calibrate_settings, max_iterations),
+     .least = 1,
+     .largest = 100000,
+     .fallback = 200,
+     .option = "max-iterations",
+     .argument = "N",
+     .help = "Stop after N iterations of a simplex",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
+    {.name = "bow_corrected",
+     .type = WB_SETTING_BOOLEAN,
+     .offset = offsetof(struct wb_calibrate_settings, bow_corrected),
+     .option = "bow-corrected",
+     .help = "Take what the samples' bows make of eqs. 10 and 11 out of E and the yield stress",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN},
+    {.name = "youngs_modulus_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, youngs_modulus),
+     .scale = WB_MPA,
+     .least = 1e-3,
+     .largest = 1e7,
+     .otherwise = "eq. 10",
+     .option = "youngs-modulus-mpa",
+     .argument = "E",
+     .help = "Young's modulus",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "yield_stress_MPa",
+     .unit = "MPa",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, yield_stress),
+     .scale = WB_MPA,
+     .least = 1e-6,
+     .largest = 1e7,
+     .otherwise = "eq. 11",
+     .option = "yield-stress-mpa",
+     .argument = "S",
+     .help = "Yield stress",
+     .applies = WB_CALIBRATE_COMMAND},
+    {.name = "force_step_N",
+     .unit = "N",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, force_step),
+     .least = 1e-9,
+     .largest = 1e6,
+     .otherwise = "a step for each row, at most 100",
+     .option = "force-step-n",
+     .argument = "H",
+     .help = "Force step of the comparison of tests with a follower force, whose deflections are "
+             "compared at equal forces",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+    {.name = "largest_deflection_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_calibrate_settings, largest_deflection),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e6,
+     .otherwise = "nothing",
+     .option = "largest-deflection-mm",
+     .argument = "D",
+     .help = "Leave out what comes later in the loading",
+     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE},
+};
+
+const struct wb_setting_table wb_calibrate_table = {.rows = rows, .n = WB_COUNT(rows)};
+
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings)
 {
-    *settings = (struct wb_calibrate_settings){
-        .elastic_zone = 0.05,
-        .size_tolerance = 1e-4,
-        .error_tolerance = 1e-4,
-        .max_iterations = 200,
-        .restart = true,
-        .step = 0.5 * WB_MM,
-    };
+    *settings = (struct wb_calibrate_settings){.progress = NULL};
+    wb_setting_fill(&wb_calibrate_table, settings);
+}
+
+struct wb_calibrate_settings
+wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings)
+{
+    struct wb_calibrate_settings meant = *settings;
+    if (!(meant.yield_point > 0.0))
+        meant.yield_point = meant.elastic_zone;
+    return meant;
 }
 
 const char *wb_calibrate_end_text(enum wb_calibrate_end end)
@@ -96,30 +259,14 @@ static struct wb_curve_grid grid_of(const struct wb_calibrate_settings *settings
 
 static double yield_point(const struct wb_calibrate_settings *settings)
 {
-    return settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
+    return wb_calibrate_settings_meant(settings).yield_point;
 }
 
-static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings)
+static struct wb_computed_settings computed_settings(const struct wb_calibrate_settings *settings,
+                                                     struct wb_reason *why)
 {
     return (struct wb_computed_settings){settings->straight, settings->n_elements,
-                                         settings->n_fibres};
-}
-
-static enum wb_status check_settings(const struct wb_calibrate_settings *settings)
-{
-    const double zone = settings->elastic_zone, point = yield_point(settings);
-    if (!(fmin(zone, point) >= WB_CALIBRATE_LEAST_ZONE &&
-          fmax(zone, point) <= WB_CALIBRATE_LARGEST_ZONE))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "elastic zone and yield point must be from %g to %g of the length, not %g "
-                       "and %g",
-                       WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE, zone, point);
-    if (!(settings->step > 0.0) || !(settings->size_tolerance > 0.0) ||
-        !(settings->error_tolerance >= 0.0) || settings->max_iterations < 1 ||
-        !(settings->force_step >= 0.0) || !(settings->largest_deflection >= 0.0))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "steps, largest deflection, tolerances and iterations must be positive");
-    return WB_OK;
+                                         settings->n_fibres, why};
 }
 
 /* How far outside the domain a point lies, 0 inside. */
@@ -169,7 +316,7 @@ static enum wb_status add_step(struct wb_calibrate_result *result,
     const size_t n = (size_t)result->n_path;
     struct wb_calibrate_step *const path = realloc(result->path, (n + 1) * sizeof *path);
     if (!path)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the optimiser's path");
+        return wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the optimiser's path");
     path[n] = (struct wb_calibrate_step){
         .strength_coefficient = gsl_vector_get(best, 0) * objective->first_strength,
         .hardening_exponent = gsl_vector_get(best, 1) * objective->first_exponent,
@@ -215,7 +362,7 @@ static enum wb_status iterate(struct wb_calibrate_result *result, struct objecti
         /* The only failure is a contraction that hits a non-finite value, which evaluate() never
          * returns. */
         if (gsl_multimin_fminimizer_iterate(minimizer) != GSL_SUCCESS)
-            return wb_fail(WB_ERR_CONVERGENCE, "the simplex could not go on");
+            return wb_fail_to(objective->why, WB_ERR_CONVERGENCE, "the simplex could not go on");
     }
 }
 
@@ -232,7 +379,7 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
     enum wb_status status = WB_OK;
     double first_error = 0.0;
     if (!minimizer || !start || !edges) {
-        status = wb_fail(WB_ERR_MEMORY, "no memory for the simplex");
+        status = wb_fail_to(objective->why, WB_ERR_MEMORY, "no memory for the simplex");
     } else {
         for (size_t i = 0; i < 2; i++) {
             gsl_vector_set(start, i, at[i]);
@@ -240,7 +387,8 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
         }
         first_error = evaluate(start, objective);
         if (gsl_multimin_fminimizer_set(minimizer, &function, start, edges) != GSL_SUCCESS)
-            status = wb_fail(WB_ERR_CONVERGENCE, "the first simplex could not be made");
+            status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
+                                "the first simplex could not be made");
     }
     if (status == WB_OK)
         status = iterate(result, objective, minimizer, first_error, settings);
@@ -250,11 +398,11 @@ static enum wb_status minimise(struct wb_calibrate_result *result, struct object
         at[1] = gsl_vector_get(best, 1);
         if (result->path[result->n_path - 1].error >= PENALTY &&
             result->end != WB_CALIBRATE_STOPPED)
-            status = wb_fail(WB_ERR_CONVERGENCE,
-                             "wire '%s': the beam converges nowhere around the first guess "
-                             "(K0 = %.4g MPa, n0 = %.4g)",
-                             result->info.wire, objective->first_strength / WB_MPA,
-                             objective->first_exponent);
+            status = wb_fail_to(objective->why, WB_ERR_CONVERGENCE,
+                                "wire '%s': the beam converges nowhere around the first guess "
+                                "(K0 = %.4g MPa, n0 = %.4g)",
+                                result->info.wire, objective->first_strength / WB_MPA,
+                                objective->first_exponent);
     }
     if (minimizer)
         gsl_multimin_fminimizer_free(minimizer);
@@ -273,10 +421,11 @@ static enum wb_status check_share(const struct objective *objective,
     const double predicted = objective->value[curve->n - 1];
     const double share = curve->force[curve->n - 1] / predicted;
     if (predicted > 0.0 && share > ELASTIC_SHARE)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': yield is not reached: at %.2f mm the force is still %.0f %% of "
-                       "the linear elastic prediction's",
-                       info->wire, curve->max_deflection / WB_MM, 100.0 * share);
+        return wb_fail_to(
+            objective->why, WB_ERR_DATA,
+            "wire '%s': yield is not reached: at %.2f mm the force is still %.0f %% of "
+            "the linear elastic prediction's",
+            info->wire, curve->max_deflection / WB_MM, 100.0 * share);
     return WB_OK;
 }
 
@@ -292,10 +441,10 @@ static enum wb_status check_leaves(const struct objective *objective,
         highest = fmax(highest, fabs(objective->value[i]));
     }
     if (apart < (1.0 - ELASTIC_SHARE) * highest)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': yield is not reached: up to %.4g N the deflection is within "
-                       "%.2f mm of the linear elastic prediction's",
-                       info->wire, curve->max_force, apart / WB_MM);
+        return wb_fail_to(objective->why, WB_ERR_DATA,
+                          "wire '%s': yield is not reached: up to %.4g N the deflection is within "
+                          "%.2f mm of the linear elastic prediction's",
+                          info->wire, curve->max_force, apart / WB_MM);
     return WB_OK;
 }
 
@@ -381,7 +530,7 @@ static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
         struct wb_first_guess computed;
         double at[2] = {1.0, 1.0};
         WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material,
-                                       &objective->evaluations));
+                                       &objective->evaluations, objective->why));
         objective->material = result->material;
         scale_closed_forms(&objective->material, measured, &computed, settings);
         objective->first_strength = result->material.strength_coefficient;
@@ -460,7 +609,8 @@ struct leaving_out {
  * `material` on. */
 static enum wb_status refit_curve(const struct leaving_out *how,
                                   const struct wb_bow_samples *samples,
-                                  struct wb_material *material, bool *settled)
+                                  struct wb_material *material, bool *settled,
+                                  struct wb_reason *why)
 {
     const struct wb_calibrate_settings *const settings = how->settings;
     struct wb_computed *computed;
@@ -468,11 +618,11 @@ static enum wb_status refit_curve(const struct leaving_out *how,
     struct wb_first_guess guess;
     wb_curve_mean_info(samples->datasets, samples->n, &info);
     WB_TRY(wb_first_guess_run(&guess, samples->curve, &info, samples->elastic_zone,
-                              samples->yield_point));
+                              samples->yield_point, why));
     struct wb_first_guess before = {.youngs_modulus = material->youngs_modulus,
                                     .yield_stress = material->yield_stress};
     if (settings->bow_corrected && !settings->straight)
-        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations));
+        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations, why));
     scale_closed_forms(material, &guess, &before, settings);
     WB_TRY(wb_computed_create(&computed, &info, material, samples->how));
     const enum wb_status status =
@@ -482,28 +632,30 @@ static enum wb_status refit_curve(const struct leaving_out *how,
 }
 
 static enum wb_status refit_samples(void *context, const struct wb_dataset *const *datasets, int n,
-                                    struct wb_material *material, bool *settled)
+                                    struct wb_material *material, bool *settled,
+                                    struct wb_reason *why)
 {
     const struct leaving_out *const how = context;
     const struct wb_curve_grid grid = grid_of(how->settings);
-    const struct wb_computed_settings computed = computed_settings(how->settings);
+    const struct wb_computed_settings computed = computed_settings(how->settings, why);
     struct wb_curve curve;
     *settled = false;
-    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
     const struct wb_bow_samples samples = {
         datasets, n, &curve, how->settings->elastic_zone, yield_point(how->settings), &computed};
-    const enum wb_status status = refit_curve(how, &samples, material, settled);
+    const enum wb_status status = refit_curve(how, &samples, material, settled, why);
     wb_curve_release(&curve);
     return status;
 }
 
 enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
                                        const struct wb_dataset *const *datasets, int n,
-                                       const struct wb_calibrate_settings *settings)
+                                       const struct wb_calibrate_settings *settings,
+                                       struct wb_reason *why)
 {
     struct leaving_out how = {settings, &result->evaluations};
     const struct wb_jackknife_refit refit = {refit_samples, &how};
-    return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit);
+    return wb_jackknife_run(result->deviation, datasets, n, &result->material, &refit, why);
 }
 
 /* --- all --- */
@@ -511,14 +663,15 @@ enum wb_status wb_calibrate_deviations(struct wb_calibrate_result *result,
 static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                                       const struct wb_curve *curve,
                                       const struct wb_dataset *const *datasets, int n,
-                                      const struct wb_calibrate_settings *settings)
+                                      const struct wb_calibrate_settings *settings,
+                                      struct wb_reason *why)
 {
     struct wb_first_guess guess;
     wb_curve_mean_info(datasets, n, &result->info);
     wb_curve_warn_unknown_shapes(datasets, n);
     result->bow_spread = bow_spread(datasets, n);
     WB_TRY(wb_first_guess_run(&guess, curve, &result->info, settings->elastic_zone,
-                              yield_point(settings)));
+                              yield_point(settings), why));
     result->first_strength_coefficient = guess.strength_coefficient;
     result->first_hardening_exponent = guess.hardening_exponent;
     struct objective objective = {
@@ -531,15 +684,16 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
                      .hardening_exponent = guess.hardening_exponent},
         .first_strength = guess.strength_coefficient,
         .first_exponent = guess.hardening_exponent,
+        .why = why,
     };
     if (settings->youngs_modulus > 0.0)
         objective.material.youngs_modulus = settings->youngs_modulus;
     if (settings->yield_stress > 0.0)
         objective.material.yield_stress = settings->yield_stress;
-    const struct wb_computed_settings how = computed_settings(settings);
+    const struct wb_computed_settings how = computed_settings(settings, why);
     objective.value = malloc((size_t)curve->n * sizeof *objective.value);
     if (!objective.value)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d points", curve->n);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", curve->n);
     enum wb_status status =
         wb_computed_create(&objective.computed, &result->info, &objective.material, &how);
     if (status == WB_OK)
@@ -559,26 +713,26 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     wb_computed_destroy(objective.computed);
     free(objective.value);
     if (status == WB_OK && result->end != WB_CALIBRATE_STOPPED)
-        status = wb_calibrate_deviations(result, datasets, n, settings);
+        status = wb_calibrate_deviations(result, datasets, n, settings, why);
     return status;
 }
 
 enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
                                 const struct wb_dataset *const *datasets, int n,
-                                const struct wb_calibrate_settings *settings)
+                                const struct wb_calibrate_settings *settings, struct wb_reason *why)
 {
     /* GSL's default handler aborts the program. */
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, silence_gsl);
     const double started = wb_progress_thread_cpu();
-    WB_TRY(check_settings(settings));
+    WB_TRY(wb_setting_check(&wb_calibrate_table, settings, why));
     struct wb_calibrate_result made = {0};
     struct wb_curve curve;
     for (int k = 0; k < 4; k++)
         made.deviation[k] = (double)NAN;
     const struct wb_curve_grid grid = grid_of(settings);
-    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid));
-    const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings);
+    WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
+    const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings, why);
     wb_curve_release(&curve);
     if (status != WB_OK) {
         wb_calibrate_result_release(&made);

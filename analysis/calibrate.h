@@ -3,12 +3,13 @@
  * E from eq. 10, sigma_Y from eq. 11 (elastic zone and yield point are settings), n0 and K0 from
  * eqs. 12-16, then Nelder-Mead (GSL nmsimplex2) over K and n from the paper's simplex on E_L2 of
  * eq. 17, with the beam under the test's real loading and the samples' mean natural shape. E and
- * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size test
- * sees both.
+ * sigma_Y stay fixed meanwhile. K and n are sought in units of K0 and n0, so that GSL's size of
+ * the simplex counts both alike.
  *
- * Of a follower test deflections are compared at equal forces, over the whole of the loading:
- * forces at equal deflections would end short of the largest deflection and tell nothing of the
- * curling beyond. Errors are then over the largest deflection.
+ * In a follower test, whose force stays normal to the wire's tip, deflections are compared at equal
+ * forces over the whole of the loading: forces at equal deflections would end short of the largest
+ * deflection and leave out how the wire curls up beyond it. Errors are then divided by the largest
+ * deflection.
  */
 #ifndef WB_ANALYSIS_CALIBRATE_H
 #define WB_ANALYSIS_CALIBRATE_H
@@ -16,39 +17,50 @@
 #include <stdbool.h>
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
+#include "base/setting.h"
 #include "base/status.h"
 #include "fe/material/material.h"
 
-/* Range of elastic zone and yield point: beyond it the closed forms do not hold by far. */
-#define WB_CALIBRATE_LEAST_ZONE 1e-3
-#define WB_CALIBRATE_LARGEST_ZONE 0.3
-
+/* Settings of calibration and of validation. Defaults and ranges: wb_calibrate_table. */
 struct wb_calibrate_settings {
-    double elastic_zone;    /* deflection over length for eq. 10; default 0.05 */
-    double yield_point;     /* the same for eq. 11; 0 (default): as elastic_zone */
-    double youngs_modulus;  /* Pa; given instead of eq. 10; 0 (default): eq. 10 */
-    double yield_stress;    /* Pa; given instead of eq. 11; 0 (default): eq. 11 */
-    double size_tolerance;  /* stop when the simplex' size is below, in units of (K0, n0); 1e-4 */
-    double error_tolerance; /* stop when E_L2 is below, relative to its scale F_max
-                               sqrt(delta_max), or its like of a follower test; default 1e-4 */
-    int max_iterations;     /* default 200 per start */
-    bool straight;          /* ignore the natural shape */
-    bool bow_corrected;     /* take what the samples' bows make of eqs. 10 and 11 out of E and
-                               sigma_Y, two passes; default false: the equations as printed */
-    bool restart;           /* restart once from the optimum; default true */
-    double step;            /* m, deflection step of the comparison grid; default 0.5 mm */
-    double force_step;      /* N, the same of follower tests; 0 (default): see analysis/curve.h */
-    double largest_deflection; /* m: what comes later in the loading is left out; 0 (default):
-                                  nothing */
-    int n_elements;            /* 0: 50 */
-    int n_fibres;              /* 0: 20 */
+    double elastic_zone;       /* deflection over length for eq. 10 */
+    double yield_point;        /* the same for eq. 11; 0: as elastic_zone */
+    double youngs_modulus;     /* Pa; given instead of eq. 10; 0: eq. 10 */
+    double yield_stress;       /* Pa; given instead of eq. 11; 0: eq. 11 */
+    double size_tolerance;     /* stop when the simplex' size is below, in units of (K0, n0) */
+    double error_tolerance;    /* stop when E_L2 is below, relative to its scale F_max
+                                  sqrt(delta_max), or its like of a follower test */
+    int max_iterations;        /* per start */
+    bool straight;             /* ignore the natural shape */
+    bool bow_corrected;        /* take what the samples' bows make of eqs. 10 and 11 out of E and
+                                  sigma_Y, two passes; false: the equations as printed */
+    bool restart;              /* restart once from the optimum */
+    double step;               /* m, deflection step of the comparison grid */
+    double force_step;         /* N, the same of follower tests; 0: see analysis/curve.h */
+    double largest_deflection; /* m: what comes later in the loading is left out; 0: nothing */
+    int n_elements;            /* of the beam */
+    int n_fibres;              /* over its diameter */
     /* Called after each iteration; may be NULL. Returns false to stop (Ctrl-C). */
     bool (*progress)(void *context, int evaluation, double error, double size);
     void *progress_context;
 };
 
-/* Fills in the defaults above; no progress. */
+/* Where a setting may be given, or is named. */
+enum {
+    WB_CALIBRATE_COMMAND = 1,  /* wirebench calibrate */
+    WB_CALIBRATE_VALIDATE = 2, /* wirebench validate */
+    WB_CALIBRATE_CAMPAIGN = 4, /* `settings` and `fit` of campaigns */
+    WB_CALIBRATE_REPORT = 8    /* `settings` of report.json */
+};
+extern const struct wb_setting_table wb_calibrate_table;
+
+/* Fills in the defaults; no progress. */
 void wb_calibrate_default_settings(struct wb_calibrate_settings *settings);
+
+/* The settings with the yield point that they mean. */
+struct wb_calibrate_settings
+wb_calibrate_settings_meant(const struct wb_calibrate_settings *settings);
 
 enum wb_calibrate_end {
     WB_CALIBRATE_SIZE,       /* the simplex became small */
@@ -101,10 +113,12 @@ int wb_calibrate_remarks(const struct wb_calibrate_result *result,
                          const char *remarks[WB_CALIBRATE_MOST_REMARKS]);
 
 /* Calibrates on the average curve of `n` datasets. Unusable data (yield not reached, too few
- * points, reversed sign, ...) is WB_ERR_DATA with the reason. */
+ * points, reversed sign, ...) is WB_ERR_DATA. `why` receives why it failed; NULL: that is logged.
+ */
 WB_MUST_CHECK enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
                                               const struct wb_dataset *const *datasets, int n,
-                                              const struct wb_calibrate_settings *settings);
+                                              const struct wb_calibrate_settings *settings,
+                                              struct wb_reason *why);
 void wb_calibrate_result_release(struct wb_calibrate_result *result);
 
 #endif

@@ -15,6 +15,7 @@ struct wb_computed {
     struct wb_cantilever *cantilever;
     double zero;  /* N, vertical force at zero deflection; 0 of a follower test */
     double begin; /* what a curve begins with: no force, or a follower test's deflection, m */
+    struct wb_reason *why;
 };
 
 enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test_info *info,
@@ -24,11 +25,13 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
     *out = NULL;
     struct wb_computed *const computed = calloc(1, sizeof *computed);
     if (!computed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a computed test");
+        return wb_fail_to(settings->why, WB_ERR_MEMORY, "no memory for a computed test");
     computed->info = *info;
+    computed->why = settings->why;
     if (info->is_follower && info->strand_length != 0.0) {
         wb_computed_destroy(computed);
-        return wb_fail(WB_ERR_ARGUMENT, "wire '%s': a follower force and a strand", info->wire);
+        return wb_fail_to(settings->why, WB_ERR_ARGUMENT,
+                          "wire '%s': a follower force and a strand", info->wire);
     }
     enum wb_status status = wb_section_init_circle(&computed->section, info->outer_diameter,
                                                    material, settings->n_fibres);
@@ -55,6 +58,11 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
     }
     *out = computed;
     return WB_OK;
+}
+
+struct wb_reason *wb_computed_reason(const struct wb_computed *computed)
+{
+    return computed->why;
 }
 
 void wb_computed_destroy(struct wb_computed *computed)
@@ -89,12 +97,12 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
     WB_TRY(move(computed, follows ? WB_CONTROL_FOLLOWER_FORCE : WB_CONTROL_DEFLECTION, 0.0, &point,
                 &force, reached));
     if (*reached && point.slack)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries "
-                       "the counterweight above zero deflection, where the strand hangs slack: "
-                       "there is no force to zero on",
-                       computed->info.wire, computed->info.sample,
-                       wb_dataset_bow(&computed->info) / WB_MM);
+        return wb_fail_to(computed->why, WB_ERR_DATA,
+                          "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries "
+                          "the counterweight above zero deflection, where the strand hangs slack: "
+                          "there is no force to zero on",
+                          computed->info.wire, computed->info.sample,
+                          wb_dataset_bow(&computed->info) / WB_MM);
     computed->zero = *reached && !follows ? force : 0.0;
     computed->begin = follows ? point.deflection : 0.0;
     return WB_OK;
@@ -119,8 +127,8 @@ enum wb_status wb_computed_push(struct wb_computed *computed, double force, doub
     struct wb_cantilever_point point;
     double given;
     if (!computed->info.is_follower)
-        return wb_fail(WB_ERR_ARGUMENT, "wire '%s': a test without a follower force",
-                       computed->info.wire);
+        return wb_fail_to(computed->why, WB_ERR_ARGUMENT,
+                          "wire '%s': a test without a follower force", computed->info.wire);
     WB_TRY(move(computed, WB_CONTROL_FOLLOWER_FORCE, force, &point, &given, reached));
     if (*reached)
         *deflection = point.deflection;

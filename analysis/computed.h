@@ -1,10 +1,10 @@
-/* The bending test computed: the 1D beam under a measured test's own loading (strand or follower
- * force, counterweight, weight, natural shape), its force zeroed as the test's is.
+/* A measured bending test, computed: the 1D beam with the test's own natural shape under its own
+ * loading (strand or follower force, counterweight, weight), and the same zero of force.
  *
  * The force is the vertical part of the strand's tension less its value at zero deflection on the
  * first loading: each run starts from the virgin wire, brings the tip to zero deflection, takes
- * that force as zero, and goes on upwards. The force of a follower test is the follower's size, and
- * its runs start from the wire under its weight only. All memory is taken at creation; a run resets
+ * that force as zero, and goes on upwards. In a follower test the force is the follower's size, and
+ * a run starts from the wire under its weight only. All memory is taken at creation; a run resets
  * the state.
  */
 #ifndef WB_ANALYSIS_COMPUTED_H
@@ -13,15 +13,17 @@
 #include <stdbool.h>
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/material/material.h"
 
 struct wb_computed; /* opaque */
 
 struct wb_computed_settings {
-    bool straight;  /* ignore the natural shape */
-    int n_elements; /* 0: 50 */
-    int n_fibres;   /* 0: 20 */
+    bool straight;         /* ignore the natural shape */
+    int n_elements;        /* 0: 50 */
+    int n_fibres;          /* 0: 20 */
+    struct wb_reason *why; /* why a run failed is written here; NULL (default): logged */
 };
 
 /* For one test; `material` gives the shear stiffness (E and nu) and may be exchanged by each run.
@@ -30,10 +32,13 @@ WB_MUST_CHECK enum wb_status wb_computed_create(struct wb_computed **out,
                                                 const struct wb_test_info *info,
                                                 const struct wb_material *material,
                                                 const struct wb_computed_settings *settings);
+/* Where it writes why a run failed; NULL: it logs that. */
+struct wb_reason *wb_computed_reason(const struct wb_computed *computed);
 void wb_computed_destroy(struct wb_computed *computed); /* accepts NULL */
 
-/* Starts a run with a material: virgin wire, tip brought to zero deflection, zero taken; of a
- * follower test no force. *reached is false when that did not converge; the run is then at its end.
+/* Starts a run with a material: virgin wire, tip brought to zero deflection, zero taken; in a
+ * follower test the wire without a force. *reached is false when that did not converge; the run is
+ * then at its end.
  */
 WB_MUST_CHECK enum wb_status wb_computed_start(struct wb_computed *computed,
                                                const struct wb_material *material, bool *reached);

@@ -73,8 +73,8 @@ bool wb_csv_table_parse_number(const char *text, int shift, double *value)
 enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
                                    const char *expected, const char *text)
 {
-    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", table->path, table->line,
-                   table->columns[column], expected, text);
+    return wb_fail_to(table->why, WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", table->path,
+                      table->line, table->columns[column], expected, text);
 }
 
 enum wb_status wb_csv_table_integer(const struct wb_csv_table *table, int column,
@@ -100,8 +100,8 @@ static enum wb_status split(const struct wb_csv_table *table, char *line, char *
         n++;
     }
     if (n != table->n_columns)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", table->path, table->line, n,
-                       table->n_columns);
+        return wb_fail_to(table->why, WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", table->path,
+                          table->line, n, table->n_columns);
     return WB_OK;
 }
 
@@ -109,21 +109,21 @@ static enum wb_status check_header(const struct wb_csv_table *table, char *const
 {
     for (int i = 0; i < table->n_columns; i++)
         if (strcmp(fields[i], table->columns[i]) != 0)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: expected column '%s', not '%.40s'", table->path,
-                           table->line, table->columns[i], fields[i]);
+            return wb_fail_to(table->why, WB_ERR_FORMAT, "%s:%d: expected column '%s', not '%.40s'",
+                              table->path, table->line, table->columns[i], fields[i]);
     return WB_OK;
 }
 
 enum wb_status wb_csv_table_parse(struct wb_csv_table *table, char *text, size_t size)
 {
     if (table->n_columns > WB_CSV_TABLE_MOST)
-        return wb_fail(WB_ERR_ARGUMENT, "%s: a table of %d columns, at most %d", table->path,
-                       table->n_columns, WB_CSV_TABLE_MOST);
+        return wb_fail_to(table->why, WB_ERR_ARGUMENT, "%s: a table of %d columns, at most %d",
+                          table->path, table->n_columns, WB_CSV_TABLE_MOST);
     if (memchr(text, '\0', size))
-        return wb_fail(WB_ERR_FORMAT, "%s: a byte 0: not a text file", table->path);
+        return wb_fail_to(table->why, WB_ERR_FORMAT, "%s: a byte 0: not a text file", table->path);
     if (size == 0)
-        return wb_fail(WB_ERR_FORMAT, "%s:1: empty file, expected a line of column names",
-                       table->path);
+        return wb_fail_to(table->why, WB_ERR_FORMAT,
+                          "%s:1: empty file, expected a line of column names", table->path);
     for (char *next = text; next && *next;) {
         char *fields[WB_CSV_TABLE_MOST];
         char *const line = strsep(&next, "\n");
@@ -146,7 +146,7 @@ enum wb_status wb_csv_table_read(struct wb_csv_table *table, const char *folder,
     WB_TRY(wb_file_join(path, folder, name));
     if (!wb_file_exists(path))
         return WB_OK;
-    WB_TRY(wb_file_read(path, &text, &size));
+    WB_TRY(wb_file_read_with_reason(path, &text, &size, table->why));
     table->path = path;
     const enum wb_status status = wb_csv_table_parse(table, text, size);
     table->path = NULL;
@@ -154,13 +154,19 @@ enum wb_status wb_csv_table_read(struct wb_csv_table *table, const char *folder,
     return status;
 }
 
-enum wb_status wb_csv_table_write(const char *folder, const char *name, const char *text,
-                                  size_t size)
+void wb_csv_table_append_header(struct wb_text *text, const char *const *columns, int n)
+{
+    for (int i = 0; i < n; i++)
+        wb_text_append(text, "%s%s", i == 0 ? "" : ",", columns[i]);
+    wb_text_append(text, "\n");
+}
+
+enum wb_status wb_csv_table_write(const char *folder, const char *name, const struct wb_text *text)
 {
     char path[WB_PATH];
     WB_TRY(wb_file_join(path, folder, name));
     if (text)
-        return wb_file_write(path, text, size);
+        return wb_file_write_text(path, text);
     if (unlink(path) != 0 && errno != ENOENT)
         return wb_fail(WB_ERR_IO, "cannot remove '%s': %s", path, strerror(errno));
     return WB_OK;

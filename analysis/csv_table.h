@@ -8,7 +8,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/reason.h"
 #include "base/status.h"
+#include "base/text.h"
 
 enum {
     WB_CSV_TABLE_MOST = 32 /* columns */
@@ -24,6 +26,7 @@ struct wb_csv_table {
     /* Checks what was taken, after the last line. NULL: nothing is to be checked. */
     enum wb_status (*finish)(void *context, const struct wb_csv_table *table);
     void *context;
+    struct wb_reason *why; /* why reading failed is written here; NULL: it is logged */
 };
 
 /* For take(): refuses a field, or reads a whole number from 0 to `most`. */
@@ -50,8 +53,11 @@ bool wb_csv_table_parse_number(const char *text, int shift, double *value);
 WB_MUST_CHECK enum wb_status wb_csv_table_read(struct wb_csv_table *table, const char *folder,
                                                const char *name);
 
+/* Appends the line of the columns' names. */
+void wb_csv_table_append_header(struct wb_text *text, const char *const *columns, int n);
+
 /* Writes the text of a folder's table, or removes the file when there is none (NULL). */
 WB_MUST_CHECK enum wb_status wb_csv_table_write(const char *folder, const char *name,
-                                                const char *text, size_t size);
+                                                const struct wb_text *text);
 
 #endif

@@ -67,20 +67,20 @@ static size_t end_of_loading(const struct wb_dataset *dataset, double largest_de
 }
 
 static enum wb_status check_sense(const struct wb_dataset *dataset, double lowest, double highest,
-                                  double step)
+                                  double step, struct wb_reason *why)
 {
     if (dataset->info.is_follower || highest > 0.0 || !(lowest < -step))
         return WB_OK;
-    return wb_fail(WB_ERR_DATA,
-                   "wire '%s', sample %d: the first loading goes down to %.2f mm and never "
-                   "above zero; is the sign of the deflection reversed?",
-                   dataset->info.wire, dataset->info.sample, lowest / WB_MM);
+    return wb_fail_to(why, WB_ERR_DATA,
+                      "wire '%s', sample %d: the first loading goes down to %.2f mm and never "
+                      "above zero; is the sign of the deflection reversed?",
+                      dataset->info.wire, dataset->info.sample, lowest / WB_MM);
 }
 
 /* Takes the rows of the first loading up to the grid's largest deflection, of a follower test up to
  * its largest force. WB_ERR_DATA when they are no curve; release it then, too. */
 static enum wb_status extract_loading(struct loading *loading, const struct wb_dataset *dataset,
-                                      const struct wb_curve_grid *grid)
+                                      const struct wb_curve_grid *grid, struct wb_reason *why)
 {
     const char *const wire = dataset->info.wire;
     const int sample = dataset->info.sample;
@@ -90,15 +90,15 @@ static enum wb_status extract_loading(struct loading *loading, const struct wb_d
     loading->n = 0;
     loading->points = malloc((end + 1) * sizeof *loading->points);
     if (!loading->points)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu rows", end);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", end);
     for (size_t i = 0; i < end; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         if (!is_first_loading(row))
             continue;
         if (!isfinite(row->deflection) || !isfinite(row->force))
-            return wb_fail(WB_ERR_DATA,
-                           "wire '%s', sample %d: row %zu has no finite deflection and force", wire,
-                           sample, i + 1);
+            return wb_fail_to(why, WB_ERR_DATA,
+                              "wire '%s', sample %d: row %zu has no finite deflection and force",
+                              wire, sample, i + 1);
         highest = fmax(highest, row->deflection);
         lowest = fmin(lowest, row->deflection);
         /* Below zero the tip may still lie on its rest, where the force says nothing. */
@@ -108,12 +108,13 @@ static enum wb_status extract_loading(struct loading *loading, const struct wb_d
                                             ? (struct loading_point){row->force, row->deflection}
                                             : (struct loading_point){row->deflection, row->force};
     }
-    WB_TRY(check_sense(dataset, lowest, highest, grid->step));
+    WB_TRY(check_sense(dataset, lowest, highest, grid->step, why));
     if (loading->n < FEWEST_POINTS)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s', sample %d: the first loading (cycle 1, phase load) has only %zu "
-                       "rows, expected at least %d",
-                       wire, sample, loading->n, FEWEST_POINTS);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "wire '%s', sample %d: the first loading (cycle 1, phase load) has only %zu "
+            "rows, expected at least %d",
+            wire, sample, loading->n, FEWEST_POINTS);
     qsort(loading->points, loading->n, sizeof *loading->points, by_place);
     return WB_OK;
 }
@@ -239,42 +240,45 @@ static bool same_kind(const struct wb_test_info *a, const struct wb_test_info *b
            a->is_follower == b->is_follower;
 }
 
-static enum wb_status check_same_test(const struct wb_test_info *a, const struct wb_test_info *b)
+static enum wb_status check_same_test(const struct wb_test_info *a, const struct wb_test_info *b,
+                                      struct wb_reason *why)
 {
     if (!same_kind(a, b))
-        return wb_fail(WB_ERR_DATA,
-                       "datasets of different kinds cannot be averaged: wire '%s' of %.4g mm%s and "
-                       "wire '%s' of %.4g mm%s",
-                       a->wire, a->length / WB_MM, a->is_follower ? " under a follower force" : "",
-                       b->wire, b->length / WB_MM, b->is_follower ? " under a follower force" : "");
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "datasets of different kinds cannot be averaged: wire '%s' of %.4g mm%s and "
+            "wire '%s' of %.4g mm%s",
+            a->wire, a->length / WB_MM, a->is_follower ? " under a follower force" : "", b->wire,
+            b->length / WB_MM, b->is_follower ? " under a follower force" : "");
     if (!same(a->outer_diameter, b->outer_diameter, 1e-3) ||
         !same(a->strand_length, b->strand_length, 1e-3) ||
         !same(a->counterweight, b->counterweight, 1e-2) || !same(a->gravity, b->gravity, 1e-2) ||
         !same(a->mass_per_length, b->mass_per_length, 1e-2))
-        return wb_fail(WB_ERR_DATA,
-                       "datasets of wire '%s' were tested differently (diameter, strand, "
-                       "counterweight, gravity or mass differ) and cannot be averaged",
-                       a->wire);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "datasets of wire '%s' were tested differently (diameter, strand, "
+                          "counterweight, gravity or mass differ) and cannot be averaged",
+                          a->wire);
     if (a->is_virtual != b->is_virtual)
         wb_warn("wire '%s': datasets of a virtual rig and others are averaged together", a->wire);
     return WB_OK;
 }
 
-static enum wb_status check_info(const struct wb_test_info *info)
+static enum wb_status check_info(const struct wb_test_info *info, struct wb_reason *why)
 {
     if (!(info->length > 0.0) || !(info->outer_diameter > 0.0) || !isfinite(info->length) ||
         !isfinite(info->outer_diameter))
-        return wb_fail(WB_ERR_DATA, "wire '%s': length and outer diameter must be positive",
-                       info->wire);
+        return wb_fail_to(why, WB_ERR_DATA, "wire '%s': length and outer diameter must be positive",
+                          info->wire);
     if (info->is_general)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': its loads are not those of a bending test, of which a curve can "
-                       "be made",
-                       info->wire);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "wire '%s': its loads are not those of a bending test, of which a curve can "
+            "be made",
+            info->wire);
     return WB_OK;
 }
 
-static enum wb_status allocate(struct wb_curve *curve, int n)
+static enum wb_status allocate(struct wb_curve *curve, int n, struct wb_reason *why)
 {
     const size_t size = (size_t)n;
     memset(curve, 0, sizeof *curve);
@@ -285,7 +289,7 @@ static enum wb_status allocate(struct wb_curve *curve, int n)
     curve->deviation = calloc(size, sizeof *curve->deviation);
     if (!curve->value || !curve->low || !curve->high || !curve->deviation) {
         wb_curve_release(curve);
-        return wb_fail(WB_ERR_MEMORY, "no memory for a curve of %d points", n);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for a curve of %d points", n);
     }
     return WB_OK;
 }
@@ -330,21 +334,22 @@ static int common_points(const struct loading *loadings, int n, double step)
 
 /* Says why a grid point has no value. */
 static enum wb_status fail_at(const struct loading *loading, const struct wb_test_info *info,
-                              double at, double step)
+                              double at, double step, struct wb_reason *why)
 {
     const struct axis axis = axis_of(info);
     const double begin = loading->points[0].at;
     if (at < begin)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s', sample %d: the first loading has no rows below %.2f %s, "
-                       "expected from zero %s on (was the tip's rest too high, or the start lost?)",
-                       info->wire, info->sample, begin / axis.size, axis.unit,
-                       info->is_follower ? "force" : "deflection");
-    return wb_fail(WB_ERR_DATA,
-                   "wire '%s', sample %d: no rows of the first loading around %.2f %s (a gap of "
-                   "more than %g steps of %g %s)",
-                   info->wire, info->sample, at / axis.size, axis.unit, LONGEST_GAP,
-                   step / axis.size, axis.unit);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "wire '%s', sample %d: the first loading has no rows below %.2f %s, "
+            "expected from zero %s on (was the tip's rest too high, or the start lost?)",
+            info->wire, info->sample, begin / axis.size, axis.unit,
+            info->is_follower ? "force" : "deflection");
+    return wb_fail_to(why, WB_ERR_DATA,
+                      "wire '%s', sample %d: no rows of the first loading around %.2f %s (a gap of "
+                      "more than %g steps of %g %s)",
+                      info->wire, info->sample, at / axis.size, axis.unit, LONGEST_GAP,
+                      step / axis.size, axis.unit);
 }
 
 static void find_largest(struct wb_curve *curve)
@@ -358,23 +363,25 @@ static void find_largest(struct wb_curve *curve)
 }
 
 static enum wb_status average(struct wb_curve *curve, const struct loading *loadings,
-                              const struct wb_dataset *const *datasets, int n, double step)
+                              const struct wb_dataset *const *datasets, int n, double step,
+                              struct wb_reason *why)
 {
     const int points = common_points(loadings, n, step);
     const struct axis axis = axis_of(&datasets[0]->info);
     if (points < FEWEST_POINTS)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': the first loading reaches only %d points of %g %s in every "
-                       "sample, expected at least %d",
-                       datasets[0]->info.wire, points, step / axis.size, axis.unit, FEWEST_POINTS);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s': the first loading reaches only %d points of %g %s in every "
+                          "sample, expected at least %d",
+                          datasets[0]->info.wire, points, step / axis.size, axis.unit,
+                          FEWEST_POINTS);
     double *const values = malloc((size_t)n * sizeof *values);
     if (!values)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d samples", n);
-    enum wb_status status = allocate(curve, points);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d samples", n);
+    enum wb_status status = allocate(curve, points, why);
     for (int k = 0; status == WB_OK && k < points; k++) {
         for (int i = 0; status == WB_OK && i < n; i++) {
             if (!loading_value(&loadings[i], k, step, &values[i]))
-                status = fail_at(&loadings[i], &datasets[i]->info, k * step, step);
+                status = fail_at(&loadings[i], &datasets[i]->info, k * step, step, why);
         }
         if (status == WB_OK)
             combine(curve, k, values, n);
@@ -403,21 +410,21 @@ static double default_force_step(const struct loading *loadings, int n)
 
 static enum wb_status average_loadings(struct wb_curve *curve, struct loading *loadings,
                                        const struct wb_dataset *const *datasets, int n,
-                                       const struct wb_curve_grid *grid)
+                                       const struct wb_curve_grid *grid, struct wb_reason *why)
 {
     for (int i = 0; i < n; i++)
-        WB_TRY(extract_loading(&loadings[i], datasets[i], grid));
+        WB_TRY(extract_loading(&loadings[i], datasets[i], grid, why));
     double step = grid->step;
     if (datasets[0]->info.is_follower)
         step = grid->force_step > 0.0 ? grid->force_step : default_force_step(loadings, n);
     if (!(step > 0.0))
-        return wb_fail(WB_ERR_DATA, "wire '%s': the follower force never grows",
-                       datasets[0]->info.wire);
-    return average(curve, loadings, datasets, n, step);
+        return wb_fail_to(why, WB_ERR_DATA, "wire '%s': the follower force never grows",
+                          datasets[0]->info.wire);
+    return average(curve, loadings, datasets, n, step, why);
 }
 
 enum wb_status wb_curve_average_on(struct wb_curve *curve, const struct wb_dataset *const *datasets,
-                                   int n, const struct wb_curve_grid *grid)
+                                   int n, const struct wb_curve_grid *grid, struct wb_reason *why)
 {
     struct wb_curve_grid complete = {0};
     struct wb_curve result = {0};
@@ -426,18 +433,19 @@ enum wb_status wb_curve_average_on(struct wb_curve *curve, const struct wb_datas
     if (n < 1 || !(complete.step >= 0.0 && isfinite(complete.step)) ||
         !(complete.force_step >= 0.0 && isfinite(complete.force_step)) ||
         !(complete.largest_deflection >= 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "averaging needs at least one dataset, steps and a largest "
-                                        "deflection >= 0");
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "averaging needs at least one dataset, steps and a largest "
+                          "deflection >= 0");
     if (complete.step == 0.0)
         complete.step = 0.5 * WB_MM;
     for (int i = 0; i < n; i++) {
-        WB_TRY(check_info(&datasets[i]->info));
-        WB_TRY(check_same_test(&datasets[0]->info, &datasets[i]->info));
+        WB_TRY(check_info(&datasets[i]->info, why));
+        WB_TRY(check_same_test(&datasets[0]->info, &datasets[i]->info, why));
     }
     struct loading *const loadings = calloc((size_t)n, sizeof *loadings);
     if (!loadings)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d samples", n);
-    const enum wb_status status = average_loadings(&result, loadings, datasets, n, &complete);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d samples", n);
+    const enum wb_status status = average_loadings(&result, loadings, datasets, n, &complete, why);
     for (int i = 0; i < n; i++)
         release_loading(&loadings[i]);
     free(loadings);
@@ -450,7 +458,7 @@ enum wb_status wb_curve_average(struct wb_curve *curve, const struct wb_dataset 
                                 int n, double step)
 {
     const struct wb_curve_grid grid = {.step = step};
-    return wb_curve_average_on(curve, datasets, n, &grid);
+    return wb_curve_average_on(curve, datasets, n, &grid, NULL);
 }
 
 /* Points up to the largest deflection, those that rise above all before them. */
@@ -473,23 +481,24 @@ static double force_between(const struct loading_point *points, int n, double de
     return a->value + (b->value - a->value) * (deflection - a->at) / (b->at - a->at);
 }
 
-enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *curve, double step)
+enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *curve, double step,
+                             struct wb_reason *why)
 {
     struct loading_point *const points = malloc((size_t)curve->n * sizeof *points);
     struct wb_curve made = {0};
     int from = 0;
     if (!points)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a curve of %d points", curve->n);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for a curve of %d points", curve->n);
     const int n = rising_points(curve, points);
     const double places = n > 1 ? floor(points[n - 1].at / step + 1e-6) : 0.0;
     enum wb_status status = WB_OK;
     if (n < FEWEST_POINTS || !(places >= 1.0))
-        status = wb_fail(WB_ERR_DATA,
-                         "the deflection does not rise with the follower force from zero on (%d "
-                         "points rise, to %.4g mm); is its sign reversed?",
-                         n, n > 0 ? points[n - 1].at / WB_MM : 0.0);
+        status = wb_fail_to(why, WB_ERR_DATA,
+                            "the deflection does not rise with the follower force from zero on (%d "
+                            "points rise, to %.4g mm); is its sign reversed?",
+                            n, n > 0 ? points[n - 1].at / WB_MM : 0.0);
     if (status == WB_OK)
-        status = allocate(&made, (int)fmin(places, 1e6) + 1);
+        status = allocate(&made, (int)fmin(places, 1e6) + 1, why);
     for (int i = 0; status == WB_OK && i < made.n; i++)
         made.force[i] = force_between(points, n, i * step, &from);
     free(points);

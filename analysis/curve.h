@@ -2,8 +2,8 @@
  *
  * A test that raises the tip by strand or vertical force is a force over equally spaced
  * deflections. A follower test is a deflection over equally spaced forces: under a growing follower
- * force the wire curls up and the deflection has a maximum, near which it says little of the force
- * and beyond which it does not say which of two forces it is.
+ * force, which stays normal to the tip, the wire curls up and the deflection has a maximum. Near it
+ * the force hardly follows from the deflection, and beyond it two forces have the same one.
  */
 #ifndef WB_ANALYSIS_CURVE_H
 #define WB_ANALYSIS_CURVE_H
@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 /* The first loading, at 0, h, 2h, ... of deflection, or of the force of a follower test. */
@@ -44,19 +45,17 @@ struct wb_curve_grid {
  * otherwise). Each sample's rows within a bin are averaged by a local straight-line fit, so that
  * noise is reduced and a slope makes no bias. Rows marked slack and gaps are left out, and rows of
  * a follower test after its largest force; a bin without rows is interpolated if the rows around it
- * are within 4 steps, else the dataset is refused. `grid` NULL: defaults. */
+ * are within 4 steps, else the dataset is refused, and `why` receives why; NULL: that is logged.
+ * `grid` NULL: defaults. */
 WB_MUST_CHECK enum wb_status wb_curve_average_on(struct wb_curve *curve,
                                                  const struct wb_dataset *const *datasets, int n,
-                                                 const struct wb_curve_grid *grid);
-/* The same with a deflection step only. */
-WB_MUST_CHECK enum wb_status wb_curve_average(struct wb_curve *curve,
-                                              const struct wb_dataset *const *datasets, int n,
-                                              double step);
+                                                 const struct wb_curve_grid *grid,
+                                                 struct wb_reason *why);
 /* A follower's curve turned into force over deflection: its rising part, from zero deflection on,
  * where the force is set to zero. It is straight between the grid's points and before the first.
  * WB_ERR_DATA where the deflection does not rise. */
 WB_MUST_CHECK enum wb_status wb_curve_turn(struct wb_curve *turned, const struct wb_curve *curve,
-                                           double step);
+                                           double step, struct wb_reason *why);
 void wb_curve_release(struct wb_curve *curve);
 
 /* What errors are divided by: max_force, or max_deflection of a follower test. */

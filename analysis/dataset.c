@@ -163,35 +163,36 @@ static void set_info(struct wb_json *document, const struct wb_test_info *info)
 }
 
 static enum wb_status get_number(const struct wb_json *test, const char *path, const char *key,
-                                 double unit, double *value)
+                                 double unit, double *value, struct wb_reason *why)
 {
     double read;
     if (!wb_json_get_number(test, key, &read))
-        return wb_fail(WB_ERR_FORMAT, "%s: test.%s: expected a number", path, key);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: test.%s: expected a number", path, key);
     *value = read * unit;
     return WB_OK;
 }
 
 static enum wb_status get_flag(const struct wb_json *test, const char *path, const char *key,
-                               bool *value)
+                               bool *value, struct wb_reason *why)
 {
     if (!wb_json_get_boolean(test, key, value))
-        return wb_fail(WB_ERR_FORMAT, "%s: test.%s: expected true or false", path, key);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: test.%s: expected true or false", path, key);
     return WB_OK;
 }
 
 static enum wb_status get_shape(const struct wb_json *test, const char *path,
-                                struct wb_test_info *info)
+                                struct wb_test_info *info, struct wb_reason *why)
 {
     const struct wb_json *const shape = wb_json_get(test, "natural_shape_rad");
     const size_t n = wb_json_length(shape);
     if (!shape || n > sizeof info->natural_shape / sizeof info->natural_shape[0])
-        return wb_fail(WB_ERR_FORMAT,
-                       "%s: test.natural_shape_rad: expected an array of at most 4 numbers", path);
+        return wb_fail_to(why, WB_ERR_FORMAT,
+                          "%s: test.natural_shape_rad: expected an array of at most 4 numbers",
+                          path);
     for (size_t i = 0; i < n; i++) {
         if (!wb_json_number(wb_json_item(shape, i), &info->natural_shape[i]))
-            return wb_fail(WB_ERR_FORMAT, "%s: test.natural_shape_rad: item %zu is not a number",
-                           path, i + 1);
+            return wb_fail_to(why, WB_ERR_FORMAT,
+                              "%s: test.natural_shape_rad: item %zu is not a number", path, i + 1);
     }
     info->n_natural_shape = (int)n;
     return WB_OK;
@@ -199,60 +200,62 @@ static enum wb_status get_shape(const struct wb_json *test, const char *path,
 
 /* Files older than the key have none: their force is the strand's, or vertical. */
 static enum wb_status get_loading(const struct wb_json *test, const char *path,
-                                  struct wb_test_info *info)
+                                  struct wb_test_info *info, struct wb_reason *why)
 {
     const char *name = loading_names[LOADING_TIP];
     int loading = 0;
     if (wb_json_get(test, "loading") && !wb_json_get_text(test, "loading", &name))
-        return wb_fail(WB_ERR_FORMAT, "%s: test.loading: expected a text", path);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: test.loading: expected a text", path);
     while (loading < LOADINGS && strcmp(name, loading_names[loading]) != 0)
         loading++;
     if (loading == LOADINGS)
-        return wb_fail(WB_ERR_FORMAT, "%s: test.loading: expected %s, %s or %s, not '%.40s'", path,
-                       loading_names[LOADING_TIP], loading_names[LOADING_FOLLOWER],
-                       loading_names[LOADING_GENERAL], name);
+        return wb_fail_to(why, WB_ERR_FORMAT,
+                          "%s: test.loading: expected %s, %s or %s, not '%.40s'", path,
+                          loading_names[LOADING_TIP], loading_names[LOADING_FOLLOWER],
+                          loading_names[LOADING_GENERAL], name);
     info->is_follower = loading == LOADING_FOLLOWER;
     info->is_general = loading == LOADING_GENERAL;
     if (info->is_follower && info->strand_length != 0.0)
-        return wb_fail(WB_ERR_FORMAT,
-                       "%s: test.strand_length_mm: a follower force is not a strand's: expected 0",
-                       path);
+        return wb_fail_to(
+            why, WB_ERR_FORMAT,
+            "%s: test.strand_length_mm: a follower force is not a strand's: expected 0", path);
     return WB_OK;
 }
 
 static enum wb_status get_info(const struct wb_json *document, const char *path,
-                               struct wb_test_info *info)
+                               struct wb_test_info *info, struct wb_reason *why)
 {
     const struct wb_json *const test = wb_json_get(document, "test");
     const char *wire;
     int64_t sample;
     if (!test)
-        return wb_fail(WB_ERR_FORMAT, "%s: no object 'test': this is not a dataset", path);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: no object 'test': this is not a dataset", path);
     if (!wb_json_get_text(test, "wire", &wire) || strlen(wire) >= sizeof info->wire)
-        return wb_fail(WB_ERR_FORMAT, "%s: test.wire: expected a text of at most %zu bytes", path,
-                       sizeof info->wire - 1);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: test.wire: expected a text of at most %zu bytes",
+                          path, sizeof info->wire - 1);
     strcpy(info->wire, wire);
     if (!wb_json_get_integer(test, "sample", &sample) || sample < 0 || sample > INT32_MAX)
-        return wb_fail(WB_ERR_FORMAT, "%s: test.sample: expected a whole number from 0", path);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: test.sample: expected a whole number from 0",
+                          path);
     info->sample = (int)sample;
-    WB_TRY(get_number(test, path, "length_mm", WB_MM, &info->length));
-    WB_TRY(get_number(test, path, "outer_diameter_mm", WB_MM, &info->outer_diameter));
-    WB_TRY(get_number(test, path, "mass_per_length_kg_m", 1.0, &info->mass_per_length));
-    WB_TRY(get_number(test, path, "poissons_ratio", 1.0, &info->poissons_ratio));
-    WB_TRY(get_number(test, path, "strand_length_mm", WB_MM, &info->strand_length));
-    WB_TRY(get_loading(test, path, info));
-    WB_TRY(get_number(test, path, "counterweight_g", WB_G, &info->counterweight));
-    WB_TRY(get_number(test, path, "gravity_m_s2", 1.0, &info->gravity));
+    WB_TRY(get_number(test, path, "length_mm", WB_MM, &info->length, why));
+    WB_TRY(get_number(test, path, "outer_diameter_mm", WB_MM, &info->outer_diameter, why));
+    WB_TRY(get_number(test, path, "mass_per_length_kg_m", 1.0, &info->mass_per_length, why));
+    WB_TRY(get_number(test, path, "poissons_ratio", 1.0, &info->poissons_ratio, why));
+    WB_TRY(get_number(test, path, "strand_length_mm", WB_MM, &info->strand_length, why));
+    WB_TRY(get_loading(test, path, info, why));
+    WB_TRY(get_number(test, path, "counterweight_g", WB_G, &info->counterweight, why));
+    WB_TRY(get_number(test, path, "gravity_m_s2", 1.0, &info->gravity, why));
     if (wb_json_get_number(test, "rest_level_mm", &info->rest_level))
         info->rest_level *= WB_MM;
     else
         info->rest_level = (double)NAN;
     if (!(info->length > 0.0) || !(info->outer_diameter > 0.0))
-        return wb_fail(WB_ERR_FORMAT,
-                       "%s: test.length_mm and test.outer_diameter_mm must be positive", path);
-    WB_TRY(get_shape(test, path, info));
-    WB_TRY(get_flag(test, path, "virtual_rig", &info->is_virtual));
-    return get_flag(test, path, "simulation", &info->is_simulation);
+        return wb_fail_to(why, WB_ERR_FORMAT,
+                          "%s: test.length_mm and test.outer_diameter_mm must be positive", path);
+    WB_TRY(get_shape(test, path, info, why));
+    WB_TRY(get_flag(test, path, "virtual_rig", &info->is_virtual, why));
+    return get_flag(test, path, "simulation", &info->is_simulation, why);
 }
 
 /* --- the tables --- */
@@ -381,6 +384,7 @@ struct reader {
     int line;
     int n_fields;
     const struct column *fields[MAX_COLUMNS]; /* NULL: a column we do not know */
+    struct wb_reason *why;                    /* NULL: failures are logged */
 };
 
 /* The next line without its end, terminated in place; NULL at the end of the text. */
@@ -426,11 +430,11 @@ static enum wb_status check_columns(const struct reader *reader, const struct co
         for (int i = 0; i < reader->n_fields; i++)
             count += reader->fields[i] == column;
         if (count == 0 && column->kind != KIND_OPTIONAL && column->kind != KIND_EXTRA)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: no column '%s'", reader->path, reader->line,
-                           column->name);
+            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: no column '%s'", reader->path,
+                              reader->line, column->name);
         if (count > 1)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: column '%s' stands there twice", reader->path,
-                           reader->line, column->name);
+            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: column '%s' stands there twice",
+                              reader->path, reader->line, column->name);
     }
     return WB_OK;
 }
@@ -441,13 +445,14 @@ static enum wb_status read_header(struct reader *reader, const struct column *co
     while (rest && *rest == '#')
         rest = next_line(reader);
     if (!rest)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: empty file, expected a line of column names",
-                       reader->path, reader->line + 1);
+        return wb_fail_to(reader->why, WB_ERR_FORMAT,
+                          "%s:%d: empty file, expected a line of column names", reader->path,
+                          reader->line + 1);
     while (rest) {
         const char *const name = next_field(&rest);
         if (reader->n_fields == MAX_COLUMNS)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: more than %d columns", reader->path, reader->line,
-                           MAX_COLUMNS);
+            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: more than %d columns",
+                              reader->path, reader->line, MAX_COLUMNS);
         reader->fields[reader->n_fields++] = find_column(columns, name);
     }
     return check_columns(reader, columns);
@@ -492,8 +497,8 @@ static enum wb_status parse_field(const struct reader *reader, const struct colu
             return WB_OK;
         }
     }
-    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", reader->path, reader->line,
-                   column->name, expected, text);
+    return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'",
+                      reader->path, reader->line, column->name, expected, text);
 }
 
 static enum wb_status parse_line(const struct reader *reader, char *line, void *row)
@@ -501,35 +506,35 @@ static enum wb_status parse_line(const struct reader *reader, char *line, void *
     char *rest = line;
     for (int i = 0; i < reader->n_fields; i++) {
         if (!rest)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", reader->path,
-                           reader->line, i, reader->n_fields);
+            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: %d fields, expected %d",
+                              reader->path, reader->line, i, reader->n_fields);
         const char *const field = next_field(&rest);
         if (reader->fields[i])
             WB_TRY(parse_field(reader, reader->fields[i], field, row));
     }
     if (rest)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: more than %d fields", reader->path, reader->line,
-                       reader->n_fields);
+        return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: more than %d fields", reader->path,
+                          reader->line, reader->n_fields);
     return WB_OK;
 }
 
 static enum wb_status start_reading(struct reader *reader, const char *path, char *text, size_t n,
-                                    const struct column *columns)
+                                    const struct column *columns, struct wb_reason *why)
 {
-    *reader = (struct reader){.path = path, .next = text, .end = text + n};
+    *reader = (struct reader){.path = path, .next = text, .end = text + n, .why = why};
     const char *const zero = memchr(text, '\0', n);
     if (zero)
-        return wb_fail(WB_ERR_FORMAT, "%s: byte 0 at offset %td: not a text file", path,
-                       zero - text);
+        return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s: byte 0 at offset %td: not a text file",
+                          path, zero - text);
     return read_header(reader, columns);
 }
 
 enum wb_status wb_dataset_parse_rows(struct wb_dataset *dataset, const char *path, char *text,
-                                     size_t n)
+                                     size_t n, struct wb_reason *why)
 {
     struct reader reader;
     char *line;
-    WB_TRY(start_reading(&reader, path, text, n, row_columns));
+    WB_TRY(start_reading(&reader, path, text, n, row_columns, why));
     while ((line = next_line(&reader))) {
         struct wb_row row = {.tension = (double)NAN,
                              .stage = (double)NAN,
@@ -542,11 +547,11 @@ enum wb_status wb_dataset_parse_rows(struct wb_dataset *dataset, const char *pat
 }
 
 enum wb_status wb_dataset_parse_shapes(struct wb_dataset *dataset, const char *path, char *text,
-                                       size_t n)
+                                       size_t n, struct wb_reason *why)
 {
     struct reader reader;
     char *line;
-    WB_TRY(start_reading(&reader, path, text, n, shape_columns));
+    WB_TRY(start_reading(&reader, path, text, n, shape_columns, why));
     while ((line = next_line(&reader))) {
         struct wb_shape_row row = {.z = (double)NAN};
         WB_TRY(parse_line(&reader, line, &row));
@@ -572,14 +577,6 @@ static enum wb_status format_document(const struct wb_dataset *dataset, char **t
     return status;
 }
 
-static enum wb_status write_file(const char *folder, const char *name, const char *bytes,
-                                 size_t size)
-{
-    char path[WB_PATH];
-    WB_TRY(wb_file_join(path, folder, name));
-    return wb_file_write(path, bytes, size);
-}
-
 enum wb_status wb_dataset_begin(const char *folder, bool force)
 {
     /* The first says that the others are there. */
@@ -588,7 +585,7 @@ enum wb_status wb_dataset_begin(const char *folder, bool force)
 
     WB_TRY(wb_file_prepare_output(folder, force));
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        WB_TRY(wb_csv_table_write(folder, names[i], NULL, 0));
+        WB_TRY(wb_csv_table_write(folder, names[i], NULL));
     return WB_OK;
 }
 
@@ -615,10 +612,11 @@ static enum wb_status format_texts(const struct wb_dataset *dataset, struct text
 
 static enum wb_status write_texts(const struct texts *texts, const char *folder)
 {
-    WB_TRY(write_file(folder, "force_deflection.csv", wb_text_string(&texts->rows),
-                      texts->rows.length));
-    WB_TRY(write_file(folder, "shape.csv", wb_text_string(&texts->shapes), texts->shapes.length));
-    return write_file(folder, "dataset.json", texts->document, strlen(texts->document));
+    char path[WB_PATH];
+    WB_TRY(wb_csv_table_write(folder, "force_deflection.csv", &texts->rows));
+    WB_TRY(wb_csv_table_write(folder, "shape.csv", &texts->shapes));
+    WB_TRY(wb_file_join(path, folder, "dataset.json"));
+    return wb_file_write(path, texts->document, strlen(texts->document));
 }
 
 enum wb_status wb_dataset_finish(const struct wb_dataset *dataset, const char *folder)
@@ -648,39 +646,44 @@ enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *fo
 
 static enum wb_status read_table(struct wb_dataset *dataset, const char *folder, const char *name,
                                  enum wb_status (*parse)(struct wb_dataset *dataset,
-                                                         const char *path, char *text, size_t n))
+                                                         const char *path, char *text, size_t n,
+                                                         struct wb_reason *why),
+                                 struct wb_reason *why)
 {
     char path[WB_PATH];
     char *text;
     size_t size;
     WB_TRY(wb_file_join(path, folder, name));
-    WB_TRY(wb_file_read(path, &text, &size));
-    const enum wb_status status = parse(dataset, path, text, size);
+    WB_TRY(wb_file_read_with_reason(path, &text, &size, why));
+    const enum wb_status status = parse(dataset, path, text, size, why);
     free(text);
     return status;
 }
 
-static enum wb_status read_all(struct wb_dataset *dataset, const char *folder)
+static enum wb_status read_all(struct wb_dataset *dataset, const char *folder,
+                               struct wb_reason *why)
 {
     char path[WB_PATH];
     int64_t schema;
     WB_TRY(wb_file_join(path, folder, "dataset.json"));
-    WB_TRY(wb_json_read(&dataset->document, path));
+    WB_TRY(wb_json_read_with_reason(&dataset->document, path, why));
     if (!wb_json_get_integer(dataset->document, "schema", &schema))
-        return wb_fail(WB_ERR_FORMAT, "%s: no number 'schema': this is not a dataset", path);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: no number 'schema': this is not a dataset",
+                          path);
     if (schema != SCHEMA)
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "%s: dataset schema %lld, this program reads %d: use a newer wirebench",
-                       path, (long long)schema, SCHEMA);
-    WB_TRY(get_info(dataset->document, path, &dataset->info));
-    WB_TRY(read_table(dataset, folder, "force_deflection.csv", wb_dataset_parse_rows));
-    return read_table(dataset, folder, "shape.csv", wb_dataset_parse_shapes);
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED,
+                          "%s: dataset schema %lld, this program reads %d: use a newer wirebench",
+                          path, (long long)schema, SCHEMA);
+    WB_TRY(get_info(dataset->document, path, &dataset->info, why));
+    WB_TRY(read_table(dataset, folder, "force_deflection.csv", wb_dataset_parse_rows, why));
+    return read_table(dataset, folder, "shape.csv", wb_dataset_parse_shapes, why);
 }
 
-enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder)
+enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder,
+                               struct wb_reason *why)
 {
     struct wb_dataset read = {0};
-    const enum wb_status status = read_all(&read, folder);
+    const enum wb_status status = read_all(&read, folder, why);
     if (status != WB_OK) {
         wb_dataset_release(&read);
         memset(dataset, 0, sizeof *dataset);

@@ -1,11 +1,12 @@
 /* Dataset: one test as force-deflection rows and shapes, wherever it came from.
  *
  * On disk a folder: dataset.json (provenance), force_deflection.csv, shape.csv. A bench test, an
- * imported file and a simulation all end here, and calibration cannot tell them apart.
+ * imported file and a simulation all become one, and the calibration treats them alike.
  *
- * The tables are strict: comma-separated, no quotes, comment lines ('#') only at the begin ("#
- * virtual rig" where the data come from it), a header line with the columns' names, every line with
- * as many fields as the header, numbers as plain decimals. Columns that are not known are skipped.
+ * The tables are strict: comma-separated, no quotes, comment lines ('#') only at the beginning
+ * ("# virtual rig" where the data come from one), a header line with the columns' names, every line
+ * with as many fields as the header, numbers as plain decimals. Columns that are not known are
+ * skipped.
  *
  * Frame: clamp at the origin, x along the straight wire, y upwards. Deflection is the tip's y.
  * `tension` is the strand's; `force` is its vertical part less its value at zero deflection on the
@@ -19,6 +20,7 @@
 #include <stdint.h>
 
 #include "base/json.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/linear/trial.h"
 
@@ -59,8 +61,8 @@ struct wb_test_info {
     double strand_length;   /* m; 0: vertical dead force, no strand */
     bool is_follower;       /* the tip force stays normal to the wire; `force` is its size, and a
                                strand there is none */
-    bool is_general;        /* loads other than a bending test's (a simulated history in space):
-                               no curve can be made of it */
+    bool is_general;        /* loads other than a bending test's (simulated loads in space): no
+                               curve can be made of it */
     double counterweight;   /* kg */
     double gravity;         /* m/s2 towards -y; 0 when weight is not in the data */
     double rest_level;      /* m; NaN when there was no rest below the tip */
@@ -93,8 +95,8 @@ double wb_dataset_natural_curvature(void *context, double arc_length);
 WB_MUST_CHECK enum wb_status wb_dataset_init(struct wb_dataset *dataset);
 void wb_dataset_release(struct wb_dataset *dataset); /* accepts a zeroed one */
 
-/* Whether the document says that nothing was missing or cut short (see align); false where it says
- * nothing. */
+/* Whether nothing was missing or cut short, as the document has it (see analysis/align.h); false
+ * where it has no such entry. */
 bool wb_dataset_is_complete(const struct wb_dataset *dataset);
 
 /* Appends a row; doubles the memory as needed. */
@@ -105,7 +107,7 @@ WB_MUST_CHECK enum wb_status wb_dataset_add_shape_row(struct wb_dataset *dataset
 
 /* Reads or writes a folder. Writing makes it (refused when not empty unless `force`) and writes
  * each file atomically, dataset.json last: a folder that has it is whole. Reading errors name file,
- * line and column. */
+ * line and column; `why` receives them, NULL: they are logged. */
 WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, const char *folder,
                                               bool force);
 /* The same in two steps, for those who add tables of their own between them: the first makes the
@@ -113,7 +115,8 @@ WB_MUST_CHECK enum wb_status wb_dataset_write(const struct wb_dataset *dataset, 
 WB_MUST_CHECK enum wb_status wb_dataset_begin(const char *folder, bool force);
 WB_MUST_CHECK enum wb_status wb_dataset_finish(const struct wb_dataset *dataset,
                                                const char *folder);
-WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder);
+WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder,
+                                             struct wb_reason *why);
 
 /* Rows farther apart than this, s, have a gap between them, which a drawn line leaves open: several
  * times their mean interval; infinite with fewer than two rows. */

@@ -51,19 +51,19 @@ static void set_values(struct wb_field_node *node, const double values[VALUES])
 
 /* --- the list --- */
 
-enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x, int n_faces,
-                             struct wb_field **field)
+static enum wb_status add_field(struct wb_fields *fields, const char *state, double x, int n_faces,
+                                struct wb_field **field, struct wb_reason *why)
 {
     if (strlen(state) >= sizeof fields->items->state || state[strcspn(state, ",\"\r\n")] != '\0' ||
         state[0] == '\0')
-        return wb_fail(WB_ERR_ARGUMENT, "'%s' cannot name a state of fields", state);
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "'%s' cannot name a state of fields", state);
     if (n_faces < 1 || n_faces > MOST_FACES)
-        return wb_fail(WB_ERR_ARGUMENT, "%d faces in a field: expected 1 to %d", n_faces,
-                       MOST_FACES);
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%d faces in a field: expected 1 to %d", n_faces,
+                          MOST_FACES);
     struct wb_field *const items =
         realloc(fields->items, (size_t)(fields->n + 1) * sizeof *fields->items);
     if (!items)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d fields", fields->n + 1);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d fields", fields->n + 1);
     fields->items = items;
 
     struct wb_field *const added = &items[fields->n];
@@ -71,10 +71,16 @@ enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double
     strcpy(added->state, state);
     added->faces = calloc((size_t)n_faces, sizeof *added->faces);
     if (!added->faces)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d faces", n_faces);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d faces", n_faces);
     fields->n++;
     *field = added;
     return WB_OK;
+}
+
+enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x, int n_faces,
+                             struct wb_field **field)
+{
+    return add_field(fields, state, x, n_faces, field, NULL);
 }
 
 void wb_fields_release(struct wb_fields *fields)
@@ -139,13 +145,9 @@ static enum wb_status append_field(struct wb_text *text, const struct wb_field *
 
 static enum wb_status format(const struct wb_fields *fields, struct wb_text *text)
 {
-    for (int i = 0; i < COLUMNS; i++)
-        wb_text_append(text, "%s%s", i == 0 ? "" : ",", column_names[i]);
-    wb_text_append_bytes(text, "\n", 1);
+    wb_csv_table_append_header(text, column_names, COLUMNS);
     for (int i = 0; i < fields->n; i++)
         WB_TRY(append_field(text, &fields->items[i]));
-    if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing %d fields", fields->n);
     return WB_OK;
 }
 
@@ -153,10 +155,10 @@ enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folde
 {
     struct wb_text text = {0};
     if (fields->n == 0)
-        return wb_csv_table_write(folder, file_name, NULL, 0);
+        return wb_csv_table_write(folder, file_name, NULL);
     enum wb_status status = format(fields, &text);
     if (status == WB_OK)
-        status = wb_csv_table_write(folder, file_name, wb_text_string(&text), text.length);
+        status = wb_csv_table_write(folder, file_name, &text);
     wb_text_release(&text);
     return status;
 }
@@ -211,7 +213,7 @@ static enum wb_status add_face(struct reader *reader, struct wb_field *field)
         const int capacity = 2 * reader->capacity;
         struct wb_field_face *const faces = realloc(field->faces, (size_t)capacity * sizeof *faces);
         if (!faces)
-            return wb_fail(WB_ERR_MEMORY, "no memory for %d faces", capacity);
+            return wb_fail_to(reader->table.why, WB_ERR_MEMORY, "no memory for %d faces", capacity);
         field->faces = faces;
         reader->capacity = capacity;
     }
@@ -234,14 +236,16 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
     const bool same = field && strcmp(field->state, row->state) == 0 &&
                       (isnan(field->x) ? isnan(row->x) : field->x == row->x);
     if (expected != row->node || (expected > 0 && !same))
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: node: expected node %d of a face, not %d of %s",
-                       reader->table.path, reader->table.line, expected, row->node,
-                       same ? "it" : "another field");
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                          "%s:%d: node: expected node %d of a face, not %d of %s",
+                          reader->table.path, reader->table.line, expected, row->node,
+                          same ? "it" : "another field");
     if (expected == 0 && !same) {
         if (has_field(fields, row))
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: section: this field of state %s stood before",
-                           reader->table.path, reader->table.line, row->state);
-        WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field));
+            return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                              "%s:%d: section: this field of state %s stood before",
+                              reader->table.path, reader->table.line, row->state);
+        WB_TRY(add_field(fields, row->state, row->x, 1, &field, reader->table.why));
         reader->capacity = 1;
     } else if (expected == 0) {
         WB_TRY(add_face(reader, field));
@@ -249,8 +253,9 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
 
     struct wb_field_face *const face = &field->faces[field->n_faces - 1];
     if (row->face != field->n_faces - 1 || (expected > 0 && row->part != face->part))
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: face: expected face %d in one part",
-                       reader->table.path, reader->table.line, field->n_faces - 1);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                          "%s:%d: face: expected face %d in one part", reader->table.path,
+                          reader->table.line, field->n_faces - 1);
     face->part = row->part;
     set_values(&face->node[row->node], row->values);
     return WB_OK;
@@ -271,12 +276,13 @@ static enum wb_status check_end(void *context, const struct wb_csv_table *table)
 {
     const struct reader *const reader = context;
     if (reader->due != 0)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: node: the last face ends before node %d", table->path,
-                       table->line, reader->due);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                          "%s:%d: node: the last face ends before node %d", table->path,
+                          table->line, reader->due);
     return WB_OK;
 }
 
-enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder)
+enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder, struct wb_reason *why)
 {
     struct wb_fields read = {0};
     struct reader reader = {.fields = &read};
@@ -284,7 +290,8 @@ enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder)
                                          .columns = column_names,
                                          .take = take_fields,
                                          .finish = check_end,
-                                         .context = &reader};
+                                         .context = &reader,
+                                         .why = why};
     const enum wb_status status = wb_csv_table_read(&reader.table, folder, file_name);
     if (status != WB_OK)
         wb_fields_release(&read);

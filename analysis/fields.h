@@ -13,6 +13,7 @@
 #ifndef WB_ANALYSIS_FIELDS_H
 #define WB_ANALYSIS_FIELDS_H
 
+#include "base/reason.h"
 #include "base/status.h"
 
 struct wb_field_node {
@@ -49,8 +50,10 @@ const struct wb_field *wb_fields_find(const struct wb_fields *fields, const char
 
 /* fields.csv in a dataset's folder, written whole or not at all; without any field the file is
  * removed. Writing refuses what is not finite. Reading errors name file, line and column; a folder
- * without fields.csv reads as no fields. */
+ * without fields.csv reads as no fields. `why` receives why reading failed; NULL: that is logged.
+ */
 WB_MUST_CHECK enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folder);
-WB_MUST_CHECK enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder);
+WB_MUST_CHECK enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder,
+                                            struct wb_reason *why);
 
 #endif

@@ -88,33 +88,34 @@ static double force_at(const struct wb_curve *curve, double deflection, double l
 }
 
 static enum wb_status check_reach(const struct wb_curve *curve, const struct wb_test_info *info,
-                                  double elastic_zone, double yield_point)
+                                  double elastic_zone, double yield_point, struct wb_reason *why)
 {
     const double needed = fmax(elastic_zone, yield_point + SLOPE_RANGE) * info->length;
     if (curve->max_deflection < needed)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': yield is not reached: the first loading ends at %.2f mm, at "
-                       "least %.2f mm is needed (the yield point at %g of the length and %g more "
-                       "to see the slope past it)",
-                       info->wire, curve->max_deflection / WB_MM, needed / WB_MM, yield_point,
-                       SLOPE_RANGE);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "wire '%s': yield is not reached: the first loading ends at %.2f mm, at "
+            "least %.2f mm is needed (the yield point at %g of the length and %g more "
+            "to see the slope past it)",
+            info->wire, curve->max_deflection / WB_MM, needed / WB_MM, yield_point, SLOPE_RANGE);
     if (fmin(elastic_zone, yield_point) * info->length < 2.0 * curve->step)
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': too few points below the yield point: %.2f mm with steps of "
-                       "%g mm; take a smaller step",
-                       info->wire, fmin(elastic_zone, yield_point) * info->length / WB_MM,
-                       curve->step / WB_MM);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s': too few points below the yield point: %.2f mm with steps of "
+                          "%g mm; take a smaller step",
+                          info->wire, fmin(elastic_zone, yield_point) * info->length / WB_MM,
+                          curve->step / WB_MM);
     return WB_OK;
 }
 
 /* The curve as a whole must rise. */
-static enum wb_status check_shape(const struct wb_curve *curve, const struct wb_test_info *info)
+static enum wb_status check_shape(const struct wb_curve *curve, const struct wb_test_info *info,
+                                  struct wb_reason *why)
 {
     double variation = 0.0, low = curve->force[0], high = curve->force[0];
     for (int i = 0; i < curve->n; i++) {
         if (!isfinite(curve->force[i]))
-            return wb_fail(WB_ERR_DATA, "wire '%s': the force at %.2f mm is not a number",
-                           info->wire, i * curve->step / WB_MM);
+            return wb_fail_to(why, WB_ERR_DATA, "wire '%s': the force at %.2f mm is not a number",
+                              info->wire, i * curve->step / WB_MM);
         low = fmin(low, curve->force[i]);
         high = fmax(high, curve->force[i]);
         if (i > 0)
@@ -122,34 +123,37 @@ static enum wb_status check_shape(const struct wb_curve *curve, const struct wb_
     }
     const double start = curve->force[0];
     if (!(high > low) || variation > 3.0 * (high - low))
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': the force does not rise steadily with the deflection (it goes "
-                       "up and down by %.4g N in all, between %.4g and %.4g N)",
-                       info->wire, variation, low, high);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "wire '%s': the force does not rise steadily with the deflection (it goes "
+            "up and down by %.4g N in all, between %.4g and %.4g N)",
+            info->wire, variation, low, high);
     if (start - low > 0.5 * (high - low))
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': the force falls as the deflection grows (from %.4g to %.4g "
-                       "N); is its sign reversed?",
-                       info->wire, start, low);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s': the force falls as the deflection grows (from %.4g to %.4g "
+                          "N); is its sign reversed?",
+                          info->wire, start, low);
     return WB_OK;
 }
 
 /* From force over deflection. */
 static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *curve,
-                          const struct wb_test_info *info, double elastic_zone, double yield_point)
+                          const struct wb_test_info *info, double elastic_zone, double yield_point,
+                          struct wb_reason *why)
 {
     const double length = info->length, diameter = info->outer_diameter;
-    WB_TRY(check_reach(curve, info, elastic_zone, yield_point));
-    WB_TRY(check_shape(curve, info));
+    WB_TRY(check_reach(curve, info, elastic_zone, yield_point, why));
+    WB_TRY(check_shape(curve, info, why));
     struct wb_first_guess result;
     const double elastic_deflection = elastic_zone * length;
     const double elastic_force = force_at(curve, elastic_deflection, length);
     const double yield_force = force_at(curve, yield_point * length, length);
     if (!(elastic_force > 0.0) || !(yield_force > 0.0))
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': the force in the elastic zone is not positive (%.4g N at %.2f "
-                       "mm)",
-                       info->wire, elastic_force, elastic_deflection / WB_MM);
+        return wb_fail_to(
+            why, WB_ERR_DATA,
+            "wire '%s': the force in the elastic zone is not positive (%.4g N at %.2f "
+            "mm)",
+            info->wire, elastic_force, elastic_deflection / WB_MM);
     result.youngs_modulus =
         wb_first_guess_modulus(elastic_force, elastic_deflection, length, diameter);
     result.yield_stress = wb_first_guess_stress(yield_force, length, diameter);
@@ -159,17 +163,18 @@ static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *c
     if (last < first + FEWEST_SLOPE_POINTS - 1)
         last = first + FEWEST_SLOPE_POINTS - 1;
     if (last > curve->n - 1)
-        return wb_fail(WB_ERR_DATA, "wire '%s': too few points past the yield point", info->wire);
+        return wb_fail_to(why, WB_ERR_DATA, "wire '%s': too few points past the yield point",
+                          info->wire);
     double value, slope;
     fit_line(curve, first, last, first * curve->step, &value, &slope);
     /* d sigma / d eps = (dF / d delta) (32 L / (pi d^3)) / (3 d / (2 L^2)). */
     result.tangent_modulus = wb_first_guess_stress(slope, length, diameter) /
                              wb_first_guess_strain(1.0, length, diameter);
     if (!(result.tangent_modulus > 0.0))
-        return wb_fail(WB_ERR_DATA,
-                       "wire '%s': the force falls just past the yield point (slope %.4g N/m); "
-                       "no hardening law can follow",
-                       info->wire, slope);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s': the force falls just past the yield point (slope %.4g N/m); "
+                          "no hardening law can follow",
+                          info->wire, slope);
     result.hardening_exponent = fmin(
         fmax(result.tangent_modulus / result.youngs_modulus, SMALLEST_EXPONENT), LARGEST_EXPONENT);
     result.strength_coefficient = wb_first_guess_strength(
@@ -180,13 +185,13 @@ static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *c
 
 enum wb_status wb_first_guess_run(struct wb_first_guess *guess, const struct wb_curve *curve,
                                   const struct wb_test_info *info, double elastic_zone,
-                                  double yield_point)
+                                  double yield_point, struct wb_reason *why)
 {
     struct wb_curve turned;
     if (!curve->is_follower)
-        return run(guess, curve, info, elastic_zone, yield_point);
-    WB_TRY(wb_curve_turn(&turned, curve, TURNED_STEP * info->length));
-    const enum wb_status status = run(guess, &turned, info, elastic_zone, yield_point);
+        return run(guess, curve, info, elastic_zone, yield_point, why);
+    WB_TRY(wb_curve_turn(&turned, curve, TURNED_STEP * info->length, why));
+    const enum wb_status status = run(guess, &turned, info, elastic_zone, yield_point, why);
     wb_curve_release(&turned);
     return status;
 }

@@ -10,6 +10,7 @@
 #define WB_ANALYSIS_FIRST_GUESS_H
 
 #include "analysis/curve.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 struct wb_first_guess {
@@ -20,15 +21,16 @@ struct wb_first_guess {
     double hardening_exponent;   /* n0; kept within 0.05..1.2, where eq. 16 makes sense */
 };
 
-/* All of it from an averaged curve of a wire with `info`'s length and diameter. A follower test's
- * curve is turned into force over deflection first: at small deflection a follower force differs
- * from a vertical one by the square of the slope. The force at a
- * deflection is that of a straight line fitted within 1.25 % of L around it; the slope past yield
- * is fitted over the 3 % of L behind the yield point. A curve that cannot serve is WB_ERR_DATA with
- * the reason: too short to yield, reversed sign, not rising, falling behind the yield point. */
+/* Finds all of it from an averaged curve of a wire with `info`'s length and diameter. A follower
+ * test's curve is turned into force over deflection first: at small deflection a follower force
+ * differs from a vertical one by the square of the slope. The force at a deflection is that of a
+ * straight line fitted within 1.25 % of L around it; the slope past yield is fitted over the 3 % of
+ * L behind the yield point. A curve that cannot serve is WB_ERR_DATA: too short to yield, reversed
+ * sign, not rising, falling behind the yield point. `why` receives which; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_first_guess_run(struct wb_first_guess *guess,
                                                 const struct wb_curve *curve,
                                                 const struct wb_test_info *info,
-                                                double elastic_zone, double yield_point);
+                                                double elastic_zone, double yield_point,
+                                                struct wb_reason *why);
 
 #endif

@@ -11,9 +11,9 @@
 
 #define WB_LOG_DOMAIN "frame"
 
-/* A clamp that moved less than this tells no direction. */
+/* From a clamp that moved less than this no direction is taken. */
 #define LEAST_MOTION (5.0 * WB_MM)
-/* Markers that leave the vertical, or their own line, by less than this tell no plane. */
+/* Markers that leave the vertical, or their own line, by less than this span no plane. */
 #define LEAST_SPREAD (5.0 * WB_MM)
 /* A position of the clamp's path is not taken when its variance is above this part of one frame's,
  * or, where there are too few frames for a line, when their mean lies so far away, s. */
@@ -188,6 +188,19 @@ static void relative_to_clamp(const struct wb_bench_frame *frame, size_t index, 
         relative[k] = p[k] - frame->clamp[index][k];
 }
 
+/* Where a marker is from the clamp, in frame `index`; false when one of them is not seen. */
+static bool find_from_clamp(const struct wb_bench_frame *frame,
+                            const struct wb_marker_tracks *tracks,
+                            const struct wb_point_cloud *cloud, size_t index, int marker,
+                            double *relative)
+{
+    const double *const p = wb_markers_position(tracks, cloud, index, marker);
+    if (!p || !isfinite(frame->clamp[index][0]))
+        return false;
+    relative_to_clamp(frame, index, p, relative);
+    return true;
+}
+
 /* Horizontal direction of the largest spread of the markers' horizontal parts, pointing from the
  * clamp to the tip. */
 static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
@@ -196,11 +209,9 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
     struct scatter flat = {0}, full = {0};
     for (size_t i = 0; i < tracks->n_frames; i++) {
         for (int marker = 1; marker < tracks->n_markers; marker++) {
-            const double *const p = wb_markers_position(tracks, cloud, i, marker);
             double r[3];
-            if (!p || !isfinite(frame->clamp[i][0]))
+            if (!find_from_clamp(frame, tracks, cloud, i, marker, r))
                 continue;
-            relative_to_clamp(frame, i, p, r);
             add_point(&full, r);
             const double height = wb_vec3_dot(r, frame->up);
             for (int k = 0; k < 3; k++)
@@ -211,7 +222,7 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
     if (flat.n < 3)
         return wb_fail(WB_ERR_DATA, "too few markers are seen together with the clamp's");
     double directions[3][3], spread[3];
-    /* With one marker beside the clamp's there is no spread: its mean tells the direction. */
+    /* With one marker beside the clamp's there is no spread: its mean gives the direction. */
     if (tracks->n_markers > 2)
         principal(&flat, directions, spread);
     else
@@ -238,11 +249,9 @@ static void measure_planarity(struct wb_bench_frame *frame, const struct wb_mark
     double n = 0.0, sum = 0.0, squares = 0.0;
     for (size_t i = 0; i < tracks->n_frames; i++) {
         for (int marker = 1; marker < tracks->n_markers; marker++) {
-            const double *const p = wb_markers_position(tracks, cloud, i, marker);
             double r[3];
-            if (!p || !isfinite(frame->clamp[i][0]))
+            if (!find_from_clamp(frame, tracks, cloud, i, marker, r))
                 continue;
-            relative_to_clamp(frame, i, p, r);
             const double z = wb_vec3_dot(r, frame->normal);
             n += 1.0;
             sum += z;

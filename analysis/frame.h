@@ -22,7 +22,7 @@ struct wb_bench_frame {
     double straightness;   /* m, RMS distance of the clamp marker's path from a straight line */
     double planarity;      /* m, RMS distance of the markers from the bending plane */
     double plane_tilt;     /* rad, angle of the freely fitted plane's normal to the horizontal;
-                              0 where the wire did not bend enough to tell */
+                              0 where the wire did not bend enough for one */
     size_t n_frames;
     /* (n_frames x 3) clamp marker, smoothed over time, in server coordinates; NaN in frames too
      * far from one in which it was seen. Owned. */
@@ -30,13 +30,14 @@ struct wb_bench_frame {
 };
 
 /* True when the last marker moved along `server_up` (unit vector) more than the first: then the
- * order is the wrong way round, since the clamp moves and the tip hangs on the strand. Says
- * nothing (false) unless one of them moved 5 mm. */
+ * order is the wrong way round, since the clamp moves and the tip hangs on the strand. False
+ * also where neither moved 5 mm, and the order cannot be found. */
 bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
                           const double server_up[3]);
 
 /* Fits the frame. `times` (s, ascending, one a frame) serve the smoothing of the clamp's path over
- * +-`window` seconds. WB_ERR_DATA with the reason when the markers do not span a plane with it. */
+ * +-`window` seconds. WB_ERR_DATA, and the reason is logged, when the markers and the vertical
+ * span no plane. */
 WB_MUST_CHECK enum wb_status wb_frame_fit(struct wb_bench_frame *frame,
                                           const struct wb_marker_tracks *tracks,
                                           const struct wb_point_cloud *cloud, const double *times,

@@ -80,7 +80,7 @@ static int find_position(const struct gallery *gallery, double s)
 
 static enum wb_status collect_positions(struct gallery *gallery,
                                         const struct wb_dataset *const *datasets, int n,
-                                        double last)
+                                        double last, struct wb_reason *why)
 {
     for (int i = 0; i < n; i++) {
         const double end = end_of_loading(datasets[i]);
@@ -89,8 +89,9 @@ static enum wb_status collect_positions(struct gallery *gallery,
             if (!counts(datasets[i], row, end, last) || find_position(gallery, row->s) >= 0)
                 continue;
             if (gallery->n_positions == MOST_POSITIONS)
-                return wb_fail(WB_ERR_DATA, "wire '%s': markers at more than %d arc lengths",
-                               datasets[i]->info.wire, MOST_POSITIONS);
+                return wb_fail_to(why, WB_ERR_DATA,
+                                  "wire '%s': markers at more than %d arc lengths",
+                                  datasets[i]->info.wire, MOST_POSITIONS);
             gallery->s[gallery->n_positions++] = row->s;
         }
     }
@@ -170,7 +171,8 @@ enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
     const double step = range->step, last = range->last;
     struct wb_marker_distance result = {(double)NAN, (double)NAN, 0};
     struct gallery gallery = {.step = step, .is_follower = datasets[0]->info.is_follower};
-    WB_TRY(collect_positions(&gallery, datasets, n, last));
+    struct wb_reason *const why = wb_computed_reason(computed);
+    WB_TRY(collect_positions(&gallery, datasets, n, last, why));
     if (gallery.n_positions == 0) {
         *distance = result;
         return WB_OK;
@@ -181,7 +183,7 @@ enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
     gallery.y = malloc(size * sizeof *gallery.y);
     enum wb_status status = WB_OK;
     if (!gallery.x || !gallery.y)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for %d shapes", gallery.n_frames);
+        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d shapes", gallery.n_frames);
     if (status == WB_OK)
         status = fill(&gallery, computed, material);
     if (status == WB_OK) {

@@ -1,4 +1,4 @@
-/* Distance between measured marker positions and the computed wire, first loading. */
+/* How far the measured markers lie from the computed wire during the first loading. */
 #ifndef WB_ANALYSIS_MARKER_DISTANCE_H
 #define WB_ANALYSIS_MARKER_DISTANCE_H
 
@@ -11,7 +11,7 @@ struct wb_marker_distance {
     int n_points;
 };
 
-/* Which frames are compared: of deflection, or of the force of follower tests. */
+/* Over which deflections (in a follower test: forces) the frames are compared. */
 struct wb_marker_distance_range {
     double step; /* m or N between the model's shapes; frames between are interpolated */
     double last; /* m or N: frames from 0 to there count */

@@ -14,9 +14,9 @@
 #define DEFAULT_GATE (2.0 * WB_MM)
 #define DEFAULT_SPEED (5.0 * WB_MM) /* m/s */
 #define DEFAULT_PERIOD (1.0 / 120.0)
-/* Among so many frames the cheapest complete chain is where following starts. */
+/* Among this number of frames the cheapest complete chain is where following starts. */
 #define START_FRAMES 240
-/* A long recording is looked through for the start in so many frames, evenly. */
+/* The start of a long recording is sought in this number of frames, evenly over it. */
 #define LOOKED_AT 4000
 /* How much a frame counts in which a marker is not seen, but carried along by seen neighbours on
  * both sides, or on one. */

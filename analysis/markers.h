@@ -1,4 +1,4 @@
-/* Which point is which marker: identification by geometry, frame after frame.
+/* Identifies the specimen's markers among the points of each motion-capture frame, by geometry.
  *
  * Ids are not used: they change whenever a bare marker is found again. What is used is the order
  * along the wire, the known arc lengths, and prediction from the frames before. The start is the
@@ -57,8 +57,8 @@ struct wb_marker_tracks {
     size_t n_missing;   /* markers not seen, over all frames */
     size_t n_searches;  /* how often the chain was sought anew */
     size_t start_frame; /* where the first chain was found */
-    bool symmetric;     /* the arc lengths read the same from both ends: the order along the wire is
-                           not known from distances and may have to be turned round */
+    bool symmetric;     /* the arc lengths are the same from both ends, so that the order along the
+                           wire does not follow from distances and may have to be reversed */
 };
 
 /* Identifies the specimen's markers in every frame. WB_ERR_DATA with a message when no frame shows

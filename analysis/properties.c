@@ -75,8 +75,6 @@ static void put_datasets(struct wb_text *text, const char *const *names, int n)
 static void put_calibration(struct wb_text *text, const struct wb_calibrate_result *result,
                             const struct wb_calibrate_settings *settings)
 {
-    const double yield_point =
-        settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone;
     wb_text_append(text, "calibration:\n");
     put_number(text, "  ", "length_mm", result->info.length / WB_MM);
     if (result->info.is_follower)
@@ -84,7 +82,7 @@ static void put_calibration(struct wb_text *text, const struct wb_calibrate_resu
     if (settings->largest_deflection > 0.0)
         put_number(text, "  ", "cut_at_mm", settings->largest_deflection / WB_MM);
     put_number(text, "  ", "elastic_zone", settings->elastic_zone);
-    put_number(text, "  ", "yield_point", yield_point);
+    put_number(text, "  ", "yield_point", wb_calibrate_settings_meant(settings).yield_point);
     wb_text_append(text, "  natural_shape: %s\n",
                    settings->straight || result->info.n_natural_shape == 0 ? "straight" : "mean");
     wb_text_append(text, "  bow_corrected: %s\n", result->bow_corrected ? "true" : "false");
@@ -151,11 +149,7 @@ enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_r
     if (!force && wb_file_exists(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
     format(&text, result, settings, names, n_names);
-    enum wb_status status;
-    if (text.failed)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
-    else
-        status = wb_file_write(path, wb_text_string(&text), text.length);
+    const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);
     return status;
 }

@@ -10,7 +10,7 @@
  *     poissons_ratio: 0.39
  *     deviations: {...}           # standard uncertainties, as far as known
  *     calibration: {...}          # length, elastic zone, yield point, RMS, stop reason, datasets
- *                                 # with sha256, tool revision; virtual rig said here
+ *                                 # with sha256, tool revision, whether on a virtual rig
  */
 #ifndef WB_ANALYSIS_PROPERTIES_H
 #define WB_ANALYSIS_PROPERTIES_H

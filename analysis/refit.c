@@ -58,8 +58,8 @@ static enum wb_status find_slopes(struct refit *refit, bool *complete)
     return WB_OK;
 }
 
-/* Gauss-Newton step of (ln K, n) with Levenberg's `damping`; false when the two cannot be told
- * apart. */
+/* Gauss-Newton step of (ln K, n) with Levenberg's `damping`; false when a change of one has
+ * the effect of a change of the other. */
 static bool newton_step(const struct refit *refit, double damping, double step[2])
 {
     double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0;
@@ -98,7 +98,7 @@ static double curve_error(const struct refit *refit, bool complete)
                     : HUGE_VAL;
 }
 
-/* Refits K and n of refit->material; *settled tells whether it worked. */
+/* Refits K and n of refit->material; *settled: they were found. */
 static enum wb_status refit_hardening(struct refit *refit, bool *settled)
 {
     double damping = FIRST_DAMPING, step[2];
@@ -148,7 +148,8 @@ enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
     double *const values = calloc(4 * points, sizeof *values);
     *settled = false;
     if (!values)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu points", points);
+        return wb_fail_to(wb_computed_reason(computed), WB_ERR_MEMORY, "no memory for %zu points",
+                          points);
     struct refit refit = {
         .computed = computed,
         .curve = curve,

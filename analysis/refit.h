@@ -14,8 +14,8 @@
 #include "fe/material/material.h"
 
 /* Changes K and n of `material`, from which the search starts. *settled is false when the beam did
- * not reach the end of the curve, K and n cannot be told apart, or the steps ran out; K and n are
- * then of no use. *evaluations is increased by the beam runs made. */
+ * not reach the end of the curve, K and n change the curve in the same way, or the steps ran out; K
+ * and n are then of no use. *evaluations is increased by the beam runs made. */
 WB_MUST_CHECK enum wb_status wb_refit_run(struct wb_material *material, bool *settled,
                                           struct wb_computed *computed,
                                           const struct wb_curve *curve, int *evaluations);

@@ -16,7 +16,7 @@ static enum wb_status sample_difference(double *difference, bool *complete,
     struct wb_computed *computed;
     int reached = 0;
     const struct wb_curve_grid steps = {.step = grid->step, .force_step = grid->step};
-    WB_TRY(wb_curve_average_on(&one, &dataset, 1, &steps));
+    WB_TRY(wb_curve_average_on(&one, &dataset, 1, &steps, settings->why));
     /* The average ends where the shortest sample does. */
     *complete = one.n >= grid->n;
     enum wb_status status = wb_computed_create(&computed, &dataset->info, material, settings);
@@ -44,7 +44,7 @@ enum wb_status wb_scatter_residual(double *rms, const struct wb_dataset *const *
     }
     double *const differences = malloc((size_t)n * points * sizeof *differences);
     if (!differences)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d samples", n);
+        return wb_fail_to(settings->why, WB_ERR_MEMORY, "no memory for %d samples", n);
     for (int i = 0; status == WB_OK && complete && i < n; i++)
         status = sample_difference(differences + (size_t)i * points, &complete, datasets[i], curve,
                                    material, settings);

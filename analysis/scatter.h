@@ -1,5 +1,5 @@
-/* Scatter between samples that the model does not know of: each sample's curve less the prediction
- * with that sample's own natural shape. */
+/* Scatter between samples that their bows do not explain: of what is left of each sample's curve
+ * when the prediction with that sample's own natural shape is subtracted. */
 #ifndef WB_ANALYSIS_SCATTER_H
 #define WB_ANALYSIS_SCATTER_H
 

@@ -258,17 +258,14 @@ enum wb_status wb_simulated_bundle_write_energies(const struct wb_dataset *datas
 {
     const struct wb_bundle_history *h = bundle->history;
     struct wb_text text = {0};
-    char path[WB_PATH];
 
-    WB_TRY(wb_file_join(path, folder, "energies.csv"));
     if (dataset->n_rows != (size_t)h->n_rows)
-        return wb_fail(WB_ERR_ARGUMENT, "%s: %d rows of energies for a dataset of %zu", path,
+        return wb_fail(WB_ERR_ARGUMENT, "%s: %d rows of energies for a dataset of %zu", folder,
                        h->n_rows, dataset->n_rows);
     wb_text_append(&text, "%s", header);
     for (int i = 0; i < h->n_rows; i++)
         append_row(&text, dataset->rows[i].t, &h->rows[i]);
-    enum wb_status status = text.failed ? wb_fail(WB_ERR_MEMORY, "out of memory writing energies")
-                                        : wb_file_write(path, wb_text_string(&text), text.length);
+    const enum wb_status status = wb_csv_table_write(folder, "energies.csv", &text);
     wb_text_release(&text);
     return status;
 }

@@ -124,9 +124,7 @@ static enum wb_status append_node(struct wb_text *text, const struct wb_surface_
 
 static enum wb_status format(const struct wb_surface *surface, struct wb_text *text)
 {
-    for (int i = 0; i < COLUMNS; i++)
-        wb_text_append(text, "%s%s", i == 0 ? "" : ",", column_names[i]);
-    wb_text_append(text, "\n");
+    wb_csv_table_append_header(text, column_names, COLUMNS);
     for (int b = 0; b < surface->n; b++) {
         const struct wb_surface_body *body = &surface->bodies[b];
         for (int i = 0; i < body->n_along * body->n_around; i++) {
@@ -135,8 +133,7 @@ static enum wb_status format(const struct wb_surface *surface, struct wb_text *t
             WB_TRY(append_node(text, &body->nodes[i]));
         }
     }
-    return text->failed ? wb_fail(WB_ERR_MEMORY, "out of memory writing a bundle's surface")
-                        : WB_OK;
+    return WB_OK;
 }
 
 enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder)
@@ -144,10 +141,10 @@ enum wb_status wb_surface_write(const struct wb_surface *surface, const char *fo
     struct wb_text text = {0};
 
     if (surface->n == 0)
-        return wb_csv_table_write(folder, file_name, NULL, 0);
+        return wb_csv_table_write(folder, file_name, NULL);
     enum wb_status status = format(surface, &text);
     if (status == WB_OK)
-        status = wb_csv_table_write(folder, file_name, wb_text_string(&text), text.length);
+        status = wb_csv_table_write(folder, file_name, &text);
     wb_text_release(&text);
     return status;
 }
@@ -213,16 +210,16 @@ static enum wb_status check_last(const struct reader *reader)
         reader->n_nodes == body->n_along * body->n_around) {
         if (has_extent(body, 0) && has_extent(body, body->n_along - 1))
             return WB_OK;
-        return wb_fail(WB_ERR_FORMAT,
-                       "%s:%d: body %d: the nodes of its first or its last station lie at one "
-                       "place",
-                       reader->table.path, reader->table.line, reader->surface->n - 1);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                          "%s:%d: body %d: the nodes of its first or its last station lie at one "
+                          "place",
+                          reader->table.path, reader->table.line, reader->surface->n - 1);
     }
-    return wb_fail(WB_ERR_FORMAT,
-                   "%s:%d: body %d ends with %d nodes: expected at least 2 stations of at least %d "
-                   "nodes, all alike",
-                   reader->table.path, reader->table.line, reader->surface->n - 1, reader->n_nodes,
-                   least);
+    return wb_fail_to(
+        reader->table.why, WB_ERR_FORMAT,
+        "%s:%d: body %d ends with %d nodes: expected at least 2 stations of at least %d "
+        "nodes, all alike",
+        reader->table.path, reader->table.line, reader->surface->n - 1, reader->n_nodes, least);
 }
 
 static enum wb_status begin_body(struct reader *reader, const struct row *row)
@@ -233,7 +230,7 @@ static enum wb_status begin_body(struct reader *reader, const struct row *row)
     struct wb_surface_body *larger =
         realloc(surface->bodies, (size_t)(surface->n + 1) * sizeof *larger);
     if (!larger)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a bundle's surface");
+        return wb_fail_to(reader->table.why, WB_ERR_MEMORY, "no memory for a bundle's surface");
     surface->bodies = larger;
     surface->bodies[surface->n++] =
         (struct wb_surface_body){.is_tape = row->is_tape, .closed = row->closed};
@@ -249,7 +246,7 @@ static enum wb_status append_to_body(struct reader *reader, struct wb_surface_bo
         struct wb_surface_node *larger =
             realloc(body->nodes, (size_t)capacity * sizeof *body->nodes);
         if (!larger)
-            return wb_fail(WB_ERR_MEMORY, "no memory for a bundle's surface");
+            return wb_fail_to(reader->table.why, WB_ERR_MEMORY, "no memory for a bundle's surface");
         body->nodes = larger;
         reader->capacity = capacity;
     }
@@ -257,7 +254,7 @@ static enum wb_status append_to_body(struct reader *reader, struct wb_surface_bo
     return WB_OK;
 }
 
-/* Rows follow each other; the first station's tell how many nodes there are around. */
+/* Rows follow each other; the first station's give the number of nodes around. */
 static enum wb_status take_row(struct reader *reader, const struct row *row)
 {
     struct wb_surface *surface = reader->surface;
@@ -265,12 +262,13 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     if (row->body == surface->n)
         WB_TRY(begin_body(reader, row));
     if (row->body != surface->n - 1)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: body: %d after %d", reader->table.path,
-                       reader->table.line, row->body, surface->n - 1);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT, "%s:%d: body: %d after %d",
+                          reader->table.path, reader->table.line, row->body, surface->n - 1);
     struct wb_surface_body *body = &surface->bodies[row->body];
     if (row->is_tape != body->is_tape || row->closed != body->closed)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: kind: not that of the body's first row",
-                       reader->table.path, reader->table.line);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                          "%s:%d: kind: not that of the body's first row", reader->table.path,
+                          reader->table.line);
     if (row->station == 0) {
         body->n_around = row->node + 1;
         body->n_along = 1;
@@ -279,8 +277,9 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     }
     const long long place = (long long)row->station * body->n_around + row->node;
     if (row->node >= body->n_around || reader->n_nodes != place)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: node: station %d, node %d is not the next one",
-                       reader->table.path, reader->table.line, row->station, row->node);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                          "%s:%d: node: station %d, node %d is not the next one",
+                          reader->table.path, reader->table.line, row->station, row->node);
     return append_to_body(reader, body, &row->at);
 }
 
@@ -300,7 +299,8 @@ static enum wb_status check_end(void *context, const struct wb_csv_table *table)
     return check_last(context);
 }
 
-enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder)
+enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder,
+                               struct wb_reason *why)
 {
     struct wb_surface read = {0};
     struct reader reader = {.surface = &read};
@@ -309,7 +309,8 @@ enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder)
                                          .columns = column_names,
                                          .take = take_fields,
                                          .finish = check_end,
-                                         .context = &reader};
+                                         .context = &reader,
+                                         .why = why};
     const enum wb_status status = wb_csv_table_read(&reader.table, folder, file_name);
     if (status != WB_OK)
         wb_surface_release(&read);

@@ -13,12 +13,13 @@
 
 #include <stdbool.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/output/bundle_fields.h"
 
 enum {
     WB_SURFACE_ALONG = 41,        /* stations and nodes at most that wb_surface_take() keeps */
-    WB_SURFACE_ALONG_STRIP = 241, /* it winds */
+    WB_SURFACE_ALONG_STRIP = 241, /* more, because a strip winds around the bundle */
     WB_SURFACE_AROUND_WIRE = 24,
     WB_SURFACE_AROUND_TAPE = 48
 };
@@ -30,7 +31,7 @@ struct wb_surface_node {
 
 struct wb_surface_body {
     bool is_tape;
-    bool closed; /* always, but for a strip */
+    bool closed; /* the nodes go all round; false of a strip */
     int n_around, n_along;
     struct wb_surface_node *nodes; /* (n_along x n_around), station by station; owned */
 };
@@ -49,8 +50,10 @@ void wb_surface_release(struct wb_surface *surface); /* accepts a zeroed one */
 /* surface.csv in a dataset's folder, written whole or not at all; without a body the file is
  * removed. Writing refuses what is not finite. Reading refuses places farther than 100 m, stresses
  * beyond 1e15 Pa, and bodies whose first or last station lies at one place; errors name file, line
- * and column. A folder without surface.csv reads as no bodies. */
+ * and column. A folder without surface.csv reads as no bodies. `why` receives why reading
+ * failed; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_surface_write(const struct wb_surface *surface, const char *folder);
-WB_MUST_CHECK enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder);
+WB_MUST_CHECK enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder,
+                                             struct wb_reason *why);
 
 #endif

@@ -32,15 +32,15 @@
 #define FRAMES 4
 
 static enum wb_status check_wire(const struct wb_properties *properties,
-                                 const struct wb_test_info *info)
+                                 const struct wb_test_info *info, struct wb_reason *why)
 {
     const double ratio = info->outer_diameter / properties->outer_diameter;
     if (!(fabs(ratio - 1.0) <= SAME_DIAMETER))
-        return wb_fail(WB_ERR_DATA,
-                       "the properties are of wire '%s' (%.4g mm across), the datasets of wire "
-                       "'%s' (%.4g mm across)",
-                       properties->wire, properties->outer_diameter / WB_MM, info->wire,
-                       info->outer_diameter / WB_MM);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the properties are of wire '%s' (%.4g mm across), the datasets of wire "
+                          "'%s' (%.4g mm across)",
+                          properties->wire, properties->outer_diameter / WB_MM, info->wire,
+                          info->outer_diameter / WB_MM);
     if (strcmp(properties->wire, info->wire) != 0)
         wb_warn("the properties are of wire '%s', the datasets of wire '%s' of the same diameter",
                 properties->wire, info->wire);
@@ -59,19 +59,20 @@ static int beyond_zero(const struct wb_curve *curve)
 }
 
 static enum wb_status predict(struct wb_prediction *prediction, struct wb_computed *computed,
-                              const struct wb_material *material, const struct wb_curve *curve)
+                              const struct wb_material *material, const struct wb_curve *curve,
+                              struct wb_reason *why)
 {
     const size_t size = (size_t)curve->n;
     prediction->n = curve->n;
     prediction->value = malloc(size * sizeof *prediction->value);
     prediction->error = malloc(size * sizeof *prediction->error);
     if (!prediction->value || !prediction->error)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a prediction of %d points", curve->n);
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for a prediction of %d points", curve->n);
     WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, prediction->value,
                              &prediction->n_reached));
     wb_errors_curve(curve->n, curve->value, prediction->value, wb_curve_scale(curve),
                     prediction->error);
-    /* Cut short, the errors are of the part that was reached; n_reached tells. */
+    /* Cut short, the errors are of the part that was reached; n_reached is their number. */
     const int n = prediction->n_reached;
     const int first = beyond_zero(curve);
     prediction->rms = n >= 2 ? wb_errors_rms(n, prediction->error) : (double)NAN;
@@ -107,17 +108,18 @@ static void judge_scatter(struct wb_validate_result *result, const struct wb_pro
 }
 
 /* A prediction that goes nowhere is an error, one that is cut short is warned about. */
-static enum wb_status check_reached(const struct wb_validate_result *result)
+static enum wb_status check_reached(const struct wb_validate_result *result, struct wb_reason *why)
 {
     const struct wb_curve *const curve = &result->curve;
     const int n = result->elastoplastic.n_reached;
     const char *const unit = curve->is_follower ? "N" : "mm";
     const double size = curve->is_follower ? 1.0 : WB_MM;
     if (n < 2)
-        return wb_fail(WB_ERR_CONVERGENCE,
-                       "wire '%s': the beam with the calibrated properties does not converge even "
-                       "at %g %s",
-                       result->info.wire, curve->step / size, unit);
+        return wb_fail_to(
+            why, WB_ERR_CONVERGENCE,
+            "wire '%s': the beam with the calibrated properties does not converge even "
+            "at %g %s",
+            result->info.wire, curve->step / size, unit);
     if (n < curve->n)
         wb_warn("wire '%s': the beam stops converging at %.2f of %.2f %s; errors are of that part",
                 result->info.wire, (n - 1) * curve->step / size,
@@ -128,11 +130,12 @@ static enum wb_status check_reached(const struct wb_validate_result *result)
 static enum wb_status validate_curve(struct wb_validate_result *result,
                                      const struct wb_properties *properties,
                                      const struct wb_dataset *const *datasets, int n,
-                                     const struct wb_validate_settings *settings)
+                                     const struct wb_calibrate_settings *settings,
+                                     struct wb_reason *why)
 {
     struct wb_material elastic = properties->material;
     const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                             settings->n_fibres};
+                                             settings->n_fibres, why};
     struct wb_computed *computed;
     struct wb_marker_distance distance;
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
@@ -141,9 +144,10 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
     const struct wb_marker_distance_range range = {
         curve->is_follower ? curve->step / FRAMES : curve->step,
         curve->is_follower ? curve->max_force : curve->max_deflection};
-    enum wb_status status = predict(&result->elastoplastic, computed, &properties->material, curve);
+    enum wb_status status =
+        predict(&result->elastoplastic, computed, &properties->material, curve, why);
     if (status == WB_OK)
-        status = predict(&result->elastic, computed, &elastic, curve);
+        status = predict(&result->elastic, computed, &elastic, curve, why);
     if (status == WB_OK)
         status = wb_marker_distance_find(&distance, computed, &properties->material, datasets, n,
                                          &range);
@@ -155,7 +159,7 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
         result->shape_rms = distance.rms;
         result->shape_max = distance.largest;
         result->n_shape_points = distance.n_points;
-        status = check_reached(result);
+        status = check_reached(result, why);
     }
     wb_computed_destroy(computed);
     return status;
@@ -164,25 +168,26 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
 enum wb_status wb_validate_run(struct wb_validate_result *result,
                                const struct wb_properties *properties,
                                const struct wb_dataset *const *datasets, int n,
-                               const struct wb_validate_settings *settings)
+                               const struct wb_calibrate_settings *settings, struct wb_reason *why)
 {
-    const struct wb_validate_settings defaults = {0};
+    struct wb_calibrate_settings defaults;
     const double started = wb_progress_thread_cpu();
     struct wb_validate_result made = {0};
+    wb_calibrate_default_settings(&defaults);
     if (!settings)
         settings = &defaults;
     const struct wb_curve_grid grid = {.step = settings->step,
                                        .force_step = settings->force_step,
                                        .largest_deflection = settings->largest_deflection};
-    WB_TRY(wb_curve_average_on(&made.curve, datasets, n, &grid));
+    WB_TRY(wb_curve_average_on(&made.curve, datasets, n, &grid, why));
     wb_curve_mean_info(datasets, n, &made.info);
     wb_curve_warn_unknown_shapes(datasets, n);
-    enum wb_status status = check_wire(properties, &made.info);
+    enum wb_status status = check_wire(properties, &made.info, why);
     if (status == WB_OK && !(wb_curve_scale(&made.curve) > 0.0))
-        status = wb_fail(WB_ERR_DATA, "wire '%s': the measured %s is never positive",
-                         made.info.wire, made.curve.is_follower ? "deflection" : "force");
+        status = wb_fail_to(why, WB_ERR_DATA, "wire '%s': the measured %s is never positive",
+                            made.info.wire, made.curve.is_follower ? "deflection" : "force");
     if (status == WB_OK)
-        status = validate_curve(&made, properties, datasets, n, settings);
+        status = validate_curve(&made, properties, datasets, n, settings, why);
     if (status != WB_OK) {
         wb_validate_result_release(&made);
         return status;
@@ -240,11 +245,7 @@ enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, co
                    curve->n_samples == 1 ? "sample" : "samples", wb_version(),
                    wb_version_revision());
     put_rows(&text, result);
-    enum wb_status status;
-    if (text.failed)
-        status = wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
-    else
-        status = wb_file_write(path, wb_text_string(&text), text.length);
+    const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);
     return status;
 }

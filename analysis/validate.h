@@ -1,11 +1,12 @@
 /* Validation of calibrated properties on other datasets: eqs. 18 and 19, the linear elastic
- * prediction for contrast, and the distance of shapes. */
+ * prediction beside it, and the distance of the markers from the computed shapes. */
 #ifndef WB_ANALYSIS_VALIDATE_H
 #define WB_ANALYSIS_VALIDATE_H
 
 #include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "analysis/properties.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 /* A computed loading curve on the grid of a measured one, and shapes of the same model. */
@@ -34,7 +35,7 @@ struct wb_validate_result {
     double shape_max; /* m */
     int n_shape_points;
     double scatter_rms, residual_scatter_rms; /* as in calibrate */
-    /* RMS error that the scatter between samples alone lets expect, at most: standard errors of
+    /* RMS error to be expected from the scatter between samples alone, at most: standard errors of
      * this average and of the one calibrated on (as far as known), from the smaller of their
      * scatter and their residual scatter, added in squares. An upper bound: the residual scatter
      * holds the model's own error with the samples' bows too. */
@@ -46,22 +47,15 @@ struct wb_validate_result {
     double cpu_s;
 };
 
-struct wb_validate_settings {
-    bool straight;             /* ignore the natural shape */
-    double step;               /* m; 0: 0.5 mm */
-    double force_step;         /* N, of follower tests; 0: see analysis/curve.h */
-    double largest_deflection; /* m: what comes later in the loading is left out; 0: nothing */
-    int n_elements, n_fibres;  /* 0: defaults */
-};
-
 /* Predicts the average first loading of n datasets of one kind. `settings` NULL: defaults.
  * WB_ERR_DATA when the properties are another wire's or the datasets cannot serve,
  * WB_ERR_CONVERGENCE when the beam does not get anywhere; stopping on the way is a result, see
- * n_reached. */
+ * n_reached. `why` receives why it failed; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
                                              const struct wb_properties *properties,
                                              const struct wb_dataset *const *datasets, int n,
-                                             const struct wb_validate_settings *settings);
+                                             const struct wb_calibrate_settings *settings,
+                                             struct wb_reason *why);
 /* Measured and computed forces and errors on the grid, as CSV:
  * deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,elastoplastic_error,elastic_N,
  * elastic_error; of a follower test force_N first and deflections in mm. Written atomically over an

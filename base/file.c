@@ -31,13 +31,20 @@ static enum wb_status status_of_errno(int error)
     }
 }
 
-static enum wb_status fail_errno(const char *what, const char *path)
+static enum wb_status fail_with(int error, const char *what, const char *path,
+                                struct wb_reason *why)
 {
-    const int error = errno;
-    return wb_fail(status_of_errno(error), "cannot %s '%s': %s", what, path, strerror(error));
+    return wb_fail_to(why, status_of_errno(error), "cannot %s '%s': %s", what, path,
+                      strerror(error));
 }
 
-static enum wb_status read_stream(FILE *file, const char *path, char **bytes, size_t *size)
+static enum wb_status fail_errno(const char *what, const char *path)
+{
+    return fail_with(errno, what, path, NULL);
+}
+
+static enum wb_status read_stream(FILE *file, const char *path, char **bytes, size_t *size,
+                                  struct wb_reason *why)
 {
     size_t length = 0, capacity = 1 << 14;
     char *buffer = malloc(capacity);
@@ -51,10 +58,11 @@ static enum wb_status read_stream(FILE *file, const char *path, char **bytes, si
         buffer = larger;
     }
     if (!buffer)
-        return wb_fail(WB_ERR_MEMORY, "'%s' is too large to be read whole", path);
+        return wb_fail_to(why, WB_ERR_MEMORY, "'%s' is too large to be read whole", path);
     if (ferror(file)) {
+        const int error = errno;
         free(buffer);
-        return fail_errno("read", path);
+        return fail_with(error, "read", path, why);
     }
     buffer[length] = '\0';
     *bytes = buffer;
@@ -63,14 +71,20 @@ static enum wb_status read_stream(FILE *file, const char *path, char **bytes, si
     return WB_OK;
 }
 
-enum wb_status wb_file_read(const char *path, char **bytes, size_t *size)
+enum wb_status wb_file_read_with_reason(const char *path, char **bytes, size_t *size,
+                                        struct wb_reason *why)
 {
     FILE *file = fopen(path, "rbe");
     if (!file)
-        return fail_errno("open", path);
-    const enum wb_status status = read_stream(file, path, bytes, size);
+        return fail_with(errno, "open", path, why);
+    const enum wb_status status = read_stream(file, path, bytes, size, why);
     fclose(file);
     return status;
+}
+
+enum wb_status wb_file_read(const char *path, char **bytes, size_t *size)
+{
+    return wb_file_read_with_reason(path, bytes, size, NULL);
 }
 
 static enum wb_status write_all(int descriptor, const char *path, const void *bytes, size_t size)
@@ -111,6 +125,13 @@ enum wb_status wb_file_write(const char *path, const void *bytes, size_t size)
     if (status != WB_OK)
         unlink(temporary);
     return status;
+}
+
+enum wb_status wb_file_write_text(const char *path, const struct wb_text *text)
+{
+    if (text->failed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
+    return wb_file_write(path, wb_text_string(text), text->length);
 }
 
 bool wb_file_exists(const char *path)

@@ -5,7 +5,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/reason.h"
 #include "base/status.h"
+#include "base/text.h"
 
 /* Longest path this program makes, with the NUL. */
 #define WB_PATH 4096
@@ -13,10 +15,16 @@
 /* Reads a whole file into an allocated, NUL-terminated buffer (caller frees); *size excludes the
  * NUL and may be NULL. */
 WB_MUST_CHECK enum wb_status wb_file_read(const char *path, char **bytes, size_t *size);
+/* The same; `why` receives why it failed. NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_file_read_with_reason(const char *path, char **bytes, size_t *size,
+                                                      struct wb_reason *why);
 
 /* Writes a whole file: into a temporary file beside it, synchronised, then renamed, so that a
  * reader sees the old or the new file and nothing half-written stays behind. */
 WB_MUST_CHECK enum wb_status wb_file_write(const char *path, const void *bytes, size_t size);
+
+/* The same of a text; WB_ERR_MEMORY when that failed while it was built. */
+WB_MUST_CHECK enum wb_status wb_file_write_text(const char *path, const struct wb_text *text);
 
 /* Whether something is there, and whether it is a folder; links are followed. */
 bool wb_file_exists(const char *path);

@@ -374,36 +374,48 @@ static void put_parsed(struct wb_json *value, json_t *parsed)
     }
 }
 
-enum wb_status wb_json_parse(struct wb_json **root, const char *text, const char *origin)
+static enum wb_status parse(struct wb_json **root, const char *text, const char *origin,
+                            struct wb_reason *why)
 {
     *root = NULL;
     json_error_t error;
     json_t *const parsed = json_loads(text, JSON_REJECT_DUPLICATES, &error);
     if (!parsed)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: %s", origin, error.line, error.text);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: %s", origin, error.line, error.text);
     if (!json_is_object(parsed)) {
         json_decref(parsed);
-        return wb_fail(WB_ERR_FORMAT, "%s: expected a JSON object", origin);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: expected a JSON object", origin);
     }
     struct wb_json *const made = wb_json_create();
     put_parsed(made, parsed);
     json_decref(parsed);
     if (!made || made->failed) {
         wb_json_destroy(made);
-        return wb_fail(WB_ERR_MEMORY, "%s: out of memory", origin);
+        return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory", origin);
     }
     *root = made;
     return WB_OK;
 }
 
-enum wb_status wb_json_read(struct wb_json **root, const char *path)
+enum wb_status wb_json_parse(struct wb_json **root, const char *text, const char *origin)
+{
+    return parse(root, text, origin, NULL);
+}
+
+enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
+                                        struct wb_reason *why)
 {
     *root = NULL;
     char *text;
-    WB_TRY(wb_file_read(path, &text, NULL));
-    const enum wb_status status = wb_json_parse(root, text, path);
+    WB_TRY(wb_file_read_with_reason(path, &text, NULL, why));
+    const enum wb_status status = parse(root, text, path, why);
     free(text);
     return status;
+}
+
+enum wb_status wb_json_read(struct wb_json **root, const char *path)
+{
+    return wb_json_read_with_reason(root, path, NULL);
 }
 
 struct wb_json *wb_json_get(const struct wb_json *object, const char *key)

@@ -13,6 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 
 struct wb_json; /* a document or a value in it */
@@ -46,6 +47,9 @@ WB_MUST_CHECK enum wb_status wb_json_format(const struct wb_json *root, char **t
 
 /* Reads a document whose root is an object; errors name file and line. */
 WB_MUST_CHECK enum wb_status wb_json_read(struct wb_json **root, const char *path);
+/* The same; `why` receives why it failed. NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
+                                                      struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_json_parse(struct wb_json **root, const char *text,
                                            const char *origin);
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "base/setting_private.h"
 
 #define WB_LOG_DOMAIN "setting"
 
@@ -32,16 +33,6 @@ static bool has_range(const struct wb_setting *row)
 static const char *title_of(const struct wb_setting *row)
 {
     return row->title ? row->title : row->name;
-}
-
-const struct wb_setting *wb_setting_find(const struct wb_setting_table *table, const char *name)
-{
-    for (size_t i = 0; i < table->n; i++) {
-        const struct wb_setting *const row = &table->rows[i];
-        if (strcmp(row->name, name) == 0 || (row->option && strcmp(row->option, name) == 0))
-            return row;
-    }
-    return NULL;
 }
 
 bool wb_setting_applies(const struct wb_setting *row, unsigned place)
@@ -286,11 +277,12 @@ double wb_setting_value(const struct wb_setting *row, const void *settings)
     return *(const int *)field;
 }
 
-enum wb_status wb_setting_check_row(const struct wb_setting *row, const void *settings)
+enum wb_status wb_setting_check_row(const struct wb_setting *row, const void *settings,
+                                    struct wb_reason *why)
 {
     const void *const field = look_at(row, settings);
     if (row->type == WB_SETTING_LIST)
-        return wb_setting_check(row->members, field);
+        return wb_setting_check(row->members, field, why);
     if ((row->type != WB_SETTING_NUMBER && row->type != WB_SETTING_INTEGER) || !has_range(row))
         return WB_OK;
     /* In SI: products with the scale keep the order of what was read in the row's unit. */
@@ -300,14 +292,15 @@ enum wb_status wb_setting_check_row(const struct wb_setting *row, const void *se
     if (value == row->fallback * scale ||
         (value >= row->least * scale && value <= row->largest * scale))
         return WB_OK;
-    return wb_fail(WB_ERR_ARGUMENT, "%s: %g is out of range, expected %g to %g", row->name,
-                   value / scale, row->least, row->largest);
+    return wb_fail_to(why, WB_ERR_ARGUMENT, "%s: %g is out of range, expected %g to %g", row->name,
+                      value / scale, row->least, row->largest);
 }
 
-enum wb_status wb_setting_check(const struct wb_setting_table *table, const void *settings)
+enum wb_status wb_setting_check(const struct wb_setting_table *table, const void *settings,
+                                struct wb_reason *why)
 {
     for (size_t i = 0; i < table->n; i++)
-        WB_TRY(wb_setting_check_row(&table->rows[i], settings));
+        WB_TRY(wb_setting_check_row(&table->rows[i], settings, why));
     return WB_OK;
 }
 

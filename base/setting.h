@@ -21,6 +21,7 @@
 
 #include "base/config.h"
 #include "base/json.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -74,9 +75,6 @@ enum {
     WB_SETTING_VALUE = 128    /* bytes of a value as text */
 };
 
-/* The row of that name or option; NULL when there is none. */
-const struct wb_setting *wb_setting_find(const struct wb_setting_table *table, const char *name);
-
 /* Whether the row may be given at a place, one bit; all rows may where `place` is 0. */
 bool wb_setting_applies(const struct wb_setting *row, unsigned place);
 
@@ -99,17 +97,14 @@ WB_MUST_CHECK enum wb_status wb_setting_read_list(const struct wb_setting *row,
                                                   void *settings);
 
 /* Checks a field, or a filled struct: numbers in their range, or as the default.
- * WB_ERR_ARGUMENT. */
+ * WB_ERR_ARGUMENT, with the reason in `why`, or logged where that is NULL. */
 WB_MUST_CHECK enum wb_status wb_setting_check_row(const struct wb_setting *row,
-                                                  const void *settings);
+                                                  const void *settings, struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_setting_check(const struct wb_setting_table *table,
-                                              const void *settings);
+                                              const void *settings, struct wb_reason *why);
 
 /* Whether the field of a struct that began as all zero holds anything. */
 bool wb_setting_is_given(const struct wb_setting *row, const void *settings);
-
-/* A number's or integer's field, in the row's unit. */
-double wb_setting_value(const struct wb_setting *row, const void *settings);
 
 /* The value as its option takes it, numbers to 10 digits; of a list, the first member alone where
  * another one is not in its range. */
@@ -129,13 +124,7 @@ bool wb_setting_is_same(const struct wb_setting *row, const void *settings,
 void wb_setting_identify(const struct wb_setting_table *table, const void *settings,
                          struct wb_text *text);
 
-/* "0.01 to 100 mm", "elastic or elastoplastic"; "" where any value serves. */
-void wb_setting_range(const struct wb_setting *row, char text[WB_SETTING_VALUE]);
-/* The default as options and files take it, or in words; "" where there is none. `otherwise`:
- * wb_setting_table's. */
-void wb_setting_default(const struct wb_setting *row, const char *otherwise,
-                        char text[WB_SETTING_VALUE]);
-/* An option's help with range and default: "Step of the comparison, 0.01 to 100 mm (0.5)". */
+/* An option's help with range and default: "Step of the comparison: 0.01 to 100 mm (0.5)". */
 void wb_setting_describe(const struct wb_setting *row, const char *otherwise, struct wb_text *text);
 
 #endif

@@ -9,7 +9,7 @@
 
 #define WB_LOG_DOMAIN "solve"
 
-/* A run that begins anew leaves nothing of the one before. */
+/* A new attempt of the run discards what the attempt before it left. */
 static enum wb_status begin_anew(struct wb_bundle_states *states, int attempt)
 {
     states->attempt = attempt;
@@ -41,7 +41,7 @@ static enum wb_status take_surface(struct wb_bundle_states *states, double defle
 static enum wb_status take(struct wb_bundle_states *states, int number,
                            const struct wb_bundle_row *row, const struct wb_bundle *bundle)
 {
-    /* Later cycles reach the same deflection: the first is kept. */
+    /* Later cycles reach the same deflection again: the surface of the first is kept. */
     const bool surface = states->wants_surface && row->phase == WB_PHASE_LOAD &&
                          row->deflection > (1.0 + 1e-3) * states->deflection;
     const bool vtk =
@@ -134,10 +134,11 @@ static void visit_series(struct wb_vtk_file_series *series, struct wb_checkpoint
     free(bytes);
 }
 
-/* Where and which states are written: a series of two folders would be of no use. */
+/* Which states are written, and where. A resumed run must want the same: a series split over two
+ * folders would be of no use. */
 struct purpose {
     int wants_surface, wants_vtk, every;
-    char folder[PATH_MAX]; /* without links; "": there are no files */
+    char folder[PATH_MAX]; /* path without symbolic links; "": no files are written */
 };
 
 static void find_purpose(struct purpose *purpose, const struct wb_bundle_states *states)
@@ -160,7 +161,7 @@ static void visit_purpose(const struct wb_bundle_states *states, struct wb_check
     wb_checkpoint_visit_member(checkpoint, &saved, wants_vtk);
     wb_checkpoint_visit_member(checkpoint, &saved, every);
     wb_checkpoint_visit_member(checkpoint, &saved, folder);
-    /* Other ranks keep no states. */
+    /* Only the first rank keeps states. */
     if (checkpoint->status != WB_OK || !checkpoint->restores || wb_team_rank() > 0)
         return;
     saved.folder[sizeof saved.folder - 1] = '\0';

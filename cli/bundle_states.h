@@ -18,16 +18,16 @@ struct wb_bundle_states {
     int every;                     /* rows between VTK files; from 1 */
     int turn;                      /* rows from turn to turn of the history, which have files too */
     struct wb_vtk_file_series series; /* initialised by the caller */
-    /* From here on made by wb_bundle_states_take(). */
+    /* The members below are filled in by wb_bundle_states_take(). */
     int attempt;
     bool has_fields;
     struct wb_bundle_fields fields;
-    struct wb_surface surface;  /* no body: none yet */
+    struct wb_surface surface;  /* without bodies: none was taken yet */
     double deflection;          /* m, of the surface */
-    struct wb_solve_time spent; /* on all this */
+    struct wb_solve_time spent; /* on fields and files */
 };
 
-/* Takes what is wanted of a row's state; for wb_bundle_observer's `place`. */
+/* Keeps or writes what is wanted of a row's state; for wb_bundle_observer's `place`. */
 WB_MUST_CHECK enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
                                                    const struct wb_bundle_history *history,
                                                    const struct wb_bundle_row *row,

@@ -1,4 +1,5 @@
 /* wirebench align: recordings to datasets. */
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "align"
 
@@ -19,23 +21,10 @@ struct options {
     struct wb_align_settings settings;
 };
 
-enum {
-    KEY_ROW_RATE = WB_KEY_OWN,
-    KEY_LONGEST_GAP,
-    KEY_SHAPE_STEP,
-    KEY_LOST_STEPS
-};
-
-static const struct argp_option option_table[] = {
+static const struct argp_option other_options[] = {
     {"output", 'o', "DATASET", 0, "Folder to write; of several recordings, a folder in it for each",
      0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
-    {"row-rate", KEY_ROW_RATE, "N", 0, "Rows per second of bench time (20)", 0},
-    {"longest-gap-s", KEY_LONGEST_GAP, "S", 0,
-     "Make no row where force or shape is missing for longer (0.1)", 0},
-    {"shape-step-mm", KEY_SHAPE_STEP, "H", 0, "Deflection between stored shapes (0.5)", 0},
-    {"lost-steps-mm", KEY_LOST_STEPS, "H", 0,
-     "Flag the stage when commanded and measured travel differ by more (0.3)", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -56,20 +45,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct options *const o = state->input;
 
     switch (key) {
-    case KEY_ROW_RATE:
-        o->settings.row_rate = wb_command_number(state, "--row-rate", argument, 0.1, 1e4);
-        return 0;
-    case KEY_LONGEST_GAP:
-        o->settings.longest_gap = wb_command_number(state, "--longest-gap-s", argument, 1e-3, 60.0);
-        return 0;
-    case KEY_SHAPE_STEP:
-        o->settings.shape_step =
-            WB_MM * wb_command_number(state, "--shape-step-mm", argument, 0.0, 1000.0);
-        return 0;
-    case KEY_LOST_STEPS:
-        o->settings.lost_steps =
-            WB_MM * wb_command_number(state, "--lost-steps-mm", argument, 0.01, 100.0);
-        return 0;
     case ARGP_KEY_ARG:
         add_recording(o, argument);
         return 0;
@@ -85,7 +60,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp argp = {
-    .options = option_table,
+    .options = other_options,
     .parser = parse,
     .args_doc = "REC.wbr...",
     .doc = "Turns recordings (.wbr or .wbr.zst) into datasets: clocks mapped, markers identified, "
@@ -97,7 +72,16 @@ static const struct argp argp = {
            "(gaps, damaged or lost data, a test that was cut short).",
 };
 
-/* One recording's dataset and where it went. */
+static const struct wb_settings_source source = {
+    .tables = &wb_align_table,
+    .n_tables = 1,
+    .offset = offsetof(struct options, settings),
+};
+
+static const struct wb_settings_command command = {
+    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
+
+/* One recording's dataset and the folder it is written to. */
 struct result {
     char folder[WB_PATH];
     struct wb_dataset dataset;
@@ -178,7 +162,7 @@ int wb_cmd_align(int argc, char **argv)
 {
     struct options options = {0};
     wb_align_default_settings(&options.settings);
-    wb_command_parse(&argp, argc, argv, &options);
+    wb_settings_parse(&command, argc, argv, &options);
     wb_interrupt_install();
 
     size_t n_done = 0;

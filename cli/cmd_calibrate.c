@@ -1,5 +1,6 @@
 /* wirebench calibrate: datasets to properties. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -11,6 +12,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "calibrate"
 
@@ -20,48 +22,8 @@ struct options {
     struct wb_calibrate_settings settings;
 };
 
-enum {
-    KEY_ZONE = WB_KEY_OWN,
-    KEY_YIELD,
-    KEY_STRAIGHT,
-    KEY_BOW,
-    KEY_NO_RESTART,
-    KEY_MODULUS,
-    KEY_STRESS,
-    KEY_STEP,
-    KEY_FORCE_STEP,
-    KEY_LARGEST,
-    KEY_ELEMENTS,
-    KEY_FIBRES,
-    KEY_SIZE,
-    KEY_ERROR,
-    KEY_ITERATIONS
-};
-
-static const struct argp_option option_table[] = {
+static const struct argp_option other_options[] = {
     {"output", 'o', "PROPERTIES.yaml", 0, "Write the properties here", 0},
-    {"elastic-zone", KEY_ZONE, "R", 0, "Deflection over length for E, eq. 10 (0.05)", 0},
-    {"yield-point", KEY_YIELD, "R", 0,
-     "Deflection over length for the yield stress, eq. 11 (as the elastic zone; the paper's tables "
-     "show 0.04)",
-     0},
-    {"straight", KEY_STRAIGHT, NULL, 0, "Ignore the natural shape (bow) of the samples", 0},
-    {"bow-corrected", KEY_BOW, NULL, 0,
-     "Take what the samples' bows make of eqs. 10 and 11 out of E and the yield stress", 0},
-    {"youngs-modulus-mpa", KEY_MODULUS, "E", 0, "Given instead of eq. 10", 0},
-    {"yield-stress-mpa", KEY_STRESS, "S", 0, "Given instead of eq. 11", 0},
-    {"no-restart", KEY_NO_RESTART, NULL, 0, "Do not start once more from the optimum", 0},
-    {"step-mm", KEY_STEP, "H", 0, "Deflection step of the comparison (0.5)", 0},
-    {"force-step-n", KEY_FORCE_STEP, "H", 0,
-     "The same of follower tests, where deflections are compared at equal forces (as the rows lie)",
-     0},
-    {"largest-deflection-mm", KEY_LARGEST, "D", 0,
-     "Leave out what comes later in the loading (nothing)", 0},
-    {"elements", KEY_ELEMENTS, "N", 0, "Beam elements (50)", 0},
-    {"fibres", KEY_FIBRES, "N", 0, "Fibres over the diameter (20)", 0},
-    {"size-tolerance", KEY_SIZE, "X", 0, "Stop when the simplex is smaller (1e-4 of K0, n0)", 0},
-    {"error-tolerance", KEY_ERROR, "X", 0, "Stop when the error is smaller (1e-4 of F_max)", 0},
-    {"max-iterations", KEY_ITERATIONS, "N", 0, "Stop after N iterations of a simplex (200)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
@@ -70,59 +32,8 @@ static const struct argp_option option_table[] = {
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
-    struct wb_calibrate_settings *const s = &o->settings;
 
     switch (key) {
-    case KEY_ZONE:
-        s->elastic_zone = wb_command_number(state, "--elastic-zone", argument,
-                                            WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE);
-        return 0;
-    case KEY_YIELD:
-        s->yield_point = wb_command_number(state, "--yield-point", argument,
-                                           WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE);
-        return 0;
-    case KEY_STRAIGHT:
-        s->straight = true;
-        return 0;
-    case KEY_BOW:
-        s->bow_corrected = true;
-        return 0;
-    case KEY_MODULUS:
-        s->youngs_modulus =
-            WB_MPA * wb_command_number(state, "--youngs-modulus-mpa", argument, 1e-3, 1e7);
-        return 0;
-    case KEY_STRESS:
-        s->yield_stress =
-            WB_MPA * wb_command_number(state, "--yield-stress-mpa", argument, 1e-6, 1e7);
-        return 0;
-    case KEY_NO_RESTART:
-        s->restart = false;
-        return 0;
-    case KEY_STEP:
-        s->step = WB_MM * wb_command_number(state, "--step-mm", argument, 1e-2, 100.0);
-        return 0;
-    case KEY_FORCE_STEP:
-        s->force_step = wb_command_number(state, "--force-step-n", argument, 1e-9, 1e6);
-        return 0;
-    case KEY_LARGEST:
-        s->largest_deflection =
-            WB_MM * wb_command_number(state, "--largest-deflection-mm", argument, 1e-3, 1e6);
-        return 0;
-    case KEY_ELEMENTS:
-        s->n_elements = wb_command_integer(state, "--elements", argument, 2, 2000);
-        return 0;
-    case KEY_FIBRES:
-        s->n_fibres = wb_command_integer(state, "--fibres", argument, 4, 1000);
-        return 0;
-    case KEY_SIZE:
-        s->size_tolerance = wb_command_number(state, "--size-tolerance", argument, 1e-12, 0.05);
-        return 0;
-    case KEY_ERROR:
-        s->error_tolerance = wb_command_number(state, "--error-tolerance", argument, 0.0, 1.0);
-        return 0;
-    case KEY_ITERATIONS:
-        s->max_iterations = wb_command_integer(state, "--max-iterations", argument, 1, 100000);
-        return 0;
     case ARGP_KEY_ARG:
         if (wb_datasets_add(&o->datasets, argument) != WB_OK)
             exit(WB_EXIT_FAILED);
@@ -137,7 +48,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp argp = {
-    .options = option_table,
+    .options = other_options,
     .parser = parse,
     .args_doc = "DATASET...",
     .doc = "Calibrates the 1D elastoplastic beam on the averaged first loading of datasets of one "
@@ -147,6 +58,15 @@ static const struct argp argp = {
            "deflection of tests with a follower force. Exit code 3: the iterations ran out or it "
            "was stopped; the best so far is written.",
 };
+
+static const struct wb_settings_source source = {
+    .tables = &wb_calibrate_table,
+    .n_tables = 1,
+    .offset = offsetof(struct options, settings),
+};
+
+static const struct wb_settings_command command = {
+    .argp = &argp, .sources = &source, .n_sources = 1, .place = WB_CALIBRATE_COMMAND};
 
 static bool report_progress(void *context, int evaluation, double error, double size)
 {
@@ -203,8 +123,7 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     wb_json_set_boolean(root, "simulation", r->info.is_simulation);
     wb_json_set_text(root, "loading", r->info.is_follower ? "follower" : "tip");
     wb_json_set_number(root, "elastic_zone", s->elastic_zone);
-    wb_json_set_number(root, "yield_point",
-                       s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
+    wb_json_set_number(root, "yield_point", wb_calibrate_settings_meant(s).yield_point);
     wb_json_set_boolean(root, "straight", s->straight);
     wb_json_set_boolean(root, "bow_corrected", r->bow_corrected);
     wb_json_set_number(root, "bow_spread_mm", r->bow_spread / WB_MM);
@@ -232,7 +151,7 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     return wb_command_print_json(root);
 }
 
-/* Decimals that show so many significant digits of a value, without an exponent. */
+/* How many decimals show so many significant digits of a value without an exponent. */
 static int decimals(double value, int digits)
 {
     const double size = fabs(value);
@@ -262,7 +181,7 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
                                    : "",
            r->info.is_follower ? ", follower force" : "");
     printf("elastic zone %g L, yield point %g L, ", s->elastic_zone,
-           s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
+           wb_calibrate_settings_meant(s).yield_point);
     if (s->straight)
         printf("natural shape ignored\n");
     else
@@ -311,7 +230,7 @@ static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *r
     o->settings.progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "beam runs", 0.0);
     const enum wb_status status =
-        wb_calibrate_run(result, o->datasets.pointers, o->datasets.n, &o->settings);
+        wb_calibrate_run(result, o->datasets.pointers, o->datasets.n, &o->settings, NULL);
     wb_progress_finish(&progress);
     return status;
 }
@@ -343,7 +262,7 @@ int wb_cmd_calibrate(int argc, char **argv)
     struct options options = {0};
     struct wb_calibrate_result result = {0};
     wb_calibrate_default_settings(&options.settings);
-    wb_command_parse(&argp, argc, argv, &options);
+    wb_settings_parse(&command, argc, argv, &options);
     wb_interrupt_install();
 
     const enum wb_status status = calibrate(&options, &result);

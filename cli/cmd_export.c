@@ -80,7 +80,7 @@ int wb_cmd_export(int argc, char **argv)
         status = write_samples(recording, &options, &counts);
     if (wb_recording_close(recording) != WB_OK)
         return WB_EXIT_FAILED;
-    /* Damage met on the way was logged; what could be read has been written. */
+    /* Damage was logged while reading; what could be read has been written. */
     bool written = status == WB_OK || (status == WB_ERR_DATA && counts.load + counts.mocap > 0);
     if (!written || print(&options, &counts) != WB_EXIT_OK)
         return WB_EXIT_FAILED;

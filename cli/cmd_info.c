@@ -62,7 +62,7 @@ static const struct argp argp = {
            "Exit code 3: something is missing or damaged; 'wirebench verify' says what.",
 };
 
-/* What is shown, taken from the recording once. */
+/* What the command shows, read from the recording once. */
 struct facts {
     struct wb_recording *recording;
     struct wb_survey survey;
@@ -73,7 +73,7 @@ struct facts {
     struct wb_json *events; /* array being filled */
 };
 
-/* A meta value, "" when it is not there; the caller frees. */
+/* The meta value of a key, "" where the recording has none; the caller frees it. */
 static char *meta(struct facts *facts, const char *key)
 {
     char *value = NULL;

@@ -1,6 +1,7 @@
 /* wirebench record: the paper's test, recorded. */
 #include <inttypes.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/live_line.h"
+#include "cli/settings.h"
 #include "daq/acquisition.h"
 #include "daq/bend_test.h"
 
@@ -20,8 +22,6 @@ struct options {
 
 enum {
     OPTION_SPECIMEN = 256,
-    OPTION_CYCLES,
-    OPTION_TRAVEL,
     OPTION_OPERATOR,
     OPTION_NOTES,
     OPTION_JSON
@@ -30,8 +30,6 @@ enum {
 static const struct argp_option argp_options[] = {
     {"specimen", OPTION_SPECIMEN, "SPECIMEN.yaml", 0, "The piece of wire on the bench", 0},
     {"output", 'o', "REC.wbr", 0, "The recording to write; it must not exist", 0},
-    {"cycles", OPTION_CYCLES, "N", 0, "Times down and back (default 1)", 0},
-    {"travel-mm", OPTION_TRAVEL, "D", 0, "How far down from the start position (default 53)", 0},
     {"operator", OPTION_OPERATOR, "NAME", 0, "Who runs the test, for the recording", 0},
     {"notes", OPTION_NOTES, "TEXT", 0, "Anything worth knowing later, for the recording", 0},
     {"json", OPTION_JSON, NULL, 0, "Print the outcome as JSON", 0},
@@ -54,12 +52,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case 'o':
         request->output_path = argument;
-        return 0;
-    case OPTION_CYCLES:
-        request->cycles = wb_command_integer(state, "--cycles", argument, 1, 10000);
-        return 0;
-    case OPTION_TRAVEL:
-        request->travel = wb_command_number(state, "--travel-mm", argument, 0.1, 5000.0) * WB_MM;
         return 0;
     case OPTION_OPERATOR:
         request->operator_name = argument;
@@ -111,7 +103,16 @@ static const struct argp argp = {
         "usage; 3 stopped early or data lost, what was recorded is usable.",
 };
 
-/* What the live line says, each field apart. */
+static const struct wb_settings_source source = {
+    .tables = &wb_bend_test_table,
+    .n_tables = 1,
+    .offset = offsetof(struct options, request),
+};
+
+static const struct wb_settings_command command = {
+    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
+
+/* The fields of the live line, as text. */
 struct fields {
     const char *origin;
     char phase[48], force[64], travel[32], deflection[32], markers[32], drops[32], rates[64];
@@ -269,7 +270,7 @@ int wb_cmd_record(int argc, char **argv)
     struct wb_bend_test_result result;
     char specimen[WB_PATH];
     wb_bend_test_default_request(&options.request);
-    wb_command_parse(&argp, argc, argv, &options);
+    wb_settings_parse(&command, argc, argv, &options);
     options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
     wb_interrupt_install();
     wb_interrupt_guard();

@@ -50,7 +50,7 @@ static const struct argp argp = {
            "Ctrl-C ends it. Exit code 3: interrupted, or parts are missing or damaged.",
 };
 
-/* The latest of everything, for the live line. */
+/* The latest sample of each channel, for the live line. */
 struct player {
     bool is_virtual, started;
     int64_t first_ns, last_ns;
@@ -184,7 +184,7 @@ int wb_cmd_replay(int argc, char **argv)
     double wall_s = wb_seconds_from_ns(wb_progress_now_ns() - started_ns);
     if (wb_recording_close(recording) != WB_OK)
         return WB_EXIT_FAILED;
-    /* A database that breaks off has been played up to there. */
+    /* A database that breaks off was replayed up to that point. */
     if (status != WB_OK && !(status == WB_ERR_DATA && counts.chunks > 0))
         return WB_EXIT_FAILED;
     if (print(&options, &player, &counts, wall_s) != WB_EXIT_OK)

@@ -122,7 +122,8 @@ static const struct argp argp = {
            "not used. The same seed and specimen give the same wire and the same noise.",
 };
 
-/* One rig to a folder: a second one would replace the first one's rig file and later remove it. */
+/* A folder serves one rig: a second one would replace the first one's rig file and later remove it.
+ */
 static enum wb_status lock_folder(struct wb_file_lock *lock, const char *folder)
 {
     char path[WB_PATH], who[64] = "";
@@ -176,7 +177,7 @@ int wb_cmd_rig(int argc, char **argv)
         const bool known = stat(path, &written) == 0;
         fprintf(stderr, "ready\n");
         wb_bench_run(bench, &never);
-        /* The addresses end with the rig: nobody may take them for a bench's. */
+        /* The addresses end with the rig: the file must not be taken for a bench's. */
         if (known && is_same_file(path, &written))
             remove(path);
     }

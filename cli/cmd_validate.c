@@ -1,5 +1,6 @@
 /* wirebench validate: properties against datasets they were not calibrated on. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -9,6 +10,7 @@
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
+#include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "validate"
 
@@ -16,29 +18,11 @@ struct options {
     struct wb_command_common common;
     const char *properties;
     struct wb_datasets datasets;
-    struct wb_validate_settings settings;
+    struct wb_calibrate_settings settings;
 };
 
-enum {
-    KEY_STRAIGHT = WB_KEY_OWN,
-    KEY_STEP,
-    KEY_FORCE_STEP,
-    KEY_LARGEST,
-    KEY_ELEMENTS,
-    KEY_FIBRES
-};
-
-static const struct argp_option option_table[] = {
+static const struct argp_option other_options[] = {
     {"output", 'o', "DIR", 0, "Write forces and errors of each group there as CSV", 0},
-    {"straight", KEY_STRAIGHT, NULL, 0, "Ignore the natural shape (bow) of the samples", 0},
-    {"step-mm", KEY_STEP, "H", 0, "Deflection step of the comparison (0.5)", 0},
-    {"force-step-n", KEY_FORCE_STEP, "H", 0,
-     "The same of follower tests, where deflections are compared at equal forces (as the rows lie)",
-     0},
-    {"largest-deflection-mm", KEY_LARGEST, "D", 0,
-     "Leave out what comes later in the loading (nothing)", 0},
-    {"elements", KEY_ELEMENTS, "N", 0, "Beam elements (50)", 0},
-    {"fibres", KEY_FIBRES, "N", 0, "Fibres over the diameter (20)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
@@ -49,25 +33,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct options *const o = state->input;
 
     switch (key) {
-    case KEY_STRAIGHT:
-        o->settings.straight = true;
-        return 0;
-    case KEY_STEP:
-        o->settings.step = WB_MM * wb_command_number(state, "--step-mm", argument, 1e-2, 100.0);
-        return 0;
-    case KEY_FORCE_STEP:
-        o->settings.force_step = wb_command_number(state, "--force-step-n", argument, 1e-9, 1e6);
-        return 0;
-    case KEY_LARGEST:
-        o->settings.largest_deflection =
-            WB_MM * wb_command_number(state, "--largest-deflection-mm", argument, 1e-3, 1e6);
-        return 0;
-    case KEY_ELEMENTS:
-        o->settings.n_elements = wb_command_integer(state, "--elements", argument, 2, 2000);
-        return 0;
-    case KEY_FIBRES:
-        o->settings.n_fibres = wb_command_integer(state, "--fibres", argument, 4, 1000);
-        return 0;
     case ARGP_KEY_ARG:
         if (state->arg_num == 0)
             o->properties = argument;
@@ -84,7 +49,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp argp = {
-    .options = option_table,
+    .options = other_options,
     .parser = parse,
     .args_doc = "PROPERTIES.yaml DATASET...",
     .doc = "Predicts the first loading of tests with calibrated properties and prints the errors "
@@ -95,7 +60,16 @@ static const struct argp argp = {
            "because the beam did not converge.",
 };
 
-/* All groups of one call. */
+static const struct wb_settings_source source = {
+    .tables = &wb_calibrate_table,
+    .n_tables = 1,
+    .offset = offsetof(struct options, settings),
+};
+
+static const struct wb_settings_command command = {
+    .argp = &argp, .sources = &source, .n_sources = 1, .place = WB_CALIBRATE_VALIDATE};
+
+/* The datasets in groups of one wire, length and loading, with the result of each group. */
 struct groups {
     int n;
     int *of;                            /* (datasets) group of each */
@@ -116,7 +90,7 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
             members[n++] = datasets->pointers[i];
     }
     const enum wb_status status =
-        wb_validate_run(&groups->results[group], properties, members, n, &o->settings);
+        wb_validate_run(&groups->results[group], properties, members, n, &o->settings, NULL);
     free(members);
     return status;
 }
@@ -254,7 +228,8 @@ int wb_cmd_validate(int argc, char **argv)
     struct options options = {0};
     struct wb_properties properties;
     struct groups groups = {0};
-    wb_command_parse(&argp, argc, argv, &options);
+    wb_calibrate_default_settings(&options.settings);
+    wb_settings_parse(&command, argc, argv, &options);
 
     enum wb_status status =
         wb_file_is_folder(options.properties)

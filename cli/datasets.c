@@ -98,7 +98,7 @@ enum wb_status wb_datasets_read(struct wb_datasets *datasets)
     for (int i = 0; i < datasets->n; i++)
         WB_TRY(check_name(datasets->names[i]));
     for (int i = 0; i < datasets->n; i++) {
-        WB_TRY(wb_dataset_read(&datasets->items[i], datasets->names[i]));
+        WB_TRY(wb_dataset_read(&datasets->items[i], datasets->names[i], NULL));
         datasets->pointers[i] = &datasets->items[i];
     }
     return WB_OK;

@@ -16,7 +16,7 @@
 #include "cli/talk.h"
 
 #define REDRAW_NS (200 * WB_NS_PER_MS)
-/* What is left to say in the end may wait so long for a terminal that hangs. */
+/* How long the last messages may wait for a terminal that hangs. */
 #define PATIENCE_MS 300
 
 #define ERASE "\r\033[K"
@@ -61,7 +61,7 @@ static void take_keys(void)
         return;
     struct termios keys = live.saved;
     keys.c_lflag &= ~(tcflag_t)(ICANON | ECHO); /* Ctrl-C stays a signal */
-    keys.c_iflag &= ~(tcflag_t)(IXON);          /* Ctrl-S would halt what we say */
+    keys.c_iflag &= ~(tcflag_t)(IXON);          /* Ctrl-S would halt the output */
     keys.c_cc[VMIN] = 0;
     keys.c_cc[VTIME] = 0;
     live.has_keys = tcsetattr(STDIN_FILENO, TCSANOW, &keys) == 0;
@@ -121,7 +121,7 @@ void wb_live_line_show(const char *format, ...)
     if (strlen(live.text) > columns)
         live.text[columns] = '\0';
     snprintf(text, sizeof text, "\r%s\033[K", live.text);
-    /* Behind a message that waits it would be old news. */
+    /* A line queued behind a waiting message would be out of date. */
     if (wb_talk_flush()) {
         (void)wb_talk_say(text);
         live.drawn = true;

@@ -191,7 +191,7 @@ const char *wb_settings_first_argument(const struct wb_settings_command *command
     const struct argp_child children[] = {{.argp = &rows}, {0}};
     const struct argp argp = {
         .options = wb_command_help_options, .parser = keep_first, .children = children};
-    /* Mistakes are told when the options of the place are parsed. */
+    /* Mistakes are reported when the options of the kind are parsed. */
     (void)argp_parse(&argp, argc, argv, ARGP_SILENT, NULL, &line);
     end(&line);
     return line.first;

@@ -23,7 +23,8 @@ struct wb_settings_command {
     const struct argp *argp; /* its parser gets the input, and all keys that are not of settings */
     const struct wb_settings_source *sources;
     size_t n_sources;
-    unsigned place; /* one bit: only its options are taken and shown; 0: all are taken, none shown */
+    unsigned
+        place; /* one bit: only its options are taken and shown; 0: all are taken, none shown */
     /* Names of the places by bit, NULL-terminated: options of another one are refused by their
      * names. NULL: they are unknown. */
     const char *const *places;

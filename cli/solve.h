@@ -68,7 +68,7 @@ void wb_solve_print_point(const struct wb_solve_point *point);
 /* As members of a JSON object. */
 void wb_solve_set_point(struct wb_json *object, const struct wb_solve_point *point);
 
-/* Wall and CPU time, s, from any begin. */
+/* Wall and CPU time, s: differences of two readings count. */
 struct wb_solve_time {
     double wall, cpu;
 };

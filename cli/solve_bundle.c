@@ -24,22 +24,22 @@ enum {
 
 static const double allowed_imbalance = 0.01;
 
-/* Everything a run needs and gives. */
+/* Inputs and results of a run. */
 struct run {
     const struct wb_solve_options *options;
     struct wb_bundle_model model;
     const struct wb_bundle_mesh *mesh;
     struct wb_bundle_history history;
     struct wb_progress progress;
-    int attempt; /* that the live line is about */
+    int attempt; /* shown by the live line */
     struct wb_bundle_states states;
-    bool made_output, made_vtk; /* folders that were not there before */
+    bool made_output, made_vtk; /* folders that this run created */
     struct wb_solve_time spent;
 };
 
 /* --- before --- */
 
-/* Now, so that nothing is computed in vain. */
+/* Called before the computation, so that an output that cannot be written is found out at once. */
 static enum wb_status prepare_folder(const char *folder, bool force, bool *made)
 {
     const bool was_there = wb_file_exists(folder);
@@ -76,13 +76,14 @@ static enum wb_status prepare_output(struct run *run)
         WB_TRY(prepare_folder(o->common.output, o->common.force, &run->made_output));
     if (!o->vtk)
         return WB_OK;
-    /* States that a run which goes on has written are its own; its dataset comes at the end. */
+    /* VTK files in the folder of a resumed run are its own; its dataset is written at the end only.
+     */
     const bool force = o->common.force || (o->checkpoint && wb_file_exists(o->checkpoint));
     WB_TRY(prepare_folder(o->vtk, force, &run->made_vtk));
     return wb_vtk_file_series_init(&run->states.series, o->vtk, run->model.name);
 }
 
-/* Rank 0 alone writes and talks. */
+/* Only rank 0 writes files and prints. */
 static bool is_first(void)
 {
     return wb_team_rank() == 0;
@@ -161,13 +162,13 @@ static enum wb_status compute(struct run *run)
 
     if (run->attempt > 0)
         wb_progress_finish(&run->progress);
-    /* Fields and files are not what is measured. */
+    /* Time spent on fields and files is not the solver's. */
     run->spent.wall = run->history.wall - run->states.spent.wall;
     run->spent.cpu = run->history.cpu - run->states.spent.cpu;
     return status;
 }
 
-/* --- what comes out --- */
+/* --- results --- */
 
 static struct wb_simulated_bundle simulated(const struct run *run)
 {
@@ -190,7 +191,7 @@ static enum wb_status write_dataset(const struct run *run)
 
     WB_TRY(wb_dataset_init(&dataset));
     enum wb_status status = wb_simulated_bundle_fill(&dataset, &bundle);
-    /* Whether it may be overwritten was asked before the computation. */
+    /* That the folder may be overwritten was checked before the computation. */
     if (status == WB_OK)
         status = wb_dataset_begin(folder, true);
     if (status == WB_OK)
@@ -241,7 +242,7 @@ static void print_csv(const struct run *run)
     }
 }
 
-/* What a reader of the curve has to know. */
+/* Warns of what a reader of the curve must know. */
 static void warn(const struct run *run)
 {
     const struct wb_bundle_history *h = &run->history;
@@ -284,7 +285,7 @@ static int deliver(const struct run *run)
         print_csv(run);
     if (code != WB_EXIT_OK)
         return code;
-    /* Not before the result is safe. */
+    /* The checkpoint is removed only once the result is written. */
     if (checkpoint && !h->stopped)
         (void)unlink(checkpoint);
     warn(run);
@@ -305,7 +306,7 @@ static int solve(const struct wb_solve_options *options)
         code = deliver(run);
     wb_team_share(&code, sizeof code, 0);
 
-    /* Folders that were made for nothing go again. */
+    /* Folders that were created but have received no file are removed. */
     if (run->made_output)
         (void)rmdir(options->common.output);
     if (run->made_vtk)

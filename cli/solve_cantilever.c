@@ -16,7 +16,7 @@ enum {
     MARKERS = 7
 };
 
-/* Everything a run needs and gives. */
+/* Inputs and results of a run. */
 struct run {
     const struct wb_solve_options *options;
     struct wb_wire wire;

@@ -24,23 +24,23 @@ enum {
     SLICES = 50 /* of a rod's longitudinal section */
 };
 
-/* Everything a run needs and gives. */
+/* Inputs and results of a run. */
 struct run {
     const struct wb_solve_options *options;
     struct wb_wire_model model;
-    struct wb_wire3d *solid; /* one of both */
+    struct wb_wire3d *solid; /* either this or the rod */
     struct wb_wire1d *rod;
     struct wb_wire_run run;
     struct wb_fields fields;
     struct wb_vtk_file_series series;
-    bool made_output, made_vtk; /* folders that were not there before */
+    bool made_output, made_vtk; /* folders that this run created */
     struct wb_progress progress;
     int increments;
     struct wb_solve_time spent; /* computing */
-    struct wb_solve_time aside; /* of it on fields and files, within the run */
+    struct wb_solve_time aside; /* of that, on fields and files */
 };
 
-/* Now, so that nothing is computed in vain. */
+/* Called before the computation, so that an output that cannot be written is found out at once. */
 static enum wb_status prepare_folder(const char *folder, bool force, bool *made)
 {
     const bool was_there = wb_file_exists(folder);
@@ -72,7 +72,7 @@ static double norm(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* What acts after the last row, for the live line. */
+/* The load at the last row, for the live line. */
 static void describe_load(const struct run *run, char *text, size_t size)
 {
     text[0] = '\0';
@@ -104,7 +104,7 @@ static bool report_increment(void *context, const struct wb_wire_run *wire_run, 
     return !wb_interrupted();
 }
 
-/* Fields are kept at the end of the steps that ask for it, and of the last. */
+/* Stress fields are kept at the end of the last step and of the steps that ask for them. */
 static bool keeps_fields(const struct run *run, bool last)
 {
     const int step = run->run.rows[run->run.n_rows - 1].step;
@@ -170,9 +170,9 @@ static enum wb_status compute(struct run *run)
     return status;
 }
 
-/* --- what comes out --- */
+/* --- results --- */
 
-/* Bytes; 0 when it cannot be told. */
+/* Largest memory of the process, bytes; 0 where the system does not say. */
 static double peak_memory(void)
 {
     struct rusage usage;
@@ -199,7 +199,7 @@ static enum wb_status write_dataset(const struct run *run)
     }
     WB_TRY(wb_dataset_init(&dataset));
     enum wb_status status = wb_simulated_fill_wire(&dataset, &wire);
-    /* Whether it may be overwritten was asked before the computation. */
+    /* That the folder may be overwritten was checked before the computation. */
     if (status == WB_OK)
         status = wb_dataset_begin(folder, true);
     if (status == WB_OK)
@@ -292,7 +292,7 @@ static int deliver(const struct run *run)
     return run->run.converged && !run->run.stopped ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
-/* A folder that was made for nothing goes again. */
+/* Removes folders that were created but have received no file. */
 static void clean_up(const struct run *run)
 {
     if (run->made_output)

@@ -22,7 +22,7 @@ enum way {
 static struct {
     int descriptor;
     bool is_own; /* to be closed */
-    bool gone;   /* nobody listens any more */
+    bool gone;   /* the reader has gone */
     enum way way;
     uint64_t lost, told; /* texts; of them said to be lost */
     size_t n;

@@ -13,6 +13,7 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/drivers.h"
 #include "daq/remark_gate.h"
 #include "daq/stream.h"
 
@@ -662,7 +663,7 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
     line->owner = a;
     line->role = role;
     line->id = a->n_lines;
-    line->driver = wb_driver_find(role, protocol);
+    line->driver = wb_drivers_find(role, protocol);
     if (!line->driver)
         return wb_fail(WB_ERR_UNSUPPORTED, "no %s protocol '%s'", wb_role_name(role), protocol);
     line->state = calloc(1, line->driver->state_size);

@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,15 +48,16 @@ struct wb_bend_test {
     struct wb_acquisition *acquisition;
     struct wb_writer *writer;
     enum phase phase;
-    int64_t started_ns, phase_ns; /* begin of test and of phase */
-    int64_t deadline_ns;          /* of the motion */
-    int cycle;                    /* from 1 */
-    double start_position;        /* m, machine */
-    double target;                /* m travel of the motion under way */
-    bool unsent;                  /* the stage has not taken its command yet */
-    double turn_travel;           /* largest reached in this cycle */
-    uint64_t reports_seen;        /* stage reports looked at */
-    uint64_t stands_since;        /* reports in a row that show it standing elsewhere */
+    int64_t started_ns;
+    int64_t heard_ns;      /* begin of the phase, on the clock that stands while nobody listens */
+    int64_t allowed_ns;    /* for the motion, on that clock */
+    int cycle;             /* from 1 */
+    double start_position; /* m, machine */
+    double target;         /* m travel of the motion under way */
+    bool unsent;           /* the stage has not taken its command yet */
+    double turn_travel;    /* largest reached in this cycle */
+    uint64_t reports_seen; /* stage reports looked at */
+    uint64_t stands_since; /* reports in a row that show it standing elsewhere */
     struct wb_start_check check;
     struct wb_average zero; /* N, of the tare */
     struct wb_tip_watch tip;
@@ -70,11 +72,35 @@ struct wb_bend_test {
 static const char *const phase_names[] = {"connecting", "check", "tare",     "down",
                                           "up",         "rest",  "stopping", "end"};
 
+static const struct wb_setting rows[] = {
+    {.name = "cycles",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_bend_test_request, cycles),
+     .least = 1,
+     .largest = 10000,
+     .fallback = 1,
+     .option = "cycles",
+     .argument = "N",
+     .help = "Times down and back"},
+    {.name = "travel_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_bend_test_request, travel),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 5000.0,
+     .fallback = 53.0,
+     .option = "travel-mm",
+     .argument = "D",
+     .help = "How far down from the start position"},
+};
+
+const struct wb_setting_table wb_bend_test_table = {.rows = rows, .n = WB_COUNT(rows)};
+
 void wb_bend_test_default_request(struct wb_bend_test_request *request)
 {
     memset(request, 0, sizeof *request);
-    request->cycles = 1;
-    request->travel = 53.0 * WB_MM;
+    wb_setting_fill(&wb_bend_test_table, request);
     request->connect_timeout = 6.0;
     request->check_time = 1.0;
     request->tare_time = 2.0;
@@ -103,7 +129,14 @@ static void give_up(struct wb_bend_test *test, enum wb_interlock_reason reason, 
 static void enter(struct wb_bend_test *test, enum phase phase)
 {
     test->phase = phase;
-    test->phase_ns = wb_acquisition_now_ns();
+    test->heard_ns = wb_acquisition_heard_ns(test->acquisition);
+}
+
+/* How long the phase lasts, without the time in which this process was kept from listening: an
+ * instrument is not blamed for that. */
+static int64_t lasts_ns(const struct wb_bend_test *test)
+{
+    return wb_acquisition_heard_ns(test->acquisition) - test->heard_ns;
 }
 
 /* How it ended; the first end stays. */
@@ -253,7 +286,7 @@ static void arm(struct wb_bend_test *test)
     wb_acquisition_set_tare(test->acquisition, test->unloaded);
 }
 
-static void step_connect(struct wb_bend_test *test, int64_t now_ns)
+static void step_connect(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->acquisition);
     const int64_t allowed_ns =
@@ -280,16 +313,16 @@ static void step_connect(struct wb_bend_test *test, int64_t now_ns)
         }
         arm(test);
         enter(test, PHASE_CHECK);
-    } else if (now_ns - test->phase_ns > allowed_ns) {
+    } else if (lasts_ns(test) > allowed_ns) {
         complain_silence(test);
     }
 }
 
-static void step_check(struct wb_bend_test *test, int64_t now_ns)
+static void step_check(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->acquisition);
     const struct wb_start_check *const check = &test->check;
-    const int64_t waited_ns = now_ns - test->phase_ns;
+    const int64_t waited_ns = lasts_ns(test);
     const bool enough = wb_start_check_enough(check);
     char text[WB_START_CHECK_TEXT];
     if (waited_ns < host_ns(test, test->request.check_time) ||
@@ -328,13 +361,12 @@ static void try_to_move(struct wb_bend_test *test)
         enter(test, test->phase);
         test->stands_since = 0;
         test->reports_seen = latest->stage_reports;
-        test->deadline_ns =
-            test->phase_ns + wb_ns_from_seconds(1.5 * fabs(distance) / speed) + 5 * WB_NS_PER_S;
+        test->allowed_ns = wb_ns_from_seconds(1.5 * fabs(distance) / speed) + 5 * WB_NS_PER_S;
     } else if (!test->unsent) {
         give_up(test, WB_INTERLOCK_STAGE,
                 "the motion could not be sent to the stage at %s: check its cable and power",
                 test->rig.stage.address);
-    } else if (wb_acquisition_now_ns() - test->phase_ns > SEND_NS) {
+    } else if (lasts_ns(test) > SEND_NS) {
         test->unsent = false;
         give_up(test, WB_INTERLOCK_STAGE,
                 "the stage at %s does not answer an earlier command: check its cable",
@@ -351,11 +383,11 @@ static void move_to(struct wb_bend_test *test, double target, enum phase phase)
 }
 
 /* True when the motion under way has ended at its target; stops the test when it cannot. */
-static bool arrived(struct wb_bend_test *test, int64_t now_ns)
+static bool arrived(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->acquisition);
     if (latest->stage_reports == test->reports_seen) {
-        if (now_ns > test->deadline_ns)
+        if (lasts_ns(test) > test->allowed_ns)
             give_up(test, WB_INTERLOCK_STAGE, "the stage did not arrive at %.2f mm in time",
                     test->target / WB_MM);
         return false;
@@ -366,7 +398,7 @@ static bool arrived(struct wb_bend_test *test, int64_t now_ns)
         test->turn_travel = fmax(test->turn_travel, travel);
     if (latest->stage.state != WB_STAGE_IDLE) {
         test->stands_since = 0;
-        if (now_ns > test->deadline_ns)
+        if (lasts_ns(test) > test->allowed_ns)
             give_up(test, WB_INTERLOCK_STAGE,
                     "the stage is at %.2f mm and did not arrive at %.2f mm in time", travel / WB_MM,
                     test->target / WB_MM);
@@ -379,7 +411,7 @@ static bool arrived(struct wb_bend_test *test, int64_t now_ns)
     /* The first idle reports may be older than the command. */
     test->stands_since++;
     const bool refused = latest->stage_error[0] && test->stands_since >= 2;
-    if (!refused && (test->stands_since < 5 || now_ns - test->phase_ns <= WB_NS_PER_S))
+    if (!refused && (test->stands_since < 5 || lasts_ns(test) <= WB_NS_PER_S))
         return false;
     /* It stands: no hold is needed, which would only have to be released again. */
     wb_acquisition_motion_ended(test->acquisition);
@@ -398,10 +430,9 @@ static void begin_cycle(struct wb_bend_test *test)
     move_to(test, test->request.travel, PHASE_DOWN);
 }
 
-static void step_tare(struct wb_bend_test *test, int64_t now_ns)
+static void step_tare(struct wb_bend_test *test)
 {
-    if (now_ns - test->phase_ns < host_ns(test, test->request.tare_time) ||
-        test->zero.n < LEAST_READINGS)
+    if (lasts_ns(test) < host_ns(test, test->request.tare_time) || test->zero.n < LEAST_READINGS)
         return;
     test->tare = test->zero.mean;
     test->unloaded = test->tare - wb_rig_tare_load(&test->rig);
@@ -413,23 +444,23 @@ static void step_tare(struct wb_bend_test *test, int64_t now_ns)
     begin_cycle(test);
 }
 
-static void step_down(struct wb_bend_test *test, int64_t now_ns)
+static void step_down(struct wb_bend_test *test)
 {
-    if (!arrived(test, now_ns))
+    if (!arrived(test))
         return;
     wb_acquisition_event(test->acquisition, "turn", "%d", test->cycle);
     move_to(test, 0.0, PHASE_UP);
 }
 
-static void step_up(struct wb_bend_test *test, int64_t now_ns)
+static void step_up(struct wb_bend_test *test)
 {
-    if (arrived(test, now_ns))
+    if (arrived(test))
         enter(test, PHASE_REST);
 }
 
-static void step_rest(struct wb_bend_test *test, int64_t now_ns)
+static void step_rest(struct wb_bend_test *test)
 {
-    if (now_ns - test->phase_ns < host_ns(test, test->request.rest_time))
+    if (lasts_ns(test) < host_ns(test, test->request.rest_time))
         return;
     wb_acquisition_event(test->acquisition, "cycle_end", "%d", test->cycle);
     test->result.cycles_done = test->cycle;
@@ -567,7 +598,7 @@ enum wb_status wb_bend_test_open(struct wb_bend_test **out,
         free(test);
         return status;
     }
-    test->phase_ns = test->started_ns;
+    enter(test, PHASE_CONNECT);
     test->result.is_virtual = test->rig.is_virtual;
     *out = test;
     return WB_OK;
@@ -587,25 +618,24 @@ enum wb_bend_test_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeo
         try_to_move(test);
         return WB_BEND_TEST_RUNNING;
     }
-    const int64_t now_ns = wb_acquisition_now_ns();
     switch (test->phase) {
     case PHASE_CONNECT:
-        step_connect(test, now_ns);
+        step_connect(test);
         break;
     case PHASE_CHECK:
-        step_check(test, now_ns);
+        step_check(test);
         break;
     case PHASE_TARE:
-        step_tare(test, now_ns);
+        step_tare(test);
         break;
     case PHASE_DOWN:
-        step_down(test, now_ns);
+        step_down(test);
         break;
     case PHASE_UP:
-        step_up(test, now_ns);
+        step_up(test);
         break;
     case PHASE_REST:
-        step_rest(test, now_ns);
+        step_rest(test);
         break;
     case PHASE_STOP:
         step_stop(test);

@@ -14,6 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/setting.h"
 #include "base/status.h"
 #include "daq/acquisition.h"
 #include "daq/rig.h"
@@ -25,14 +26,17 @@ struct wb_bend_test_request {
     const char *rig_path, *specimen_path; /* YAML files */
     const char *output_path;              /* the recording; must not exist */
     const char *operator_name, *notes;    /* may be NULL */
-    int cycles;                           /* at least 1 */
-    double travel;                        /* m down from the start position */
-    struct wb_sink sink;                  /* sees every live sample; members may be NULL */
-    double connect_timeout;               /* s of host time for all instruments to answer */
-    double check_time;                    /* s of rig time the start check looks */
-    double tare_time;                     /* s of rig time the tare averages */
-    double rest_time;                     /* s of rig time at the end of each cycle: zero load */
+    int cycles;
+    double travel;          /* m down from the start position */
+    struct wb_sink sink;    /* sees every live sample; members may be NULL */
+    double connect_timeout; /* s of host time for all instruments to answer */
+    double check_time;      /* s of rig time the start check looks */
+    double tare_time;       /* s of rig time the tare averages */
+    double rest_time;       /* s of rig time at the end of each cycle: zero load */
 };
+
+/* Rows of its cycles and travel. */
+extern const struct wb_setting_table wb_bend_test_table;
 
 /* 1 cycle, 53 mm, 6 s, 1 s, 2 s, 2 s; paths NULL. */
 void wb_bend_test_default_request(struct wb_bend_test_request *request);

@@ -4,16 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/config.h"
-
-const struct wb_driver *const wb_drivers[] = {
-    &wb_driver_generic,
-    &wb_driver_mtsics,
-    &wb_driver_natnet,
-    &wb_driver_grbl,
-};
-const int wb_n_drivers = (int)WB_COUNT(wb_drivers);
-
 const char *wb_role_name(enum wb_role role)
 {
     switch (role) {
@@ -25,14 +15,6 @@ const char *wb_role_name(enum wb_role role)
         return "stage";
     }
     return "unknown";
-}
-
-const struct wb_driver *wb_driver_find(enum wb_role role, const char *protocol)
-{
-    for (int i = 0; i < wb_n_drivers; i++)
-        if (wb_drivers[i]->role == role && strcmp(wb_drivers[i]->name, protocol) == 0)
-            return wb_drivers[i];
-    return NULL;
 }
 
 bool wb_outbox_add(struct wb_outbox *outbox, const void *bytes, size_t n)

@@ -96,14 +96,4 @@ void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64
  * more and more rarely. */
 bool wb_driver_worth_saying(uint64_t n);
 
-/* All drivers, and lookup by role and protocol name (NULL when there is none). */
-extern const struct wb_driver *const wb_drivers[];
-extern const int wb_n_drivers;
-const struct wb_driver *wb_driver_find(enum wb_role role, const char *protocol);
-
-extern const struct wb_driver wb_driver_generic;
-extern const struct wb_driver wb_driver_mtsics;
-extern const struct wb_driver wb_driver_natnet;
-extern const struct wb_driver wb_driver_grbl;
-
 #endif

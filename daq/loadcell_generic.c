@@ -111,7 +111,7 @@ static void stop(void *opaque, struct wb_outbox *outbox)
     (void)outbox;
 }
 
-const struct wb_driver wb_driver_generic = {
+const struct wb_driver wb_loadcell_generic = {
     .name = "generic",
     .summary = "load cell or scale that prints one reading a line",
     .role = WB_ROLE_LOAD,

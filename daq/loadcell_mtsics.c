@@ -183,7 +183,7 @@ static void stop(void *opaque, struct wb_outbox *outbox)
         wb_outbox_add_text(outbox, "SI\r\n");
 }
 
-const struct wb_driver wb_driver_mtsics = {
+const struct wb_driver wb_loadcell_mtsics = {
     .name = "mt-sics",
     .summary = "balance that speaks MT-SICS",
     .role = WB_ROLE_LOAD,

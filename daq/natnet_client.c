@@ -484,7 +484,7 @@ static void stop(void *opaque, struct wb_outbox *outbox)
         wb_outbox_add(outbox, buffer, wb_natnet_encode_disconnect(buffer, sizeof buffer));
 }
 
-const struct wb_driver wb_driver_natnet = {
+const struct wb_driver wb_natnet_client = {
     .name = "natnet",
     .summary = "OptiTrack NatNet client, protocol 2.5 to 4.1",
     .role = WB_ROLE_MOCAP,

@@ -8,7 +8,7 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "daq/stream.h"
 
 #define WB_LOG_DOMAIN "replay"
@@ -81,7 +81,7 @@ static enum wb_status open_channel(struct channel *channel,
                                    const struct wb_rig *rig)
 {
     channel->id = recorded->id;
-    const struct wb_driver *driver = wb_driver_find(recorded->role, recorded->protocol);
+    const struct wb_driver *driver = wb_drivers_find(recorded->role, recorded->protocol);
     if (!driver) {
         wb_warn("stream %d (%s) speaks '%s', which no driver knows; it is left out", recorded->id,
                 wb_role_name(recorded->role), recorded->protocol);

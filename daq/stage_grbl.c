@@ -298,7 +298,7 @@ static void stop(void *opaque, struct wb_outbox *outbox)
     (void)outbox;
 }
 
-const struct wb_driver wb_driver_grbl = {
+const struct wb_driver wb_stage_grbl = {
     .name = "grbl",
     .summary = "stepper stage with GRBL 1.1",
     .role = WB_ROLE_STAGE,

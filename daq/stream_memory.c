@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "daq/stream.h"
-#include "daq/stream_private.h"
+#include "daq/stream_kind.h"
 
 #define WB_LOG_DOMAIN "stream"
 
@@ -96,11 +96,17 @@ const struct wb_stream_kind wb_stream_memory = {
     .write = memory_write,
 };
 
+/* NULL when the stream is of another kind. */
+static struct memory_state *memory_of(struct wb_stream *stream)
+{
+    return stream->kind == &wb_stream_memory ? stream->state : NULL;
+}
+
 enum wb_status wb_stream_memory_push(struct wb_stream *stream, const void *bytes, size_t n)
 {
-    struct memory_state *memory = wb_stream_state_of(stream, &wb_stream_memory);
+    struct memory_state *memory = memory_of(stream);
     if (!memory)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s' is not a memory stream", wb_stream_address(stream));
+        return wb_fail(WB_ERR_ARGUMENT, "'%s' is not a memory stream", stream->address);
     if (n == 0)
         return WB_OK; /* an empty run would read as "nothing waits" */
     struct run *run = malloc(sizeof *run + n);
@@ -120,7 +126,7 @@ enum wb_status wb_stream_memory_push(struct wb_stream *stream, const void *bytes
 
 size_t wb_stream_memory_take_written(struct wb_stream *stream, void *buffer, size_t size)
 {
-    struct memory_state *memory = wb_stream_state_of(stream, &wb_stream_memory);
+    struct memory_state *memory = memory_of(stream);
     if (!memory || memory->n_written == 0)
         return 0;
     size_t take = memory->n_written < size ? memory->n_written : size;

@@ -7,7 +7,8 @@
 #include <unistd.h>
 
 #include "base/progress.h"
-#include "daq/stream_private.h"
+#include "daq/stream_kind.h"
+#include "daq/stream_line.h"
 
 #define WB_LOG_DOMAIN "stream"
 

@@ -11,7 +11,8 @@
 #include <termios.h>
 
 #include "base/progress.h"
-#include "daq/stream_private.h"
+#include "daq/stream_kind.h"
+#include "daq/stream_line.h"
 
 #define WB_LOG_DOMAIN "stream"
 

@@ -13,7 +13,8 @@
 #include <unistd.h>
 
 #include "base/progress.h"
-#include "daq/stream_private.h"
+#include "daq/stream_kind.h"
+#include "daq/stream_line.h"
 
 #define WB_LOG_DOMAIN "stream"
 

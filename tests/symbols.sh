@@ -14,17 +14,13 @@ for archive in "$@"; do
     foreign=$(echo "$names" | awk '
         BEGIN {
             # Files that own another noun as well: its symbols are the noun or begin with it.
-            others["driver"] = "drivers n_drivers outbox role"
+            others["driver"] = "outbox role"
             others["grbl_decode"] = "grbl"
             others["interlock"] = "stop"
             others["interrupt"] = "interrupted"
-            others["loadcell_generic"] = "driver_generic"
             others["loadcell_line"] = "line"
-            others["loadcell_mtsics"] = "driver_mtsics"
             others["markers"] = "marker point_cloud"
-            others["natnet_client"] = "driver_natnet"
             others["output"] = "figure"
-            others["stage_grbl"] = "driver_grbl"
         }
         function begins(symbol, noun) {
             return symbol == "wb_" noun || index(symbol, "wb_" noun "_") == 1

@@ -8,23 +8,16 @@
 
 #define WB_LOG_DOMAIN "campaign"
 
+enum {
+    MOST_SETTINGS = 32 /* rows of wb_calibrate_table */
+};
+
 enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
                                          struct wb_calibrate_settings *settings)
 {
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("elastic_zone", &settings->elastic_zone, 1.0,
-                                  WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
-        WB_CONFIG_OPTIONAL_NUMBER("yield_point", &settings->yield_point, 1.0,
-                                  WB_CALIBRATE_LEAST_ZONE, WB_CALIBRATE_LARGEST_ZONE),
-        WB_CONFIG_OPTIONAL_NUMBER("step_mm", &settings->step, WB_MM, 0.05, 10.0),
-        WB_CONFIG_OPTIONAL_BOOLEAN("straight", &settings->straight),
-        WB_CONFIG_OPTIONAL_BOOLEAN("bow_corrected", &settings->bow_corrected),
-        WB_CONFIG_OPTIONAL_BOOLEAN("restart", &settings->restart),
-        WB_CONFIG_OPTIONAL_INTEGER("max_iterations", &settings->max_iterations, 1, 100000),
-        WB_CONFIG_OPTIONAL_INTEGER("elements", &settings->n_elements, 2, 1000),
-        WB_CONFIG_OPTIONAL_INTEGER("fibres", &settings->n_fibres, 4, 1000),
-    };
-    return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
+    struct wb_config_key keys[MOST_SETTINGS];
+    const size_t n = wb_setting_keys(&wb_calibrate_table, WB_CALIBRATE_CAMPAIGN, settings, keys);
+    return node ? wb_config_map(node, keys, n) : WB_OK;
 }
 
 /* No path of this machine may reach the report: shipped campaigns are named from fixtures/ on. */

@@ -1,5 +1,6 @@
 #include "analysis/report/reasons.h"
 
+#include <stdint.h>
 #include <string.h>
 
 #include "base/log.h"
@@ -21,33 +22,48 @@ static void append_replaced(struct wb_text *text, const char *message, const cha
     wb_text_append(text, "%s", message);
 }
 
-static void listen(void *context, enum wb_log_level level, const char *domain, const char *message)
+static void append(const struct wb_reasons *reasons, const char *message)
 {
-    const struct wb_reasons *const reasons = context;
-    (void)domain;
-    if (level != WB_LOG_ERROR && !reasons->quiet)
-        return;
-    if (reasons->text->length > 0)
-        wb_text_append(reasons->text, "; ");
-    append_replaced(reasons->text, message, reasons->path, reasons->name);
+    if (reasons->problem->length > 0)
+        wb_text_append(reasons->problem, "; ");
+    append_replaced(reasons->problem, message, reasons->path, reasons->name);
 }
 
-void wb_reasons_begin(struct wb_reasons *reasons)
+static void keep(const struct wb_reasons *reasons, enum wb_status status,
+                 const struct wb_reason *why)
 {
-    wb_log_set_tap(listen, reasons);
-    if (reasons->quiet)
-        reasons->before = wb_log_set_gravest(WB_LOG_DEBUG);
+    append(reasons, why->text[0] ? why->text : wb_status_text(status));
+}
+
+void wb_reasons_fail(const struct wb_reasons *reasons, enum wb_status status,
+                     const struct wb_reason *why)
+{
+    if (why->text[0])
+        wb_error("%s", why->text);
+    keep(reasons, status, why);
+}
+
+void wb_reasons_warn(const struct wb_reasons *reasons, enum wb_status status,
+                     const struct wb_reason *why)
+{
+    keep(reasons, status, why);
+    if (why->text[0])
+        wb_warn("%s: %s", reasons->name, wb_text_string(reasons->problem));
+}
+
+static void listen(void *context, enum wb_log_level level, const char *domain, const char *message)
+{
+    (void)domain;
+    if (level == WB_LOG_ERROR)
+        append(context, message);
+}
+
+void wb_reasons_listen(const struct wb_reasons *reasons)
+{
+    wb_log_set_tap(listen, (void *)(uintptr_t)reasons);
 }
 
 void wb_reasons_end(void)
 {
     wb_log_set_tap(NULL, NULL);
-}
-
-void wb_reasons_tell(const struct wb_reasons *reasons)
-{
-    wb_reasons_end();
-    wb_log_set_gravest(reasons->before);
-    if (reasons->text->length > 0)
-        wb_warn("%s: %s", reasons->name, wb_text_string(reasons->text));
 }

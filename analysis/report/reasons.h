@@ -1,27 +1,28 @@
-/* Why a step of a report failed: the errors of the calling thread, kept beside being shown, or
- * instead. */
+/* Why a step of a report failed, as the report prints it. */
 #ifndef WB_ANALYSIS_REPORT_REASONS_H
 #define WB_ANALYSIS_REPORT_REASONS_H
 
-#include <stdbool.h>
-
-#include "base/log.h"
+#include "base/reason.h"
 #include "base/text.h"
 
+/* Appends the reason of a step that failed to `problem`, or the status' text where there is none.
+ * No path of this machine may reach the report: `path` is replaced by `name`; NULL: nothing is. */
 struct wb_reasons {
-    struct wb_text *text; /* errors are appended, with "; " between them */
-    const char *path;     /* replaced by `name`: no path of this machine may reach the report; */
-    const char *name;     /* NULL: nothing is replaced */
-    bool quiet;           /* they are not shown one by one, but by wb_reasons_tell() */
-    enum wb_log_level before; /* set by wb_reasons_begin() */
+    struct wb_text *problem;
+    const char *path, *name;
 };
 
-/* From begin to end, which follow each other in one thread; `reasons` must live as long. */
-void wb_reasons_begin(struct wb_reasons *reasons);
-void wb_reasons_end(void);
+/* Shows the reason as an error. */
+void wb_reasons_fail(const struct wb_reasons *reasons, enum wb_status status,
+                     const struct wb_reason *why);
 
-/* Ends quiet reasons and, where there are any, shows them as one warning that begins with the name.
- */
-void wb_reasons_tell(const struct wb_reasons *reasons);
+/* Shows it as a warning that begins with the name: the report goes on without that part. */
+void wb_reasons_warn(const struct wb_reasons *reasons, enum wb_status status,
+                     const struct wb_reason *why);
+
+/* Until the end, errors that the calling thread logs are appended to `problem`, "; " between them:
+ * for the alignment of a recording, whose functions give no reason. `reasons` must live as long. */
+void wb_reasons_listen(const struct wb_reasons *reasons);
+void wb_reasons_end(void);
 
 #endif

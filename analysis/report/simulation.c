@@ -103,18 +103,19 @@ bool wb_simulation_is_missing(const struct wb_simulation_result *result)
 }
 
 static enum wb_status read(struct wb_simulation_result *result, const struct wb_simulation *wanted,
-                           const struct wb_simulation_reader *reader, bool *stale)
+                           const struct wb_simulation_reader *reader, bool *stale,
+                           struct wb_reason *why)
 {
     const char *revision = "";
     char rows[WB_PATH];
-    WB_TRY(wb_dataset_read(&result->dataset, wanted->path));
+    WB_TRY(wb_dataset_read(&result->dataset, wanted->path, why));
     (void)wb_json_get_text(wb_json_get(result->dataset.document, "tool"), "revision", &revision);
     snprintf(result->revision, sizeof result->revision, "%s", revision);
     result->cpu_s = wb_simulation_number(wb_simulation_of(result), "cpu_s");
-    WB_TRY(reader->check(reader->context, stale));
+    WB_TRY(reader->check(reader->context, stale, why));
     WB_TRY(wb_file_join(rows, wanted->path, "force_deflection.csv"));
     WB_TRY(wb_hash_file(rows, result->sha256));
-    return reader->take ? reader->take(reader->context) : WB_OK;
+    return reader->take ? reader->take(reader->context, why) : WB_OK;
 }
 
 void wb_simulation_load(struct wb_simulation_result *result, const struct wb_simulation *wanted,
@@ -130,15 +131,14 @@ void wb_simulation_load(struct wb_simulation_result *result, const struct wb_sim
         wb_text_append(&result->problem, "there is no such dataset");
         return;
     }
-    struct wb_reasons reasons = {&result->problem, wanted->path, wanted->name, true};
-    wb_reasons_begin(&reasons);
-    const enum wb_status status = read(result, wanted, reader, &stale);
-    wb_reasons_tell(&reasons);
+    const struct wb_reasons reasons = {&result->problem, wanted->path, wanted->name};
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = read(result, wanted, reader, &stale, &why);
     result->state = status == WB_OK ? WB_SIMULATION_USABLE
                     : stale         ? WB_SIMULATION_STALE
                                     : WB_SIMULATION_REFUSED;
-    if (status != WB_OK && result->problem.length == 0)
-        wb_text_append(&result->problem, "%s", wb_status_text(status));
+    if (status != WB_OK)
+        wb_reasons_warn(&reasons, status, &why);
 }
 
 void wb_simulation_result_release(struct wb_simulation_result *result)

@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
+#include "base/reason.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -73,9 +74,9 @@ struct wb_simulation_result {
 struct wb_simulation_reader {
     /* Whether it is of the model and the settings that are wanted, and whole. Sets *stale when a
      * failure is one that making the dataset again mends. */
-    enum wb_status (*check)(void *context, bool *stale);
+    enum wb_status (*check)(void *context, bool *stale, struct wb_reason *why);
     /* Reads the rest; NULL: there is none. */
-    enum wb_status (*take)(void *context);
+    enum wb_status (*take)(void *context, struct wb_reason *why);
     void *context;
 };
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/linear/layered_private.h"
+
 #define WB_LOG_DOMAIN "layered"
 
 enum factors {

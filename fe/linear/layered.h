@@ -14,7 +14,6 @@
 #define WB_FE_LINEAR_LAYERED_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "base/status.h"
 
@@ -55,9 +54,5 @@ void wb_layered_solve(struct wb_layered *layered, int n_right, double *right);
 
 /* The same for right-hand sides that are zero outside of the last block: cheaper. */
 void wb_layered_solve_last(struct wb_layered *layered, int n_right, double *right);
-
-/* Memory of the blocks, bytes; floating-point operations of one factorisation (for benchmarks). */
-size_t wb_layered_memory(const struct wb_layered *layered);
-double wb_layered_operations(const struct wb_layered *layered);
 
 #endif

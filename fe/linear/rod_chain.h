@@ -1,5 +1,5 @@
 /* Block tridiagonal systems of 6 x 6 blocks, not symmetric, eliminated from the first block towards
- * the last: what fe/linear/banded.h is for the planar beam, for the rod in space.
+ * the last: the rod in space, as fe/linear/banded.h is for the planar beam.
  */
 #ifndef WB_FE_LINEAR_ROD_CHAIN_H
 #define WB_FE_LINEAR_ROD_CHAIN_H

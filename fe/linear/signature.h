@@ -1,6 +1,8 @@
-/* Stability of an equilibrium from its small tangent matrices: how many of their eigenvalues are
- * below zero. Rows are `stride` apart; n is at most 6. Both count what is zero but for round-off as
- * not negative: a section that yields through has hardly any stiffness, but no negative one.
+/* Signs of the eigenvalues of small tangent matrices, which say whether an equilibrium is stable.
+ *
+ * Rows of a matrix are `stride` apart; n is at most 6. An eigenvalue that is zero up to round-off
+ * counts as not negative: a section that has yielded throughout has hardly any stiffness left, but
+ * no negative one.
  */
 #ifndef WB_FE_LINEAR_SIGNATURE_H
 #define WB_FE_LINEAR_SIGNATURE_H
@@ -11,7 +13,8 @@ enum {
     WB_SIGNATURE_MOST = 6
 };
 
-/* Eigenvalues below zero of the symmetric part: negative pivots of its elimination (Sylvester). */
+/* Number of eigenvalues below zero of the symmetric part: the negative pivots of its elimination
+ * (Sylvester's law of inertia). */
 int wb_signature_negative(int n, int stride, const double *matrix);
 
 /* Whether the determinant is negative: an odd number of real eigenvalues below zero, also of a

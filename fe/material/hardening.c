@@ -1,13 +1,44 @@
 #include "fe/material/hardening.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
-/* ln r is found by Newton's method on h(q) = ln(e^q + k e^(n q)), which is increasing, nearly
- * straight and convex, so it converges from any start; `q` holds the start and the result. */
-static double solve_log_ratio(double k, double n, double q)
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "hardening"
+
+/* --- Ludwik's power law: H = K p^n --- */
+
+static double power_growth(const struct wb_material *m, double p)
 {
+    return m->strength_coefficient * pow(p, m->hardening_exponent);
+}
+
+static double power_mean_growth(const struct wb_material *m, double p)
+{
+    return power_growth(m, p) / (m->hardening_exponent + 1.0);
+}
+
+/* The weight of the power term when all of c were elastic strain: K (c / E)^n / c. */
+static double power_weight(const struct wb_material *m, double c)
+{
+    return m->strength_coefficient * pow(c / m->youngs_modulus, m->hardening_exponent) / c;
+}
+
+/* q = ln r is found by Newton's method on h(q) = ln(e^q + k e^(n q)), which is increasing, nearly
+ * straight and convex, so it converges from any start. */
+static double power_log_ratio(const struct wb_material *m, double c, double q)
+{
+    const double n = m->hardening_exponent, k = power_weight(m, c);
+    if (k == 0.0)
+        return 0.0;
+
+    /* At this start one of the two terms is 1 and the sum at least 1. */
+    if (!isfinite(q))
+        q = fmin(0.0, -log(k) / n);
     for (int iteration = 0; iteration < 60; iteration++) {
         const double a = exp(q);
         const double b = k * exp(n * q);
@@ -19,23 +50,75 @@ static double solve_log_ratio(double k, double n, double q)
     return q;
 }
 
-/* The weight of the power term when all of c were elastic strain: K (c / E)^n / c. */
-static double power_weight(const struct wb_material *m, double c)
+/* --- linear kinematic hardening (Prager): the back stress moves by K d(ep) --- */
+
+static double prager_back_modulus(const struct wb_material *m)
 {
-    return m->strength_coefficient * pow(c / m->youngs_modulus, m->hardening_exponent) / c;
+    return m->strength_coefficient;
+}
+
+/* --- the laws --- */
+
+const struct wb_hardening_parameter wb_hardening_parameters[WB_HARDENING_PARAMETERS] = {
+    [WB_HARDENING_STRENGTH] = {"strength_coefficient", " Pa", "0 or more", 0.0, DBL_MAX,
+                               "strength_coefficient_MPa", WB_MPA, 0.0, 1e9,
+                               offsetof(struct wb_material, strength_coefficient)},
+    [WB_HARDENING_EXPONENT] = {"hardening_exponent", "", "above 0, at most 2", DBL_TRUE_MIN, 2.0,
+                               "hardening_exponent", 1.0, 1e-3, 2.0,
+                               offsetof(struct wb_material, hardening_exponent)},
+};
+
+const struct wb_hardening_law wb_hardening_laws[WB_HARDENING_LAWS] = {
+    [WB_HARDENING_NONE_ELASTIC] = {.name = NULL},
+    [WB_HARDENING_ISOTROPIC_POWER] =
+        {.name = "isotropic",
+         .yields = true,
+         .has = {[WB_HARDENING_STRENGTH] = true, [WB_HARDENING_EXPONENT] = true},
+         .may_be_perfect = true,
+         .growth = power_growth,
+         .mean_growth = power_mean_growth,
+         .log_ratio = power_log_ratio},
+    [WB_HARDENING_KINEMATIC_LINEAR] = {.name = "kinematic",
+                                       .yields = true,
+                                       .moves = true,
+                                       .has = {[WB_HARDENING_STRENGTH] = true},
+                                       .back_modulus = prager_back_modulus},
+};
+
+bool wb_hardening_is_possible(const struct wb_material *material, char *why, size_t size)
+{
+    const struct wb_hardening_law *law = wb_hardening_law(material);
+    struct wb_material copy = *material;
+
+    if (law->yields && !(isfinite(material->yield_stress) && material->yield_stress > 0.0)) {
+        snprintf(why, size, "yield_stress %g Pa: expected a number above 0",
+                 material->yield_stress);
+        return false;
+    }
+    for (int i = 0; i < WB_HARDENING_PARAMETERS; i++) {
+        const struct wb_hardening_parameter *parameter = &wb_hardening_parameters[i];
+        const double value = *wb_hardening_value(&copy, i);
+        if (law->has[i] && !(value >= parameter->least && value <= parameter->largest)) {
+            snprintf(why, size, "%s %g%s: expected %s", parameter->name, value, parameter->unit,
+                     parameter->expected);
+            return false;
+        }
+    }
+    return true;
+}
+
+double wb_hardening_mean_stress(const struct wb_material *material, double p)
+{
+    const struct wb_hardening_law *law = wb_hardening_law(material);
+    return material->yield_stress + (law->mean_growth ? law->mean_growth(material, p) : 0.0);
 }
 
 double wb_hardening_ratio(const struct wb_material *material, double overstress)
 {
-    const double n = material->hardening_exponent;
-    const double k = power_weight(material, overstress);
-    if (k == 0.0)
-        return 1.0;
-
-    /* At this start one of the two terms is 1 and the sum at least 1. */
-    const double q = fmin(0.0, -log(k) / n);
-    return exp(solve_log_ratio(k, n, q));
+    return exp(wb_hardening_law(material)->log_ratio(material, overstress, (double)NAN));
 }
+
+/* --- tables --- */
 
 static double bits_to_double(uint64_t bits)
 {
@@ -51,35 +134,35 @@ static uint64_t double_to_bits(double value)
     return bits;
 }
 
-/* Newton's divided differences at the Chebyshev nodes of [-1/2, 1/2], expanded to powers. */
-static void interpolate(const double *node, const double *value, double *coefficient)
+/* The Chebyshev nodes of [-1/2, 1/2]. */
+static void find_nodes(int n, double *node)
 {
-    enum {
-        N = WB_HARDENING_TERMS
-    };
-    double d[N];
+    for (int i = 0; i < n; i++)
+        node[i] = 0.5 * cos(M_PI * (i + 0.5) / n);
+}
 
-    for (int i = 0; i < N; i++)
-        d[i] = value[i];
-    for (int j = 1; j < N; j++) {
-        for (int i = N - 1; i >= j; i--)
-            d[i] = (d[i] - d[i - 1]) / (node[i] - node[i - j]);
+/* Newton's divided differences at the nodes, in place of the values, expanded to powers. */
+static void interpolate(int n, const double *node, double *value, double *coefficient)
+{
+    for (int j = 1; j < n; j++) {
+        for (int i = n - 1; i >= j; i--)
+            value[i] = (value[i] - value[i - 1]) / (node[i] - node[i - j]);
     }
-
-    for (int i = 0; i < N; i++)
+    for (int i = 0; i < n; i++)
         coefficient[i] = 0.0;
-    for (int i = N - 1; i >= 0; i--) {
-        for (int j = N - 1; j >= 1; j--)
+    for (int i = n - 1; i >= 0; i--) {
+        for (int j = n - 1; j >= 1; j--)
             coefficient[j] = coefficient[j - 1] - node[i] * coefficient[j];
-        coefficient[0] = d[i] - node[i] * coefficient[0];
+        coefficient[0] = value[i] - node[i] * coefficient[0];
     }
 }
 
 void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_material *material)
 {
-    const double n = material->hardening_exponent;
-    /* The nearest singularity of r lies at an angle of about pi n / (1 - n) from the real axis, so
-     * small exponents need finer pieces. */
+    const struct wb_hardening_law *law = wb_hardening_law(material);
+    const double n = wb_hardening_exponent(material, 1.0);
+    /* The nearest singularity of a power law's r lies at an angle of about pi n / (1 - n) from the
+     * real axis, so small exponents need finer pieces. */
     const int log2_pieces = n < 0.25 ? 6 : n < 0.4 ? 5 : 4;
     const double begin = ldexp(1.0, WB_HARDENING_LOWEST_OCTAVE);
 
@@ -88,8 +171,7 @@ void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_mat
     table->pieces = (long long)WB_HARDENING_OCTAVES << log2_pieces;
 
     double node[WB_HARDENING_TERMS];
-    for (int i = 0; i < WB_HARDENING_TERMS; i++)
-        node[i] = 0.5 * cos(M_PI * (i + 0.5) / WB_HARDENING_TERMS);
+    find_nodes(WB_HARDENING_TERMS, node);
 
     double q = (double)NAN;
     for (long long piece = 0; piece < table->pieces; piece++) {
@@ -101,17 +183,60 @@ void wb_hardening_tabulate(struct wb_hardening_table *table, const struct wb_mat
         double value[WB_HARDENING_TERMS];
         for (int i = WB_HARDENING_TERMS - 1; i >= 0; i--) {
             const double c = (low + (node[i] + 0.5) * width) * material->yield_stress;
-            const double k = power_weight(material, c);
-            if (k == 0.0) {
-                value[i] = 1.0;
-                continue;
-            }
             /* The neighbouring node is a good start. */
-            if (!isfinite(q))
-                q = fmin(0.0, -log(k) / n);
-            q = solve_log_ratio(k, n, q);
+            q = law->log_ratio(material, c, q);
             value[i] = exp(q);
         }
-        interpolate(node, value, table->coefficients[piece]);
+        interpolate(WB_HARDENING_TERMS, node, value, table->coefficients[piece]);
     }
+}
+
+/* Largest error of the stress in an octave, as a part of the stress. */
+static double octave_error(const struct wb_material *radial, double begin, int terms,
+                           const double *coefficient)
+{
+    double worst = 0.0;
+
+    for (int i = 0; i <= 16; i++) {
+        const double t = (i - 8) / 16.0, c = begin * (t + 1.5) * radial->youngs_modulus;
+        const double exact = wb_hardening_ratio(radial, c);
+        double r = 0.0;
+        for (int k = terms - 1; k >= 0; k--)
+            r = r * t + coefficient[k];
+        const double error = fabs(r - exact) * c / (radial->yield_stress + (1.0 - exact) * c);
+        if (!isfinite(error))
+            return (double)INFINITY;
+        worst = fmax(worst, error);
+    }
+    return worst;
+}
+
+enum wb_status wb_hardening_tabulate_octaves(const struct wb_material *radial, int terms,
+                                             double *table)
+{
+    static const double tolerance = 1e-5;
+    double node[WB_HARDENING_TABLE_MOST_TERMS], value[WB_HARDENING_TABLE_MOST_TERMS];
+    double coefficient[WB_HARDENING_TABLE_MOST_TERMS], worst = 0.0;
+    bool is_good = true;
+
+    memset(table, 0, (size_t)terms * WB_HARDENING_TABLE_OCTAVES * sizeof *table);
+    if (!wb_hardening_law(radial)->growth)
+        return WB_OK;
+    find_nodes(terms, node);
+    for (int octave = 0; octave < WB_HARDENING_TABLE_OCTAVES; octave++) {
+        const double begin = ldexp(1.0, WB_HARDENING_TABLE_LOWEST + octave);
+        for (int i = 0; i < terms; i++)
+            value[i] = wb_hardening_ratio(radial, begin * (node[i] + 1.5) * radial->youngs_modulus);
+        interpolate(terms, node, value, coefficient);
+        const double error = octave_error(radial, begin, terms, coefficient);
+        is_good = is_good && error <= tolerance;
+        worst = fmax(worst, error);
+        for (int k = 0; k < terms; k++)
+            table[k * WB_HARDENING_TABLE_OCTAVES + octave] = coefficient[k];
+    }
+    if (!is_good)
+        return wb_fail(WB_ERR_UNSUPPORTED,
+                       "the hardening law (K = %g Pa, n = %g) cannot be tabulated: error %.1e",
+                       radial->strength_coefficient, radial->hardening_exponent, worst);
+    return WB_OK;
 }

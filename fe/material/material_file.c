@@ -4,66 +4,101 @@
 
 #include "base/config.h"
 #include "base/units.h"
+#include "fe/material/hardening.h"
 
-static const char *const hardening_names[] = {"isotropic", "kinematic", NULL};
+enum {
+    WITHOUT_PARAMETERS = 9 /* keys of a file */
+};
 
 /* Which of the optional keys were given. */
 struct given {
-    bool yield, hardening, coefficient, exponent;
+    bool yield, hardening, parameter[WB_HARDENING_PARAMETERS];
 };
 
-static enum wb_status check(const struct wb_config_node *root, const struct given *given,
-                            bool is_kinematic)
+/* A law has all of its parameters, or none of them if it is perfectly plastic then. */
+static enum wb_status check_parameters(const struct wb_config_node *root, const struct given *given,
+                                       const struct wb_hardening_law *law)
 {
-    if (!given->yield && (given->hardening || given->coefficient || given->exponent))
+    int first_given = -1, first_missing = -1;
+
+    for (int i = 0; i < WB_HARDENING_PARAMETERS; i++) {
+        const char *key = wb_hardening_parameters[i].key;
+        if (given->parameter[i] && !law->has[i])
+            return wb_config_refuse(root, key, "%s hardening has no %s", law->name, key);
+        if (law->has[i] && given->parameter[i] && first_given < 0)
+            first_given = i;
+        if (law->has[i] && !given->parameter[i] && first_missing < 0)
+            first_missing = i;
+    }
+    if (first_missing >= 0 && !law->may_be_perfect)
+        return wb_config_refuse(root, "hardening", "%s hardening needs %s", law->name,
+                                wb_hardening_parameters[first_missing].key);
+    if (first_missing >= 0 && first_given >= 0) {
+        const bool in_order = first_given < first_missing;
+        return wb_config_refuse(
+            root, wb_hardening_parameters[first_given].key, "%s and %s go together",
+            wb_hardening_parameters[in_order ? first_given : first_missing].key,
+            wb_hardening_parameters[in_order ? first_missing : first_given].key);
+    }
+    return WB_OK;
+}
+
+static enum wb_status check(const struct wb_config_node *root, const struct given *given,
+                            const struct wb_hardening_law *law)
+{
+    bool hardens = given->hardening;
+
+    for (int i = 0; i < WB_HARDENING_PARAMETERS; i++)
+        hardens = hardens || given->parameter[i];
+    if (!given->yield && hardens)
         return wb_config_refuse(root, "yield_stress_MPa",
                                 "this key is missing: the material hardens");
-    if (is_kinematic && given->exponent)
-        return wb_config_refuse(root, "hardening_exponent",
-                                "kinematic hardening is linear and has no exponent");
-    if (is_kinematic && !given->coefficient)
-        return wb_config_refuse(root, "hardening",
-                                "kinematic hardening needs strength_coefficient_MPa");
-    if (!is_kinematic && given->coefficient != given->exponent)
-        return wb_config_refuse(root,
-                                given->exponent ? "hardening_exponent" : "strength_coefficient_MPa",
-                                "strength_coefficient_MPa and hardening_exponent go together");
-    return WB_OK;
+    return given->yield ? check_parameters(root, given, law) : WB_OK;
 }
 
 static enum wb_status read_root(const struct wb_config_node *root, struct wb_material_file *file)
 {
     struct wb_material *const m = &file->material;
     struct given given = {0};
-    int hardening = 0;
-    struct wb_config_key keys[] = {
+    /* The laws that yield, by name; the first is that of files that name none. */
+    const char *names[WB_HARDENING_LAWS + 1] = {NULL};
+    enum wb_hardening laws[WB_HARDENING_LAWS] = {0};
+    int hardening = 0, n_laws = 0;
+    struct wb_config_key keys[WITHOUT_PARAMETERS + WB_HARDENING_PARAMETERS] = {
         WB_CONFIG_TEXT("name", file->name),
         WB_CONFIG_OPTIONAL_BOOLEAN("substitute", &file->is_substitute),
         WB_CONFIG_TEXT("source", file->source),
         WB_CONFIG_NUMBER("youngs_modulus_MPa", &m->youngs_modulus, WB_MPA, 1e-3, 1e7),
         /* Beyond this a solid is incompressible. */
         WB_CONFIG_OPTIONAL_NUMBER("poissons_ratio", &m->poissons_ratio, 1.0, -0.99, 0.499),
-        WB_CONFIG_OPTIONAL_NUMBER("yield_stress_MPa", &m->yield_stress, WB_MPA, 1e-6, 1e6),
-        WB_CONFIG_OPTIONAL_CHOICE("hardening", &hardening, hardening_names),
-        WB_CONFIG_OPTIONAL_NUMBER("strength_coefficient_MPa", &m->strength_coefficient, WB_MPA, 0.0,
-                                  1e9),
-        WB_CONFIG_OPTIONAL_NUMBER("hardening_exponent", &m->hardening_exponent, 1.0, 1e-3, 2.0),
         WB_CONFIG_NUMBER("density_g_cm3", &file->density, WB_G_PER_CM3, 1e-3, 30.0),
         WB_CONFIG_OPTIONAL_NUMBER("thickness_of_two_layers_mm", &file->thickness, WB_MM, 1e-3,
                                   10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("yield_stress_MPa", &m->yield_stress, WB_MPA, 1e-6, 1e6),
+        WB_CONFIG_OPTIONAL_CHOICE("hardening", &hardening, names),
     };
-    keys[5].present = &given.yield;
-    keys[6].present = &given.hardening;
-    keys[7].present = &given.coefficient;
-    keys[8].present = &given.exponent;
+    struct wb_config_key *const of_parameters = keys + WITHOUT_PARAMETERS;
+
+    for (int i = 0; i < WB_HARDENING_LAWS; i++) {
+        if (!wb_hardening_laws[i].yields)
+            continue;
+        names[n_laws] = wb_hardening_laws[i].name;
+        laws[n_laws++] = (enum wb_hardening)i;
+    }
+    of_parameters[-2].present = &given.yield;
+    of_parameters[-1].present = &given.hardening;
+    for (int i = 0; i < WB_HARDENING_PARAMETERS; i++) {
+        const struct wb_hardening_parameter *p = &wb_hardening_parameters[i];
+        of_parameters[i] = (struct wb_config_key)WB_CONFIG_OPTIONAL_NUMBER(
+            p->key, wb_hardening_value(m, i), p->factor, p->low, p->high);
+        of_parameters[i].present = &given.parameter[i];
+    }
     m->poissons_ratio = (double)NAN;
     m->hardening_exponent = 1.0;
 
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
-    WB_TRY(check(root, &given, hardening == 1));
-    m->hardening = !given.yield     ? WB_HARDENING_NONE_ELASTIC
-                   : hardening == 1 ? WB_HARDENING_KINEMATIC_LINEAR
-                                    : WB_HARDENING_ISOTROPIC_POWER;
+    WB_TRY(check(root, &given, &wb_hardening_laws[laws[hardening]]));
+    m->hardening = given.yield ? laws[hardening] : WB_HARDENING_NONE_ELASTIC;
     return WB_OK;
 }
 

@@ -55,7 +55,7 @@ static enum wb_status check(const struct wb_bundle_override *override)
         const char *const settings = (const char *) override + table->offset;
         for (size_t i = 0; i < table->n; i++) {
             if (wb_setting_is_given(&table->rows[i], settings))
-                WB_TRY(wb_setting_check_row(&table->rows[i], settings));
+                WB_TRY(wb_setting_check_row(&table->rows[i], settings, NULL));
         }
     }
     return WB_OK;

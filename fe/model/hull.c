@@ -5,8 +5,6 @@
 
 #define WB_LOG_DOMAIN "hull"
 
-static const double pi = 3.14159265358979323846;
-
 /* How far a wire reaches in the direction of a normal. */
 static double support(const struct wb_packing_circle *wire, double normal)
 {
@@ -52,12 +50,12 @@ static double turn_to(const struct wb_packing_circle *a, const struct wb_packing
     const double cosine = (a->radius - b->radius) / distance;
     if (!(fabs(cosine) < 1.0))
         return -1.0;
-    double turn = fmod(atan2(y, z) - acos(cosine) - normal, 2.0 * pi);
+    double turn = fmod(atan2(y, z) - acos(cosine) - normal, 2.0 * M_PI);
     /* Round-off may put a crossing right here a little behind. */
     if (turn < -1e-9)
-        turn += 2.0 * pi;
-    if (turn > 2.0 * pi - 1e-9)
-        turn -= 2.0 * pi;
+        turn += 2.0 * M_PI;
+    if (turn > 2.0 * M_PI - 1e-9)
+        turn -= 2.0 * M_PI;
     return fmax(turn, 0.0);
 }
 
@@ -94,12 +92,12 @@ static enum wb_status add_arc(struct wb_hull *hull, int wire, double from, doubl
 /* Once round from a normal of -pi. */
 static enum wb_status go_round(struct wb_hull *hull)
 {
-    double normal = -pi, turn = 0.0;
+    double normal = -M_PI, turn = 0.0;
     int wire = farthest(&hull->packing, normal);
     for (;;) {
         const int next = next_wire(&hull->packing, wire, normal, &turn);
-        if (next < 0 || normal + turn >= pi)
-            return add_arc(hull, wire, normal, pi);
+        if (next < 0 || normal + turn >= M_PI)
+            return add_arc(hull, wire, normal, M_PI);
         WB_TRY(add_arc(hull, wire, normal, normal + turn));
         normal += turn;
         wire = next;
@@ -112,7 +110,7 @@ static void join_ends(struct wb_hull *hull)
     struct wb_hull_arc *const first = &hull->arc[0], *const last = &hull->arc[hull->n_arcs - 1];
     if (hull->n_arcs < 2 || first->wire != last->wire)
         return;
-    last->to = first->to + 2.0 * pi;
+    last->to = first->to + 2.0 * M_PI;
     hull->n_arcs--;
     memmove(first, first + 1, (size_t)hull->n_arcs * sizeof *first);
 }
@@ -182,7 +180,7 @@ enum wb_status wb_hull_find(struct wb_hull *hull, const struct wb_packing *packi
 
 double wb_hull_length(const struct wb_hull *hull, double offset)
 {
-    double length = 2.0 * pi * offset;
+    double length = 2.0 * M_PI * offset;
     for (int k = 0; k < hull->n_arcs; k++) {
         const struct wb_hull_arc *const arc = &hull->arc[k];
         length += hull->packing.wire[arc->wire].radius * (arc->to - arc->from) + arc->straight;
@@ -191,20 +189,6 @@ double wb_hull_length(const struct wb_hull *hull, double offset)
 }
 
 /* Half of the integral of the support over the outline. */
-double wb_hull_area(const struct wb_hull *hull, double offset)
-{
-    double sum = 0.0;
-    for (int k = 0; k < hull->n_arcs; k++) {
-        const struct wb_hull_arc *const arc = &hull->arc[k];
-        const struct wb_packing_circle *const wire = &hull->packing.wire[arc->wire];
-        const double R = wire->radius + offset;
-        sum += R * (wire->z * (sin(arc->to) - sin(arc->from)) -
-                    wire->y * (cos(arc->to) - cos(arc->from)) + R * (arc->to - arc->from));
-        sum += (support(wire, arc->to) + offset) * arc->straight;
-    }
-    return 0.5 * sum;
-}
-
 static void add_arc_moments(struct wb_hull_moments *sum, const struct wb_packing_circle *centre,
                             double R, const struct wb_hull_arc *arc)
 {

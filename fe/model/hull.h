@@ -36,9 +36,8 @@ struct wb_hull {
 WB_MUST_CHECK enum wb_status wb_hull_find(struct wb_hull *hull, const struct wb_packing *packing,
                                           double tolerance);
 
-/* Of the outline and of what it encloses: m, m2. */
+/* Of the outline, m. */
 double wb_hull_length(const struct wb_hull *hull, double offset);
-double wb_hull_area(const struct wb_hull *hull, double offset);
 
 /* Integrals over the outline: of 1, y, z, y^2, z^2 (m, m2, m3). */
 struct wb_hull_moments {

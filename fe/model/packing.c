@@ -8,8 +8,6 @@
 
 #define WB_LOG_DOMAIN "packing"
 
-static const double pi = 3.14159265358979323846;
-
 /* Between the centres. */
 static double centre_distance(const struct wb_packing_circle *a, const struct wb_packing_circle *b)
 {
@@ -91,7 +89,7 @@ static void list_sites(struct site sites[SITES])
             site->y = 0.5 * sqrt(3.0) * v / 3.0;
             site->angle = atan2(site->y, site->z);
             if (site->angle < -1e-9)
-                site->angle += 2.0 * pi;
+                site->angle += 2.0 * M_PI;
         }
     }
     qsort(sites, SITES, sizeof *sites, nearer);

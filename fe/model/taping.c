@@ -54,18 +54,6 @@ enum wb_status wb_taping_wind(struct wb_taping *taping, double circumference,
     return WB_OK;
 }
 
-/* Winding k covers p (k + h s / C) +- c / 2. */
-int wb_taping_layers(const struct wb_taping *taping, double x, double s)
-{
-    if (taping->kind == WB_TAPING_SLEEVE)
-        return (int)taping->layers;
-    const double at = x / taping->advance - taping->helix.hand * s / taping->circumference;
-    const double begin = at - 0.5 * taping->layers, into = begin - floor(begin);
-    const double whole = floor(taping->layers), part = taping->layers - whole;
-    /* Whole layers do not depend on round-off at the edges. */
-    return (int)whole + (into + part >= 1.0);
-}
-
 double wb_taping_thickness(const struct wb_taping *taping)
 {
     return taping->layers * taping->layer_thickness;

@@ -40,11 +40,6 @@ WB_MUST_CHECK enum wb_status wb_taping_wind(struct wb_taping *taping, double cir
                                             double layer_thickness,
                                             const struct wb_taping_helix *helix);
 
-/* The number of layers at x along the bundle and s along the outline (m, any). The middle of one
- * winding is at x = 0, s = 0; the windings go on beyond the ends of the bundle. A winding's edge
- * belongs to it where it begins and not where it ends. */
-int wb_taping_layers(const struct wb_taping *taping, double x, double s);
-
 /* Thickness of all layers on average, m; area of tape, all layers, for a length of bundle, m2/m. */
 double wb_taping_thickness(const struct wb_taping *taping);
 double wb_taping_area(const struct wb_taping *taping);

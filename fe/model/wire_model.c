@@ -549,7 +549,8 @@ static double outer_diameter(const struct wb_wire_model *model)
     return model->part[model->n_parts - 1].outer_diameter;
 }
 
-double wb_wire_model_flexural_rigidity(const struct wb_wire_model *model)
+/* Sum of E I over the parts, N m2. */
+static double flexural_rigidity(const struct wb_wire_model *model)
 {
     double sum = 0.0;
     for (int i = 0; i < model->n_parts; i++) {
@@ -562,7 +563,7 @@ double wb_wire_model_flexural_rigidity(const struct wb_wire_model *model)
 
 double wb_wire_model_youngs_modulus(const struct wb_wire_model *model)
 {
-    return wb_wire_model_flexural_rigidity(model) / second_moment(outer_diameter(model));
+    return flexural_rigidity(model) / second_moment(outer_diameter(model));
 }
 
 double wb_wire_model_poissons_ratio(const struct wb_wire_model *model)

@@ -130,10 +130,9 @@ bool wb_wire_model_is_follower(const struct wb_wire_model *model);
  * gravity upright. */
 bool wb_wire_model_is_bending_test(const struct wb_wire_model *model);
 
-/* Mass per length of all parts, kg/m. Flexural rigidity sum E I (N m2) and the homogenised
- * Young's modulus (eq. 8) and Poisson's ratio (eq. 9) over the outer diameter. */
+/* Mass per length of all parts, kg/m; homogenised Young's modulus (eq. 8 of the paper) and
+ * Poisson's ratio (eq. 9) over the outer diameter. */
 double wb_wire_model_mass_per_length(const struct wb_wire_model *model);
-double wb_wire_model_flexural_rigidity(const struct wb_wire_model *model);
 double wb_wire_model_youngs_modulus(const struct wb_wire_model *model);
 double wb_wire_model_poissons_ratio(const struct wb_wire_model *model);
 

@@ -195,14 +195,6 @@ void wb_bundle_fields_release(struct wb_bundle_fields *fields)
 
 /* --- the state --- */
 
-/* What a plastic strain's hardening lets a stress reach. */
-static double flow_stress(const struct wb_material *m, double plastic)
-{
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
-        return (double)INFINITY;
-    return m->yield_stress + m->strength_coefficient * pow(plastic, m->hardening_exponent);
-}
-
 static void sum_up_wire(const struct wb_bundle_bodies *bodies, int w, struct sum *sums)
 {
     const struct wb_swept_hex *hex = bodies->type[bodies->model->type_of[w]].hex;
@@ -242,7 +234,7 @@ static void take_wire(struct wb_bundle_fields *f, const struct wb_bundle_bodies 
             mean[k] = sums[i].stress[k] / sums[i].n;
         const double plastic = fmax(0.0, sums[i].plastic / sums[i].n);
         const double stress = wb_swept_hex_stress_von_mises(mean);
-        const double most = flow_stress(law, plastic);
+        const double most = wb_material_flow_stress(law, plastic);
         f->plastic[body->first + i] = plastic;
         f->von_mises[body->first + i] = stress > most ? most : stress;
     }

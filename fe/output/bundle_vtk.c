@@ -4,6 +4,7 @@
 #include <stdint.h>
 
 #include "base/units.h"
+#include "fe/output/bundle_vtk_private.h"
 
 #define WB_LOG_DOMAIN "vtk"
 

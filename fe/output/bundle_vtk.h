@@ -13,10 +13,6 @@
 #include "fe/output/bundle_fields.h"
 #include "fe/output/vtk_file.h"
 
-/* Writes one state. WB_ERR_DATA when a value is not finite. `deflection` in m. */
-WB_MUST_CHECK enum wb_status
-wb_bundle_vtk_write(const char *path, const struct wb_bundle_fields *fields, double deflection);
-
 /* Writes the next state of a series, and the series up to it. */
 WB_MUST_CHECK enum wb_status wb_bundle_vtk_add(struct wb_vtk_file_series *series, double time,
                                                double deflection,

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "fe/output/vtk_private.h"
 
 #define WB_LOG_DOMAIN "vtk"
 

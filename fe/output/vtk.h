@@ -14,10 +14,6 @@
 #include "fe/solid/solid_mesh.h"
 #include "fe/trial/wire3d.h"
 
-/* Writes one state. WB_ERR_DATA when a value is not finite. */
-WB_MUST_CHECK enum wb_status wb_vtk_write(const char *path, const struct wb_solid_mesh *mesh,
-                                          const struct wb_wire3d_fields *fields);
-
 /* Writes the next state of a series, and the series up to it. */
 WB_MUST_CHECK enum wb_status wb_vtk_add(struct wb_vtk_file_series *series, double time,
                                         const struct wb_solid_mesh *mesh,

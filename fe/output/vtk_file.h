@@ -1,5 +1,5 @@
-/* The frame of VTK's XML files with appended raw data, and a series of them. Used by
- * fe/output/vtk.c and fe/output/bundle_vtk.c, which know what a state holds.
+/* VTK's XML files with appended raw data, and series of them. What a state holds is the matter of
+ * fe/output/vtk.c and fe/output/bundle_vtk.c.
  *
  * The XML head tells where in the bytes behind it each array begins, so arrays are declared first
  * and put in the same order after. Numbers stand least byte first on any machine.

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "fe/linear/banded.h"
+#include "fe/rod/beam_private.h"
 #include "fe/rod/fibres.h"
 
 #define WB_LOG_DOMAIN "beam"
@@ -159,8 +160,6 @@ enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *
         wb_beam_destroy(beam);
         return status;
     }
-    if (model->reference_kernel)
-        wb_fibres_set_kernel(beam->fibres, WB_FIBRES_REFERENCE);
 
     beam->n_elements = model->n_elements;
     beam->n_nodes = 2 * model->n_elements + 1;

@@ -22,7 +22,6 @@ struct wb_beam_model {
     double (*natural_curvature)(void *context, double arc_length); /* 1/m; NULL: straight */
     void *curvature_context;
     double load_x, load_y; /* dead load per reference length, N/m */
-    bool reference_kernel; /* slow exact fibres, see fe/rod/fibres.h */
 };
 
 /* What an evaluation found. Moments count as forces over the beam's length. */
@@ -70,9 +69,8 @@ void wb_beam_commit(struct wb_beam *beam);
 void wb_beam_save(struct wb_beam *beam);
 void wb_beam_restore(struct wb_beam *beam);
 
-/* Trial and reference position of the tip. */
+/* Trial position of the tip. */
 const struct wb_beam_node *wb_beam_tip(const struct wb_beam *beam);
-const struct wb_beam_node *wb_beam_reference_tip(const struct wb_beam *beam);
 
 /* Moment that the clamp exerts, N m, of the state last evaluated; positive bends upwards. */
 double wb_beam_root_moment(const struct wb_beam *beam);
@@ -82,9 +80,6 @@ double wb_beam_noise(const struct wb_beam *beam);
 
 /* Bending stiffness of the virgin section over the square of the length: a force to scale by, N. */
 double wb_beam_scale_force(const struct wb_beam *beam);
-
-/* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, of the state last evaluated. */
-const struct wb_beam_point *wb_beam_point(const struct wb_beam *beam, int g);
 
 /* Committed position at reference arc length s (clamped to 0..L). */
 struct wb_beam_node wb_beam_position(const struct wb_beam *beam, double s);

@@ -4,24 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/linear/processor.h"
 #include "fe/material/hardening.h"
+#include "fe/rod/fibres_private.h"
 
 #define WB_LOG_DOMAIN "fibres"
-
-/* Vectors wider than the target's are passed between inlined functions only. */
-#pragma GCC diagnostic ignored "-Wpsabi"
 
 enum {
     LANES = 4,        /* fibres of a material are padded to a multiple of this */
     HISTORY_HEAD = 8, /* the first double says whether the point ever yielded; rest is padding */
     HISTORY_ROWS = 3  /* plastic strain, accumulated plastic strain, yield or back stress */
 };
-
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define HAVE_X86_VARIANTS
-#endif
 
 /* See fe/material/material.c. */
 static const double on_surface = 1e-12;
@@ -30,6 +23,8 @@ static const double on_surface = 1e-12;
 struct batch {
     int material;
     int begin, end; /* padded indices */
+    /* Of the material's hardening law, at hand for the inner loop. */
+    bool grows, moves, has_constant_exponent;
 };
 
 struct wb_fibres {
@@ -90,60 +85,23 @@ void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *mate
     f->EA = f->ES = f->EI = 0.0;
     for (int b = 0; b < f->n_materials; b++) {
         const struct wb_material *m = &f->materials[b];
+        const struct wb_hardening_law *law = wb_hardening_law(m);
+        f->batches[b].grows = law->growth;
+        f->batches[b].moves = law->moves;
+        f->batches[b].has_constant_exponent = !law->exponent;
         for (int i = f->batches[b].begin; i < f->batches[b].end; i++) {
             const double EA = m->youngs_modulus * f->area[i];
             f->EA += EA;
             f->ES -= EA * f->y[i];
             f->EI += EA * f->y[i] * f->y[i];
-            f->virgin[2 * f->n + i] =
-                m->hardening == WB_HARDENING_ISOTROPIC_POWER ? m->yield_stress : 0.0;
+            f->virgin[2 * f->n + i] = law->growth ? m->yield_stress : 0.0;
         }
-        if (m->hardening != WB_HARDENING_NONE_ELASTIC)
+        if (law->yields)
             f->yield_strain = fmin(f->yield_strain, m->yield_stress / m->youngs_modulus);
-        if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
+        if (law->growth)
             wb_hardening_tabulate(&f->tables[b], m);
     }
     f->shear_stiffness = f->shear_ratio * shear_sum(f);
-}
-
-enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section *section)
-{
-    *out = NULL;
-    if (section->n_fibres < 1 || section->n_materials < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "a section without fibres cannot carry anything");
-
-    struct wb_fibres *f = calloc(1, sizeof *f);
-    if (!f)
-        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
-
-    int n = 0;
-    for (int m = 0; m < section->n_materials; m++) {
-        for (int i = 0; i < section->n_fibres; i++)
-            n += section->fibres[i].material == m;
-        n = padded(n);
-    }
-    const size_t count = (size_t)n, materials = (size_t)section->n_materials;
-    f->n = n;
-    f->n_materials = section->n_materials;
-    f->y = calloc(count, sizeof *f->y);
-    f->area = calloc(count, sizeof *f->area);
-    f->virgin = calloc(HISTORY_ROWS * count, sizeof *f->virgin);
-    f->batches = calloc(materials, sizeof *f->batches);
-    f->materials = calloc(materials, sizeof *f->materials);
-    f->tables = calloc(materials, sizeof *f->tables);
-    if (!f->y || !f->area || !f->virgin || !f->batches || !f->materials || !f->tables) {
-        wb_fibres_destroy(f);
-        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
-    }
-
-    sort_fibres(f, section);
-    wb_fibres_set_kernel(f, WB_FIBRES_FASTEST);
-    f->shear_ratio = 1.0;
-    wb_fibres_set_materials(f, section->materials);
-    f->shear_ratio = section->shear_stiffness / f->shear_stiffness;
-    f->shear_stiffness = section->shear_stiffness;
-    *out = f;
-    return WB_OK;
 }
 
 void wb_fibres_destroy(struct wb_fibres *f)
@@ -187,32 +145,32 @@ typedef long long masks
 
 static const long long sign_bit = (long long)0x8000000000000000ULL;
 
-static ALWAYS_INLINE lanes load(const double *p)
+static WB_ALWAYS_INLINE lanes load(const double *p)
 {
     return *(const lanes *)p;
 }
 
-static ALWAYS_INLINE void store(double *p, lanes v)
+static WB_ALWAYS_INLINE void store(double *p, lanes v)
 {
     *(lanes *)p = v;
 }
 
-static ALWAYS_INLINE lanes select_lanes(masks mask, lanes yes, lanes no)
+static WB_ALWAYS_INLINE lanes select_lanes(masks mask, lanes yes, lanes no)
 {
     return (lanes)((mask & (masks)yes) | (~mask & (masks)no));
 }
 
-static ALWAYS_INLINE lanes absolute(lanes v)
+static WB_ALWAYS_INLINE lanes absolute(lanes v)
 {
     return (lanes)((masks)v & ~sign_bit);
 }
 
-static ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
+static WB_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
 {
     return (lanes)(((masks)size & ~sign_bit) | ((masks)sign & sign_bit));
 }
 
-static ALWAYS_INLINE bool any(masks mask)
+static WB_ALWAYS_INLINE bool any(masks mask)
 {
     long long all = 0;
     for (int i = 0; i < LANES; i++)
@@ -230,7 +188,7 @@ struct answer {
     lanes stress, tangent;
 };
 
-static ALWAYS_INLINE struct answer respond_elastically(const struct wb_material *m, lanes strain)
+static WB_ALWAYS_INLINE struct answer respond_elastically(const struct wb_material *m, lanes strain)
 {
     const struct answer answer = {m->youngs_modulus * strain, m->youngs_modulus + 0.0 * strain};
     return answer;
@@ -238,9 +196,9 @@ static ALWAYS_INLINE struct answer respond_elastically(const struct wb_material 
 
 /* r(c) lane by lane: a table row is one cache line, and gathering rows is dearer than their
  * polynomials. */
-static ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
-                                         const struct wb_hardening_table *table, masks yields,
-                                         lanes c)
+static WB_ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
+                                            const struct wb_hardening_table *table, masks yields,
+                                            lanes c)
 {
     const lanes scaled = c * (1.0 / m->yield_stress);
     lanes r;
@@ -253,11 +211,32 @@ static ALWAYS_INLINE lanes plastic_ratio(const struct wb_material *m,
     return r;
 }
 
+/* The exponents at LANES plastic strains of a law where they differ: in no inner loop, so that it
+ * leaves the loop of power laws alone. */
+static __attribute__((noinline, cold)) void find_exponents(const struct wb_material *m,
+                                                           const double *p, double *n)
+{
+    for (int i = 0; i < LANES; i++)
+        n[i] = wb_hardening_exponent(m, p[i]);
+}
+
+static WB_ALWAYS_INLINE lanes exponents(const struct wb_material *m, bool is_constant, lanes p)
+{
+    double at[LANES], n[LANES];
+
+    if (is_constant)
+        return m->hardening_exponent - (lanes){0};
+    store(at, p);
+    find_exponents(m, at, n);
+    return load(n);
+}
+
 /* sigma = sigma_Y + (1 - r) c with r(c) from the table; see fe/material/hardening.h. The third row
  * is the yield stress reached so far. */
-static ALWAYS_INLINE struct answer respond_isotropically(const struct wb_material *m,
-                                                         const struct wb_hardening_table *table,
-                                                         lanes strain, const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_growing(const struct wb_material *m,
+                                                      bool has_constant_exponent,
+                                                      const struct wb_hardening_table *table,
+                                                      lanes strain, const struct rows *h)
 {
     const double E = m->youngs_modulus;
     const double sigma_Y = m->yield_stress;
@@ -280,7 +259,7 @@ static ALWAYS_INLINE struct answer respond_isotropically(const struct wb_materia
     const lanes c = size - sigma_Y + E * p0;
     const lanes r = plastic_ratio(m, table, yields, c);
     const lanes p = r * c * (1.0 / E);
-    const lanes power_part = m->hardening_exponent * (1.0 - r);
+    const lanes power_part = exponents(m, has_constant_exponent, p) * (1.0 - r);
     const lanes reached = sigma_Y + (1.0 - r) * c;
 
     answer.stress = select_lanes(yields, with_sign(reached, trial), trial);
@@ -292,11 +271,11 @@ static ALWAYS_INLINE struct answer respond_isotropically(const struct wb_materia
 }
 
 /* The third row is the back stress. */
-static ALWAYS_INLINE struct answer respond_kinematically(const struct wb_material *m, lanes strain,
-                                                         const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_moving(const struct wb_material *m, lanes strain,
+                                                     const struct rows *h)
 {
     const double E = m->youngs_modulus;
-    const double H = m->strength_coefficient;
+    const double H = wb_hardening_back_modulus(m);
     const lanes plastic = load(h->plastic);
     const lanes back = load(h->third);
     const lanes trial = E * (strain - plastic);
@@ -317,52 +296,21 @@ static ALWAYS_INLINE struct answer respond_kinematically(const struct wb_materia
     return answer;
 }
 
-/* The slow twin: the material law of fe/material/material.c, fibre by fibre. */
-static ALWAYS_INLINE struct answer respond_slow_twin(const struct wb_material *m, lanes strain,
-                                                     const struct rows *h)
+static WB_ALWAYS_INLINE struct answer
+respond_of(const struct wb_fibres *f, const struct batch *batch, lanes strain, const struct rows *h)
 {
-    const bool isotropic = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
-    const bool kinematic = m->hardening == WB_HARDENING_KINEMATIC_LINEAR;
-    struct answer answer;
+    const struct wb_material *m = &f->materials[batch->material];
 
-    for (int i = 0; i < LANES; i++) {
-        const struct wb_material_state before = {
-            .plastic_strain = h->plastic[i],
-            .accumulated_plastic_strain = h->accumulated[i],
-            .back_stress = kinematic ? h->third[i] : 0.0,
-        };
-        struct wb_material_state after;
-        double stress, tangent;
-        wb_material_stress(m, strain[i], &before, &after, &stress, &tangent);
-        answer.stress[i] = stress;
-        answer.tangent[i] = tangent;
-        h->plastic_after[i] = after.plastic_strain;
-        h->accumulated_after[i] = after.accumulated_plastic_strain;
-        h->third_after[i] = after.back_stress;
-        if (isotropic) {
-            const bool moved = after.accumulated_plastic_strain > before.accumulated_plastic_strain;
-            h->third_after[i] = moved ? fabs(stress) : h->third[i];
-        }
-    }
-    return answer;
-}
-
-static ALWAYS_INLINE struct answer respond_of(const struct wb_fibres *f, int material, bool slow,
-                                              lanes strain, const struct rows *h)
-{
-    const struct wb_material *m = &f->materials[material];
-
-    if (slow)
-        return respond_slow_twin(m, strain, h);
-    if (m->hardening == WB_HARDENING_ISOTROPIC_POWER)
-        return respond_isotropically(m, &f->tables[material], strain, h);
-    if (m->hardening == WB_HARDENING_KINEMATIC_LINEAR)
-        return respond_kinematically(m, strain, h);
+    if (batch->grows)
+        return respond_growing(m, batch->has_constant_exponent, &f->tables[batch->material], strain,
+                               h);
+    if (batch->moves)
+        return respond_moving(m, strain, h);
     return respond_elastically(m, strain);
 }
 
 /* Adds the lanes in a fixed order. */
-static ALWAYS_INLINE double add_lanes(lanes v)
+static WB_ALWAYS_INLINE double add_lanes(lanes v)
 {
     return (v[0] + v[2]) + (v[1] + v[3]);
 }
@@ -372,9 +320,9 @@ struct strains {
     double eps, kappa;
 };
 
-static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, struct strains strains,
-                                       const double *rows, double *rows_after,
-                                       struct wb_fibres_response *response)
+static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct strains strains,
+                                          const double *rows, double *rows_after,
+                                          struct wb_fibres_response *response)
 {
     const double eps = strains.eps, kappa = strains.kappa;
     lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
@@ -390,8 +338,7 @@ static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, str
                 .third_after = rows_after + 2 * f->n + i,
             };
             const lanes y = load(f->y + i), area = load(f->area + i);
-            const struct answer answer =
-                respond_of(f, f->batches[b].material, slow, eps - y * kappa, &h);
+            const struct answer answer = respond_of(f, &f->batches[b], eps - y * kappa, &h);
             const lanes force = answer.stress * area;
             const lanes stiffness = answer.tangent * area;
             N += force;
@@ -410,48 +357,83 @@ static ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, bool slow, str
 
 /* The same function, compiled for what the processor has. No variant contracts a * b + c, so all
  * give the same bits. */
-static void respond_slowly(const struct wb_fibres *f, double eps, double kappa, const double *rows,
-                           double *rows_after, struct wb_fibres_response *response)
-{
-    respond_rows(f, true, (struct strains){eps, kappa}, rows, rows_after, response);
-}
-
 static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
                              const double *rows, double *rows_after,
                              struct wb_fibres_response *response)
 {
-    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
-#ifdef HAVE_X86_VARIANTS
-__attribute__((target("avx2"))) static void respond_avx2(const struct wb_fibres *f, double eps,
-                                                         double kappa, const double *rows,
-                                                         double *rows_after,
-                                                         struct wb_fibres_response *response)
+#ifdef WB_HAS_X86_VARIANTS
+WB_AVX2 static void respond_avx2(const struct wb_fibres *f, double eps, double kappa,
+                                 const double *rows, double *rows_after,
+                                 struct wb_fibres_response *response)
 {
-    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
-__attribute__((target("avx2,avx512f,avx512dq,avx512vl"))) static void
-respond_avx512(const struct wb_fibres *f, double eps, double kappa, const double *rows,
-               double *rows_after, struct wb_fibres_response *response)
+WB_AVX512 static void respond_avx512(const struct wb_fibres *f, double eps, double kappa,
+                                     const double *rows, double *rows_after,
+                                     struct wb_fibres_response *response)
 {
-    respond_rows(f, false, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 #endif
 
-void wb_fibres_set_kernel(struct wb_fibres *fibres, enum wb_fibres_kernel kernel)
+static void choose_fastest(struct wb_fibres *fibres)
 {
-    fibres->respond = kernel == WB_FIBRES_REFERENCE ? respond_slowly : respond_portably;
-#ifdef HAVE_X86_VARIANTS
-    if (kernel != WB_FIBRES_FASTEST)
-        return;
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
+    fibres->respond = respond_portably;
+#ifdef WB_HAS_X86_VARIANTS
+    if (wb_processor_has_avx512())
         fibres->respond = respond_avx512;
-    else if (__builtin_cpu_supports("avx2"))
+    else if (wb_processor_has_avx2())
         fibres->respond = respond_avx2;
 #endif
+}
+
+enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section *section)
+{
+    *out = NULL;
+    if (section->n_fibres < 1 || section->n_materials < 1)
+        return wb_fail(WB_ERR_ARGUMENT, "a section without fibres cannot carry anything");
+
+    struct wb_fibres *f = calloc(1, sizeof *f);
+    if (!f)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a section");
+
+    int n = 0;
+    for (int m = 0; m < section->n_materials; m++) {
+        for (int i = 0; i < section->n_fibres; i++)
+            n += section->fibres[i].material == m;
+        n = padded(n);
+    }
+    const size_t count = (size_t)n, materials = (size_t)section->n_materials;
+    f->n = n;
+    f->n_materials = section->n_materials;
+    f->y = calloc(count, sizeof *f->y);
+    f->area = calloc(count, sizeof *f->area);
+    f->virgin = calloc(HISTORY_ROWS * count, sizeof *f->virgin);
+    f->batches = calloc(materials, sizeof *f->batches);
+    f->materials = calloc(materials, sizeof *f->materials);
+    f->tables = calloc(materials, sizeof *f->tables);
+    if (!f->y || !f->area || !f->virgin || !f->batches || !f->materials || !f->tables) {
+        wb_fibres_destroy(f);
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
+    }
+
+    sort_fibres(f, section);
+    choose_fastest(f);
+    f->shear_ratio = 1.0;
+    wb_fibres_set_materials(f, section->materials);
+    f->shear_ratio = section->shear_stiffness / f->shear_stiffness;
+    f->shear_stiffness = section->shear_stiffness;
+    *out = f;
+    return WB_OK;
+}
+
+void wb_fibres_set_portable(struct wb_fibres *fibres)
+{
+    fibres->respond = respond_portably;
 }
 
 static void respond_virgin(const struct wb_fibres *f, double eps, double kappa,

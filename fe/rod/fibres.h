@@ -1,10 +1,10 @@
-/* A section made ready for stepping: fibres sorted by material, inverse power laws tabulated, and
- * the plastic history of one section point as a plain row of doubles.
+/* A section prepared for computing: its fibres are sorted by material, its power laws tabulated,
+ * and the plastic history of a section point is a plain row of doubles.
  *
- * The fast kernel takes p(c) from the table of fe/material/hardening.h and skips sections that
- * never yielded; the slow one calls wb_material_stress() for every fibre. They agree to about 1e-11
- * of the yield stress (tests/fe/rod/test_fibres.c). The fast kernel's arithmetic is in a fixed
- * order, so that its results are the same bits with every vector width.
+ * Stresses are those of wb_material_stress() to about 1e-11 of the yield stress
+ * (tests/twin/test_fibres_twin.c): p(c) comes from the table of fe/material/hardening.h, and
+ * sections that never yielded are skipped. The arithmetic is in a fixed order, so that results are
+ * the same bits with every vector width.
  */
 #ifndef WB_FE_ROD_FIBRES_H
 #define WB_FE_ROD_FIBRES_H
@@ -31,15 +31,6 @@ void wb_fibres_destroy(struct wb_fibres *fibres);
 /* Exchanges the materials (as many as the section has) and tabulates anew. */
 void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material *materials);
 
-enum wb_fibres_kernel {
-    WB_FIBRES_FASTEST,  /* with the vector instructions that the processor has; the default */
-    WB_FIBRES_PORTABLE, /* the same source without them: the same bits */
-    WB_FIBRES_REFERENCE /* the slow twin */
-};
-
-/* Chooses a kernel (for tests and benchmarks). A history of one serves the others. */
-void wb_fibres_set_kernel(struct wb_fibres *fibres, enum wb_fibres_kernel kernel);
-
 /* Doubles in the history of one section point. All zero is the virgin state. */
 size_t wb_fibres_history_size(const struct wb_fibres *fibres);
 
@@ -53,8 +44,5 @@ double wb_fibres_shear_stiffness(const struct wb_fibres *fibres);
 void wb_fibres_respond(const struct wb_fibres *fibres, double eps, double kappa,
                        const double *restrict before, double *restrict after,
                        struct wb_fibres_response *restrict response);
-
-/* The largest accumulated plastic strain of a point's fibres, 0 when it never yielded. */
-double wb_fibres_largest_plastic_strain(const struct wb_fibres *fibres, const double *history);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "fe/linear/rod_chain.h"
 #include "fe/linear/signature.h"
+#include "fe/rod/rod_private.h"
 
 #define WB_LOG_DOMAIN "rod"
 

@@ -26,7 +26,7 @@ struct wb_rod_model {
     void (*natural_curvature)(void *context, double arc_length, double curvature[3]);
     void *curvature_context;
     double load[3];   /* dead load per reference length, N/m */
-    bool has_balance; /* keep account of energy, see wb_rod_energy() */
+    bool has_balance; /* keep account of energy, see wb_rod_energy() of fe/rod/rod_private.h */
 };
 
 /* What an evaluation found. Moments count as forces over the rod's length. */
@@ -46,11 +46,8 @@ struct wb_rod; /* opaque */
 WB_MUST_CHECK enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *model);
 void wb_rod_destroy(struct wb_rod *rod); /* accepts NULL */
 
-/* Back to the reference configuration, virgin. The clamp stays as it was last set. */
+/* Back to the reference configuration, virgin. */
 void wb_rod_reset(struct wb_rod *rod);
-
-/* Turns the clamp: a unit quaternion, scalar first. The trial state turns with it. */
-void wb_rod_set_clamp(struct wb_rod *rod, const double rotation[4]);
 
 /* Resultants and unbalanced forces of the trial state under `load_factor` times the distributed
  * load. */
@@ -91,14 +88,9 @@ double wb_rod_noise(const struct wb_rod *rod);
 /* Bending stiffness of the virgin section over the square of the length: a force to scale by, N. */
 double wb_rod_scale_force(const struct wb_rod *rod);
 
-/* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, of the state last evaluated: its arc
+/* Of Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, in the state last evaluated: arc
  * length, section strains (e, kx, ky, kz) and committed history. */
-const struct wb_rod_point *wb_rod_point(const struct wb_rod *rod, int g);
 void wb_rod_point_state(const struct wb_rod *rod, int g, double *s, double *strain,
                         const double **history);
-
-/* Elastic energy of the committed state, and plastic work dissipated since the virgin one, J. Needs
- * has_balance; zero without. */
-void wb_rod_energy(const struct wb_rod *rod, double *stored, double *dissipated);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "fe/rod/rod_element_private.h"
 
 enum {
     NODES = WB_ROD_ELEMENT_NODES,

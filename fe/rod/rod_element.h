@@ -99,9 +99,7 @@ void wb_rod_element_strain_increment(const struct wb_rod_element_shape *shape, i
                                      const struct wb_rod_point *point, const double *d,
                                      struct wb_rod_strain *increment);
 
-/* Rotation matrix (row-major) of a unit quaternion; c = a b; quaternion of a rotation vector. */
+/* Rotation matrix (row-major) of a unit quaternion. */
 void wb_rod_element_matrix(const double q[4], double R[9]);
-void wb_rod_element_compose(const double a[4], const double b[4], double c[4]);
-void wb_rod_element_exponential(const double vector[3], double q[4]);
 
 #endif

@@ -16,12 +16,12 @@ static const double last_step = 1e-7;
 void wb_rod_fibre_law_init(struct wb_rod_fibre_law *law, const struct wb_material *material,
                            const struct wb_hardening_table *table)
 {
-    const bool kinematic = material->hardening == WB_HARDENING_KINEMATIC_LINEAR;
     *law = (struct wb_rod_fibre_law){
         .material = *material,
         .table = table,
+        .hardening = wb_hardening_law(material),
         .shear_modulus = 0.5 * material->youngs_modulus / (1.0 + material->poissons_ratio),
-        .back = kinematic ? material->strength_coefficient : 0.0,
+        .back = wb_hardening_back_modulus(material),
         .per_E = 1.0 / material->youngs_modulus,
         .per_yield = 1.0 / material->yield_stress,
     };
@@ -47,15 +47,15 @@ struct returned {
 static inline double ratio_at(const struct wb_rod_fibre_law *law, double c)
 {
     const double scaled = c * law->per_yield;
-    if (law->table && wb_hardening_covers(scaled))
+    if (wb_hardening_covers(scaled))
         return wb_hardening_lookup(law->table, scaled);
     return wb_hardening_ratio(&law->material, c);
 }
 
 /* E dp/dc, which is E / (E + H') with the slope H' of the law, finite also where H' is not. */
-static inline double share_of_plastic(const struct wb_rod_fibre_law *law, double r)
+static inline double share_of_plastic(const struct wb_rod_fibre_law *law, double r, double p)
 {
-    return r / (r + law->material.hardening_exponent * (1.0 - r));
+    return r / (r + wb_hardening_exponent(&law->material, p) * (1.0 - r));
 }
 
 /* Newton's step for 1/sqrt((s/A)^2 + 3 (t/B)^2) = 1 from the derivatives of A and B; *S is the
@@ -68,8 +68,8 @@ static inline double newton_step(const struct mapping *map, double dA, double dB
     return (*S * sqrt(*S) - *S) / (aa * A * dA + bb * B * dB);
 }
 
-static inline void place_isotropic(const struct wb_rod_fibre_law *law, double accumulated, double c,
-                                   double r, struct mapping *map)
+static inline void place_growing(const struct wb_rod_fibre_law *law, double accumulated, double c,
+                                 double r, struct mapping *map)
 {
     const double E = law->material.youngs_modulus, yield = law->material.yield_stress;
     map->length = r * c * law->per_E - accumulated;
@@ -80,8 +80,8 @@ static inline void place_isotropic(const struct wb_rod_fibre_law *law, double ac
 
 /* Newton's method within a bracket: at c = high the stress would be returned as far as without
  * shear, at c = low not at all. Returns r. */
-static double return_isotropic(const struct wb_rod_fibre_law *law,
-                               const struct wb_rod_fibre_state *before, struct mapping *map)
+static double return_growing(const struct wb_rod_fibre_law *law,
+                             const struct wb_rod_fibre_state *before, struct mapping *map)
 {
     const double E = law->material.youngs_modulus;
     const double shift = E * before->accumulated - law->material.yield_stress;
@@ -91,13 +91,15 @@ static double return_isotropic(const struct wb_rod_fibre_law *law,
     double c = high;
     double r = ratio_at(law, c);
 
-    place_isotropic(law, before->accumulated, c, r, map);
+    place_growing(law, before->accumulated, c, r, map);
     if (map->t == 0.0)
         return r;
     const double excess = (map->shear3 - E) * law->per_E;
     for (int i = 0; i < MOST_ITERATIONS; i++) {
         double S;
-        double next = c + newton_step(map, 1.0, 1.0 + excess * share_of_plastic(law, r), &S);
+        double next =
+            c +
+            newton_step(map, 1.0, 1.0 + excess * share_of_plastic(law, r, r * c * law->per_E), &S);
         if (S > 1.0)
             low = c;
         else
@@ -107,14 +109,14 @@ static double return_isotropic(const struct wb_rod_fibre_law *law,
         const double step = next - c;
         c = next;
         r = ratio_at(law, c);
-        place_isotropic(law, before->accumulated, c, r, map);
+        place_growing(law, before->accumulated, c, r, map);
         if (!(fabs(step) > last_step * c))
             break;
     }
     return r;
 }
 
-static void place_kinematic(struct mapping *map)
+static void place_moving(struct mapping *map)
 {
     map->A = map->q + map->E * map->length;
     map->B = map->q + map->shear3 * map->length;
@@ -122,18 +124,18 @@ static void place_kinematic(struct mapping *map)
 
 /* 1/sqrt of the sum is concave in the increment, and this start is not beyond the solution:
  * Newton's steps never pass it. */
-static void return_kinematic(const struct wb_rod_fibre_law *law, struct mapping *map)
+static void return_moving(const struct wb_rod_fibre_law *law, struct mapping *map)
 {
     const double size = sqrt(map->s * map->s + 3.0 * map->t * map->t);
 
     map->q = law->material.yield_stress;
     map->length = (size - map->q) / (map->t == 0.0 ? map->E : map->shear3);
-    place_kinematic(map);
+    place_moving(map);
     for (int i = 0; i < MOST_ITERATIONS && map->t != 0.0; i++) {
         double S;
         const double step = newton_step(map, map->E, map->shear3, &S);
         map->length += step;
-        place_kinematic(map);
+        place_moving(map);
         if (!(fabs(step) > last_step * map->length))
             break;
     }
@@ -146,24 +148,24 @@ static void return_to_surface(const struct wb_rod_fibre_law *law,
     const double E = law->material.youngs_modulus;
     double r = 0.0;
 
-    if (law->material.hardening == WB_HARDENING_KINEMATIC_LINEAR)
-        return_kinematic(law, map);
+    if (law->hardening->moves)
+        return_moving(law, map);
     else
-        r = return_isotropic(law, was, map);
+        r = return_growing(law, was, map);
     back->per_A = 1.0 / map->A;
     back->per_B = 1.0 / map->B;
     back->flow[0] = map->s * back->per_A;
     back->flow[1] = map->t * back->per_B;
     const double aa = back->flow[0] * back->flow[0] * back->per_A;
     const double bb = 3.0 * back->flow[1] * back->flow[1] * back->per_B;
-    if (law->material.hardening == WB_HARDENING_KINEMATIC_LINEAR) {
+    if (law->hardening->moves) {
         back->own = map->q + law->back * map->length;
         back->loss = map->q;
         back->slope = aa * map->E + bb * map->shear3;
         return;
     }
     /* The slope H' = E (1 - f) / f of the law is multiplied by f throughout. */
-    const double f = share_of_plastic(law, r);
+    const double f = share_of_plastic(law, r, was->accumulated + map->length);
     back->own = map->q;
     back->loss = f * map->q - map->length * E * (1.0 - f);
     back->slope = aa * E + bb * (E * (1.0 - f) + map->shear3 * f);
@@ -193,7 +195,7 @@ void wb_rod_fibre_respond(const struct wb_rod_fibre_law *law, const double strai
 
     *after = was;
     *response = (struct wb_rod_fibre_response){axial, shear, E, 0.0, G, false};
-    if (law->material.hardening == WB_HARDENING_NONE_ELASTIC)
+    if (!law->hardening->yields)
         return;
     struct mapping map = {
         .E = E + K,

@@ -40,8 +40,8 @@ struct wb_rod_fibre_response {
 /* A material made ready. */
 struct wb_rod_fibre_law {
     struct wb_material material;
-    const struct wb_hardening_table *table; /* of an isotropic material, borrowed; NULL solves the
-                                               law instead (the slow twin) */
+    const struct wb_hardening_law *hardening;
+    const struct wb_hardening_table *table; /* of an isotropic material, borrowed */
     double shear_modulus;                   /* E / 2 (1 + nu), Pa */
     double back;                            /* K of kinematic hardening, Pa; 0 otherwise */
     double per_E, per_yield;                /* 1 / E, 1 / sigma_Y, 1/Pa */

@@ -122,7 +122,7 @@ static void add_stiffness(struct wb_rod_section *section, int part)
     section->total.EI += own->EI;
     section->total.GJ += own->GJ;
     section->shear_stiffness += wb_section_shear_modulus(&law->material) * area;
-    if (law->material.hardening == WB_HARDENING_ISOTROPIC_POWER)
+    if (law->hardening->growth)
         wb_hardening_tabulate(&section->tables[part], &law->material);
 }
 
@@ -216,12 +216,6 @@ void wb_rod_section_destroy(struct wb_rod_section *section)
     free(section);
 }
 
-void wb_rod_section_set_slow(struct wb_rod_section *section, bool slow)
-{
-    for (int i = 0; i < section->n_parts; i++)
-        section->laws[i].table = slow ? NULL : &section->tables[i];
-}
-
 int wb_rod_section_fibres(const struct wb_rod_section *section)
 {
     return section->n;
@@ -261,11 +255,6 @@ double wb_rod_section_axial_stiffness(const struct wb_rod_section *section)
 double wb_rod_section_bending_stiffness(const struct wb_rod_section *section)
 {
     return section->total.EI;
-}
-
-double wb_rod_section_torsion_stiffness(const struct wb_rod_section *section)
-{
-    return section->total.GJ;
 }
 
 double wb_rod_section_shear_stiffness(const struct wb_rod_section *section)
@@ -451,8 +440,7 @@ static void respond_part(const struct wb_rod_section *section, int part, const d
     const struct wb_rod_fibre_law *law = &section->laws[part];
     const struct stiffness *own = &section->stiffness[part];
 
-    if (law->material.hardening == WB_HARDENING_NONE_ELASTIC ||
-        (before[part] == 0.0 && stays_elastic(section, part, strain))) {
+    if (!law->hardening->yields || (before[part] == 0.0 && stays_elastic(section, part, strain))) {
         after[part] = 0.0;
         add_elastic(own, strain, response);
         return;
@@ -517,13 +505,4 @@ void wb_rod_section_stress(const struct wb_rod_section *section, int i, const do
     *axial = law->material.youngs_modulus * (axial_strain(section, i, strain) - state.plastic);
     *shear = law->shear_modulus * (section->radius[ring] * strain[1] - state.plastic_shear);
     *plastic = state.accumulated;
-}
-
-double wb_rod_section_largest_plastic_strain(const struct wb_rod_section *section,
-                                             const double *history)
-{
-    double largest = 0.0;
-    for (int i = 0; i < section->n; i++)
-        largest = fmax(largest, state_of(section, i, history).accumulated);
-    return largest;
 }

@@ -58,9 +58,6 @@ WB_MUST_CHECK enum wb_status wb_rod_section_create(struct wb_rod_section **out, 
                                                    const struct wb_rod_section_layout *layout);
 void wb_rod_section_destroy(struct wb_rod_section *section); /* accepts NULL */
 
-/* Solves the power law in every fibre instead of taking it from its table (for tests). */
-void wb_rod_section_set_slow(struct wb_rod_section *section, bool slow);
-
 int wb_rod_section_fibres(const struct wb_rod_section *section);
 void wb_rod_section_fibre(const struct wb_rod_section *section, int i,
                           struct wb_rod_section_fibre *fibre);
@@ -68,11 +65,10 @@ void wb_rod_section_fibre(const struct wb_rod_section *section, int i,
 /* Doubles in the history of one section point. All zero is the virgin state. */
 size_t wb_rod_section_history_size(const struct wb_rod_section *section);
 
-/* Elastic stiffnesses about the axis, N, N m2: axial EA, bending EI, torsion GJ, and transverse
- * shear with Cowper's factor. */
+/* Elastic stiffnesses about the axis, N, N m2: axial EA, bending EI, and transverse shear with
+ * Cowper's factor. */
 double wb_rod_section_axial_stiffness(const struct wb_rod_section *section);
 double wb_rod_section_bending_stiffness(const struct wb_rod_section *section);
-double wb_rod_section_torsion_stiffness(const struct wb_rod_section *section);
 double wb_rod_section_shear_stiffness(const struct wb_rod_section *section);
 
 /* Response to the strains from the history `before`; `after` (not the same memory) receives the
@@ -92,9 +88,5 @@ void wb_rod_section_energy(const struct wb_rod_section *section, const double *s
  */
 void wb_rod_section_stress(const struct wb_rod_section *section, int i, const double *strain,
                            const double *history, double *axial, double *shear, double *plastic);
-
-/* The largest equivalent plastic strain of a point's fibres. */
-double wb_rod_section_largest_plastic_strain(const struct wb_rod_section *section,
-                                             const double *history);
 
 #endif

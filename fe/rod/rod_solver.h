@@ -1,5 +1,5 @@
 /* Static equilibrium of a rod (fe/rod/rod.h) under tip loads and its weight: Newton's method in
- * automatic increments. What fe/solid/solid.h is for the body.
+ * automatic increments. The counterpart of fe/solid/solid.h.
  *
  * The tip's loads: a dead force and a dead moment (about fixed axes), a follower force in the frame
  * of the tip's section, and a tension that makes a deflection: a vertical force, or a strand whose
@@ -38,7 +38,7 @@ struct wb_rod_solver_settings {
     int max_iterations;        /* 0: 25 */
 };
 
-/* All that acts. */
+/* All loads. */
 struct wb_rod_loads {
     double weight; /* factor of the distributed load */
     struct wb_tip_loads tip;

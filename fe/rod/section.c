@@ -4,6 +4,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "fe/material/hardening.h"
+
 #define WB_LOG_DOMAIN "section"
 
 enum {
@@ -18,18 +20,9 @@ enum wb_status wb_section_check_material(const struct wb_material *m)
                        m->youngs_modulus);
     if (!(m->poissons_ratio > -1.0 && m->poissons_ratio <= 0.5))
         return wb_fail(WB_ERR_ARGUMENT, "poissons_ratio %g: expected -1 to 0.5", m->poissons_ratio);
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
-        return WB_OK;
-    if (!(isfinite(m->yield_stress) && m->yield_stress > 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "yield_stress %g Pa: expected a number above 0",
-                       m->yield_stress);
-    if (!(isfinite(m->strength_coefficient) && m->strength_coefficient >= 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "strength_coefficient %g Pa: expected 0 or more",
-                       m->strength_coefficient);
-    if (m->hardening == WB_HARDENING_ISOTROPIC_POWER &&
-        !(m->hardening_exponent > 0.0 && m->hardening_exponent <= 2.0))
-        return wb_fail(WB_ERR_ARGUMENT, "hardening_exponent %g: expected above 0, at most 2",
-                       m->hardening_exponent);
+    char why[120];
+    if (!wb_hardening_is_possible(m, why, sizeof why))
+        return wb_fail(WB_ERR_ARGUMENT, "%s", why);
     return WB_OK;
 }
 

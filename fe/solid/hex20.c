@@ -4,8 +4,6 @@
 #include <string.h>
 
 #include "fe/solid/hex20_kernel.h"
-#include "fe/solid/hex20_points.h"
-#include "fe/solid/solid_point.h"
 
 enum {
     NODES = WB_HEX20_NODES,
@@ -35,7 +33,8 @@ static const struct rule four = {4,
                                  {0.34785484513745385737, 0.65214515486254614263,
                                   0.65214515486254614263, 0.34785484513745385737}};
 
-const double wb_hex20_node_place[NODES][3] = {
+/* Parent coordinates of the nodes. */
+static const double node_place[NODES][3] = {
     {-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
     {-1, 1, 1},   {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
     {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0},  {1, 1, 0},   {-1, 1, 0},
@@ -51,7 +50,7 @@ static const double large_share = 8.0;
 static void find_shapes(const double x[3], double shape[4][NODES])
 {
     for (int a = 0; a < NODES; a++) {
-        const double *p = wb_hex20_node_place[a];
+        const double *p = node_place[a];
         double f[3], d[3]; /* factors along each coordinate, and their slopes */
         int middle = -1;
         for (int i = 0; i < 3; i++) {
@@ -212,7 +211,7 @@ static bool find_affine_shares(const double position[NODES][3], double share[NOD
         const int a = k - CORNERS;
         double x[3], affine[3] = {0.0}, value[CORNERS];
         for (int i = 0; i < 3; i++)
-            x[i] = k < CORNERS ? two.place[k >> i & 1] : wb_hex20_node_place[a][i];
+            x[i] = k < CORNERS ? two.place[k >> i & 1] : node_place[a][i];
         find_place(x, position, at, unused);
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++)
@@ -242,7 +241,7 @@ static void find_parent_shares(double share[NODES][CORNERS])
             share[a][c] = 1.0;
             for (int i = 0; i < 3; i++) {
                 const double sign = c >> i & 1 ? 1.0 : -1.0;
-                share[a][c] *= 0.5 * (1.0 + sqrt(3.0) * sign * wb_hex20_node_place[a][i]);
+                share[a][c] *= 0.5 * (1.0 + sqrt(3.0) * sign * node_place[a][i]);
             }
         }
     }
@@ -401,8 +400,9 @@ static void take_response(struct points *points, int p, double weight, bool tang
 
 /* Stresses, histories and tangents at all points. */
 static void respond(struct points *points, const struct wb_hex20_geometry *geometry,
-                    const struct wb_material *material, const struct wb_hex20_state *before,
-                    struct wb_hex20_state *after, bool tangent, struct wb_hex20_result *result)
+                    const struct wb_material *material, const struct wb_solid_point_state *before,
+                    struct wb_solid_point_state *after, bool tangent,
+                    struct wb_hex20_result *result)
 {
     struct wb_solid_point_law law;
     struct wb_solid_point_response response;
@@ -436,9 +436,9 @@ static bool all_finite(const double *x, int n)
 
 bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
                        const struct wb_material *material, const double *restrict u,
-                       const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                       double *restrict force, double *restrict stiffness,
-                       struct wb_hex20_result *result)
+                       const struct wb_solid_point_state *before,
+                       struct wb_solid_point_state *after, double *restrict force,
+                       double *restrict stiffness, struct wb_hex20_result *result)
 {
     struct points points;
     double rows[3][NODES] = {{0.0}}, accumulated = 0.0;
@@ -485,7 +485,7 @@ static double point_share(int points, int p, int c)
 
 /* Cauchy stress and equivalent plastic strain at the corner points. */
 static void find_corner_values(const struct points *points, const struct wb_material *material,
-                               const struct wb_hex20_state *state, double value[CORNERS][7])
+                               const struct wb_solid_point_state *state, double value[CORNERS][7])
 {
     struct wb_solid_point_law law;
     const int n = points->n_deviatoric;
@@ -502,7 +502,7 @@ static void find_corner_values(const struct points *points, const struct wb_mate
     for (int p = 0; p < n; p++) {
         const struct wb_solid_point_motion *motion = &points->motion[p];
         struct wb_solid_point_response response;
-        struct wb_hex20_state after;
+        struct wb_solid_point_state after;
         wb_solid_point_deviatoric(&law, motion, &state[p], &after, false, &response);
         for (int c = 0; c < CORNERS; c++) {
             const double share = point_share(n, p, c);
@@ -515,7 +515,7 @@ static void find_corner_values(const struct points *points, const struct wb_mate
 
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
                            enum wb_integration integration, const struct wb_material *material,
-                           const double *restrict u, const struct wb_hex20_state *state,
+                           const double *restrict u, const struct wb_solid_point_state *state,
                            double stress[WB_HEX20_NODES][6], double plastic[WB_HEX20_NODES])
 {
     struct points points;

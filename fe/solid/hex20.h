@@ -18,20 +18,8 @@
 
 #include "fe/linear/trial.h"
 #include "fe/material/material.h"
-
-enum {
-    WB_HEX20_NODES = 20,
-    WB_HEX20_UNKNOWNS = 60,
-    WB_HEX20_MOST_POINTS = 27,
-    WB_HEX20_CORNER_POINTS = 8 /* 2 x 2 x 2 */
-};
-
-/* History of a material point; all zero is virgin. Symmetric tensors here are xx, yy, zz, xy, yz,
- * zx, tensor (not engineering) components. */
-struct wb_hex20_state {
-    double plastic_strain[6]; /* logarithmic, deviatoric, in the reference frame */
-    double accumulated;       /* equivalent plastic strain, never decreases */
-};
+#include "fe/solid/hex20_points.h"
+#include "fe/solid/solid_point.h"
 
 /* Gradients with respect to the reference position, and weights, at all points of one element. A
  * gradient is stored as three rows: the derivatives of the 20 shape functions along x, y and z. */
@@ -52,9 +40,6 @@ struct wb_hex20_result {
     int yielding;             /* points that yield in this step */
 };
 
-/* Parent coordinates of the nodes. */
-extern const double wb_hex20_node_place[WB_HEX20_NODES][3];
-
 /* States of an element: 27 or 8. */
 int wb_hex20_points(enum wb_integration integration);
 
@@ -68,9 +53,9 @@ bool wb_hex20_geometry_init(struct wb_hex20_geometry *geometry, enum wb_integrat
  * (J <= 0 at a point) or anything is not finite: outputs are then of no meaning. Pure. */
 bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
                        const struct wb_material *material, const double *restrict u,
-                       const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                       double *restrict force, double *restrict stiffness,
-                       struct wb_hex20_result *result);
+                       const struct wb_solid_point_state *before,
+                       struct wb_solid_point_state *after, double *restrict force,
+                       double *restrict stiffness, struct wb_hex20_result *result);
 
 /* Cauchy stress (Pa, global frame) and equivalent plastic strain at the nodes, of a converged state
  * (its histories are `state`): values at the points extrapolated in the element; what is linear in
@@ -78,7 +63,7 @@ bool wb_hex20_evaluate(const struct wb_hex20_geometry *geometry, enum wb_integra
  * Not a number where an element is inverted. */
 void wb_hex20_nodal_stress(const struct wb_hex20_geometry *geometry,
                            enum wb_integration integration, const struct wb_material *material,
-                           const double *restrict u, const struct wb_hex20_state *state,
+                           const double *restrict u, const struct wb_solid_point_state *state,
                            double stress[WB_HEX20_NODES][6], double plastic[WB_HEX20_NODES]);
 
 /* Consistent nodal weights of a body force: integrals of the 20 shape functions over the reference

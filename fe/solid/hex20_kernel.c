@@ -2,6 +2,9 @@
 
 #include <string.h>
 
+#include "fe/linear/processor.h"
+#include "fe/solid/hex20_kernel_private.h"
+
 /* Sums here may be contracted: the stiffness steers Newton's method, and the equilibrium that it
  * finds is decided by the forces, which are not. Held to a slow twin by
  * tests/fe/solid/test_hex20.c. */
@@ -9,15 +12,6 @@
 #pragma clang fp contract(fast)
 #elif defined(__GNUC__)
 #pragma GCC optimize("fp-contract=fast")
-#endif
-
-/* Vectors wider than the target's are passed between inlined functions only. */
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define HAVE_X86_VARIANTS
 #endif
 
 enum {
@@ -54,8 +48,8 @@ typedef double wide __attribute__((vector_size(64), aligned(8), may_alias));
 typedef double narrow __attribute__((vector_size(32), aligned(8), may_alias));
 
 /* The columns of a panel of Y. */
-static ALWAYS_INLINE void fill_panel(const struct wb_hex20_kernel *kernel, int panel,
-                                     double y[ROWS][COLUMNS])
+static WB_ALWAYS_INLINE void fill_panel(const struct wb_hex20_kernel *kernel, int panel,
+                                        double y[ROWS][COLUMNS])
 {
     for (int p = 0; p < kernel->points; p++) {
         const narrow *x = (const narrow *)kernel->g[p][0];
@@ -72,8 +66,8 @@ static ALWAYS_INLINE void fill_panel(const struct wb_hex20_kernel *kernel, int p
 
 /* block[a][column] = sum over rows of g[row][a] y[row][column] for four nodes a and all columns: 20
  * sums in registers of eight lanes. */
-static ALWAYS_INLINE void multiply_wide(const double *g, int rows, double y[ROWS][COLUMNS],
-                                        double block[4][COLUMNS])
+static WB_ALWAYS_INLINE void multiply_wide(const double *g, int rows, double y[ROWS][COLUMNS],
+                                           double block[4][COLUMNS])
 {
     wide sum[4][5] = {{{0.0}}};
 
@@ -96,8 +90,8 @@ static ALWAYS_INLINE void multiply_wide(const double *g, int rows, double y[ROWS
 }
 
 /* The same for two nodes and half the columns, in registers of four lanes. */
-static ALWAYS_INLINE void multiply_narrow(const double *g, int rows, const double *y,
-                                          double block[2][COLUMNS])
+static WB_ALWAYS_INLINE void multiply_narrow(const double *g, int rows, const double *y,
+                                             double block[2][COLUMNS])
 {
     narrow sum[2][5] = {{{0.0}}};
 
@@ -119,8 +113,8 @@ static ALWAYS_INLINE void multiply_narrow(const double *g, int rows, const doubl
         memcpy(block[a], sum[a], sizeof sum[a]);
 }
 
-static ALWAYS_INLINE void multiply_panels(const struct wb_hex20_kernel *kernel, bool is_wide,
-                                          double *restrict stiffness)
+static WB_ALWAYS_INLINE void multiply_panels(const struct wb_hex20_kernel *kernel, bool is_wide,
+                                             double *restrict stiffness)
 {
     const double *g = &kernel->g[0][0][0];
     const int rows = 3 * kernel->points;
@@ -154,7 +148,7 @@ static void multiply_portably(const struct wb_hex20_kernel *kernel, double *rest
     multiply_panels(kernel, false, stiffness);
 }
 
-#ifdef HAVE_X86_VARIANTS
+#ifdef WB_HAS_X86_VARIANTS
 __attribute__((target("avx2,fma"))) static void multiply_avx2(const struct wb_hex20_kernel *kernel,
                                                               double *restrict stiffness)
 {
@@ -175,15 +169,14 @@ bool wb_hex20_kernel_multiply_by(enum wb_hex20_kernel_way way, const struct wb_h
     case WB_HEX20_KERNEL_PORTABLE:
         multiply_portably(kernel, stiffness);
         return true;
-#ifdef HAVE_X86_VARIANTS
+#ifdef WB_HAS_X86_VARIANTS
     case WB_HEX20_KERNEL_AVX2:
         if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
             return false;
         multiply_avx2(kernel, stiffness);
         return true;
     case WB_HEX20_KERNEL_AVX512:
-        if (!__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512dq") ||
-            !__builtin_cpu_supports("avx512vl"))
+        if (!wb_processor_has_avx512())
             return false;
         multiply_avx512(kernel, stiffness);
         return true;

@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-#include "fe/solid/hex20.h"
+#include "fe/solid/hex20_points.h"
 #include "fe/solid/solid_point.h"
 
 enum {
@@ -33,14 +33,5 @@ void wb_hex20_kernel_add(struct wb_hex20_kernel *kernel, double weight,
 /* The 60 x 60 stiffness of all points, exactly symmetric, by the fastest way that the processor
  * has. */
 void wb_hex20_kernel_multiply(const struct wb_hex20_kernel *kernel, double *restrict stiffness);
-
-/* By a given way; false where the processor does not have it. */
-enum wb_hex20_kernel_way {
-    WB_HEX20_KERNEL_PORTABLE,
-    WB_HEX20_KERNEL_AVX2,
-    WB_HEX20_KERNEL_AVX512
-};
-bool wb_hex20_kernel_multiply_by(enum wb_hex20_kernel_way way, const struct wb_hex20_kernel *kernel,
-                                 double *restrict stiffness);
 
 #endif

@@ -1,13 +1,6 @@
 #include "fe/solid/hex20_points.h"
 
-/* Vectors wider than the target's are passed between inlined functions only. */
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define HAVE_X86_VARIANTS
-#endif
+#include "fe/linear/processor.h"
 
 enum {
     NODES = WB_HEX20_NODES,
@@ -17,7 +10,7 @@ enum {
 
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8), may_alias));
 
-static ALWAYS_INLINE double dot(const lanes *a, const lanes *b)
+static WB_ALWAYS_INLINE double dot(const lanes *a, const lanes *b)
 {
     lanes sum = a[0] * b[0];
     for (int k = 1; k < PARTS; k++)
@@ -25,8 +18,8 @@ static ALWAYS_INLINE double dot(const lanes *a, const lanes *b)
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-static ALWAYS_INLINE void find_gradients(int n, const double *restrict gradient,
-                                         const double *restrict u, double *restrict h)
+static WB_ALWAYS_INLINE void find_gradients(int n, const double *restrict gradient,
+                                            const double *restrict u, double *restrict h)
 {
     const lanes *along = (const lanes *)u;
 
@@ -39,9 +32,9 @@ static ALWAYS_INLINE void find_gradients(int n, const double *restrict gradient,
     }
 }
 
-static ALWAYS_INLINE void find_forces(int n, const double *restrict gradient,
-                                      const struct wb_hex20_points_load *restrict load,
-                                      double *restrict spatial, double *restrict force)
+static WB_ALWAYS_INLINE void find_forces(int n, const double *restrict gradient,
+                                         const struct wb_hex20_points_load *restrict load,
+                                         double *restrict spatial, double *restrict force)
 {
     /* Place of component ij among the six. */
     static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
@@ -73,52 +66,44 @@ static ALWAYS_INLINE void find_forces(int n, const double *restrict gradient,
         ((lanes *)force)[k] = sum[k / PARTS][k % PARTS];
 }
 
-#ifdef HAVE_X86_VARIANTS
-#define AVX2 __attribute__((target("avx2")))
-#define AVX512 __attribute__((target("avx2,avx512f,avx512dq,avx512vl")))
-
-AVX2 static void gradients_avx2(int n, const double *restrict gradient, const double *restrict u,
-                                double *restrict h)
+#ifdef WB_HAS_X86_VARIANTS
+WB_AVX2 static void gradients_avx2(int n, const double *restrict gradient, const double *restrict u,
+                                   double *restrict h)
 {
     find_gradients(n, gradient, u, h);
 }
 
-AVX512 static void gradients_avx512(int n, const double *restrict gradient,
-                                    const double *restrict u, double *restrict h)
+WB_AVX512 static void gradients_avx512(int n, const double *restrict gradient,
+                                       const double *restrict u, double *restrict h)
 {
     find_gradients(n, gradient, u, h);
 }
 
-AVX2 static void forces_avx2(int n, const double *restrict gradient,
-                             const struct wb_hex20_points_load *restrict load,
-                             double *restrict spatial, double *restrict force)
+WB_AVX2 static void forces_avx2(int n, const double *restrict gradient,
+                                const struct wb_hex20_points_load *restrict load,
+                                double *restrict spatial, double *restrict force)
 {
     find_forces(n, gradient, load, spatial, force);
 }
 
-AVX512 static void forces_avx512(int n, const double *restrict gradient,
-                                 const struct wb_hex20_points_load *restrict load,
-                                 double *restrict spatial, double *restrict force)
+WB_AVX512 static void forces_avx512(int n, const double *restrict gradient,
+                                    const struct wb_hex20_points_load *restrict load,
+                                    double *restrict spatial, double *restrict force)
 {
     find_forces(n, gradient, load, spatial, force);
 }
 
-static bool has_avx512(void)
-{
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl");
-}
 #endif
 
 void wb_hex20_points_gradients(int n, const double *restrict gradient, const double *restrict u,
                                double *restrict h)
 {
-#ifdef HAVE_X86_VARIANTS
-    if (has_avx512()) {
+#ifdef WB_HAS_X86_VARIANTS
+    if (wb_processor_has_avx512()) {
         gradients_avx512(n, gradient, u, h);
         return;
     }
-    if (__builtin_cpu_supports("avx2")) {
+    if (wb_processor_has_avx2()) {
         gradients_avx2(n, gradient, u, h);
         return;
     }
@@ -130,12 +115,12 @@ void wb_hex20_points_forces(int n, const double *restrict gradient,
                             const struct wb_hex20_points_load *restrict load,
                             double *restrict spatial, double *restrict force)
 {
-#ifdef HAVE_X86_VARIANTS
-    if (has_avx512()) {
+#ifdef WB_HAS_X86_VARIANTS
+    if (wb_processor_has_avx512()) {
         forces_avx512(n, gradient, load, spatial, force);
         return;
     }
-    if (__builtin_cpu_supports("avx2")) {
+    if (wb_processor_has_avx2()) {
         forces_avx2(n, gradient, load, spatial, force);
         return;
     }

@@ -1,9 +1,14 @@
-/* The sums over nodes at the points of an element, for what vectors the processor has. Nothing is
- * contracted: all processors give the same bits. */
+/* Sums over the nodes at the points of a hexahedron of 20 nodes, for what vectors the processor
+ * has. Nothing is contracted: all processors give the same bits. */
 #ifndef WB_FE_SOLID_HEX20_POINTS_H
 #define WB_FE_SOLID_HEX20_POINTS_H
 
-#include "fe/solid/hex20.h"
+enum {
+    WB_HEX20_NODES = 20,
+    WB_HEX20_UNKNOWNS = 60,
+    WB_HEX20_MOST_POINTS = 27,
+    WB_HEX20_CORNER_POINTS = 8 /* 2 x 2 x 2 */
+};
 
 /* What a point does to the forces. */
 struct wb_hex20_points_load {

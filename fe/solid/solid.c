@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "fe/solid/solid_body.h"
+#include "fe/solid/solid_private.h"
 #include "fe/solid/solid_tip.h"
 #include "fe/solid/solid_update.h"
 
@@ -1061,12 +1062,6 @@ enum wb_status wb_solid_move(struct wb_solid *solid, const struct wb_solid_move 
 int wb_solid_unknowns(const struct wb_solid *solid)
 {
     return solid->body.n_equations;
-}
-
-size_t wb_solid_memory(const struct wb_solid *solid)
-{
-    return wb_solid_body_memory(&solid->body) + 8 * vector_bytes(solid) +
-           (size_t)solid->body.n_equations * COLUMNS * sizeof *solid->right;
 }
 
 const struct wb_solid_loads *wb_solid_loads(const struct wb_solid *solid)

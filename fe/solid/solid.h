@@ -16,34 +16,8 @@
 #include <stddef.h>
 
 #include "base/status.h"
-#include "fe/linear/trial.h"
-#include "fe/solid/hex20.h"
 #include "fe/solid/jacket_contact.h"
-#include "fe/solid/solid_mesh.h"
-
-struct wb_solid_part {
-    struct wb_material material;
-    double density; /* kg/m3 */
-};
-
-/* A held displacement component; `displacement` (m) is that at support factor 1. */
-struct wb_solid_support {
-    int node, axis;
-    double displacement;
-};
-
-struct wb_solid_model {
-    const struct wb_solid_mesh *mesh;  /* borrowed; must outlive the solid */
-    const struct wb_solid_part *parts; /* (mesh->n_parts), copied */
-    enum wb_integration integration;
-    double gravity[3]; /* m/s2 */
-    int n_supports;
-    const struct wb_solid_support *supports; /* copied */
-    const double (*nodal_force)[3];          /* (n_nodes) N at nodal factor 1, copied; NULL: none */
-    const struct wb_jacket_contact_law *jacket_contact; /* of the mesh' pairs, copied; NULL: none */
-    double strand_length; /* m; 0: a deflection is made by a vertical force */
-    double strand_x;      /* m: x of the strand's upper end */
-};
+#include "fe/solid/solid_model.h"
 
 struct wb_solid_settings {
     double force_tolerance;    /* residual over the largest force at any node; 0: 1e-6 */
@@ -54,7 +28,7 @@ struct wb_solid_settings {
     int max_iterations;        /* 0: 12 */
 };
 
-/* All that acts. */
+/* All loads. */
 struct wb_solid_loads {
     double weight, supports, nodal; /* factors */
     struct wb_tip_loads tip;
@@ -128,14 +102,11 @@ WB_MUST_CHECK enum wb_status wb_solid_move(struct wb_solid *solid, const struct 
                                            struct wb_solid_point *point);
 
 int wb_solid_unknowns(const struct wb_solid *solid);
-size_t wb_solid_memory(const struct wb_solid *solid); /* bytes */
 
 /* Of the last equilibrium. */
 const struct wb_solid_loads *wb_solid_loads(const struct wb_solid *solid);
 void wb_solid_tip(const struct wb_solid *solid, struct wb_solid_tip *tip);
-const double *wb_solid_displacement(const struct wb_solid *solid);   /* (3 n_nodes), m */
-const double *wb_solid_internal_force(const struct wb_solid *solid); /* (3 n_nodes), N: at supports
-                                                                        the reactions plus loads */
+const double *wb_solid_displacement(const struct wb_solid *solid); /* (3 n_nodes), m */
 void wb_solid_balance(const struct wb_solid *solid, struct wb_solid_balance *balance);
 
 /* Cauchy stress and equivalent plastic strain at the nodes of element e, from its own points. */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/material/hardening.h"
+
 #define WB_LOG_DOMAIN "solid"
 
 static enum wb_status number_equations(struct wb_solid_body *body,
@@ -87,17 +89,6 @@ static enum wb_status prepare_elements(struct wb_solid_body *body,
     return WB_OK;
 }
 
-/* Whether the numbers of yielding are possible ones. */
-static bool is_plasticity_possible(const struct wb_material *m)
-{
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
-        return true;
-    const bool power = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
-    return isfinite(m->yield_stress) && m->yield_stress > 0.0 &&
-           isfinite(m->strength_coefficient) && m->strength_coefficient >= 0.0 &&
-           (!power || (m->hardening_exponent > 0.0 && m->hardening_exponent <= 2.0));
-}
-
 static bool are_finite(const double *x, size_t n)
 {
     bool finite = true;
@@ -121,6 +112,7 @@ static enum wb_status check_loads(const struct wb_solid_model *model)
 static enum wb_status check_model(const struct wb_solid_model *model)
 {
     const struct wb_solid_mesh *mesh = model->mesh;
+    char why[120];
 
     if (!mesh || mesh->n_elements < 1 || !model->parts)
         return wb_fail(WB_ERR_ARGUMENT, "a body needs a mesh with elements, and parts");
@@ -133,11 +125,8 @@ static enum wb_status check_model(const struct wb_solid_model *model)
                            "part %d: Young's modulus %g Pa, Poisson's ratio %g, density %g kg/m3: "
                            "expected above 0, between -1 and 0.5, 0 or more",
                            p, m->youngs_modulus, m->poissons_ratio, model->parts[p].density);
-        if (!is_plasticity_possible(m))
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "part %d: yield stress %g Pa, strength coefficient %g Pa, exponent %g: "
-                           "expected above 0, 0 or more, above 0 and at most 2",
-                           p, m->yield_stress, m->strength_coefficient, m->hardening_exponent);
+        if (!wb_hardening_is_possible(m, why, sizeof why))
+            return wb_fail(WB_ERR_ARGUMENT, "part %d: %s", p, why);
     }
     for (int e = 0; e < mesh->n_elements; e++)
         if (mesh->part[e] < 0 || mesh->part[e] >= mesh->n_parts)
@@ -358,25 +347,11 @@ void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
 void wb_solid_body_commit(struct wb_solid_body *body)
 {
     const struct wb_solid_mesh *mesh = body->mesh;
-    struct wb_hex20_state *states = body->committed;
+    struct wb_solid_point_state *states = body->committed;
 
     body->committed = body->trial;
     body->trial = states;
     if (body->has_contact)
         memcpy(body->committed_pairs, body->trial_pairs,
                (size_t)mesh->n_pairs * WB_JACKET_CONTACT_POINTS * sizeof *body->committed_pairs);
-}
-
-size_t wb_solid_body_memory(const struct wb_solid_body *body)
-{
-    const size_t elements = (size_t)body->mesh->n_elements;
-    const size_t n = 3 * (size_t)body->mesh->n_nodes;
-    size_t bytes = elements * sizeof *body->geometry;
-
-    bytes += 2 * elements * (size_t)body->n_points * sizeof *body->committed;
-    bytes += n * (sizeof *body->equation + sizeof *body->weight + sizeof *body->force);
-    if (body->has_contact)
-        bytes += 2 * (size_t)body->mesh->n_pairs * WB_JACKET_CONTACT_POINTS *
-                 sizeof *body->committed_pairs;
-    return bytes + wb_layered_memory(body->tangent);
 }

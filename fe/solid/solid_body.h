@@ -11,7 +11,9 @@
 
 #include "base/status.h"
 #include "fe/linear/layered.h"
-#include "fe/solid/solid.h"
+#include "fe/solid/hex20.h"
+#include "fe/solid/jacket_contact.h"
+#include "fe/solid/solid_model.h"
 
 struct wb_solid_body {
     const struct wb_solid_mesh *mesh; /* borrowed */
@@ -21,8 +23,8 @@ struct wb_solid_body {
     struct wb_hex20_geometry *geometry; /* (n_elements) */
     int *equation;                      /* (3 n_nodes); -1: held */
     int n_equations;
-    struct wb_hex20_state *committed, *trial; /* (n_elements x n_points) */
-    bool has_contact;                         /* its tangent is unsymmetric */
+    struct wb_solid_point_state *committed, *trial; /* (n_elements x n_points) */
+    bool has_contact;                               /* its tangent is unsymmetric */
     struct wb_jacket_contact_law jacket_contact;
     struct wb_jacket_contact_state *committed_pairs, *trial_pairs; /* (n_pairs x 9) */
     double *weight;             /* (3 n_nodes) N: forces of gravity */
@@ -54,7 +56,5 @@ void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
 
 /* Committed histories = trial ones. */
 void wb_solid_body_commit(struct wb_solid_body *body);
-
-size_t wb_solid_body_memory(const struct wb_solid_body *body); /* bytes */
 
 #endif

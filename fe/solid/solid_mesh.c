@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/solid/solid_mesh_private.h"
+
 #define WB_LOG_DOMAIN "mesh"
 
 enum {

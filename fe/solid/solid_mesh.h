@@ -76,18 +76,6 @@ struct wb_solid_mesh_wire {
 WB_MUST_CHECK enum wb_status wb_solid_mesh_sweep(struct wb_solid_mesh *mesh,
                                                  const struct wb_solid_mesh_wire *wire);
 
-/* Takes memory for a mesh of one layer to be filled in by the caller (tests): part 0 everywhere, a
- * single layer. */
-WB_MUST_CHECK enum wb_status wb_solid_mesh_init(struct wb_solid_mesh *mesh, int n_nodes,
-                                                int n_elements);
-
-/* Block of nx x ny x nz elements, each of 20 nodes, over the unit cube mapped by `map` (NULL: the
- * unit cube itself), layers along x. For tests: beams, membranes, thick rings. */
-WB_MUST_CHECK enum wb_status wb_solid_mesh_block(struct wb_solid_mesh *mesh, int nx, int ny, int nz,
-                                                 void (*map)(void *context, const double unit[3],
-                                                             double position[3]),
-                                                 void *context);
-
 void wb_solid_mesh_release(struct wb_solid_mesh *mesh); /* accepts a zeroed one */
 
 /* Faces on the plane z = 0 (the longitudinal section that holds the axis and y) from the side

@@ -128,28 +128,28 @@ static double squared_norm(const double t[6])
            2.0 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
 }
 
-/* The equivalent plastic strain of a step from p0, which solves q - 3 mu (p - p0) = sigma_Y + K p^n
- * by Newton's method from the tangent at p0; `power` is K p^n, at p0 on entry, at p on return. Far
+/* The equivalent plastic strain of a step from p0, which solves q - 3 mu (p - p0) = sigma_Y + H(p)
+ * by Newton's method from the tangent at p0; `growth` is H(p), at p0 on entry, at p on return. Far
  * from p0, above all from p0 = 0 where the law may be infinitely steep, the equation is solved in
  * its logarithm. */
-static double find_increment(const struct wb_material *m, double q, double p0, double *power)
+static double find_increment(const struct wb_material *m, double q, double p0, double *growth)
 {
-    const double three_mu = m->youngs_modulus, K = m->strength_coefficient;
-    const double n = m->hardening_exponent, over = q - m->yield_stress;
+    const struct wb_hardening_law *law = wb_hardening_law(m);
+    const double three_mu = m->youngs_modulus, over = q - m->yield_stress;
 
     if (p0 > 0.0) {
-        double step = (over - *power) / (three_mu + n * *power / p0);
+        double step = (over - *growth) / (three_mu + wb_hardening_exponent(m, p0) * *growth / p0);
         for (int iteration = 0; iteration < 6; iteration++) {
             const double p = p0 + step;
-            *power = K * pow(p, n);
-            const double residual = over - *power - three_mu * step;
-            step += residual / (three_mu + n * *power / p);
+            *growth = law->growth(m, p);
+            const double residual = over - *growth - three_mu * step;
+            step += residual / (three_mu + wb_hardening_exponent(m, p) * *growth / p);
             if (fabs(residual) <= 4e-16 * q)
                 return fmax(0.0, step);
         }
     }
     const double c = over + three_mu * p0, r = wb_hardening_ratio(m, c);
-    *power = (1.0 - r) * c;
+    *growth = (1.0 - r) * c;
     return fmax(0.0, r * c / three_mu - p0);
 }
 
@@ -158,25 +158,25 @@ static bool find_flow(const struct wb_solid_point_law *law, const double trial[6
                       double accumulated, struct flow *flow)
 {
     const struct wb_material *m = &law->radial;
-    if (m->hardening == WB_HARDENING_NONE_ELASTIC)
+    const struct wb_hardening_law *hardening = wb_hardening_law(m);
+    if (!hardening->yields)
         return false;
 
-    const double three_mu = m->youngs_modulus, K = m->strength_coefficient;
-    const bool isotropic = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
-    const double n = m->hardening_exponent, p0 = accumulated;
+    const double three_mu = m->youngs_modulus, p0 = accumulated;
     const double norm = sqrt(squared_norm(trial)), q = sqrt(1.5) * norm;
-    double power = isotropic && p0 > 0.0 ? K * pow(p0, n) : 0.0; /* K p^n */
-    if (!(q - (m->yield_stress + power) > on_surface * (m->yield_stress + power)))
+    double growth = hardening->growth && p0 > 0.0 ? hardening->growth(m, p0) : 0.0; /* H(p) */
+    if (!(q - (m->yield_stress + growth) > on_surface * (m->yield_stress + growth)))
         return false;
 
-    double slope = K; /* of the yield stress, or of X, over p */
-    if (isotropic) {
-        flow->increment = find_increment(m, q, p0, &power);
-        slope = n * power / (p0 + flow->increment);
+    double slope = wb_hardening_back_modulus(m); /* of X, or of the yield stress, over p */
+    if (hardening->growth) {
+        flow->increment = find_increment(m, q, p0, &growth);
+        const double p = p0 + flow->increment;
+        slope = wb_hardening_exponent(m, p) * growth / p;
     } else {
-        flow->increment = (q - m->yield_stress) / (three_mu + K);
+        flow->increment = (q - m->yield_stress) / (three_mu + slope);
     }
-    flow->dissipated = (m->yield_stress + power) * flow->increment;
+    flow->dissipated = (m->yield_stress + growth) * flow->increment;
 
     const double lost = three_mu * flow->increment / q;
     flow->shrink = 1.0 - lost;
@@ -365,12 +365,12 @@ static void push_vectors(const struct wb_solid_point_motion *motion, struct wb_s
 
 void wb_solid_point_deviatoric(const struct wb_solid_point_law *law,
                                const struct wb_solid_point_motion *motion,
-                               const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                               bool tangent, struct wb_solid_point_response *response)
+                               const struct wb_solid_point_state *before,
+                               struct wb_solid_point_state *after, bool tangent,
+                               struct wb_solid_point_response *response)
 {
     const double mu = law->shear_modulus;
-    const bool kinematic = law->radial.hardening == WB_HARDENING_KINEMATIC_LINEAR;
-    const double prager = kinematic ? 2.0 / 3.0 * law->radial.strength_coefficient : 0.0;
+    const double prager = 2.0 / 3.0 * wb_hardening_back_modulus(&law->radial);
     const struct wb_solid_point_spectrum *s = &motion->spectrum;
     struct flow flow;
     double plastic[6], T[6], relative[6], tau[6];

@@ -19,7 +19,13 @@
 #include <stdbool.h>
 
 #include "fe/material/material.h"
-#include "fe/solid/hex20.h"
+
+/* History of a material point; all zero is virgin. Symmetric tensors here are xx, yy, zz, xy, yz,
+ * zx, tensor (not engineering) components. */
+struct wb_solid_point_state {
+    double plastic_strain[6]; /* logarithmic, deviatoric, in the reference frame */
+    double accumulated;       /* equivalent plastic strain, never decreases */
+};
 
 /* What the points of a material have in common. */
 struct wb_solid_point_law {
@@ -75,7 +81,8 @@ void wb_solid_point_add_volumetric(const struct wb_solid_point_law *law,
  * `before`) receives the history at the end of the step. */
 void wb_solid_point_deviatoric(const struct wb_solid_point_law *law,
                                const struct wb_solid_point_motion *motion,
-                               const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                               bool tangent, struct wb_solid_point_response *response);
+                               const struct wb_solid_point_state *before,
+                               struct wb_solid_point_state *after, bool tangent,
+                               struct wb_solid_point_response *response);
 
 #endif

@@ -4,16 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "fe/linear/processor.h"
 #include "fe/solid/solid_point.h"
-
-/* Vectors wider than the target's are not passed between functions. */
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-#define ALWAYS_INLINE inline __attribute__((always_inline))
-
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define HAVE_X86_VARIANTS
-#endif
 
 enum {
     LANES = 8
@@ -31,13 +23,13 @@ struct batch {
 
 static const long long sign_bit = (long long)0x8000000000000000ULL;
 
-static ALWAYS_INLINE void take_absolute(lanes *x)
+static WB_ALWAYS_INLINE void take_absolute(lanes *x)
 {
     *x = (lanes)((masks)*x & ~sign_bit);
 }
 
 /* This file is compiled without math's errno, so that the loop becomes one instruction. */
-static ALWAYS_INLINE void take_root(lanes *x)
+static WB_ALWAYS_INLINE void take_root(lanes *x)
 {
     double root[LANES];
     for (int i = 0; i < LANES; i++)
@@ -47,7 +39,7 @@ static ALWAYS_INLINE void take_root(lanes *x)
 }
 
 /* One rotation, which makes component pq vanish. */
-static ALWAYS_INLINE void rotate(struct batch *m, int p, int q)
+static WB_ALWAYS_INLINE void rotate(struct batch *m, int p, int q)
 {
     static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     const int r = 3 - p - q, rp = place[r][p], rq = place[r][q], pq = place[p][q];
@@ -81,7 +73,7 @@ static ALWAYS_INLINE void rotate(struct batch *m, int p, int q)
     }
 }
 
-static ALWAYS_INLINE bool is_diagonal(const struct batch *m)
+static WB_ALWAYS_INLINE bool is_diagonal(const struct batch *m)
 {
     lanes a[6];
     for (int k = 0; k < 6; k++) {
@@ -96,7 +88,7 @@ static ALWAYS_INLINE bool is_diagonal(const struct batch *m)
     return all != 0;
 }
 
-static ALWAYS_INLINE void sweep_batch(struct batch *batch)
+static WB_ALWAYS_INLINE void sweep_batch(struct batch *batch)
 {
     struct batch m = *batch;
     for (int sweep = 0; sweep < 12 && !is_diagonal(&m); sweep++) {
@@ -112,13 +104,13 @@ static void sweep_portably(struct batch *m)
     sweep_batch(m);
 }
 
-#ifdef HAVE_X86_VARIANTS
-__attribute__((target("avx2"))) static void sweep_avx2(struct batch *m)
+#ifdef WB_HAS_X86_VARIANTS
+WB_AVX2 static void sweep_avx2(struct batch *m)
 {
     sweep_batch(m);
 }
 
-__attribute__((target("avx2,avx512f,avx512dq,avx512vl"))) static void sweep_avx512(struct batch *m)
+WB_AVX512 static void sweep_avx512(struct batch *m)
 {
     sweep_batch(m);
 }
@@ -126,13 +118,12 @@ __attribute__((target("avx2,avx512f,avx512dq,avx512vl"))) static void sweep_avx5
 
 static void sweep(struct batch *m)
 {
-#ifdef HAVE_X86_VARIANTS
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl")) {
+#ifdef WB_HAS_X86_VARIANTS
+    if (wb_processor_has_avx512()) {
         sweep_avx512(m);
         return;
     }
-    if (__builtin_cpu_supports("avx2")) {
+    if (wb_processor_has_avx2()) {
         sweep_avx2(m);
         return;
     }

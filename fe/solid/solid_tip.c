@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "fe/solid/hex20.h"
+
 #define WB_LOG_DOMAIN "solid"
 
 enum {

@@ -13,7 +13,7 @@
 #define WB_FE_SOLID_SOLID_TIP_H
 
 #include "base/status.h"
-#include "fe/solid/solid.h"
+#include "fe/solid/solid_model.h"
 
 enum {
     WB_SOLID_TIP_PATTERNS = 3,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fe/swept/swept_cohesion_kernel.h"
+#include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
 

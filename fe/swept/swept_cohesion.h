@@ -69,9 +69,6 @@ wb_swept_cohesion_create(struct wb_swept_cohesion **out, const struct wb_swept_t
                          const struct wb_swept_cohesion_bond *bond);
 void wb_swept_cohesion_destroy(struct wb_swept_cohesion *cohesion);
 
-/* No damage, as after creation. */
-void wb_swept_cohesion_reset(struct wb_swept_cohesion *cohesion);
-
 /* What a checkpoint keeps: `bytes` at the address returned. */
 void *wb_swept_cohesion_data(struct wb_swept_cohesion *cohesion, size_t *bytes);
 
@@ -91,9 +88,6 @@ struct wb_swept_cohesion_sums {
 void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
                                   const struct wb_swept_cohesion_fields *fields, int first, int end,
                                   struct wb_swept_cohesion_sums *sums);
-
-/* Area that is bonded, m2. */
-double wb_swept_cohesion_area(const struct wb_swept_cohesion *cohesion);
 
 /* What a node was bonded to, damaged or not. */
 int wb_swept_cohesion_partner(const struct wb_swept_cohesion *cohesion, int node, int station);

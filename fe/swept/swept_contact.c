@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fe/swept/swept_contact_kernel.h"
+#include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "contact"
 

@@ -75,11 +75,6 @@ wb_swept_contact_create(struct wb_swept_contact **out,
                         const struct wb_swept_contact_wire *wires, int n_stations, double spacing);
 void wb_swept_contact_destroy(struct wb_swept_contact *contact);
 
-/* No frames, pairs or friction, as after creation. */
-void wb_swept_contact_reset(struct wb_swept_contact *contact);
-
-const char *wb_swept_contact_instructions(const struct wb_swept_contact *contact);
-
 struct wb_swept_contact_energies {
     double normal, tangential; /* J, stored in the springs */
     double friction, damping;  /* J, dissipated in this step */
@@ -98,19 +93,6 @@ wb_swept_contact_add_forces(struct wb_swept_contact *contact, const double *cons
                             void *const *force, double time_step,
                             struct wb_swept_contact_energies *energies);
 
-/* The same in parts, for threads: gather all blocks, then refresh once, press all blocks, scatter
- * all blocks (each time all threads before the next), and finish once. Calls for different blocks
- * may run at the same time. A block's forces may be written by others before it is scattered. */
-int wb_swept_contact_blocks(const struct wb_swept_contact *contact);
-void wb_swept_contact_gather(struct wb_swept_contact *contact, const double *const *position,
-                             int first, int end);
-WB_MUST_CHECK enum wb_status wb_swept_contact_refresh(struct wb_swept_contact *contact);
-void wb_swept_contact_press(struct wb_swept_contact *contact, double time_step, int first, int end);
-void wb_swept_contact_scatter(const struct wb_swept_contact *contact, void *const *force, int first,
-                              int end);
-WB_MUST_CHECK enum wb_status wb_swept_contact_finish(struct wb_swept_contact *contact,
-                                                     struct wb_swept_contact_energies *energies);
-
 /* For the stable step: a bound of what contact of a wire adds to the largest eigenvalue of M^-1 K,
  * 1/s2. So omega_max^2 is at most that of the wires' elements + the largest of these. `node_mass`
  * is kg/m, one a section node; `selective` is beta of fe/swept/swept_step.h, 1 is none; mass
@@ -120,12 +102,6 @@ double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contac
                                            const double *node_mass, double selective);
 
 /* The neighbours, and what goes on between them at the last step's positions. */
-struct wb_swept_contact_pair {
-    int wire[2];
-    double stiffness; /* k, N/m2 */
-    double normal;    /* N, sum over the stations */
-    double smallest;  /* gap, m; negative: penetration */
-};
 struct wb_swept_contact_point {
     double gap;    /* m */
     double length; /* that it stands for, m; 0 where one wire has no neighbour opposite */
@@ -135,8 +111,6 @@ struct wb_swept_contact_point {
     double friction[3];         /* on the first wire, N/m */
 };
 int wb_swept_contact_pairs(const struct wb_swept_contact *contact);
-void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
-                               struct wb_swept_contact_pair *out);
 void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair, int station,
                                 struct wb_swept_contact_point *out);
 

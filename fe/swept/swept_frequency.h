@@ -21,8 +21,4 @@ WB_MUST_CHECK enum wb_status wb_swept_frequency_bound(const struct wb_swept_hex 
                                                       const double *node_mass, double selective,
                                                       double *omega);
 
-/* The layer's stiffness, N/m, in the reference state: (6 n x 6 n) of n section nodes, freedoms
- * (station n + node) 3 + component. Added to `stiffness`. */
-void wb_swept_frequency_layer(const struct wb_swept_hex *hex, double *stiffness);
-
 #endif

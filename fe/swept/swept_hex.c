@@ -7,19 +7,17 @@
 
 #include "fe/material/hardening.h"
 #include "fe/swept/swept_hex_kernel.h"
+#include "fe/swept/swept_private.h"
 
 #define WB_LOG_DOMAIN "swept"
 
 enum {
     CONSTANTS = WB_SWEPT_HEX_KERNEL_CONSTANTS,
     TERMS = WB_SWEPT_HEX_KERNEL_TERMS,
-    OCTAVES = WB_SWEPT_HEX_KERNEL_OCTAVES,
-    LOWEST_OCTAVE = -31,
     MOST_ELEMENTS = 1 << 20
 };
 
 static const double default_hourglass = 0.05;
-static const double table_tolerance = 1e-5;
 
 static const struct wb_swept_hex_kernel *const kernels[][2] =
     WB_SWEPT_KERNEL_VERSIONS(wb_swept_hex_kernel);
@@ -51,67 +49,15 @@ static size_t real_size(const struct wb_swept_hex *hex)
     return wb_swept_kernel_real_size(hex->model.double_precision);
 }
 
-/* Powers of t = m - 3/2 (m the mantissa, 1 to 2) of p / x in an octave, by Newton's divided
- * differences at the nodes of Chebyshev. */
-static void tabulate_octave(const struct wb_material *radial, double begin, double *coefficient)
-{
-    double t[TERMS], d[TERMS];
-
-    for (int i = 0; i < TERMS; i++) {
-        t[i] = 0.5 * cos(M_PI * (i + 0.5) / TERMS);
-        d[i] = wb_hardening_ratio(radial, begin * (t[i] + 1.5) * radial->youngs_modulus);
-        coefficient[i] = 0.0;
-    }
-    for (int j = 1; j < TERMS; j++) {
-        for (int i = TERMS - 1; i >= j; i--)
-            d[i] = (d[i] - d[i - 1]) / (t[i] - t[i - j]);
-    }
-    for (int i = TERMS - 1; i >= 0; i--) {
-        for (int j = TERMS - 1; j >= 1; j--)
-            coefficient[j] = coefficient[j - 1] - t[i] * coefficient[j];
-        coefficient[0] = d[i] - t[i] * coefficient[0];
-    }
-}
-
-/* Largest error of the stress in an octave, as a part of the stress. */
-static double octave_error(const struct wb_material *radial, double begin,
-                           const double *coefficient)
-{
-    double worst = 0.0;
-
-    for (int i = 0; i <= 16; i++) {
-        const double t = (i - 8) / 16.0, c = begin * (t + 1.5) * radial->youngs_modulus;
-        const double exact = wb_hardening_ratio(radial, c);
-        double r = 0.0;
-        for (int k = TERMS - 1; k >= 0; k--)
-            r = r * t + coefficient[k];
-        const double error = fabs(r - exact) * c / (radial->yield_stress + (1.0 - exact) * c);
-        worst = error <= worst ? worst : error;
-    }
-    return worst;
-}
-
 static enum wb_status make_table(struct wb_swept_hex *hex)
 {
-    double table[TERMS][OCTAVES] = {{0.0}}, worst = 0.0;
+    double table[TERMS][WB_HARDENING_TABLE_OCTAVES];
     struct wb_material radial = hex->model.material;
 
     radial.youngs_modulus = 3.0 * shear_modulus(&radial);
-    for (int i = 0; radial.hardening == WB_HARDENING_ISOTROPIC_POWER && i < OCTAVES; i++) {
-        const double begin = ldexp(1.0, LOWEST_OCTAVE + i);
-        double coefficient[TERMS];
-        tabulate_octave(&radial, begin, coefficient);
-        const double error = octave_error(&radial, begin, coefficient);
-        worst = error <= worst ? worst : error;
-        for (int k = 0; k < TERMS; k++)
-            table[k][i] = coefficient[k];
-    }
-    if (!(worst <= table_tolerance))
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "the hardening law (K = %g Pa, n = %g) cannot be tabulated: error %.1e",
-                       radial.strength_coefficient, radial.hardening_exponent, worst);
+    WB_TRY(wb_hardening_tabulate_octaves(&radial, TERMS, &table[0][0]));
     return wb_swept_kernel_convert(&hex->table, hex->model.double_precision, &table[0][0],
-                                   TERMS * OCTAVES);
+                                   sizeof table / sizeof table[0][0]);
 }
 
 static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
@@ -167,7 +113,7 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
 static enum wb_status check(const struct wb_swept_hex_model *m)
 {
     const struct wb_material *material = &m->material;
-    const bool power = material->hardening == WB_HARDENING_ISOTROPIC_POWER;
+    char why[120];
 
     if (m->n_elements < 1 || m->n_elements > MOST_ELEMENTS)
         return wb_fail(WB_ERR_ARGUMENT, "%d elements along a wire", m->n_elements);
@@ -175,19 +121,14 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
         return wb_fail(WB_ERR_ARGUMENT, "elements of a length of %g m", m->element_length);
     if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
         return wb_fail(WB_ERR_ARGUMENT, "hourglass coefficient %g, not in (0, 1]", m->hourglass);
-    if (!power && material->hardening != WB_HARDENING_NONE_ELASTIC)
+    if (wb_hardening_law(material)->moves)
         return wb_fail(WB_ERR_UNSUPPORTED, "hexahedra do not harden kinematically");
     if (!(material->youngs_modulus > 0.0 && isfinite(material->youngs_modulus)) ||
         !(material->poissons_ratio > -1.0 && material->poissons_ratio < 0.5))
         return wb_fail(WB_ERR_ARGUMENT, "E = %g Pa, nu = %g", material->youngs_modulus,
                        material->poissons_ratio);
-    if (power &&
-        !(material->yield_stress > 0.0 && isfinite(material->yield_stress) &&
-          material->strength_coefficient >= 0.0 && isfinite(material->strength_coefficient) &&
-          material->hardening_exponent > 0.0 && material->hardening_exponent <= 2.0))
-        return wb_fail(WB_ERR_ARGUMENT, "sigma_Y = %g Pa, K = %g Pa, n = %g",
-                       material->yield_stress, material->strength_coefficient,
-                       material->hardening_exponent);
+    if (!wb_hardening_is_possible(material, why, sizeof why))
+        return wb_fail(WB_ERR_ARGUMENT, "%s", why);
     return WB_OK;
 }
 
@@ -211,7 +152,7 @@ static int farthest_node(const struct wb_swept_section *section)
 static enum wb_status fill(struct wb_swept_hex *hex)
 {
     const struct wb_swept_hex_model *m = &hex->model;
-    const bool elastic = m->material.hardening == WB_HARDENING_NONE_ELASTIC;
+    const bool yields = wb_hardening_law(&m->material)->yields;
 
     WB_TRY(check(m));
     WB_TRY(wb_swept_choose_instructions(&hex->model.instructions, m->instructions));
@@ -229,8 +170,8 @@ static enum wb_status fill(struct wb_swept_hex *hex)
         .quad = (const int(*)[4])m->section->quad,
         .node = (const double(*)[2])m->section->node,
         .length = m->element_length,
-        .yield_strain = elastic ? (double)INFINITY
-                                : m->material.yield_stress / (3.0 * shear_modulus(&m->material)),
+        .yield_strain = yields ? m->material.yield_stress / (3.0 * shear_modulus(&m->material))
+                               : (double)INFINITY,
         .strain_limit = WB_SWEPT_HEX_STRAIN_LIMIT,
         .constants = hex->constants,
         .table = hex->table};
@@ -430,9 +371,7 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
             for (int j = hex->numbers.counted.first; j < hex->numbers.counted.end; j++) {
                 const double p = wb_swept_hex_plastic_strain(state, e, j, q);
                 if (p > 0.0)
-                    density += p * (m->yield_stress + m->strength_coefficient *
-                                                          pow(p, m->hardening_exponent) /
-                                                          (m->hardening_exponent + 1.0));
+                    density += p * wb_hardening_mean_stress(m, p);
             }
             work += density * volume;
         }
@@ -459,9 +398,12 @@ static double varying_moment(const struct wb_swept_section *section, int e,
     return (xi * xi + eta * eta) / 3.0 + both * both / 9.0;
 }
 
-double wb_swept_hex_second_moment(const struct wb_swept_section *section,
-                                  enum wb_swept_hex_formulation formulation,
-                                  const struct wb_material *material)
+/* The second moment of area, m4, with which elements of this section bend elastically about the z
+ * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
+ * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
+static double second_moment(const struct wb_swept_section *section,
+                            enum wb_swept_hex_formulation formulation,
+                            const struct wb_material *material)
 {
     const double factor = formulation == WB_SWEPT_HEX_FOUR_POINTS
                               ? 3.0 * shear_modulus(material) / material->youngs_modulus
@@ -486,6 +428,6 @@ void wb_swept_hex_fit_circle(struct wb_swept_section *section, double diameter,
 {
     const double wanted = M_PI * pow(diameter, 4) / 64.0;
 
-    wb_swept_section_scale(
-        section, pow(wanted / wb_swept_hex_second_moment(section, formulation, material), 0.25));
+    wb_swept_section_scale(section,
+                           pow(wanted / second_moment(section, formulation, material), 0.25));
 }

@@ -76,7 +76,6 @@ void wb_swept_hex_destroy(struct wb_swept_hex *hex);
 const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex);
 struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
 int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
-const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex);
 /* Of those that this processor has the best. */
 const char *wb_swept_hex_best_instructions(void);
 
@@ -88,7 +87,6 @@ void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double sti
 WB_MUST_CHECK enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
                                                        const struct wb_swept_hex *hex);
 void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
-void wb_swept_hex_state_reset(struct wb_swept_hex_state *state);
 
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */
 void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
@@ -109,17 +107,6 @@ void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
 
 /* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
 double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state);
-
-/* Accumulated plastic strain at a point (0 to 3, or 0) of a section's element. */
-double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
-                                   int point);
-
-/* The second moment of area, m4, with which elements of this section bend elastically about the z
- * axis: what the mean axial strains add, sum A y^2 of the centres, and what these vary, of four
- * points 3 mu / E of it, of one point the hourglass stiffness with the default coefficient. */
-double wb_swept_hex_second_moment(const struct wb_swept_section *section,
-                                  enum wb_swept_hex_formulation formulation,
-                                  const struct wb_material *material);
 
 /* Scales a circle's section until its second moment is pi d^4 / 64. Its area is then not
  * pi d^2 / 4: of four points 1.2 % less with 4 elements, 0.5 % less with 12, 0.1 % less with 84; of

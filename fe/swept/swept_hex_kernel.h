@@ -21,9 +21,7 @@ enum {
     WB_SWEPT_HEX_KERNEL_HISTORY = 6,    /* numbers of a point */
     WB_SWEPT_HEX_KERNEL_NODE = 12,      /* vectors of a node in the workspace, */
     WB_SWEPT_HEX_KERNEL_CARRY = 3,      /* and those from block to block */
-    /* The hardening law's table: polynomials of 7 terms in octaves of x from 2^-31 to 2. */
-    WB_SWEPT_HEX_KERNEL_TERMS = 7,
-    WB_SWEPT_HEX_KERNEL_OCTAVES = 32
+    WB_SWEPT_HEX_KERNEL_TERMS = 7       /* of an octave of the hardening law's table */
 };
 
 /* Places in a row of constants. h is the element's length, V its volume, mu the shear modulus,
@@ -52,7 +50,7 @@ struct wb_swept_hex_kernel_model {
     struct wb_swept_range counted; /* elements, in sums */
     double strain_limit;           /* beyond it elements are counted */
     const void *constants;         /* (n_quads x WB_SWEPT_HEX_KERNEL_CONSTANTS) */
-    const void *table;             /* (WB_SWEPT_HEX_KERNEL_TERMS x WB_SWEPT_HEX_KERNEL_OCTAVES) */
+    const void *table;             /* of the hardening law (fe/material/hardening.h) */
 };
 
 struct wb_swept_hex_kernel_call {

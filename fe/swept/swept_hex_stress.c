@@ -5,6 +5,7 @@
 
 #include "base/vec3.h"
 #include "fe/swept/swept_hex_kernel.h"
+#include "fe/swept/swept_private.h"
 
 enum {
     HISTORY = WB_SWEPT_HEX_KERNEL_HISTORY,

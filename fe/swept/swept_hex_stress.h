@@ -15,9 +15,6 @@ struct wb_swept_hex_stress {
     double plastic;   /* accumulated plastic strain */
 };
 
-/* Points of an element: 4, those of Gauss in the section, or 1. */
-int wb_swept_hex_stress_points(const struct wb_swept_hex *hex);
-
 /* Of the points of the section's element `quad`, `element` along: as many as there are into `out`,
  * which has room for 4. `state` is not changed. */
 void wb_swept_hex_stress_find(const struct wb_swept_hex *hex, struct wb_swept_hex_state *state,

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/swept/swept_private.h"
+
 #define WB_LOG_DOMAIN "swept"
 
 enum {

@@ -39,11 +39,6 @@ struct wb_swept_quad {
 WB_MUST_CHECK enum wb_status wb_swept_section_init_circle(struct wb_swept_section *section,
                                                           double diameter, int core, int rings);
 
-/* Any mesh; `node` and `quad` are copied. WB_ERR_ARGUMENT when a quadrilateral is not convex and
- * counter-clockwise or a node does not exist. */
-WB_MUST_CHECK enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nodes,
-                                                   const double (*node)[2], int n_quads,
-                                                   const int (*quad)[4]);
 void wb_swept_section_release(struct wb_swept_section *section); /* accepts a zeroed one */
 
 /* Moves all nodes to `factor` times their place. */

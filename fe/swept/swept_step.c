@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/swept/swept_private.h"
+
 #define WB_LOG_DOMAIN "swept"
 
 /* Vectors wider than the target's are passed between inlined functions only. */

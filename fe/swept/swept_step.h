@@ -51,13 +51,8 @@ WB_MUST_CHECK enum wb_status wb_swept_step_create(struct wb_swept_step **out,
                                                   const struct wb_swept_step_model *model);
 void wb_swept_step_destroy(struct wb_swept_step *step);
 
-/* Spreads a mass (kg, not scaled by f_m) over the nodes of a station. */
-void wb_swept_step_add_mass(struct wb_swept_step *step, int station, double mass);
-
 /* Holds, or lets go, one component of a station. */
 void wb_swept_step_hold(struct wb_swept_step *step, int station, int component, bool held);
-
-double wb_swept_step_station_mass(const struct wb_swept_step *step, int station); /* kg, scaled */
 
 /* Velocities by `times[0]` (mean of the steps before and after; half a step at first), positions by
  * `times[1]`, s, at the stations of blocks `first` to `end` - 1. `sums` are added to, or NULL. */

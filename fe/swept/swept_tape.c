@@ -6,7 +6,8 @@
 #include <string.h>
 
 #include "base/vec3.h"
-#include "fe/swept/swept_hardening.h"
+#include "fe/material/hardening.h"
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape_kernel.h"
 
 #define WB_LOG_DOMAIN "swept"
@@ -247,19 +248,16 @@ static enum wb_status make_reference(struct wb_swept_tape *tape)
 
 static enum wb_status check_material(const struct wb_material *m)
 {
-    const bool power = m->hardening == WB_HARDENING_ISOTROPIC_POWER;
+    char why[120];
 
-    if (!power && m->hardening != WB_HARDENING_NONE_ELASTIC)
+    if (wb_hardening_law(m)->moves)
         return wb_fail(WB_ERR_UNSUPPORTED, "the tape does not harden kinematically");
     if (!(m->youngs_modulus > 0.0 && isfinite(m->youngs_modulus)) ||
         !(m->poissons_ratio > -1.0 && m->poissons_ratio <= 0.5))
         return wb_fail(WB_ERR_ARGUMENT, "tape: E = %g Pa, nu = %g", m->youngs_modulus,
                        m->poissons_ratio);
-    if (power && !(m->yield_stress > 0.0 && isfinite(m->yield_stress) &&
-                   m->strength_coefficient >= 0.0 && isfinite(m->strength_coefficient) &&
-                   m->hardening_exponent > 0.0 && m->hardening_exponent <= 2.0))
-        return wb_fail(WB_ERR_ARGUMENT, "tape: sigma_Y = %g Pa, K = %g Pa, n = %g", m->yield_stress,
-                       m->strength_coefficient, m->hardening_exponent);
+    if (!wb_hardening_is_possible(m, why, sizeof why))
+        return wb_fail(WB_ERR_ARGUMENT, "tape: %s", why);
     return WB_OK;
 }
 
@@ -292,6 +290,8 @@ static void set_numbers(struct wb_swept_tape *tape)
     const struct wb_swept_tape_model *m = &tape->model;
     const double E = m->material.youngs_modulus, nu = m->material.poissons_ratio;
     const double mu = shear_modulus(&m->material), bent = m->thickness / m->sheets;
+    const bool yields = wb_hardening_law(&m->material)->yields;
+    const double yield_strain = yields ? m->material.yield_stress / (3.0 * mu) : (double)INFINITY;
     struct wb_swept_tape_kernel_model *k = &tape->numbers;
 
     *k = (struct wb_swept_tape_kernel_model){
@@ -305,10 +305,8 @@ static void set_numbers(struct wb_swept_tape *tape)
         .shear = shear_correction * mu,
         .membrane_hourglass = m->hourglass * E / 3.0,
         .bending_hourglass = m->hourglass * E / 3.0 * bent * bent / 12.0,
-        .yield_strain = m->material.hardening == WB_HARDENING_NONE_ELASTIC
-                            ? (double)INFINITY
-                            : m->material.yield_stress / (3.0 * mu),
-        .exponent = m->material.hardening_exponent,
+        .yield_strain = yield_strain,
+        .exponent = wb_hardening_exponent(&m->material, yield_strain),
         .mean_share = 2.0 * (1.0 + nu) / (3.0 * (1.0 - nu)),
         .mean_slope = (1.0 + nu) / (3.0 * (1.0 - nu)),
         .strain_limit = WB_SWEPT_TAPE_STRAIN_LIMIT,
@@ -350,14 +348,16 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
 static enum wb_status fill(struct wb_swept_tape *tape)
 {
     const struct wb_swept_tape_model *m = &tape->model;
-    double table[WB_SWEPT_HARDENING_TERMS][WB_SWEPT_HARDENING_OCTAVES];
+    struct wb_material radial = m->material;
+    double table[WB_SWEPT_TAPE_TERMS][WB_HARDENING_TABLE_OCTAVES];
 
     WB_TRY(check(m));
+    radial.youngs_modulus *= 1.5 / (1.0 + radial.poissons_ratio); /* 3 mu */
     WB_TRY(wb_swept_choose_instructions(&tape->model.instructions, m->instructions));
     tape->kernel = kernels[m->instructions][m->double_precision];
     set_numbers(tape);
     WB_TRY(allocate(tape));
-    WB_TRY(wb_swept_hardening_tabulate(&m->material, table));
+    WB_TRY(wb_hardening_tabulate_octaves(&radial, WB_SWEPT_TAPE_TERMS, &table[0][0]));
     WB_TRY(wb_swept_kernel_convert(&tape->table, m->double_precision, &table[0][0],
                                    sizeof table / sizeof table[0][0]));
     tape->numbers.table = tape->table;
@@ -409,11 +409,6 @@ void wb_swept_tape_destroy(struct wb_swept_tape *tape)
 const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_tape *tape)
 {
     return &tape->model;
-}
-
-struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape)
-{
-    return tape->model.layout;
 }
 
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape)
@@ -487,12 +482,6 @@ void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state)
     free(state);
 }
 
-void wb_swept_tape_state_reset(struct wb_swept_tape_state *state)
-{
-    memset(state->history, 0,
-           state->history_size * wb_swept_kernel_real_size(state->tape->model.double_precision));
-}
-
 void *wb_swept_tape_state_data(struct wb_swept_tape_state *state, size_t *bytes)
 {
     *bytes = state->history_size * wb_swept_kernel_real_size(state->tape->model.double_precision);
@@ -549,10 +538,7 @@ double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state)
             for (int q = 0; q < m->n_points; q++) {
                 const double p = wb_swept_tape_plastic_strain(state, k, j, q);
                 if (p > 0.0)
-                    density += m->weight[q] * p *
-                               (law->yield_stress + law->strength_coefficient *
-                                                        pow(p, law->hardening_exponent) /
-                                                        (law->hardening_exponent + 1.0));
+                    density += m->weight[q] * p * wb_hardening_mean_stress(law, p);
             }
             work += density * get(tape, tape->reference, at);
         }

@@ -61,17 +61,16 @@ struct wb_swept_tape;       /* opaque: constants; not changed after creation */
 struct wb_swept_tape_state; /* opaque: plastic histories, workspace */
 
 /* WB_ERR_UNSUPPORTED when the processor does not have the instructions, or for laws that
- * fe/swept/swept_hardening.h refuses; WB_ERR_ARGUMENT also for elements that are not convex. */
+ * fe/material/hardening.h cannot tabulate; WB_ERR_ARGUMENT also for elements that are not convex.
+ */
 WB_MUST_CHECK enum wb_status wb_swept_tape_create(struct wb_swept_tape **out,
                                                   const struct wb_swept_tape_model *model);
 void wb_swept_tape_destroy(struct wb_swept_tape *tape);
 
 /* As given, with a copy of the positions, and with defaults and instructions filled in. */
 const struct wb_swept_tape_model *wb_swept_tape_get_model(const struct wb_swept_tape *tape);
-struct wb_swept_layout wb_swept_tape_layout(const struct wb_swept_tape *tape);
 int wb_swept_tape_blocks(const struct wb_swept_tape *tape);   /* of WB_SWEPT_LANES stations */
 int wb_swept_tape_elements(const struct wb_swept_tape *tape); /* round the ring */
-const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
 
 /* Directors of the reference state (a field): the mean of the adjoining elements' normals, in the
  * plane of the section. */
@@ -96,7 +95,6 @@ WB_MUST_CHECK enum wb_status wb_swept_tape_stiffness_per_mass(const struct wb_sw
 WB_MUST_CHECK enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
                                                         const struct wb_swept_tape *tape);
 void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state);
-void wb_swept_tape_state_reset(struct wb_swept_tape_state *state);
 
 /* What a checkpoint keeps of a state: `bytes` at the address returned. */
 void *wb_swept_tape_state_data(struct wb_swept_tape_state *state, size_t *bytes);
@@ -118,11 +116,6 @@ void wb_swept_tape_forces(struct wb_swept_tape_state *state,
 
 /* Plastic work so far, hardening included, J. Takes about as long as ten steps. */
 double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state);
-
-/* Accumulated plastic strain of an element (between nodes `element` and the next, stations `along`
- * and the next) at a point through the thickness, from the inside. */
-double wb_swept_tape_plastic_strain(const struct wb_swept_tape_state *state, int element, int along,
-                                    int point);
 
 /* --- stresses ---
  *

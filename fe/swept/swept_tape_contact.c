@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape_contact_kernel.h"
 
 #define WB_LOG_DOMAIN "swept"

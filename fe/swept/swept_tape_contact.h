@@ -49,9 +49,6 @@ wb_swept_tape_contact_create(struct wb_swept_tape_contact **out, const struct wb
                              const struct wb_swept_cohesion_wire *wires);
 void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact);
 
-/* No friction, as after creation. */
-void wb_swept_tape_contact_reset(struct wb_swept_tape_contact *contact);
-
 struct wb_swept_tape_contact_sums {
     double normal, tangential; /* J, stored in the springs */
     double friction;           /* J, dissipated in this step */
@@ -65,9 +62,6 @@ WB_MUST_CHECK enum wb_status
 wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *contact,
                                  const struct wb_swept_cohesion_fields *fields, double time_step,
                                  struct wb_swept_tape_contact_sums *sums);
-
-/* Nodes that are looked after now: within the margin of a wire, and not bonded to it. */
-int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact);
 
 /* A checkpoint: what a contact of the same tape, wires and settings needs to go on, bit for bit. */
 size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact);

@@ -205,7 +205,7 @@ INLINE void pull_back(const struct symmetric *E, struct symmetric *T)
 INLINE vec part_of(const struct law *law, vec x)
 {
     x = minimum(maximum(x, splat((real)0x1p-31)), splat((real)BELOW_TWO));
-    return yielded_part(law->table, WB_SWEPT_HARDENING_TERMS, x);
+    return yielded_part(law->table, WB_SWEPT_TAPE_TERMS, x);
 }
 
 /* Takes the plastic strain from a strain, and returns the rest to the yield surface.

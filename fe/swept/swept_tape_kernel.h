@@ -20,7 +20,8 @@
 enum {
     WB_SWEPT_TAPE_MOST_POINTS = 5,
     WB_SWEPT_TAPE_HISTORY = 4,
-    WB_SWEPT_TAPE_CARRY = 6 /* vectors of a node from block to block */
+    WB_SWEPT_TAPE_TERMS = 6, /* of an octave of the hardening law's table */
+    WB_SWEPT_TAPE_CARRY = 6  /* vectors of a node from block to block */
 };
 
 /* Constants of an element. B turns derivatives by the parameters to those along its frame. */
@@ -57,12 +58,12 @@ struct wb_swept_tape_kernel_model {
     double membrane_hourglass;                /* coefficient times E / 3, Pa */
     double bending_hourglass;                 /* that times h^2 / 12, N */
     double yield_strain;                      /* sigma_Y / (3 mu); infinite when elastic */
-    double exponent;                          /* n */
-    double mean_share;                        /* E / (1 - nu) / (3 mu), of a mean strain */
-    double mean_slope;                        /* E / (2 (1 - nu)) / (3 mu) */
+    double exponent;   /* of the hardening law: n; Newton's method takes it as constant */
+    double mean_share; /* E / (1 - nu) / (3 mu), of a mean strain */
+    double mean_slope; /* E / (2 (1 - nu)) / (3 mu) */
     double strain_limit;
     struct wb_swept_range counted; /* stations, in sums; of the elements those that begin there */
-    const void *table;             /* of fe/swept/swept_hardening.h */
+    const void *table;             /* of the hardening law, octaves of WB_SWEPT_TAPE_TERMS terms */
     void *reference;               /* written by measure only */
     const void *length_stiffness;  /* (n_nodes x stride) of directors, N m */
 };

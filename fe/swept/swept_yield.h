@@ -1,12 +1,13 @@
-/* For kernels: the table of a hardening law (swept_hardening.h), read for a vector of points. */
+/* For kernels: the octave table of a hardening law (fe/material/hardening.h), read for a vector of
+ * points. */
 #ifndef WB_FE_SWEPT_SWEPT_YIELD_H
 #define WB_FE_SWEPT_SWEPT_YIELD_H
 
-#include "fe/swept/swept_hardening.h"
+#include "fe/material/hardening.h"
 #include "fe/swept/swept_simd.h"
 
 enum {
-    OCTAVES = WB_SWEPT_HARDENING_OCTAVES
+    OCTAVES = WB_HARDENING_TABLE_OCTAVES
 };
 
 /* Term `row` of the table for each lane's octave. Exponents are biased by 31 and a multiple of 32,

@@ -181,11 +181,6 @@ void wb_team_destroy(struct wb_team *team)
     free(team);
 }
 
-int wb_team_size(const struct wb_team *team)
-{
-    return team->size;
-}
-
 int wb_team_first(const struct wb_team *team)
 {
     return team->first;

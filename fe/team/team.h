@@ -1,11 +1,11 @@
-/* Members of one computation who work side by side in a row: each swaps a packet of numbers with
- * the one before and the one after in every round. Members are threads of this process, and of the
- * other ranks when the program was started by mpirun (fe/team/team_mpi.c); to members it is the
- * same.
+/* Members of one computation, in a row: in every round each exchanges a packet of numbers with the
+ * member before it and the one after it. Members are threads of this process and, where mpirun
+ * started the program, of the other ranks (fe/team/team_ranks.h); a member sees no difference.
  *
- * In a round a member fills its packets, posts them and awaits those of its neighbours: no more
- * than that makes them wait, and no one is ever more than a round ahead of its neighbour. Who waits
- * spins a little, then lets others have the processor: more members than cores are slow, not stuck.
+ * In a round a member fills its packets, posts them and awaits those of its neighbours. Nothing
+ * else makes it wait, so that no member is ever more than one round ahead of a neighbour. A waiting
+ * member spins for a while and then yields the processor: with more members than cores a
+ * computation is slow, but it does not hang.
  *
  * All members must go through the same rounds, also one that has failed.
  */
@@ -20,19 +20,19 @@
 struct wb_team; /* opaque */
 
 /* `n_threads` members in each rank, in the order of ranks, whose packets have `size` numbers. The
- * threads are made here and sleep between runs. */
+ * threads are started here and sleep between calls of wb_team_run(). */
 WB_MUST_CHECK enum wb_status wb_team_create(struct wb_team **out, int n_threads, size_t size);
 void wb_team_destroy(struct wb_team *team); /* accepts NULL */
 
-int wb_team_size(const struct wb_team *team);  /* members of all ranks */
-int wb_team_first(const struct wb_team *team); /* of this rank; then come n_threads - 1 more */
+/* The first member of this rank; then come n_threads - 1 more. */
+int wb_team_first(const struct wb_team *team);
 
 /* Calls work(context, member) for the members of this rank, each in its thread, the first in the
  * caller's; returns when all are done. */
 void wb_team_run(struct wb_team *team, void (*work)(void *context, int member), void *context);
 
-/* For members, within a run. The packet to a neighbour, to be filled before it is posted; NULL
- * where there is no neighbour. */
+/* For members, within wb_team_run(). The packet to a neighbour, to be filled before it is posted;
+ * NULL where there is no neighbour. */
 double *wb_team_packet(struct wb_team *team, int member, enum wb_team_side side);
 /* Sends both. */
 void wb_team_post(struct wb_team *team, int member);

@@ -1,4 +1,4 @@
-/* Ranks of a build without MPI: there is one. */
+/* The ranks of a build without MPI: one. */
 #include <stdlib.h>
 
 #include "fe/team/team_ranks.h"
@@ -32,11 +32,6 @@ int wb_team_rank(void)
 int wb_team_ranks(void)
 {
     return 1;
-}
-
-const char *wb_team_mpi(void)
-{
-    return NULL;
 }
 
 void wb_team_sum(double *values, int n)

@@ -1,5 +1,4 @@
-/* Ranks by MPI. Nothing is asked of it unless mpirun started this process: joining takes a while.
- */
+/* The ranks by MPI. Without mpirun no function of MPI is called, because joining takes a while. */
 #include <mpi.h>
 #include <stdlib.h>
 
@@ -58,18 +57,6 @@ int wb_team_rank(void)
 int wb_team_ranks(void)
 {
     return n_ranks;
-}
-
-const char *wb_team_mpi(void)
-{
-    static char version[MPI_MAX_LIBRARY_VERSION_STRING];
-    int length = 0;
-
-    MPI_Get_library_version(version, &length);
-    for (int i = 0; i < length; i++)
-        if (version[i] == ',')
-            version[i] = '\0';
-    return version;
 }
 
 /* By hand, so that the order of the sum is that of the ranks and does not depend on the library. */

@@ -22,9 +22,8 @@ void wb_team_end(void);
 /* Ends all ranks at once, with an exit code, where they can no longer agree. */
 void wb_team_abort(int code);
 
-int wb_team_rank(void);        /* from 0 */
-int wb_team_ranks(void);       /* 1 without mpirun */
-const char *wb_team_mpi(void); /* its version; NULL: built without */
+int wb_team_rank(void);  /* from 0 */
+int wb_team_ranks(void); /* 1 without mpirun */
 
 /* --- called by all ranks, each by one thread and outside of wb_team_run() --- */
 

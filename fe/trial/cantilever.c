@@ -131,7 +131,6 @@ enum wb_status wb_cantilever_create(struct wb_cantilever **out,
         .curvature_context = model->curvature_context,
         .load_x = model->mass_per_length * model->gravity_x,
         .load_y = model->mass_per_length * model->gravity_y,
-        .reference_kernel = complete.reference_kernel,
     };
     const enum wb_status status = wb_beam_create(&c->beam, &beam);
     if (status != WB_OK) {

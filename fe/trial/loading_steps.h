@@ -1,4 +1,5 @@
-/* A whole test: equal steps from zero to the largest value of the control and back, in cycles.
+/* A whole test of a cantilever: equal loading steps from zero to the largest value of the control
+ * and back, in cycles.
  *
  * Rows: the first is at zero, then `steps` rows up to the maximum, and, with cycles, `steps` rows
  * down to zero; every further cycle adds as many again. Rows in which the strand is slack belong to
@@ -45,7 +46,7 @@ struct wb_loading_steps {
     bool stopped;                   /* by plan->stop */
 };
 
-/* Number of rows that a plan gives when it runs through. */
+/* Rows of a plan that is not cut short. */
 int wb_loading_steps_planned_rows(const struct wb_loading_steps_plan *plan);
 
 /* Takes memory for a plan; wb_loading_steps_release() accepts zeroed ones. */

@@ -1,4 +1,5 @@
-/* A wire model computed as a 3D solid: mesh, solver and loading steps in one.
+/* A wire model computed as a 3D solid: makes the mesh and leads the solver through the model's
+ * loading steps.
  */
 #ifndef WB_FE_TRIAL_WIRE3D_H
 #define WB_FE_TRIAL_WIRE3D_H
@@ -26,7 +27,7 @@ WB_MUST_CHECK enum wb_status wb_wire3d_create(struct wb_wire3d **out,
                                               const struct wb_wire_model *model);
 void wb_wire3d_destroy(struct wb_wire3d *wire); /* accepts NULL */
 
-/* Makes the loading steps from the virgin state into a run made by wb_wire_run_init(). Not
+/* Follows the loading steps from the virgin state; `run` was made by wb_wire_run_init(). Not
  * converging is a result, not an error: what was completed stays in the run. */
 WB_MUST_CHECK enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
                                            const struct wb_wire_observer *observer);

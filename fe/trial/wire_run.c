@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fe/trial/wire_run_private.h"
+
 #define WB_LOG_DOMAIN "wire run"
 
 enum {
@@ -65,7 +67,7 @@ static int cycle_of(const struct wb_wire_run *run, const struct wb_wire_model *m
 }
 
 /* To the angle's branch nearest to where it was. */
-void wb_wire_run_turn(struct wb_wire_run *run, const double tangent[3])
+static void turn_to(struct wb_wire_run *run, const double tangent[3])
 {
     const double angle = atan2(tangent[1], tangent[0]);
     run->tip_angle = angle + 2.0 * M_PI * round((run->tip_angle - angle) / (2.0 * M_PI));
@@ -83,7 +85,7 @@ void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
     out->phase = slack                            ? WB_PHASE_SLACK
                  : model->step[row->step].unloads ? WB_PHASE_UNLOAD
                                                   : WB_PHASE_LOAD;
-    wb_wire_run_turn(run, row->tangent);
+    turn_to(run, row->tangent);
     out->tip_angle = run->tip_angle;
     /* A deflection as the first step begins at zero, with the weight on. */
     if (run->n_rows == 0)
@@ -130,7 +132,7 @@ bool wb_wire_run_tell(struct wb_wire_progress *p, const double tangent[3], doubl
     p->increments++;
     p->iterations += iterations;
     p->run->increments++;
-    wb_wire_run_turn(p->run, tangent);
+    turn_to(p->run, tangent);
     return !p->observer || !p->observer->increment ||
            p->observer->increment(p->observer->context, p->run, p->step,
                                   fmin(fmax(of_step, 0.0), 1.0), iterations, fmin(1.0, done));

@@ -1,5 +1,6 @@
-/* What computing a wire model gives, by the 3D solid (fe/trial/wire3d.h) and by the 1D rod
- * (fe/trial/wire1d.h) alike: rows along its loading steps, the axis' shapes, and how it ended.
+/* A run: one computation of a wire model, by the 3D solid (fe/trial/wire3d.h) or by the 1D rod
+ * (fe/trial/wire1d.h). It gives rows along the model's loading steps, the deformed axis at each
+ * row, and how it ended.
  */
 #ifndef WB_FE_TRIAL_WIRE_RUN_H
 #define WB_FE_TRIAL_WIRE_RUN_H
@@ -44,7 +45,7 @@ struct wb_wire_run {
     double tip_angle;  /* rad: where the tip's tangent points to, followed through all increments */
 };
 
-/* Told during a run; each may be NULL. */
+/* Functions of the caller that a run calls; each may be NULL. */
 struct wb_wire_observer {
     /* After every converged increment: step, share of it done, iterations of the increment, share
      * of all steps done (for the time left). False stops the run. */
@@ -55,7 +56,7 @@ struct wb_wire_observer {
     void *context;
 };
 
-/* A run under way, kept by the solver. */
+/* Where a run stands, kept by wire1d.c and wire3d.c. */
 struct wb_wire_progress {
     struct wb_wire_run *run;
     const struct wb_wire_model *model;
@@ -65,7 +66,7 @@ struct wb_wire_progress {
     enum wb_status status;                   /* of the observer */
 };
 
-/* What a row wants. */
+/* What a row is to reach. */
 struct wb_wire_target {
     struct wb_tip_loads tip;
     double tension;    /* N: of the strand, or the vertical force that makes a deflection */
@@ -84,24 +85,15 @@ WB_MUST_CHECK enum wb_status wb_wire_run_init(struct wb_wire_run *run,
                                               const struct wb_wire_model *model, int n_shape);
 void wb_wire_run_release(struct wb_wire_run *run); /* accepts a zeroed one */
 
-/* Rows that a model gives when it runs through: one at the start and those of every step. */
+/* Rows of a run that is not cut short: one at the start and those of every step. */
 int wb_wire_run_planned_rows(const struct wb_wire_model *model);
 
-/* Told of the tip's tangent after every increment: in one row it may turn past pi. */
-void wb_wire_run_turn(struct wb_wire_run *run, const double tangent[3]);
-
-/* Appends a row that has step, fraction, loads, tip, tangent, tension, vertical_force, increments
- * and iterations, and completes it: cycle, phase, angle, force. `slack`: the strand carries
- * nothing. `shape` is (n_shape x 3). Rows beyond the spare ones are not taken. */
-void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
-                     const struct wb_wire_row *row, bool slack, const double (*shape)[3]);
-
-/* What `step` wants at `share` of its way from `start`, the state in which it began. */
+/* What is to be reached at `share` of the way of `step`, which began in the state `start`. */
 struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
                                          const struct wb_wire_target *start, double share);
 
-/* Takes note of a converged increment, the share `fraction` of the row under way, after which the
- * tip's tangent is `tangent`, and tells the observer. False stops the run. */
+/* Counts a converged increment, which ended at the share `fraction` of the row under way with the
+ * tip's tangent `tangent`, and calls the observer. False: the run is to stop. */
 bool wb_wire_run_tell(struct wb_wire_progress *progress, const double tangent[3], double fraction,
                       int iterations);
 
@@ -110,8 +102,9 @@ bool wb_wire_run_tell(struct wb_wire_progress *progress, const double tangent[3]
 void wb_wire_run_set_forces(struct wb_wire_row *row, const struct wb_wire_model *model,
                             double tension, double vertical, const double frame[3][3]);
 
-/* Appends a row that has fraction, loads, tip, tangent and forces as wb_wire_run_add() does, and
- * tells the observer, whose status it keeps. */
+/* Appends a row that has fraction, loads, tip, tangent and forces, and completes it: step, cycle,
+ * phase, angle, force. `slack`: the strand carries nothing. `shape` is (n_shape x 3). Calls the
+ * observer and keeps its status. */
 void wb_wire_run_end_row(struct wb_wire_progress *progress, struct wb_wire_row *row, bool slack,
                          const double (*shape)[3]);
 

@@ -12,6 +12,7 @@
 #include "analysis/simulated.h"
 #include "fe/rod/section.h"
 #include "fe/trial/cantilever.h"
+#include "fe/trial/wire_run_private.h"
 
 enum {
     BENT_SHAPE = 41,  /* positions of a shape */

@@ -21,7 +21,7 @@ static double compare(const char *bundle_name, const char *dataset_name, double 
     model->loads.strand_length = 0.0;
     model->interface.friction_static = model->interface.friction_kinetic = 0.4;
     assert_int_equal(wb_file_find_data(path, dataset_name), WB_OK);
-    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
     assert_int_equal(wb_bundle_static_create(&bundle, model, &settings), WB_OK);
     for (size_t i = 2; i < dataset.n_rows; i++) {
         const struct wb_row *row = &dataset.rows[i];

@@ -1,3 +1,4 @@
+#include "analysis/curve_private.h"
 #include "tests/analysis/beam_data.h"
 
 #include "analysis/calibrate.h"
@@ -26,7 +27,7 @@ static enum wb_status calibrate_one(struct wb_calibrate_result *result,
                                     const struct wb_dataset *dataset,
                                     const struct wb_calibrate_settings *settings)
 {
-    return wb_calibrate_run(result, &dataset, 1, settings);
+    return wb_calibrate_run(result, &dataset, 1, settings, NULL);
 }
 
 static void k_and_n_come_back_when_e_and_sigma_y_are_given(void **state)
@@ -67,7 +68,7 @@ static void e_and_sigma_y_of_the_closed_forms_are_near_the_truth(void **state)
         beam_dataset(&dataset, &info, &truth, 0.5 * mm, 12 * mm, 1.0);
         const struct wb_dataset *const datasets[] = {&dataset};
         assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
-        assert_int_equal(wb_first_guess_run(&guess, &curve, &info, 0.05, 0.04), WB_OK);
+        assert_int_equal(wb_first_guess_run(&guess, &curve, &info, 0.05, 0.04, NULL), WB_OK);
         assert_close_relative(guess.youngs_modulus, truth.youngs_modulus, 0.007);
         assert_close_relative(guess.yield_stress, truth.yield_stress, 0.011);
         wb_curve_release(&curve);
@@ -206,6 +207,37 @@ static void a_wire_that_did_not_yield_is_refused(void **state)
     wb_dataset_release(&dataset);
 }
 
+/* Each way to fail gives its reason to the caller and logs nothing. */
+static void a_reason_travels_to_who_asked_for_it(void **state)
+{
+    (void)state;
+    const struct wb_test_info info = beam_info(0, 0.085, 0.0);
+    const struct wb_material truth = beam_material(0);
+    struct wb_material elastic = truth;
+    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_result result;
+    struct wb_dataset dataset;
+    const struct wb_dataset *const datasets[] = {&dataset};
+    struct wb_reason why = {.text = ""};
+    last_message_install();
+    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+    beam_dataset(&dataset, &info, &elastic, 1.0 * mm, 53 * mm, 1.0);
+    assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "linear elastic prediction"));
+    wb_dataset_release(&dataset);
+    beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, -1.0);
+    assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "sign reversed"));
+    dataset.rows[3].force = (double)NAN;
+    assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "no finite"));
+    settings.elastic_zone = 0.9;
+    assert_int_equal(wb_calibrate_run(&result, datasets, 1, &settings, &why), WB_ERR_ARGUMENT);
+    assert_non_null(strstr(why.text, "out of range"));
+    wb_dataset_release(&dataset);
+    assert_string_equal(last_message, "");
+}
+
 static void unusable_data_and_settings_are_refused(void **state)
 {
     (void)state;
@@ -250,7 +282,7 @@ static void deviations_are_the_standard_errors_of_the_samples(void **state)
         squares += pow(factor[i] - mean, 2);
     const double standard_error = sqrt(squares / 2.0 / 3.0) / mean;
     settings.restart = false;
-    assert_int_equal(wb_calibrate_run(&result, datasets, 3, &settings), WB_OK);
+    assert_int_equal(wb_calibrate_run(&result, datasets, 3, &settings, NULL), WB_OK);
     assert_int_equal(result.n_samples, 3);
     assert_close_relative(result.deviation[0] / result.material.youngs_modulus, standard_error,
                           1e-3);
@@ -298,9 +330,9 @@ static void the_bows_can_be_taken_out_of_e_and_the_yield_stress(void **state)
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
     for (int i = 0; i < 2; i++)
         beam_dataset(&dataset[i], &info, &truth, 1.0 * mm, 53 * mm, 1.0);
-    assert_int_equal(wb_calibrate_run(&printed, datasets, 2, &settings), WB_OK);
+    assert_int_equal(wb_calibrate_run(&printed, datasets, 2, &settings, NULL), WB_OK);
     settings.bow_corrected = true;
-    assert_int_equal(wb_calibrate_run(&corrected, datasets, 2, &settings), WB_OK);
+    assert_int_equal(wb_calibrate_run(&corrected, datasets, 2, &settings, NULL), WB_OK);
     print_message("           bow -3 mm: E off by %+.1f %%, sigma_Y by %+.1f %% as printed; %+.1f "
                   "and %+.1f %% corrected; RMS %.5f and %.5f\n",
                   100.0 * (printed.material.youngs_modulus / truth.youngs_modulus - 1.0),
@@ -355,6 +387,7 @@ int main(void)
         cmocka_unit_test(the_natural_shape_is_part_of_the_model),
         cmocka_unit_test(it_says_why_it_stopped),
         cmocka_unit_test(a_wire_that_did_not_yield_is_refused),
+        cmocka_unit_test(a_reason_travels_to_who_asked_for_it),
         cmocka_unit_test(unusable_data_and_settings_are_refused),
         cmocka_unit_test(deviations_are_the_standard_errors_of_the_samples),
         cmocka_unit_test(the_same_data_give_the_same_bits),

@@ -157,7 +157,7 @@ static void a_dataset_comes_back_as_it_was(void **state)
     snprintf(path, sizeof path, "%s/whole", folder);
     fill(&written);
     assert_int_equal(wb_dataset_write(&written, path, false), WB_OK);
-    assert_int_equal(wb_dataset_read(&read, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&read, path, NULL), WB_OK);
     assert_true(wb_json_get_text(read.document, "name", &name));
     assert_string_equal(name, "made \"up\"");
     assert_string_equal(read.info.wire, "type1");
@@ -207,7 +207,7 @@ static void no_rest_and_a_straight_wire_are_kept(void **state)
     dataset.info.n_natural_shape = 0;
     assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);
     wb_dataset_release(&dataset);
-    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
     assert_true(isnan(dataset.info.rest_level));
     assert_int_equal(dataset.info.n_natural_shape, 0);
     assert_close(wb_dataset_bow(&dataset.info), 0.0, 0.0);
@@ -235,7 +235,7 @@ static void z_is_kept_where_a_test_leaves_the_plane(void **state)
     assert_int_equal(wb_dataset_write(&written, path, false), WB_OK);
     first_line_of_shapes(path, line);
     assert_string_equal(line, "t_s,deflection_mm,marker,s_mm,x_mm,y_mm\n");
-    assert_int_equal(wb_dataset_read(&read, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&read, path, NULL), WB_OK);
     assert_true(isnan(read.shape_rows[17].z));
     wb_dataset_release(&read);
 
@@ -244,7 +244,7 @@ static void z_is_kept_where_a_test_leaves_the_plane(void **state)
     assert_int_equal(wb_dataset_write(&written, path, true), WB_OK);
     first_line_of_shapes(path, line);
     assert_string_equal(line, "t_s,deflection_mm,marker,s_mm,x_mm,y_mm,z_mm\n");
-    assert_int_equal(wb_dataset_read(&read, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&read, path, NULL), WB_OK);
     assert_same(read.shape_rows[17].z, -0.00123456789);
     assert_true(isnan(read.shape_rows[18].z));
     assert_same(read.shape_rows[19].z, 0.0);
@@ -279,7 +279,7 @@ static enum wb_status read_altered(const char *path, const char *old, const char
     assert_non_null(at);
     snprintf(altered, sizeof altered, "%.*s%s%s", (int)(at - text), text, new, at + strlen(old));
     assert_int_equal(wb_file_write(file, altered, strlen(altered)), WB_OK);
-    const enum wb_status status = wb_dataset_read(dataset, path);
+    const enum wb_status status = wb_dataset_read(dataset, path, NULL);
     assert_int_equal(wb_file_write(file, text, strlen(text)), WB_OK);
     free(text);
     return status;
@@ -297,7 +297,7 @@ static void a_follower_force_is_said(void **state)
     dataset.info.strand_length = 0.0;
     assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);
     wb_dataset_release(&dataset);
-    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
     assert_true(dataset.info.is_follower);
     wb_dataset_release(&dataset);
 
@@ -355,7 +355,7 @@ static enum wb_status parse_rows(const char *text, struct wb_dataset *dataset)
     assert_true(n < sizeof buffer);
     memcpy(buffer, text, n + 1);
     memset(dataset, 0, sizeof *dataset);
-    return wb_dataset_parse_rows(dataset, "f.csv", buffer, n);
+    return wb_dataset_parse_rows(dataset, "f.csv", buffer, n, NULL);
 }
 
 #define HEADER "t_s,cycle,phase,deflection_mm,tension_N,force_N\n"
@@ -437,14 +437,14 @@ static void garbage_never_crashes_the_reader(void **state)
         struct wb_dataset dataset = {0};
         char copy[512];
         memcpy(copy, text, sizeof copy);
-        const enum wb_status status = wb_dataset_parse_rows(&dataset, "fuzz.csv", text, n);
+        const enum wb_status status = wb_dataset_parse_rows(&dataset, "fuzz.csv", text, n, NULL);
         assert_true(status == WB_OK || status == WB_ERR_FORMAT);
         accepted += status == WB_OK;
         for (size_t k = 0; k < dataset.n_rows && status == WB_OK; k++)
             assert_true(isfinite(dataset.rows[k].deflection) && isfinite(dataset.rows[k].force));
         wb_dataset_release(&dataset);
         memset(&dataset, 0, sizeof dataset);
-        if (wb_dataset_parse_shapes(&dataset, "fuzz.csv", copy, n) == WB_OK)
+        if (wb_dataset_parse_shapes(&dataset, "fuzz.csv", copy, n, NULL) == WB_OK)
             accepted++;
         wb_dataset_release(&dataset);
     }
@@ -476,17 +476,55 @@ static void damaged_folders_are_refused(void **state)
     struct wb_dataset dataset;
     char path[WB_PATH];
     snprintf(path, sizeof path, "%s/damaged", folder);
-    assert_int_equal(wb_dataset_read(&dataset, path), WB_ERR_NOT_FOUND);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_ERR_NOT_FOUND);
     fill(&dataset);
     assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);
     wb_dataset_release(&dataset);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         write_text(path, "dataset.json", cases[i].json);
-        assert_int_not_equal(wb_dataset_read(&dataset, path), WB_OK);
+        assert_int_not_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
         if (!strstr(last_message, cases[i].message))
             fail_msg("'%s' does not say '%s'", last_message, cases[i].message);
         assert_null(dataset.document);
     }
+}
+
+/* What is wrong, as the caller that gave a reason gets it; nothing may be logged. */
+static void assert_reason(const char *path, const char *file, const char *text, const char *said)
+{
+    struct wb_dataset dataset;
+    struct wb_reason why = {.text = ""};
+    char whole[WB_PATH], *kept;
+    snprintf(whole, sizeof whole, "%s/%s", path, file);
+    assert_int_equal(wb_file_read(whole, &kept, NULL), WB_OK);
+    if (text)
+        write_text(path, file, text);
+    else
+        assert_int_equal(unlink(whole), 0);
+    last_message[0] = '\0';
+    assert_int_not_equal(wb_dataset_read(&dataset, path, &why), WB_OK);
+    assert_string_equal(last_message, "");
+    if (!strstr(why.text, said))
+        fail_msg("'%s' does not say '%s'", why.text, said);
+    write_text(path, file, kept);
+    free(kept);
+}
+
+static void a_reason_travels_to_who_asked_for_it(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset;
+    char path[WB_PATH];
+    snprintf(path, sizeof path, "%s/reason", folder);
+    fill(&dataset);
+    assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);
+    wb_dataset_release(&dataset);
+    assert_reason(path, "dataset.json", "{\"schema\": 2}\n", "newer wirebench");
+    assert_reason(path, "dataset.json", "{", "dataset.json:1: ");
+    assert_reason(path, "dataset.json", NULL, "cannot open");
+    assert_reason(path, "force_deflection.csv", "t_s\n", "no column 'cycle'");
+    assert_reason(path, "shape.csv", "", "empty file");
+    assert_reason(path, "shape.csv", NULL, "cannot open");
 }
 
 /* --- the natural shape --- */
@@ -534,6 +572,7 @@ int main(void)
         cmocka_unit_test(other_tables_are_read),
         cmocka_unit_test(garbage_never_crashes_the_reader),
         cmocka_unit_test(damaged_folders_are_refused),
+        cmocka_unit_test(a_reason_travels_to_who_asked_for_it),
         cmocka_unit_test(bow_and_curvature_match_closed_forms),
         cmocka_unit_test(phases_have_their_names),
     };

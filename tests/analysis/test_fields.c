@@ -65,7 +65,7 @@ static void fields_come_back(void **state)
     struct wb_fields written, read, again;
     make_fields(&written);
     assert_int_equal(wb_fields_write(&written, folder), WB_OK);
-    assert_int_equal(wb_fields_read(&read, folder), WB_OK);
+    assert_int_equal(wb_fields_read(&read, folder, NULL), WB_OK);
     assert_int_equal(read.n, written.n);
     for (int i = 0; i < read.n; i++) {
         const struct wb_field *const a = &read.items[i], *const b = &written.items[i];
@@ -89,7 +89,7 @@ static void fields_come_back(void **state)
     }
     /* What was rounded once stays, bit for bit. */
     assert_int_equal(wb_fields_write(&read, folder), WB_OK);
-    assert_int_equal(wb_fields_read(&again, folder), WB_OK);
+    assert_int_equal(wb_fields_read(&again, folder, NULL), WB_OK);
     for (int i = 0; i < read.n; i++)
         assert_memory_equal(again.items[i].faces, read.items[i].faces,
                             (size_t)read.items[i].n_faces * sizeof *read.items[i].faces);
@@ -142,7 +142,7 @@ static void no_fields_is_no_file(void **state)
     assert_int_equal(wb_file_join(path, folder, "fields.csv"), WB_OK);
     assert_int_equal(wb_fields_write(&fields, folder), WB_OK);
     assert_false(wb_file_exists(path));
-    assert_int_equal(wb_fields_read(&read, folder), WB_OK);
+    assert_int_equal(wb_fields_read(&read, folder, NULL), WB_OK);
     assert_int_equal(read.n, 0);
 
     /* Those of an older run do not stay. */
@@ -195,7 +195,15 @@ static enum wb_status read_bytes(const char *text, size_t size, struct wb_fields
     messages = 0;
     message[0] = '\0';
     wb_log_set_sink(keep_message, NULL);
-    const enum wb_status status = wb_fields_read(fields, folder);
+    const enum wb_status status = wb_fields_read(fields, folder, NULL);
+    /* Who asks for the reason gets the same message, and the log gets nothing. */
+    if (status != WB_OK) {
+        struct wb_reason why = {.text = ""};
+        const int before = messages;
+        assert_int_equal(wb_fields_read(fields, folder, &why), status);
+        assert_string_equal(why.text, message);
+        assert_int_equal(messages, before);
+    }
     wb_log_set_sink(NULL, NULL);
     assert_int_equal(unlink(path), 0);
     return status;

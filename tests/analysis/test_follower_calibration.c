@@ -63,7 +63,7 @@ static enum wb_status calibrate_one(struct wb_calibrate_result *result,
                                     const struct wb_dataset *dataset,
                                     const struct wb_calibrate_settings *settings)
 {
-    return wb_calibrate_run(result, &dataset, 1, settings);
+    return wb_calibrate_run(result, &dataset, 1, settings, NULL);
 }
 
 /* A dataset of the homogenised wire itself: rows in equal steps of the force. */
@@ -109,7 +109,7 @@ static void the_curve_is_deflection_at_the_rows_forces(void **state)
 
     /* Other steps are straight between the rows. */
     const struct wb_curve_grid grid = {.force_step = 0.25};
-    assert_int_equal(wb_curve_average_on(&curve, datasets, 1, &grid), WB_OK);
+    assert_int_equal(wb_curve_average_on(&curve, datasets, 1, &grid, NULL), WB_OK);
     assert_int_equal(curve.n, 2 * STEPS + 1);
     assert_close(curve.deflection[61],
                  0.5 * (composite.rows[30].deflection + composite.rows[31].deflection), 1e-9);
@@ -139,7 +139,7 @@ static void what_comes_after_the_largest_force_or_deflection_is_left_out(void **
 
     /* 50.3 mm are reached at 17 N. */
     const struct wb_curve_grid grid = {.largest_deflection = 55.0 * mm};
-    assert_int_equal(wb_curve_average_on(&curve, datasets, 1, &grid), WB_OK);
+    assert_int_equal(wb_curve_average_on(&curve, datasets, 1, &grid, NULL), WB_OK);
     assert_close_relative(curve.max_force, 17.0, 1e-12);
     wb_curve_release(&curve);
     wb_curve_release(&whole);
@@ -150,7 +150,7 @@ static void what_comes_after_the_largest_force_or_deflection_is_left_out(void **
     const struct wb_material material = beam_material(2);
     beam_dataset(&dataset, &tip, &material, 1.0 * mm, 53.0 * mm, 1.0);
     const struct wb_curve_grid below = {.step = 1.0 * mm, .largest_deflection = 30.0 * mm};
-    assert_int_equal(wb_curve_average_on(&curve, datasets, 1, &below), WB_OK);
+    assert_int_equal(wb_curve_average_on(&curve, datasets, 1, &below, NULL), WB_OK);
     assert_close(curve.max_deflection, 30.0 * mm, 1e-12);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
@@ -192,7 +192,7 @@ static void turned_around_the_curve_is_what_the_deflection_control_finds(void **
     assert_int_equal(n_reached, 200);
     struct wb_curve fine = curve;
     fine.deflection = deflection;
-    assert_int_equal(wb_curve_turn(&turned, &fine, 1.0 * mm), WB_OK);
+    assert_int_equal(wb_curve_turn(&turned, &fine, 1.0 * mm, NULL), WB_OK);
     assert_false(turned.is_follower);
     assert_int_equal(turned.n, 1 + (int)floor(deflection[199] / mm));
     assert_int_equal(wb_computed_start(computed, &material, &reached), WB_OK);
@@ -211,7 +211,7 @@ static void turned_around_the_curve_is_what_the_deflection_control_finds(void **
 
     for (int i = 0; i < curve.n; i++)
         curve.deflection[i] = -curve.deflection[i];
-    assert_int_equal(wb_curve_turn(&turned, &curve, 1.0 * mm), WB_ERR_DATA);
+    assert_int_equal(wb_curve_turn(&turned, &curve, 1.0 * mm, NULL), WB_ERR_DATA);
     assert_said("is its sign reversed?");
     wb_curve_release(&curve);
 }
@@ -382,7 +382,7 @@ static void deviations_are_those_of_the_samples(void **state)
         datasets[i] = &dataset[i];
     }
     settings.restart = false;
-    assert_int_equal(wb_calibrate_run(&result, datasets, 3, &settings), WB_OK);
+    assert_int_equal(wb_calibrate_run(&result, datasets, 3, &settings, NULL), WB_OK);
     assert_int_equal(result.n_samples, 3);
     assert_close_relative(result.deviation[0] / result.material.youngs_modulus, 0.001, 0.02);
     assert_close_relative(result.deviation[1] / result.material.yield_stress, 0.001, 0.02);
@@ -415,12 +415,12 @@ static void another_length_is_predicted_with_its_curl(void **state)
     (void)state;
     const struct wb_properties properties = fitted_properties();
     const struct wb_test_info info = follower_info(0.12);
-    const struct wb_validate_settings settings = {.n_elements = 25};
+    const struct wb_calibrate_settings settings = {.n_elements = 25};
     struct wb_dataset dataset;
     struct wb_validate_result result;
     follower_dataset(&dataset, &info, 20.0, 40);
     const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, NULL), WB_OK);
     print_message("L = 120 mm: RMS %.4f, elastic %.3f; shapes RMS %.2f mm, largest %.2f mm, %d "
                   "points\n",
                   result.elastoplastic.rms, result.elastic.rms, result.shape_rms / mm,
@@ -441,7 +441,7 @@ static void shapes_of_the_model_itself_have_no_distance(void **state)
 {
     (void)state;
     const struct wb_properties properties = fitted_properties();
-    const struct wb_validate_settings settings = {.n_elements = 50};
+    const struct wb_calibrate_settings settings = {.n_elements = 50};
     struct wb_dataset dataset;
     struct wb_validate_result result;
     double x[11], y[11];
@@ -462,7 +462,7 @@ static void shapes_of_the_model_itself_have_no_distance(void **state)
         }
     }
     const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, NULL), WB_OK);
     assert_int_equal(result.n_shape_points, 60);
     print_message("shape max %.4f mm\n", result.shape_max / mm);
     assert_true(result.shape_max < 0.02 * mm);
@@ -493,7 +493,7 @@ static void the_csv_is_of_deflections(void **state)
 {
     (void)state;
     const struct wb_properties properties = fitted_properties();
-    const struct wb_validate_settings settings = {.n_elements = BEAM_ELEMENTS};
+    const struct wb_calibrate_settings settings = {.n_elements = BEAM_ELEMENTS};
     const struct wb_dataset *const datasets[] = {&composite};
     struct wb_validate_result result;
     char path[] = "/tmp/wirebench-follower-XXXXXX";
@@ -502,7 +502,7 @@ static void the_csv_is_of_deflections(void **state)
     const int descriptor = mkstemp(path);
     assert_true(descriptor >= 0);
     close(descriptor);
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, NULL), WB_OK);
     assert_int_equal(wb_validate_write_csv(&result, path), WB_OK);
     assert_int_equal(wb_file_read(path, &text, NULL), WB_OK);
     const char *const header = strstr(text, "\nforce_N,measured_mm,low_mm,");

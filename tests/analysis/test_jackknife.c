@@ -44,7 +44,7 @@ static int run(double deviation[4], int n, const double strength[MOST], double l
         beam_dataset(&dataset[i], &info, &material, 1.0 * mm, last, 1.0);
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_calibrate_deviations(&result, datasets, n, &settings), WB_OK);
+    assert_int_equal(wb_calibrate_deviations(&result, datasets, n, &settings, NULL), WB_OK);
     memcpy(deviation, result.deviation, sizeof result.deviation);
     for (int i = 0; i < n; i++)
         wb_dataset_release(&dataset[i]);
@@ -111,7 +111,7 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
     for (size_t i = 0; i < dataset[1].n_rows; i++)
         dataset[1].rows[i].force *= -0.2;
     wb_log_set_sink(count, NULL);
-    assert_int_equal(wb_calibrate_deviations(&result, datasets, 2, &settings), WB_OK);
+    assert_int_equal(wb_calibrate_deviations(&result, datasets, 2, &settings, NULL), WB_OK);
     assert_int_equal(n_errors, 0);
     assert_int_equal(n_warnings, 2);
     for (int k = 0; k < 4; k++)

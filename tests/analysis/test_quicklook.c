@@ -131,7 +131,7 @@ static void all_files_are_written_and_say_virtual_rig(void **state)
     assert_says(path, "force_deflection.svg", "a&amp;b.wbr, measured on a virtual rig");
     assert_says(path, "shapes.svg", "measured on a virtual rig");
     /* It is a dataset as well. */
-    assert_int_equal(wb_dataset_read(&back, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&back, path, NULL), WB_OK);
     assert_int_equal(back.n_rows, 400);
     wb_dataset_release(&back);
     wb_dataset_release(&dataset);

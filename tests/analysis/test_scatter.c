@@ -1,3 +1,4 @@
+#include "analysis/curve_private.h"
 #include "tests/analysis/beam_data.h"
 
 #include "analysis/scatter.h"

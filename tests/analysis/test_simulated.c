@@ -6,6 +6,7 @@
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/units.h"
+#include "fe/trial/wire_run_private.h"
 
 static char folder[] = "/tmp/wirebench-simulated-XXXXXX";
 static struct wb_wire_model model;
@@ -48,7 +49,7 @@ static void write_and_read(const struct wb_simulated_wire *wire, const char *nam
     assert_true(dataset.info.gravity != 0.0 || !signbit(dataset.info.gravity));
     assert_int_equal(wb_dataset_write(&dataset, path, false), WB_OK);
     wb_dataset_release(&dataset);
-    assert_int_equal(wb_dataset_read(read, path), WB_OK);
+    assert_int_equal(wb_dataset_read(read, path, NULL), WB_OK);
 }
 
 static double number(const struct wb_json *object, const char *key)

@@ -137,7 +137,7 @@ static void files_read_back(void **unused)
     written.bodies[0].nodes[7].von_mises = 12345678.0;
     written.bodies[0].nodes[8].position[2] = -1e-12;
     assert_int_equal(wb_surface_write(&written, folder), WB_OK);
-    assert_int_equal(wb_surface_read(&read, folder), WB_OK);
+    assert_int_equal(wb_surface_read(&read, folder, NULL), WB_OK);
     assert_int_equal(read.n, 2);
     for (int b = 0; b < 2; b++) {
         const struct wb_surface_body *a = &written.bodies[b], *c = &read.bodies[b];
@@ -165,7 +165,7 @@ static void files_read_back(void **unused)
     assert_int_equal(wb_surface_write(&written, folder), WB_OK);
     assert_false(wb_file_exists(path_of_file()));
     assert_int_equal(wb_surface_write(&written, folder), WB_OK);
-    assert_int_equal(wb_surface_read(&read, folder), WB_OK);
+    assert_int_equal(wb_surface_read(&read, folder, NULL), WB_OK);
     assert_int_equal(read.n, 0);
 }
 
@@ -226,12 +226,20 @@ static void bad_files_are_refused(void **unused)
         HEAD RING("0") "0,wire,1,0,0,0,0,1e10\n0,wire,1,1,0,1,0,1\n0,wire,1,2,0,0,1,1\n",
     };
     struct wb_surface surface;
-    wb_log_set_sink(discard_message, NULL);
+    wb_log_set_sink(keep_message, NULL);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct wb_reason why = {.text = ""};
         assert_int_equal(wb_file_write(path_of_file(), bad[i], strlen(bad[i])), WB_OK);
-        if (wb_surface_read(&surface, folder) != WB_ERR_FORMAT)
+        if (wb_surface_read(&surface, folder, NULL) != WB_ERR_FORMAT)
             fail_msg("was taken: %s", bad[i]);
         assert_int_equal(surface.n, 0);
+        /* Who asks for the reason gets the same message, and the log gets nothing. */
+        char logged[sizeof said];
+        memcpy(logged, said, sizeof said);
+        said[0] = '\0';
+        assert_int_equal(wb_surface_read(&surface, folder, &why), WB_ERR_FORMAT);
+        assert_string_equal(why.text, logged);
+        assert_string_equal(said, "");
     }
     /* The place of a node that is beyond int, and 100000 modulo 2^32. */
     struct wb_text text = {0};
@@ -241,13 +249,13 @@ static void bad_files_are_refused(void **unused)
     wb_text_append(&text, "0,wire,42950,67296,0,0,0,1\n");
     assert_int_equal(wb_file_write(path_of_file(), wb_text_string(&text), text.length), WB_OK);
     wb_log_set_sink(keep_message, NULL);
-    assert_int_equal(wb_surface_read(&surface, folder), WB_ERR_FORMAT);
+    assert_int_equal(wb_surface_read(&surface, folder, NULL), WB_ERR_FORMAT);
     assert_non_null(strstr(said, ":100002: node: station 42950, node 67296 is not the next one"));
     wb_text_release(&text);
 
     static const char good[] = HEAD RING("0") RING("1");
     assert_int_equal(wb_file_write(path_of_file(), good, strlen(good)), WB_OK);
-    assert_int_equal(wb_surface_read(&surface, folder), WB_OK);
+    assert_int_equal(wb_surface_read(&surface, folder, NULL), WB_OK);
     assert_int_equal(surface.bodies[0].n_along, 2);
     wb_surface_release(&surface);
 }

@@ -6,7 +6,7 @@
 #include "base/file.h"
 
 static const double mm = WB_MM;
-static const struct wb_validate_settings settings = {.step = 1e-3, .n_elements = BEAM_ELEMENTS};
+static const struct wb_calibrate_settings settings = {.step = 1e-3, .n_elements = BEAM_ELEMENTS};
 
 static int silence(void **state)
 {
@@ -32,14 +32,14 @@ static struct wb_properties true_properties(int type)
 
 static void validate(struct wb_validate_result *result, const struct wb_properties *properties,
                      double length, double bow, double factor,
-                     const struct wb_validate_settings *how)
+                     const struct wb_calibrate_settings *how)
 {
     const struct wb_test_info info = beam_info(2, length, bow);
     const struct wb_material material = beam_material(2);
     struct wb_dataset dataset;
     beam_dataset(&dataset, &info, &material, 1.0 * mm, 53 * mm, factor);
     const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_validate_run(result, properties, datasets, 1, how), WB_OK);
+    assert_int_equal(wb_validate_run(result, properties, datasets, 1, how, NULL), WB_OK);
     wb_dataset_release(&dataset);
 }
 
@@ -86,7 +86,7 @@ static void a_bow_that_is_ignored_shows(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
-    struct wb_validate_settings straight = settings;
+    struct wb_calibrate_settings straight = settings;
     struct wb_validate_result result;
     straight.straight = true;
     validate(&result, &properties, 0.085, 3.0 * mm, 1.0, &settings);
@@ -112,7 +112,7 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
         beam_dataset(&dataset[i], &info, &material, 1.0 * mm, 53 * mm, factor[i]);
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings, NULL), WB_OK);
     /* The mean is 2 % above the truth, the samples scatter by 3.6 %. */
     assert_close_relative(result.scatter_rms / result.elastoplastic.rms, 0.0361 / 0.02, 0.01);
     assert_close_relative(result.expected_rms, result.residual_scatter_rms / sqrt(3.0), 1e-9);
@@ -122,13 +122,13 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
     properties.n_samples = 4;
     properties.scatter_rms = 0.07;
     properties.residual_scatter_rms = 0.06;
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings, NULL), WB_OK);
     assert_close_relative(result.expected_rms, hypot(result.residual_scatter_rms / sqrt(3.0), 0.03),
                           1e-9);
     wb_validate_result_release(&result);
     /* Less scatter than residual scatter: the model makes the rest. */
     properties.scatter_rms = 0.01;
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings, NULL), WB_OK);
     assert_close_relative(result.expected_rms,
                           hypot(result.residual_scatter_rms / sqrt(3.0), 0.005), 1e-9);
     wb_validate_result_release(&result);
@@ -153,7 +153,7 @@ static void an_error_with_the_bow_is_not_taken_for_scatter(void **state)
         dataset[i].info.natural_shape[0] = 0.04 * (i + 1);
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 3, &settings, NULL), WB_OK);
     assert_true(result.residual_scatter_rms > 0.01 && result.elastoplastic.rms > 0.01);
     assert_true(result.scatter_rms < 1e-6);
     assert_true(result.scatter_share < 1e-6);
@@ -172,11 +172,18 @@ static void another_wire_is_refused_and_another_name_warned_about(void **state)
     struct wb_validate_result result;
     beam_dataset(&dataset, &info, &material, 1.0 * mm, 53 * mm, 1.0);
     const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings), WB_ERR_DATA);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, NULL),
+                     WB_ERR_DATA);
     assert_said("wire 'type1' (1.1 mm across)");
+    struct wb_reason why = {.text = ""};
+    last_message_install();
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, &why),
+                     WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "wire 'type1' (1.1 mm across)"));
+    assert_string_equal(last_message, "");
     properties = true_properties(2);
     strcpy(properties.wire, "type3 of another roll");
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings), WB_OK);
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &settings, NULL), WB_OK);
     assert_said("of the same diameter");
     wb_validate_result_release(&result);
     wb_dataset_release(&dataset);
@@ -186,7 +193,7 @@ static void a_prediction_that_does_not_converge_is_an_error(void **state)
 {
     (void)state;
     const struct wb_properties properties = true_properties(2);
-    struct wb_validate_settings coarse = settings;
+    struct wb_calibrate_settings coarse = settings;
     struct wb_dataset dataset;
     struct wb_validate_result result;
     double x[9], y[9];
@@ -199,7 +206,7 @@ static void a_prediction_that_does_not_converge_is_an_error(void **state)
         assert_int_equal(wb_dataset_add_row(&dataset, &row), WB_OK);
     }
     const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &coarse),
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 1, &coarse, NULL),
                      WB_ERR_CONVERGENCE);
     assert_said("does not converge");
     assert_int_equal(wb_validate_shape(&properties, &dataset.info, 1e9, 9, x, y),

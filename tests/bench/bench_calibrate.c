@@ -95,7 +95,7 @@ static enum wb_status bench(void)
     settings.yield_point = 0.04;
 
     double started = cpu_seconds();
-    WB_TRY(wb_calibrate_run(&result, datasets, 1, &settings));
+    WB_TRY(wb_calibrate_run(&result, datasets, 1, &settings, NULL));
     const double calibration = cpu_seconds() - started;
 
     started = cpu_seconds();

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "daq/natnet_encode.h"
 #include "tests/daq/natnet_example.h"
 
@@ -66,14 +66,14 @@ static void count_load(void *context, const struct wb_load_sample *sample)
 static void decode_line(void)
 {
     const struct wb_sink sink = {.load = count_load};
-    wb_driver_generic.receive(cell_state, 1, (const uint8_t *)line, sizeof line - 1, &sink);
+    wb_loadcell_generic.receive(cell_state, 1, (const uint8_t *)line, sizeof line - 1, &sink);
 }
 
 static void decode_bare_line(void)
 {
     const struct wb_sink sink = {.load = count_load};
-    wb_driver_generic.receive(cell_state, 1, (const uint8_t *)bare_line, sizeof bare_line - 1,
-                              &sink);
+    wb_loadcell_generic.receive(cell_state, 1, (const uint8_t *)bare_line, sizeof bare_line - 1,
+                                &sink);
 }
 
 static void scan_bare_line(void)
@@ -130,8 +130,8 @@ static void bench_lines(void)
     struct wb_rig rig = {.gravity = 9.80665, .time_scale = 1.0};
     rig.load_cell.scale = 1.0;
     rig.load_cell.sign = 1;
-    cell_state = calloc(1, wb_driver_generic.state_size);
-    if (!cell_state || wb_driver_generic.init(cell_state, &rig) != WB_OK)
+    cell_state = calloc(1, wb_loadcell_generic.state_size);
+    if (!cell_state || wb_loadcell_generic.init(cell_state, &rig) != WB_OK)
         exit(1);
     const double full = rate_of(decode_line), bare = rate_of(decode_bare_line);
     const double baseline = rate_of(scan_bare_line);

@@ -16,7 +16,7 @@ enum {
 struct element {
     struct wb_hex20_geometry geometry;
     double u[60];
-    struct wb_hex20_state before[27], after[27];
+    struct wb_solid_point_state before[27], after[27];
 };
 
 static const struct wb_material material = {
@@ -31,7 +31,7 @@ static double cpu_seconds(void)
 
 static bool make_element(struct element *e, enum wb_integration integration)
 {
-    struct wb_hex20_state virgin[27] = {{{0.0}}};
+    struct wb_solid_point_state virgin[27] = {{{0.0}}};
     struct wb_hex20_result result;
     double position[20][3], force[60];
 
@@ -57,7 +57,7 @@ static double time_elements(struct element *elements, enum wb_integration integr
                             bool yielding, enum what what)
 {
     static double K[3600];
-    struct wb_hex20_state after[27];
+    struct wb_solid_point_state after[27];
     struct wb_hex20_result result;
     double force[60], best = 1e9;
     int yields = 0;
@@ -66,7 +66,7 @@ static double time_elements(struct element *elements, enum wb_integration integr
         const double start = cpu_seconds();
         for (int i = 0; i < ELEMENTS; i++) {
             struct element *e = &elements[i];
-            const struct wb_hex20_state *before = yielding ? e->before : e->after;
+            const struct wb_solid_point_state *before = yielding ? e->before : e->after;
             bool good;
             if (what == TWIN)
                 good = twin_evaluate(&e->geometry, wb_hex20_points(integration), false, &material,

@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "fe/linear/layered.h"
+#include "fe/linear/layered_private.h"
 #include "fe/solid/solid_mesh.h"
 
 enum {

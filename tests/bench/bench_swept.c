@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_step.h"
 #include "tests/fe/swept/swept_hex_twin.h"
 

@@ -9,6 +9,7 @@
 
 #include "fe/model/packing.h"
 #include "fe/swept/swept_contact.h"
+#include "fe/swept/swept_private.h"
 
 enum {
     MOST_WIRES = 32,

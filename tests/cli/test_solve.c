@@ -141,7 +141,7 @@ static void dataset_is_one_like_any_other(void **unused)
     char path[128];
     struct wb_dataset dataset;
     snprintf(path, sizeof path, "%s/simulated", folder);
-    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
     assert_int_equal(dataset.n_rows, 107);
     assert_int_equal(dataset.n_shape_rows, 7 * 107);
     assert_true(dataset.info.is_simulation && !dataset.info.is_virtual);

@@ -136,7 +136,7 @@ static void datasets_are_those_of_the_homogenised_beam(void **unused)
     char path[128];
     assert_int_equal(tool("--duration-s 1.5 -o ds"), 0);
     snprintf(path, sizeof path, "%s/ds", folder);
-    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
     assert_int_equal(dataset.n_rows, 6);
     assert_int_equal(dataset.n_shape_rows, 6 * 26);
     assert_close(dataset.info.outer_diameter, 1.4e-3, 1e-12);
@@ -172,8 +172,8 @@ static void datasets_have_the_bent_surface(void **unused)
     char path[128];
     assert_int_equal(tool("--duration-s 1.5 -o surface"), 0);
     snprintf(path, sizeof path, "%s/surface", folder);
-    assert_int_equal(wb_dataset_read(&dataset, path), WB_OK);
-    assert_int_equal(wb_surface_read(&surface, path), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
+    assert_int_equal(wb_surface_read(&surface, path, NULL), WB_OK);
     assert_int_equal(surface.n, 1);
     const struct wb_surface_body *wire = &surface.bodies[0];
     assert_int_equal(wire->n_along, 16);
@@ -299,7 +299,7 @@ static void cycles_have_rows_up_and_down(void **unused)
     assert_int_equal(tool("--duration-s 1.5 -o cycles"), 0);
     struct wb_dataset dataset;
     snprintf(command, sizeof command, "%s/cycles", folder);
-    assert_int_equal(wb_dataset_read(&dataset, command), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, command, NULL), WB_OK);
     assert_int_equal(dataset.n_rows, 21);
     assert_int_equal(dataset.rows[20].cycle, 2);
     assert_close(dataset.rows[15].deflection, 10e-3, 1e-6);

@@ -196,7 +196,7 @@ static void look_at_dataset(const char *name, const char *solver)
     struct wb_dataset dataset;
     struct wb_fields fields;
     const char *text = NULL;
-    assert_int_equal(wb_dataset_read(&dataset, path_of(name)), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path_of(name), NULL), WB_OK);
     assert_int_equal(dataset.n_rows, 6);
     assert_int_equal(dataset.n_shape_rows, 26 * 6);
     assert_true(dataset.info.is_simulation && !dataset.info.is_follower);
@@ -212,7 +212,7 @@ static void look_at_dataset(const char *name, const char *solver)
     wb_dataset_release(&dataset);
 
     /* Where the model asks for them, and at the end. */
-    assert_int_equal(wb_fields_read(&fields, path_of(name)), WB_OK);
+    assert_int_equal(wb_fields_read(&fields, path_of(name), NULL), WB_OK);
     assert_int_equal(fields.n, 6);
     assert_non_null(wb_fields_find(&fields, "pushed", (double)NAN));
     assert_null(wb_fields_find(&fields, "unloaded", (double)NAN));
@@ -267,7 +267,7 @@ static void follower_test_says_so(void **unused)
                                                              "    rows: 3\n");
     tool("solve wire3d follower.yaml -o follower");
     assert_int_equal(o.code, 0);
-    assert_int_equal(wb_dataset_read(&dataset, path_of("follower")), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path_of("follower"), NULL), WB_OK);
     assert_true(dataset.info.is_follower);
     assert_close(dataset.rows[3].force, 0.3, 1e-12);
     assert_true(dataset.rows[3].tension < 0.3);
@@ -330,7 +330,7 @@ static void what_was_computed_is_kept_where_it_does_not_converge(void **unused)
         assert_in_range(rows, 2, 4);
         wb_json_destroy(root);
         snprintf(arguments, sizeof arguments, "far-%d", i);
-        assert_int_equal(wb_dataset_read(&dataset, path_of(arguments)), WB_OK);
+        assert_int_equal(wb_dataset_read(&dataset, path_of(arguments), NULL), WB_OK);
         assert_int_equal(dataset.n_rows, rows);
         assert_false(wb_dataset_is_complete(&dataset));
         wb_dataset_release(&dataset);
@@ -354,7 +354,7 @@ static void interrupt_keeps_the_completed_rows(void **unused)
     assert_in_range(rows, 1, 2000);
     assert_true(flag(root, "converged"));
     wb_json_destroy(root);
-    assert_int_equal(wb_dataset_read(&dataset, path_of("long")), WB_OK);
+    assert_int_equal(wb_dataset_read(&dataset, path_of("long"), NULL), WB_OK);
     assert_int_equal(dataset.n_rows, rows);
     assert_false(wb_dataset_is_complete(&dataset));
     wb_dataset_release(&dataset);

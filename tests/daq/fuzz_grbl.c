@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "daq/grbl.h"
 
 struct total {
@@ -39,10 +39,10 @@ static struct total run(const uint8_t *bytes, size_t n, size_t step)
     const struct wb_rig rig = {.stage = {.axis = 'Y', .down = -1}, .time_scale = 1.0};
     struct total total = {0};
     const struct wb_sink sink = {.context = &total, .stage = take_stage, .remark = take_remark};
-    void *const state = calloc(1, wb_driver_grbl.state_size);
-    FUZZ_REQUIRE(state && wb_driver_grbl.init(state, &rig) == WB_OK);
+    void *const state = calloc(1, wb_stage_grbl.state_size);
+    FUZZ_REQUIRE(state && wb_stage_grbl.init(state, &rig) == WB_OK);
     for (size_t at = 0; at < n; at += step)
-        wb_driver_grbl.receive(state, 7, bytes + at, n - at < step ? n - at : step, &sink);
+        wb_stage_grbl.receive(state, 7, bytes + at, n - at < step ? n - at : step, &sink);
     free(state);
     return total;
 }

@@ -2,7 +2,7 @@
  * survives any sequence of them. Input: major, minor, then the datagram. */
 #include "tests/daq/fuzz.h"
 
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "daq/natnet_encode.h"
 #include "tests/daq/natnet_example.h"
 
@@ -86,19 +86,19 @@ static void run_client(const uint8_t *bytes, size_t n, struct wb_natnet_version 
     };
     struct wb_outbox outbox = {0};
     if (!state)
-        state = malloc(wb_driver_natnet.state_size);
+        state = malloc(wb_natnet_client.state_size);
     FUZZ_REQUIRE(state != NULL);
-    memset(state, 0, wb_driver_natnet.state_size);
-    FUZZ_REQUIRE(wb_driver_natnet.init(state, &rig) == WB_OK);
-    wb_driver_natnet.start(state, 0, &outbox);
-    wb_driver_natnet.receive(state, 1, bytes, n, &sink);
+    memset(state, 0, wb_natnet_client.state_size);
+    FUZZ_REQUIRE(wb_natnet_client.init(state, &rig) == WB_OK);
+    wb_natnet_client.start(state, 0, &outbox);
+    wb_natnet_client.receive(state, 1, bytes, n, &sink);
     const size_t n_info = wb_natnet_encode_server(info, sizeof info, &server);
-    wb_driver_natnet.receive(state, 2, info, n_info, &sink);
+    wb_natnet_client.receive(state, 2, info, n_info, &sink);
     for (int i = 0; i < 2; i++) {
-        wb_driver_natnet.receive(state, 3 + i, bytes, n, &sink);
-        wb_driver_natnet.tick(state, 3 + i, &outbox);
+        wb_natnet_client.receive(state, 3 + i, bytes, n, &sink);
+        wb_natnet_client.tick(state, 3 + i, &outbox);
     }
-    wb_driver_natnet.stop(state, &outbox);
+    wb_natnet_client.stop(state, &outbox);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)

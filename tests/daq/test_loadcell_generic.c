@@ -1,5 +1,5 @@
 #include "base/units.h"
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "tests/check.h"
 #include "tests/daq/collect.h"
 
@@ -18,7 +18,7 @@ static struct wb_rig rig_of(const char *unit)
 static void feed(void *driver, int64_t t_ns, const char *text, struct collect *collect)
 {
     const struct wb_sink sink = collect_sink(collect);
-    wb_driver_generic.receive(driver, t_ns, (const uint8_t *)text, strlen(text), &sink);
+    wb_loadcell_generic.receive(driver, t_ns, (const uint8_t *)text, strlen(text), &sink);
 }
 
 static void readings_become_forces_with_their_arrival(void **state)
@@ -26,8 +26,8 @@ static void readings_become_forces_with_their_arrival(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("");
-    void *const driver = collect_open(&wb_driver_generic, &rig);
-    assert_false(wb_driver_generic.ready(driver));
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
+    assert_false(wb_loadcell_generic.ready(driver));
     feed(driver, 10 * MS, "0 g\r\n1.5 g\r\n-2", &collect);
     feed(driver, 20 * MS, ".5 g ?\r\n", &collect);
     assert_int_equal(collect.n_load, 2);
@@ -40,7 +40,7 @@ static void readings_become_forces_with_their_arrival(void **state)
     assert_true(collect.load[1].valid && collect.load[1].unstable);
     assert_int_equal(collect.load[1].t_ns, 20 * MS);
     assert_int_equal(collect.load[1].index, 1);
-    assert_true(wb_driver_generic.ready(driver));
+    assert_true(wb_loadcell_generic.ready(driver));
     free(driver);
 }
 
@@ -49,7 +49,7 @@ static void first_partial_line_is_dropped_and_told(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("g");
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     feed(driver, 0, "00.00\n1.25\n", &collect);
     assert_int_equal(collect.n_load, 1);
     assert_close(collect.load[0].force, 1.25e-3 * 9.81, 1e-16);
@@ -63,7 +63,7 @@ static void overload_is_an_invalid_sample_and_one_remark(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("");
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     feed(driver, 0, "\n29 g\nOL,+9999999E+19\nOL\n31 g\n-31 g\n2 g\nOL\n", &collect);
     assert_int_equal(collect.n_load, 7);
     for (int i = 1; i <= 4; i++) {
@@ -80,7 +80,7 @@ static void change_of_unit_is_an_alarm(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("");
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     feed(driver, 0, "\n1 g\n0.002 kg\n0.003\n4 g\n", &collect);
     assert_int_equal(collect.n_load, 4);
     assert_false(collect.load[0].unit_changed);
@@ -99,7 +99,7 @@ static void change_of_unit_under_a_fixed_unit_is_invalid(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("g");
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     feed(driver, 0, "\n1 g\n0.002 kg\n", &collect);
     assert_int_equal(collect.n_load, 2);
     assert_true(collect.load[0].valid);
@@ -113,7 +113,7 @@ static void readings_without_any_unit_are_refused(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("");
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     feed(driver, 0, "\n1.5\n1.5 pcs\n", &collect);
     assert_int_equal(collect.n_load, 0);
     assert_int_equal(collect_count(&collect, "refused"), 2);
@@ -126,7 +126,7 @@ static void garbage_is_counted_without_a_flood_of_remarks(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("g");
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     for (int i = 0; i < 1001; i++)
         feed(driver, 0, "Err 55\n", &collect);
     assert_int_equal(collect.n_load, 0);
@@ -142,7 +142,7 @@ static void bytes_before_settling_are_ignored(void **state)
     struct collect collect = {0};
     struct wb_rig rig = rig_of("g");
     rig.load_cell.settle_ns = 2000 * MS;
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     feed(driver, 5000 * MS, "bootloader\n1\n2\n", &collect);
     feed(driver, 6999 * MS, "3\n4\n", &collect);
     feed(driver, 7000 * MS, "5\n6\n", &collect);
@@ -158,7 +158,7 @@ static void silence_ends_a_line_where_the_rig_says_so(void **state)
     struct wb_rig rig = rig_of("g");
     strcpy(rig.load_cell.terminator, "idle");
     rig.load_cell.idle_gap_ns = 20 * MS;
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     feed(driver, 0, "7.7", &collect);
     feed(driver, 100 * MS, "1.", &collect);
     feed(driver, 119 * MS, "25", &collect); /* within the gap: the same line */
@@ -178,16 +178,16 @@ static void polls_keep_to_their_period(void **state)
     strcpy(rig.load_cell.poll_command, "W\r");
     rig.load_cell.poll_period_ns = 100 * MS;
     rig.load_cell.settle_ns = 50 * MS;
-    void *const driver = collect_open(&wb_driver_generic, &rig);
+    void *const driver = collect_open(&wb_loadcell_generic, &rig);
     struct wb_outbox outbox = {0};
-    wb_driver_generic.start(driver, 1000 * MS, &outbox);
+    wb_loadcell_generic.start(driver, 1000 * MS, &outbox);
     assert_int_equal(outbox.n_entries, 1);
     assert_memory_equal(outbox.bytes, "START\r", 6);
     int n_polls = 0;
     int64_t first = 0;
     for (int64_t t = 1000; t < 2050; t += 10) {
         wb_outbox_clear(&outbox);
-        wb_driver_generic.tick(driver, t * MS, &outbox);
+        wb_loadcell_generic.tick(driver, t * MS, &outbox);
         if (outbox.n_entries && !first)
             first = t;
         n_polls += (int)outbox.n_entries;
@@ -196,8 +196,8 @@ static void polls_keep_to_their_period(void **state)
     assert_int_equal(n_polls, 10);
     /* After a pause there is one poll, not one for each that was missed. */
     wb_outbox_clear(&outbox);
-    wb_driver_generic.tick(driver, 9000 * MS, &outbox);
-    wb_driver_generic.tick(driver, 9010 * MS, &outbox);
+    wb_loadcell_generic.tick(driver, 9000 * MS, &outbox);
+    wb_loadcell_generic.tick(driver, 9010 * MS, &outbox);
     assert_int_equal(outbox.n_entries, 1);
     free(driver);
 }
@@ -210,16 +210,16 @@ static void replay_gives_the_same_samples(void **state)
     struct wb_rig rig = rig_of("");
     strcpy(rig.load_cell.poll_command, "W\r");
     rig.load_cell.poll_period_ns = 30 * MS;
-    void *const a = collect_open(&wb_driver_generic, &rig);
-    void *const b = collect_open(&wb_driver_generic, &rig);
+    void *const a = collect_open(&wb_loadcell_generic, &rig);
+    void *const b = collect_open(&wb_loadcell_generic, &rig);
     static const char *const chunks[] = {"2 g\r\n1.", "25 g\r\nOL\r", "\n3 kg\r\nxx\r\n",
                                          "-4 g\r\n"};
     struct wb_outbox outbox = {0};
-    wb_driver_generic.start(a, 0, &outbox);
+    wb_loadcell_generic.start(a, 0, &outbox);
     for (int i = 0; i < 4; i++) {
         feed(a, i * 40 * MS, chunks[i], &live);
         wb_outbox_clear(&outbox);
-        wb_driver_generic.tick(a, i * 40 * MS + 7, &outbox);
+        wb_loadcell_generic.tick(a, i * 40 * MS + 7, &outbox);
     }
     for (int i = 0; i < 4; i++)
         feed(b, i * 40 * MS, chunks[i], &replayed);

@@ -1,5 +1,5 @@
 #include "base/units.h"
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "tests/check.h"
 #include "tests/daq/collect.h"
 
@@ -17,7 +17,7 @@ static struct wb_rig rig_of(void)
 static void feed(void *driver, const char *text, struct collect *collect)
 {
     const struct wb_sink sink = collect_sink(collect);
-    wb_driver_mtsics.receive(driver, 5 * MS, (const uint8_t *)text, strlen(text), &sink);
+    wb_loadcell_mtsics.receive(driver, 5 * MS, (const uint8_t *)text, strlen(text), &sink);
 }
 
 static void stable_and_dynamic_weights_are_both_valid(void **state)
@@ -25,7 +25,7 @@ static void stable_and_dynamic_weights_are_both_valid(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of();
-    void *const driver = collect_open(&wb_driver_mtsics, &rig);
+    void *const driver = collect_open(&wb_loadcell_mtsics, &rig);
     feed(driver, "S S     100.00 g\r\nS D      -0.52 g\r\nS D 0.0012 kg\r\n", &collect);
     assert_int_equal(collect.n_load, 3);
     assert_close(collect.load[0].force, 0.1 * WB_STANDARD_GRAVITY, 1e-15);
@@ -34,7 +34,7 @@ static void stable_and_dynamic_weights_are_both_valid(void **state)
     assert_true(collect.load[1].valid && collect.load[1].unstable);
     assert_true(collect.load[2].unit_changed && collect.load[2].valid);
     assert_close(collect.load[2].force, 1.2e-3 * WB_STANDARD_GRAVITY, 1e-15);
-    assert_true(wb_driver_mtsics.ready(driver));
+    assert_true(wb_loadcell_mtsics.ready(driver));
     free(driver);
 }
 
@@ -43,7 +43,7 @@ static void range_marks_are_overloads(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of();
-    void *const driver = collect_open(&wb_driver_mtsics, &rig);
+    void *const driver = collect_open(&wb_loadcell_mtsics, &rig);
     feed(driver, "S S 1 g\r\nS +\r\nS -\r\nS D 201 g\r\n", &collect);
     assert_int_equal(collect.n_load, 4);
     for (int i = 1; i < 4; i++)
@@ -56,7 +56,7 @@ static void errors_are_told_and_give_no_sample(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of();
-    void *const driver = collect_open(&wb_driver_mtsics, &rig);
+    void *const driver = collect_open(&wb_loadcell_mtsics, &rig);
     feed(driver,
          "S S 1 g\r\nS I\r\nES\r\nET\r\nEL\r\nS S 1.2.3 g\r\nS X 1 g\r\nS S\r\nS S 1 g g\r\n",
          &collect);
@@ -71,7 +71,7 @@ static void a_first_line_that_was_cut_off_is_dropped(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of();
-    void *const driver = collect_open(&wb_driver_mtsics, &rig);
+    void *const driver = collect_open(&wb_loadcell_mtsics, &rig);
     feed(driver, "  100.00 g\r\nS S 2 g\r\n", &collect);
     assert_int_equal(collect.n_load, 1);
     assert_int_equal(collect_count(&collect, "partial"), 1);
@@ -85,7 +85,7 @@ static void serial_number_is_compared_with_the_rig(void **state)
     struct collect collect = {0};
     struct wb_rig rig = rig_of();
     strcpy(rig.load_cell.serial_number, "B123");
-    void *const driver = collect_open(&wb_driver_mtsics, &rig);
+    void *const driver = collect_open(&wb_loadcell_mtsics, &rig);
     feed(driver, "I4 A \"B123\"\r\n", &collect);
     assert_int_equal(collect_count(&collect, "serial"), 0);
     assert_int_equal(collect_count(&collect, "connected"), 1);
@@ -100,20 +100,20 @@ static void stream_is_asked_for_again_after_silence(void **state)
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of();
-    void *const driver = collect_open(&wb_driver_mtsics, &rig);
+    void *const driver = collect_open(&wb_loadcell_mtsics, &rig);
     struct wb_outbox outbox = {0};
-    wb_driver_mtsics.start(driver, 0, &outbox);
+    wb_loadcell_mtsics.start(driver, 0, &outbox);
     assert_int_equal(outbox.n_entries, 2);
     assert_memory_equal(outbox.bytes, "I4\r\nSIR\r\n", 9);
     wb_outbox_clear(&outbox);
     for (int64_t t = 0; t < 3000; t += 20) {
-        wb_driver_mtsics.tick(driver, t * MS, &outbox);
+        wb_loadcell_mtsics.tick(driver, t * MS, &outbox);
         feed(driver, "S S 2 g\r\n", &collect);
         collect.n_load = 0;
     }
     assert_int_equal(outbox.n_entries, 0);
     for (int64_t t = 3000; t < 5500; t += 20)
-        wb_driver_mtsics.tick(driver, t * MS, &outbox);
+        wb_loadcell_mtsics.tick(driver, t * MS, &outbox);
     assert_int_equal(outbox.n_entries, 2);
     assert_memory_equal(outbox.bytes, "SIR\r\nSIR\r\n", 10);
     free(driver);
@@ -126,12 +126,12 @@ static void nothing_that_waits_for_stability_is_ever_sent(void **state)
     for (int polled = 0; polled < 2; polled++) {
         struct wb_rig rig = rig_of();
         rig.load_cell.poll_period_ns = polled ? 50 * MS : 0;
-        void *const driver = collect_open(&wb_driver_mtsics, &rig);
+        void *const driver = collect_open(&wb_loadcell_mtsics, &rig);
         struct wb_outbox outbox = {0};
-        wb_driver_mtsics.start(driver, 0, &outbox);
+        wb_loadcell_mtsics.start(driver, 0, &outbox);
         for (int64_t t = 0; t < 400; t += 20)
-            wb_driver_mtsics.tick(driver, t * MS, &outbox);
-        wb_driver_mtsics.stop(driver, &outbox);
+            wb_loadcell_mtsics.tick(driver, t * MS, &outbox);
+        wb_loadcell_mtsics.stop(driver, &outbox);
         for (size_t i = 0; i < outbox.n_entries; i++) {
             size_t n;
             const uint8_t *const entry = collect_entry(&outbox, i, &n);

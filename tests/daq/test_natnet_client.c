@@ -1,5 +1,5 @@
 #include "base/units.h"
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "daq/natnet_encode.h"
 #include "tests/check.h"
 #include "tests/daq/collect.h"
@@ -23,7 +23,7 @@ static void receive(void *driver, int64_t t_ns, size_t n)
 {
     const struct wb_sink sink = collect_sink(&collect);
     assert_true(n > 0);
-    wb_driver_natnet.receive(driver, t_ns, buffer, n, &sink);
+    wb_natnet_client.receive(driver, t_ns, buffer, n, &sink);
 }
 
 static size_t server_info(int major, int minor, bool multicast)
@@ -58,10 +58,10 @@ static void connects_until_the_server_answers(void **state)
     struct wb_outbox outbox = {0};
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
-    wb_driver_natnet.start(driver, 0, &outbox);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
+    wb_natnet_client.start(driver, 0, &outbox);
     for (int64_t t = 0; t < 2000; t += 20)
-        wb_driver_natnet.tick(driver, t * MS, &outbox);
+        wb_natnet_client.tick(driver, t * MS, &outbox);
     assert_int_equal(outbox.n_entries, 4); /* every 500 ms */
     size_t sizes[2];
     for (size_t i = 0; i < 4; i++) {
@@ -72,7 +72,7 @@ static void connects_until_the_server_answers(void **state)
     assert_int_equal(sizes[1], 268);
     receive(driver, 2000 * MS, server_info(3, 0, false));
     wb_outbox_clear(&outbox);
-    wb_driver_natnet.tick(driver, 2500 * MS, &outbox);
+    wb_natnet_client.tick(driver, 2500 * MS, &outbox);
     for (size_t i = 0; i < outbox.n_entries; i++)
         assert_int_not_equal(message_of(&outbox, i), WB_NATNET_CONNECT);
     assert_non_null(strstr(collect_text(&collect, "connected"), "'Motive' 2.1.0.0, NatNet 3.0"));
@@ -86,14 +86,14 @@ static void frames_become_samples_with_their_stamps(void **state)
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 7);
     frame.mocap.markers[3].params |= WB_MARKER_OCCLUDED;
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 1, frame_of(3, 0)); /* before the version is known */
     assert_int_equal(collect.n_mocap, 0);
     assert_int_equal(collect_count(&collect, "early"), 1);
     receive(driver, 2, server_info(3, 0, false));
-    assert_false(wb_driver_natnet.ready(driver));
+    assert_false(wb_natnet_client.ready(driver));
     receive(driver, 5 * S, frame_of(3, 0));
-    assert_true(wb_driver_natnet.ready(driver));
+    assert_true(wb_natnet_client.ready(driver));
     assert_int_equal(collect.n_mocap, 1);
     assert_int_equal(collect.mocap.t_ns, 5 * S);
     assert_int_equal(collect.mocap.n_markers, 7);
@@ -115,7 +115,7 @@ static void every_version_from_2_5_to_4_1_is_decoded_by_its_announcement(void **
     for (size_t i = 0; i < sizeof versions / sizeof versions[0]; i++) {
         const int major = versions[i][0], minor = versions[i][1];
         memset(&collect, 0, sizeof collect);
-        void *const driver = collect_open(&wb_driver_natnet, &rig);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
         receive(driver, 0, server_info(major, minor, false));
         receive(driver, 1, frame_of(major, minor));
         assert_int_equal(collect.n_mocap, 1);
@@ -135,7 +135,7 @@ static void newer_and_older_versions_come_with_a_warning(void **state)
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     natnet_example(&frame, 7);
     memset(&collect, 0, sizeof collect);
-    void *driver = collect_open(&wb_driver_natnet, &rig);
+    void *driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(4, 3, false));
     receive(driver, 1, frame_of(4, 1));
     receive(driver, 2, frame_of(4, 1));
@@ -145,7 +145,7 @@ static void newer_and_older_versions_come_with_a_warning(void **state)
     assert_int_equal(collect.remarks[1].level, WB_LOG_WARNING);
     free(driver);
     memset(&collect, 0, sizeof collect);
-    driver = collect_open(&wb_driver_natnet, &rig);
+    driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(2, 2, false));
     assert_int_equal(collect_count(&collect, "version"), 1);
     free(driver);
@@ -171,7 +171,7 @@ static void group_of_the_server_is_compared_with_the_rig(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct wb_rig rig = rig_of(cases[i].address);
         memset(&collect, 0, sizeof collect);
-        void *const driver = collect_open(&wb_driver_natnet, &rig);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
         receive(driver, 0, server_info(3, 0, cases[i].multicast));
         const char *const text = collect_text(&collect, "group");
         if (cases[i].expected[0])
@@ -187,13 +187,13 @@ static void clock_is_probed_in_a_burst_and_then_every_second(void **state)
     (void)state;
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
     int n_echoes = 0, n_keepalives = 0;
     int64_t times[64];
     for (int64_t t = 0; t < 5500; t++) {
         struct wb_outbox outbox = {0};
-        wb_driver_natnet.tick(driver, t * MS, &outbox);
+        wb_natnet_client.tick(driver, t * MS, &outbox);
         for (size_t i = 0; i < outbox.n_entries; i++) {
             n_keepalives += message_of(&outbox, i) == WB_NATNET_KEEPALIVE;
             if (message_of(&outbox, i) == WB_NATNET_ECHOREQUEST)
@@ -214,11 +214,11 @@ static void servers_without_echo_are_not_probed(void **state)
     (void)state;
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(2, 7, false));
     for (int64_t t = 0; t < 3000; t += 20) {
         struct wb_outbox outbox = {0};
-        wb_driver_natnet.tick(driver, t * MS, &outbox);
+        wb_natnet_client.tick(driver, t * MS, &outbox);
         for (size_t i = 0; i < outbox.n_entries; i++)
             assert_int_not_equal(message_of(&outbox, i), WB_NATNET_ECHOREQUEST);
     }
@@ -230,7 +230,7 @@ static void echo_answers_become_probes_by_their_own_stamp(void **state)
     (void)state;
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
     /* 10 days of uptime and one tick */
     const uint64_t ticks = UINT64_C(10) * 86400 * 10000000 + 1;
@@ -256,13 +256,13 @@ static void queries_are_asked_one_after_the_other(void **state)
     rig.mocap.frame_rate = 100.0;
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 7);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
     static const char *const expected[] = {"UnitsToMillimeters", "UnitsToMillimeters", "FrameRate"};
     for (int i = 0; i < 3; i++) {
         struct wb_outbox outbox = {0};
         bool found = false;
-        wb_driver_natnet.tick(driver, (10 + i * 1500) * MS, &outbox);
+        wb_natnet_client.tick(driver, (10 + i * 1500) * MS, &outbox);
         for (size_t k = 0; k < outbox.n_entries; k++) {
             size_t n;
             const uint8_t *const entry = collect_entry(&outbox, k, &n);
@@ -289,7 +289,7 @@ static void other_units_than_metres_are_converted(void **state)
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 7);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
     receive(driver, 1, wb_natnet_encode_response_real(buffer, sizeof buffer, 1.0F)); /* mm */
     assert_int_equal(collect_count(&collect, "units"), 1);
@@ -313,11 +313,11 @@ static void an_answer_of_before_is_not_taken_for_the_unit(void **state)
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 7);
     const double expected = (double)frame.mocap.markers[2].position[0];
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
-    wb_driver_natnet.tick(driver, 1 * MS, &outbox);
+    wb_natnet_client.tick(driver, 1 * MS, &outbox);
     receive(driver, 2 * MS, wb_natnet_encode_response_real(buffer, sizeof buffer, 1000.0F));
-    wb_driver_natnet.tick(driver, 3 * MS, &outbox);
+    wb_natnet_client.tick(driver, 3 * MS, &outbox);
     /* FrameRate was asked; before its answer comes the server starts anew. */
     receive(driver, 4 * MS, server_info(4, 1, false));
     receive(driver, 4 * MS, server_info(3, 0, false));
@@ -325,7 +325,7 @@ static void an_answer_of_before_is_not_taken_for_the_unit(void **state)
     assert_close(first_position(driver, 6 * MS), expected, 0.0);
     /* The unit is asked for at once, and its answer counts. */
     wb_outbox_clear(&outbox);
-    wb_driver_natnet.tick(driver, 7 * MS, &outbox);
+    wb_natnet_client.tick(driver, 7 * MS, &outbox);
     bool asked = false;
     for (size_t k = 0; k < outbox.n_entries; k++) {
         size_t n;
@@ -347,7 +347,7 @@ static void an_unknown_unit_is_told_and_metres_are_kept(void **state)
     natnet_example(&frame, 7);
     for (size_t i = 0; i < sizeof odd / sizeof odd[0]; i++) {
         memset(&collect, 0, sizeof collect);
-        void *const driver = collect_open(&wb_driver_natnet, &rig);
+        void *const driver = collect_open(&wb_natnet_client, &rig);
         receive(driver, 0, server_info(3, 0, false));
         for (int k = 0; k < 4; k++)
             receive(driver, 1, wb_natnet_encode_response_real(buffer, sizeof buffer, odd[i]));
@@ -366,7 +366,7 @@ static void a_server_that_knows_no_queries_is_fine(void **state)
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 7);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(2, 7, false));
     receive(driver, 1, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
     receive(driver, 2, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
@@ -384,7 +384,7 @@ static void damaged_datagrams_are_remarks(void **state)
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 7);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
     for (int i = 0; i < 200; i++)
         receive(driver, 1, frame_of(3, 0) - 1);
@@ -403,7 +403,7 @@ static void markers_without_position_count_as_occluded(void **state)
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 7);
     frame.mocap.markers[2].position[1] = NAN;
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
     receive(driver, 1, frame_of(3, 0));
     for (int i = 0; i < 7; i++)
@@ -417,7 +417,7 @@ static void missing_labelled_markers_are_told_once(void **state)
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
     natnet_example(&frame, 0);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(3, 0, false));
     receive(driver, 1, frame_of(3, 0));
     receive(driver, 2, frame_of(3, 0));
@@ -433,13 +433,13 @@ static void a_silent_server_is_connected_to_anew(void **state)
     struct wb_outbox outbox = {0};
     const struct wb_rig rig = rig_of("udp:10.0.0.2:1510");
     memset(&collect, 0, sizeof collect);
-    void *const driver = collect_open(&wb_driver_natnet, &rig);
-    wb_driver_natnet.start(driver, 0, &outbox);
+    void *const driver = collect_open(&wb_natnet_client, &rig);
+    wb_natnet_client.start(driver, 0, &outbox);
     receive(driver, 10 * MS, server_info(3, 0, false));
     int n_connects = 0;
     for (int64_t t = 20; t < 4500; t += 20) {
         wb_outbox_clear(&outbox);
-        wb_driver_natnet.tick(driver, t * MS, &outbox);
+        wb_natnet_client.tick(driver, t * MS, &outbox);
         for (size_t i = 0; i < outbox.n_entries; i++)
             n_connects += message_of(&outbox, i) == WB_NATNET_CONNECT;
     }
@@ -453,7 +453,7 @@ static void a_silent_server_is_connected_to_anew(void **state)
     receive(driver, 4502 * MS, frame_of(4, 1));
     assert_int_equal(collect.n_mocap, 1);
     wb_outbox_clear(&outbox);
-    wb_driver_natnet.stop(driver, &outbox);
+    wb_natnet_client.stop(driver, &outbox);
     assert_int_equal(message_of(&outbox, 0), WB_NATNET_DISCONNECT);
     free(driver);
 }

@@ -3,6 +3,7 @@
 
 #include "base/interrupt.h"
 #include "base/progress.h"
+#include "daq/drivers.h"
 #include "daq/replay.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
@@ -113,7 +114,7 @@ static struct log *feed_directly(struct wb_recording *recording, const struct wb
 {
     struct log *log = calloc(1, sizeof *log);
     assert_non_null(log);
-    struct feeding feeding = {.driver = {&wb_driver_generic, &wb_driver_natnet, &wb_driver_grbl},
+    struct feeding feeding = {.driver = {&wb_loadcell_generic, &wb_natnet_client, &wb_stage_grbl},
                               .sink = {log, take_load, take_mocap, take_stage, NULL, take_remark}};
     /* A live driver has said hello before it hears anything. */
     struct wb_outbox outbox;

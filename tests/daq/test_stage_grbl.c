@@ -1,5 +1,5 @@
 #include "base/units.h"
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "tests/check.h"
 #include "tests/daq/collect.h"
 
@@ -15,18 +15,18 @@ static void *open_stage(char axis, int down)
     rig.stage.down = down;
     memset(&collect, 0, sizeof collect);
     wb_outbox_clear(&outbox);
-    return collect_open(&wb_driver_grbl, &rig);
+    return collect_open(&wb_stage_grbl, &rig);
 }
 
 static void feed(void *driver, int64_t t_ns, const char *text)
 {
     const struct wb_sink sink = collect_sink(&collect);
-    wb_driver_grbl.receive(driver, t_ns, (const uint8_t *)text, strlen(text), &sink);
+    wb_stage_grbl.receive(driver, t_ns, (const uint8_t *)text, strlen(text), &sink);
 }
 
 static enum wb_status command(void *driver, enum wb_stage_command what)
 {
-    return wb_driver_grbl.command(driver, what, 0.002, 0.001, &outbox);
+    return wb_stage_grbl.command(driver, what, 0.002, 0.001, &outbox);
 }
 
 static void assert_sent(const char *expected)
@@ -49,7 +49,7 @@ static void reports_become_samples_of_the_tests_axis(void **state)
 {
     (void)state;
     void *const driver = open_stage('Y', -1);
-    assert_false(wb_driver_grbl.ready(driver));
+    assert_false(wb_stage_grbl.ready(driver));
     feed(driver, 5 * MS, "<Jog|MPos:1.000,-25.");
     assert_int_equal(collect.n_stage, 0);
     feed(driver, 6 * MS, "500,3.000|FS:60,0>\r\n");
@@ -58,7 +58,7 @@ static void reports_become_samples_of_the_tests_axis(void **state)
     assert_int_equal(collect.stage[0].state, WB_STAGE_JOG);
     assert_close(collect.stage[0].position, -0.0255, 1e-15); /* machine position, sign as sent */
     assert_int_equal(collect.stage[0].alarm, 0);
-    assert_true(wb_driver_grbl.ready(driver));
+    assert_true(wb_stage_grbl.ready(driver));
     free(driver);
 }
 
@@ -121,11 +121,11 @@ static void status_is_polled_at_5_hz_and_at_10_hz_after_a_hold(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
-    wb_driver_grbl.start(driver, 0, &outbox);
+    wb_stage_grbl.start(driver, 0, &outbox);
     assert_sent("?");
     int n = 0;
     for (int64_t t = 0; t <= 1000; t += 20) {
-        wb_driver_grbl.tick(driver, t * MS, &outbox);
+        wb_stage_grbl.tick(driver, t * MS, &outbox);
         n += (int)outbox.n_entries;
         wb_outbox_clear(&outbox);
     }
@@ -134,7 +134,7 @@ static void status_is_polled_at_5_hz_and_at_10_hz_after_a_hold(void **state)
     wb_outbox_clear(&outbox);
     n = 0;
     for (int64_t t = 1000; t < 2000; t += 20) {
-        wb_driver_grbl.tick(driver, t * MS, &outbox);
+        wb_stage_grbl.tick(driver, t * MS, &outbox);
         n += (int)outbox.n_entries;
         wb_outbox_clear(&outbox);
     }
@@ -201,14 +201,14 @@ static void a_lost_reply_does_not_lock_the_stage_out(void **state)
     int n_messages = 0;
     wb_log_set_sink(ignore_messages, &n_messages);
     void *const driver = open_stage('X', 1);
-    wb_driver_grbl.start(driver, 0, &outbox);
+    wb_stage_grbl.start(driver, 0, &outbox);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
-    wb_driver_grbl.tick(driver, 1900 * MS, &outbox);
+    wb_stage_grbl.tick(driver, 1900 * MS, &outbox);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
-    wb_driver_grbl.tick(driver, 2100 * MS, &outbox);
+    wb_stage_grbl.tick(driver, 2100 * MS, &outbox);
     assert_int_equal(n_messages, 1);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_HOME), WB_OK);
-    wb_driver_grbl.tick(driver, 60000 * MS, &outbox); /* homing takes its time */
+    wb_stage_grbl.tick(driver, 60000 * MS, &outbox); /* homing takes its time */
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
     wb_log_set_sink(NULL, NULL);
     free(driver);
@@ -220,9 +220,9 @@ static void impossible_jogs_are_refused(void **state)
     int n_messages = 0;
     wb_log_set_sink(ignore_messages, &n_messages);
     void *const driver = open_stage('X', 1);
-    assert_int_equal(wb_driver_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-7, 1e-3, &outbox),
+    assert_int_equal(wb_stage_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-7, 1e-3, &outbox),
                      WB_ERR_ARGUMENT);
-    assert_int_equal(wb_driver_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-3, 0.0, &outbox),
+    assert_int_equal(wb_stage_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-3, 0.0, &outbox),
                      WB_ERR_ARGUMENT);
     assert_int_equal(n_messages, 2);
     assert_int_equal(outbox.n_entries, 0);

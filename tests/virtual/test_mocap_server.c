@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "daq/natnet_encode.h"
 #include "fixtures/virtual/random.h"
 #include "tests/virtual/setup.h"
@@ -83,11 +83,11 @@ static void open_scene(struct scene *scene, struct wb_natnet_version version)
     scene->address.sin_family = AF_INET;
     scene->address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     scene->address.sin_port = htons((uint16_t)wb_mocap_server_port(scene->server));
-    scene->state = calloc(1, wb_driver_natnet.state_size);
+    scene->state = calloc(1, wb_natnet_client.state_size);
     assert_non_null(scene->state);
-    assert_int_equal(wb_driver_natnet.init(scene->state, &scene->setup.rig), WB_OK);
+    assert_int_equal(wb_natnet_client.init(scene->state, &scene->setup.rig), WB_OK);
     wb_outbox_clear(&outbox);
-    wb_driver_natnet.start(scene->state, 0, &outbox);
+    wb_natnet_client.start(scene->state, 0, &outbox);
     send_outbox(scene, &outbox);
 }
 
@@ -104,7 +104,7 @@ static void hear(struct scene *scene)
     const struct wb_sink sink = {
         .context = scene, .mocap = keep_frame, .probe = keep_probe, .remark = keep_remark};
     for (ssize_t n; (n = recv(scene->socket, bytes, sizeof bytes, 0)) >= 0;)
-        wb_driver_natnet.receive(scene->state, scene->now_ns, bytes, (size_t)n, &sink);
+        wb_natnet_client.receive(scene->state, scene->now_ns, bytes, (size_t)n, &sink);
 }
 
 /* One frame of life on both sides, on a clock of our own. */
@@ -114,7 +114,7 @@ static void turn(struct scene *scene)
     const double t = wb_sim_mocap_send_time(&scene->mocap, scene->k);
     scene->now_ns = wb_ns_from_seconds(t);
     wb_outbox_clear(&outbox);
-    wb_driver_natnet.tick(scene->state, scene->now_ns, &outbox);
+    wb_natnet_client.tick(scene->state, scene->now_ns, &outbox);
     send_outbox(scene, &outbox);
     wb_mocap_server_receive(scene->server, t, scene->now_ns);
     wb_sim_mocap_frame(&scene->mocap, scene->k++, &scene->view, &scene->frame);
@@ -201,7 +201,7 @@ static void a_client_that_says_goodbye_gets_no_more_frames(void **state)
     turn(scene);
     turn(scene);
     wb_outbox_clear(&outbox);
-    wb_driver_natnet.stop(scene->state, &outbox);
+    wb_natnet_client.stop(scene->state, &outbox);
     send_outbox(scene, &outbox);
     wb_mocap_server_receive(scene->server, 0.1, scene->now_ns);
     assert_int_equal(wb_mocap_server_clients(scene->server), 0);

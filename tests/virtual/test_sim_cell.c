@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "tests/virtual/setup.h"
 
 struct heard {
@@ -63,7 +63,7 @@ static void open_scene(struct scene *scene)
 {
     struct wb_outbox outbox;
     assert_int_equal(wb_sim_cell_init(&scene->cell, &scene->setup.truth, &scene->setup.rig), WB_OK);
-    scene->driver = wb_driver_find(WB_ROLE_LOAD, scene->setup.rig.load_cell.protocol);
+    scene->driver = wb_drivers_find(WB_ROLE_LOAD, scene->setup.rig.load_cell.protocol);
     assert_non_null(scene->driver);
     scene->state = calloc(1, scene->driver->state_size);
     assert_non_null(scene->state);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/units.h"
-#include "daq/driver.h"
+#include "daq/drivers.h"
 #include "daq/grbl.h"
 #include "fixtures/virtual/random.h"
 #include "tests/check.h"
@@ -450,8 +450,8 @@ static void exchange(struct driven *driven, struct wb_outbox *outbox)
     wb_sim_stage_receive(&driven->scene.stage, driven->scene.t, outbox->bytes, outbox->n_bytes);
     wb_outbox_clear(outbox);
     const char *const text = listen(&driven->scene);
-    wb_driver_grbl.receive(driven->state, driven->now_ns, (const uint8_t *)text, strlen(text),
-                           &sink);
+    wb_stage_grbl.receive(driven->state, driven->now_ns, (const uint8_t *)text, strlen(text),
+                          &sink);
 }
 
 static void live(struct driven *driven, double seconds)
@@ -460,7 +460,7 @@ static void live(struct driven *driven, double seconds)
     wb_outbox_clear(&outbox);
     for (int i = 0; i < (int)(seconds * 100.0); i++) {
         driven->now_ns += 10 * WB_NS_PER_MS;
-        wb_driver_grbl.tick(driven->state, driven->now_ns, &outbox);
+        wb_stage_grbl.tick(driven->state, driven->now_ns, &outbox);
         exchange(driven, &outbox);
     }
 }
@@ -470,7 +470,7 @@ static void command(struct driven *driven, enum wb_stage_command what, double di
 {
     struct wb_outbox outbox;
     wb_outbox_clear(&outbox);
-    assert_int_equal(wb_driver_grbl.command(driven->state, what, distance, speed, &outbox), WB_OK);
+    assert_int_equal(wb_stage_grbl.command(driven->state, what, distance, speed, &outbox), WB_OK);
     exchange(driven, &outbox);
 }
 
@@ -484,14 +484,14 @@ static void open_driven(struct driven *driven)
     rig.stage.down = 1;
     rig.time_scale = 1.0;
     open_scene(&driven->scene, &plain);
-    driven->state = calloc(1, wb_driver_grbl.state_size);
+    driven->state = calloc(1, wb_stage_grbl.state_size);
     assert_non_null(driven->state);
-    assert_int_equal(wb_driver_grbl.init(driven->state, &rig), WB_OK);
+    assert_int_equal(wb_stage_grbl.init(driven->state, &rig), WB_OK);
     wb_outbox_clear(&outbox);
-    wb_driver_grbl.start(driven->state, 0, &outbox);
+    wb_stage_grbl.start(driven->state, 0, &outbox);
     exchange(driven, &outbox);
     live(driven, 0.1);
-    assert_true(wb_driver_grbl.ready(driven->state));
+    assert_true(wb_stage_grbl.ready(driven->state));
 }
 
 static void the_real_driver_jogs_holds_resets_and_homes(void **state)

@@ -24,18 +24,6 @@ struct reading {
 
 /* --- single parts --- */
 
-static enum wb_status read_settings(const struct wb_config_node *node,
-                                    struct wb_recordings *campaign)
-{
-    const struct wb_calibrate_settings *const settings = &campaign->calibrate;
-    WB_TRY(wb_campaign_read_settings(node, &campaign->calibrate));
-    campaign->validate.straight = settings->straight;
-    campaign->validate.step = settings->step;
-    campaign->validate.n_elements = settings->n_elements;
-    campaign->validate.n_fibres = settings->n_fibres;
-    return WB_OK;
-}
-
 static enum wb_status read_limits(const struct wb_config_node *node, struct wb_recordings *campaign)
 {
     const struct wb_config_key keys[] = {
@@ -307,7 +295,7 @@ static enum wb_status read_campaign(struct reading *reading, const struct wb_con
         WB_CONFIG_NODE("wires", &wires),
     };
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
-    WB_TRY(read_settings(settings, campaign));
+    WB_TRY(wb_campaign_read_settings(settings, &campaign->calibrate));
     WB_TRY(read_limits(limits, campaign));
     WB_TRY(read_merits(reference, campaign));
     WB_TRY(read_index(reading, index));

@@ -82,7 +82,6 @@ struct wb_recordings {
     double validation_length;  /* m; 0: no validation */
     int samples;
     struct wb_calibrate_settings calibrate;
-    struct wb_validate_settings validate;
     double calibration_limit, validation_limit; /* of the RMS over F_max; 0: none */
     char reference_source[160];
     double reference_rms[2]; /* published range of the validation's RMS; 0: none */

@@ -16,19 +16,13 @@ static const char *state_text(enum wb_recordings_results_state state)
 
 static void put_settings(struct wb_json *root, const struct wb_recordings *campaign)
 {
-    const struct wb_calibrate_settings *const s = &campaign->calibrate;
+    const struct wb_calibrate_settings meant = wb_calibrate_settings_meant(&campaign->calibrate);
     struct wb_json *const settings = wb_json_set_object(root, "settings");
-    wb_json_set_number(settings, "elastic_zone", s->elastic_zone);
-    wb_json_set_number(settings, "yield_point",
-                       s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
-    wb_json_set_number(settings, "step_mm", s->step / WB_MM);
-    wb_json_set_boolean(settings, "straight", s->straight);
-    wb_json_set_boolean(settings, "restart", s->restart);
-    wb_json_set_integer(settings, "elements", s->n_elements ? s->n_elements : 50);
-    wb_json_set_integer(settings, "fibres", s->n_fibres ? s->n_fibres : 20);
-    wb_json_set_number(settings, "size_tolerance", s->size_tolerance);
-    wb_json_set_number(settings, "error_tolerance", s->error_tolerance);
-    wb_json_set_integer(settings, "max_iterations", s->max_iterations);
+    for (size_t i = 0; i < wb_calibrate_table.n; i++) {
+        const struct wb_setting *const row = &wb_calibrate_table.rows[i];
+        if (wb_setting_applies(row, WB_CALIBRATE_REPORT))
+            wb_setting_set_json(row, &meant, settings);
+    }
     struct wb_json *const limits = wb_json_set_object(root, "limits");
     if (campaign->calibration_limit > 0.0)
         wb_json_set_number(limits, "calibration_rms_max", campaign->calibration_limit);

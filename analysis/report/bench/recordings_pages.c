@@ -1069,9 +1069,9 @@ static void put_settings(struct wb_document *document, const struct wb_recording
                 "natural shape of the computed wire");
     put_setting(document, table, "Restart", s->restart ? "once" : "no",
                 "of the search, from its optimum");
-    snprintf(value, sizeof value, "%d", s->n_elements ? s->n_elements : 50);
+    snprintf(value, sizeof value, "%d", s->n_elements);
     put_setting(document, table, "Elements", value, "quadratic beam elements along the wire");
-    snprintf(value, sizeof value, "%d", s->n_fibres ? s->n_fibres : 20);
+    snprintf(value, sizeof value, "%d", s->n_fibres);
     put_setting(document, table, "Fibres", value, "integration points over the diameter");
     snprintf(value, sizeof value, "%g of the size, %g of the error", s->size_tolerance,
              s->error_tolerance);

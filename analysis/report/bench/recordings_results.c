@@ -117,8 +117,8 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
         wb_text_append(&test->problem, "%s", test->wanted->missing);
         return;
     }
-    struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
-    wb_reasons_begin(&reasons);
+    const struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
+    wb_reasons_listen(&reasons);
     const enum wb_status status =
         align(test, job->wire,
               job->calibrates ? campaign->calibration_length : campaign->validation_length);
@@ -143,14 +143,15 @@ static int usable_datasets(const struct wb_recordings_results_tests *tests,
 
 static enum wb_status calibrate(const struct wb_recordings *campaign,
                                 struct wb_recordings_results_wire *wire,
-                                const struct wb_dataset *const *datasets, int n)
+                                const struct wb_dataset *const *datasets, int n,
+                                struct wb_reason *why)
 {
     struct wb_calibrate_settings settings = campaign->calibrate;
     settings.progress = wb_campaign_go_on;
-    WB_TRY(wb_calibrate_run(&wire->calibration, datasets, n, &settings));
+    WB_TRY(wb_calibrate_run(&wire->calibration, datasets, n, &settings, why));
     wb_properties_from_result(&wire->calibration, &wire->properties);
     const enum wb_status status =
-        wb_validate_run(&wire->fit, &wire->properties, datasets, n, &campaign->validate);
+        wb_validate_run(&wire->fit, &wire->properties, datasets, n, &campaign->calibrate, why);
     if (status != WB_OK)
         wb_calibrate_result_release(&wire->calibration);
     return status;
@@ -173,19 +174,16 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
         free(datasets);
         return WB_RECORDINGS_MISSING;
     }
-    struct wb_reasons reasons = {problem, NULL, NULL};
-    wb_reasons_begin(&reasons);
-    const enum wb_status status = calibrates ? calibrate(campaign, wire, datasets, n)
-                                             : wb_validate_run(&wire->validation, &wire->properties,
-                                                               datasets, n, &campaign->validate);
-    wb_reasons_end();
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = calibrates
+                                      ? calibrate(campaign, wire, datasets, n, &why)
+                                      : wb_validate_run(&wire->validation, &wire->properties,
+                                                        datasets, n, &campaign->calibrate, &why);
     free(datasets);
-    if (status == WB_OK) {
-        wb_text_release(problem);
+    if (status == WB_OK)
         return WB_RECORDINGS_DONE;
-    }
-    if (problem->length == 0)
-        wb_text_append(problem, "%s", wb_status_text(status));
+    const struct wb_reasons reasons = {problem, NULL, NULL};
+    wb_reasons_fail(&reasons, status, &why);
     return WB_RECORDINGS_FAILED;
 }
 

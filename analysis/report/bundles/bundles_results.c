@@ -165,15 +165,16 @@ static void judge(struct wb_bundles_results *results)
 /* The fitted beam's forces on the grid of the run's curve. */
 static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
                                      const struct wb_bundles_result *run,
-                                     const struct wb_calibrate_settings *settings)
+                                     const struct wb_calibrate_settings *settings,
+                                     struct wb_reason *why)
 {
-    const struct wb_computed_settings how = {.n_elements = settings->n_elements,
-                                             .n_fibres = settings->n_fibres};
+    const struct wb_computed_settings how = {
+        .n_elements = settings->n_elements, .n_fibres = settings->n_fibres, .why = why};
     struct wb_computed *computed;
     int n_reached;
     fit->force = malloc((size_t)run->curve.n * sizeof *fit->force);
     if (!fit->force)
-        return wb_fail(WB_ERR_MEMORY, "out of memory fitting a bundle");
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory fitting a bundle");
     WB_TRY(
         wb_computed_create(&computed, &run->simulation.dataset.info, &fit->result.material, &how));
     const enum wb_status status = wb_computed_curve(computed, &fit->result.material, run->curve.n,
@@ -183,15 +184,15 @@ static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
 }
 
 static enum wb_status calibrate(struct wb_bundles_fit *fit, const struct wb_bundles_result *run,
-                                const struct wb_calibrate_settings *settings)
+                                const struct wb_calibrate_settings *settings, struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &run->simulation.dataset;
     struct wb_calibrate_settings own = *settings;
     own.progress = wb_campaign_go_on;
-    WB_TRY(wb_calibrate_run(&fit->result, &dataset, 1, &own));
+    WB_TRY(wb_calibrate_run(&fit->result, &dataset, 1, &own, why));
     fit->rigidity = wb_bundles_results_rigidity(fit->result.material.youngs_modulus,
                                                 dataset->info.outer_diameter);
-    const enum wb_status status = compute_fitted(fit, run, settings);
+    const enum wb_status status = compute_fitted(fit, run, settings, why);
     if (status != WB_OK)
         wb_calibrate_result_release(&fit->result);
     return status;
@@ -208,30 +209,26 @@ static void fit_bundle(struct wb_bundles_results *results, int index)
         wb_text_append(&fit->problem, "the bundle's dataset that it builds on is missing");
         return;
     }
-    struct wb_reasons reasons = {&fit->problem, NULL, NULL};
-    wb_reasons_begin(&reasons);
-    const enum wb_status status = calibrate(fit, run, &campaign->fit);
-    wb_reasons_end();
+    const struct wb_reasons reasons = {&fit->problem, NULL, NULL};
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = calibrate(fit, run, &campaign->fit, &why);
     fit->state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
-    if (status == WB_OK)
-        wb_text_release(&fit->problem);
-    else if (fit->problem.length == 0)
-        wb_text_append(&fit->problem, "%s", wb_status_text(status));
+    if (status != WB_OK)
+        wb_reasons_fail(&reasons, status, &why);
 }
 
 /* A dataset that cannot be compared is refused with the reason. */
 static void compare_run(struct wb_bundles_result *result, const struct wb_bundles_run *run,
                         const struct wb_calibrate_settings *fit)
 {
-    struct wb_reasons reasons = {&result->simulation.problem, run->dataset.path, run->dataset.name};
-    wb_reasons_begin(&reasons);
-    const enum wb_status status = wb_bundles_run_compare(result, run, fit);
-    wb_reasons_end();
+    const struct wb_reasons reasons = {&result->simulation.problem, run->dataset.path,
+                                       run->dataset.name};
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = wb_bundles_run_compare(result, run, fit, &why);
     if (status == WB_OK)
         return;
     result->simulation.state = WB_SIMULATION_REFUSED;
-    if (result->simulation.problem.length == 0)
-        wb_text_append(&result->simulation.problem, "%s", wb_status_text(status));
+    wb_reasons_fail(&reasons, status, &why);
 }
 
 /* --- all of it --- */

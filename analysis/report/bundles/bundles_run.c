@@ -60,24 +60,25 @@ static bool is_same(double a, double b)
     return fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
 }
 
-static enum wb_status check_settings(const struct setting *settings, size_t n)
+static enum wb_status check_settings(const struct setting *settings, size_t n,
+                                     struct wb_reason *why)
 {
     for (size_t i = 0; i < n; i++) {
         if (!is_same(settings[i].stored, settings[i].wanted))
-            return wb_fail(WB_ERR_DATA, "%s is %.6g in it, and %.6g is wanted", settings[i].what,
-                           settings[i].stored, settings[i].wanted);
+            return wb_fail_to(why, WB_ERR_DATA, "%s is %.6g in it, and %.6g is wanted",
+                              settings[i].what, settings[i].stored, settings[i].wanted);
     }
     return WB_OK;
 }
 
 /* The same of a setting that dataset.json names as the bundle's file does. */
 static enum wb_status check_row(const struct wb_setting *row, const void *settings,
-                                const struct wb_json *simulation)
+                                const struct wb_json *simulation, struct wb_reason *why)
 {
     char problem[WB_SETTING_PROBLEM];
     if (wb_setting_is_same(row, settings, simulation, problem))
         return WB_OK;
-    return wb_fail(WB_ERR_DATA, "%s", problem);
+    return wb_fail_to(why, WB_ERR_DATA, "%s", problem);
 }
 
 static double largest_deflection(const struct wb_dataset *dataset)
@@ -90,7 +91,7 @@ static double largest_deflection(const struct wb_dataset *dataset)
 
 /* Whether the dataset is of this bundle as it is now, with the run's settings, and whole. */
 static enum wb_status check_run(const struct wb_bundles_result *result,
-                                const struct wb_bundles_run *run)
+                                const struct wb_bundles_run *run, struct wb_reason *why)
 {
     const struct wb_setting *const rows = wb_bundle_model_run_settings;
     const struct wb_bundle_model *const m = run->model;
@@ -103,35 +104,38 @@ static enum wb_status check_run(const struct wb_bundles_result *result,
     (void)wb_json_get_text(wb_json_get(simulation, "mesh"), "name", &mesh);
     (void)wb_json_get_text(simulation, "problem", &problem);
     if (strcmp(sha256, m->sha256) != 0)
-        return wb_fail(WB_ERR_DATA, "the bundle, its wires or its materials have changed since");
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the bundle, its wires or its materials have changed since");
     if (strcmp(mesh, m->run.mesh) != 0)
-        return wb_fail(WB_ERR_DATA, "its mesh is '%s', and '%s' is wanted", mesh, m->run.mesh);
+        return wb_fail_to(why, WB_ERR_DATA, "its mesh is '%s', and '%s' is wanted", mesh,
+                          m->run.mesh);
     const struct setting loads[] = {
         {"the strand's length (mm)", info->strand_length / WB_MM, m->loads.strand_length / WB_MM},
         {"gravity (m/s2)", info->gravity, m->loads.weight ? WB_STANDARD_GRAVITY : 0.0},
     };
-    WB_TRY(check_row(wb_bundle_model_friction_setting, interface, simulation));
-    WB_TRY(check_settings(loads, sizeof loads / sizeof loads[0]));
-    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, simulation));
-    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, simulation));
+    WB_TRY(check_row(wb_bundle_model_friction_setting, interface, simulation, why));
+    WB_TRY(check_settings(loads, sizeof loads / sizeof loads[0], why));
+    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_MASS_SCALING], &m->run, simulation, why));
+    WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_SELECTIVE], &m->run, simulation, why));
     const struct setting normal = {"the cohesive stiffness (N/mm3)",
                                    wb_simulation_number(cohesion, "normal_stiffness_N_mm3"),
                                    interface->normal_stiffness / WB_N_PER_MM3};
     if (m->has_tape)
-        WB_TRY(check_settings(&normal, 1));
+        WB_TRY(check_settings(&normal, 1, why));
     if (m->run.duration > 0.0)
-        WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_DURATION], &m->run, simulation));
+        WB_TRY(check_row(&rows[WB_BUNDLE_MODEL_DURATION], &m->run, simulation, why));
     else if (!result->kinetic_choice)
-        return wb_fail(WB_ERR_DATA, "its duration was given, and one that keeps kinetic energy "
-                                    "small is wanted");
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "its duration was given, and one that keeps kinetic energy "
+                          "small is wanted");
     if (!wb_dataset_is_complete(&result->simulation.dataset))
-        return wb_fail(WB_ERR_DATA, "it did not come to its end%s%s", problem[0] ? ": " : "",
-                       problem);
+        return wb_fail_to(why, WB_ERR_DATA, "it did not come to its end%s%s",
+                          problem[0] ? ": " : "", problem);
     return WB_OK;
 }
 
 static enum wb_status check_rod(const struct wb_bundles_result *result,
-                                const struct wb_bundles_run *run)
+                                const struct wb_bundles_run *run, struct wb_reason *why)
 {
     const struct wb_bundle_model *const m = run->model;
     const struct wb_wire *const beam = wb_bundles_published(run);
@@ -154,7 +158,7 @@ static enum wb_status check_rod(const struct wb_bundles_result *result,
         {"the hardening exponent", wb_simulation_number(simulation, "hardening_exponent"),
          beam->material.hardening_exponent},
     };
-    return check_settings(settings, sizeof settings / sizeof settings[0]);
+    return check_settings(settings, sizeof settings / sizeof settings[0], why);
 }
 
 /* --- energies.csv --- */
@@ -189,35 +193,39 @@ static bool parse_energy(char *line, struct wb_bundles_energy *energy)
     return true;
 }
 
-static enum wb_status parse_energies(struct wb_bundles_result *result, char *text, const char *path)
+static enum wb_status parse_energies(struct wb_bundles_result *result, char *text, const char *path,
+                                     struct wb_reason *why)
 {
     char *line = strsep(&text, "\n");
     result->energies = calloc(result->simulation.dataset.n_rows + 1, sizeof *result->energies);
     if (!result->energies)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading '%s'", path);
     if (strcmp(line, energies_header) != 0)
-        return wb_fail(WB_ERR_FORMAT, "%s:1: expected the columns %s", path, energies_header);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s:1: expected the columns %s", path,
+                          energies_header);
     while (text && (line = strsep(&text, "\n")) && line[0]) {
         const int n = result->n_energies;
         if (n == (int)result->simulation.dataset.n_rows)
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: more rows than force_deflection.csv", path,
-                           n + 2);
+            return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: more rows than force_deflection.csv",
+                              path, n + 2);
         if (!parse_energy(line, &result->energies[n]))
-            return wb_fail(WB_ERR_FORMAT, "%s:%d: expected %d numbers", path, n + 2, COLUMNS);
+            return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: expected %d numbers", path, n + 2,
+                              COLUMNS);
         result->n_energies++;
     }
     if (result->n_energies != (int)result->simulation.dataset.n_rows)
-        return wb_fail(WB_ERR_FORMAT, "%s:%d: expected a row: force_deflection.csv has %zu", path,
-                       result->n_energies + 2, result->simulation.dataset.n_rows);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: expected a row: force_deflection.csv has %zu",
+                          path, result->n_energies + 2, result->simulation.dataset.n_rows);
     return WB_OK;
 }
 
-static enum wb_status read_energies(struct wb_bundles_result *result, const char *folder)
+static enum wb_status read_energies(struct wb_bundles_result *result, const char *folder,
+                                    struct wb_reason *why)
 {
     char path[WB_PATH], *text;
     WB_TRY(wb_file_join(path, folder, "energies.csv"));
-    WB_TRY(wb_file_read(path, &text, NULL));
-    const enum wb_status status = parse_energies(result, text, path);
+    WB_TRY(wb_file_read_with_reason(path, &text, NULL, why));
+    const enum wb_status status = parse_energies(result, text, path, why);
     free(text);
     return status;
 }
@@ -231,31 +239,31 @@ struct loading {
     const char *folder;
 };
 
-static enum wb_status check_bundle(void *context, bool *stale)
+static enum wb_status check_bundle(void *context, bool *stale, struct wb_reason *why)
 {
     const struct loading *const loading = context;
     if (!wb_simulation_is_solved_by(&loading->result->simulation, "bundle"))
-        return wb_fail(WB_ERR_DATA, "it was not made by 'solve bundle'");
+        return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve bundle'");
     read_numbers(loading->result);
-    const enum wb_status status = check_run(loading->result, loading->run);
+    const enum wb_status status = check_run(loading->result, loading->run, why);
     *stale = status != WB_OK;
     return status;
 }
 
-static enum wb_status take_bundle(void *context)
+static enum wb_status take_bundle(void *context, struct wb_reason *why)
 {
     const struct loading *const loading = context;
-    WB_TRY(read_energies(loading->result, loading->folder));
-    return wb_surface_read(&loading->result->surface, loading->folder);
+    WB_TRY(read_energies(loading->result, loading->folder, why));
+    return wb_surface_read(&loading->result->surface, loading->folder, why);
 }
 
-static enum wb_status check_beam(void *context, bool *stale)
+static enum wb_status check_beam(void *context, bool *stale, struct wb_reason *why)
 {
     const struct loading *const loading = context;
     if (!wb_simulation_is_solved_by(&loading->result->simulation, "cantilever"))
-        return wb_fail(WB_ERR_DATA, "it was not made by 'solve cantilever'");
+        return wb_fail_to(why, WB_ERR_DATA, "it was not made by 'solve cantilever'");
     read_numbers(loading->result);
-    const enum wb_status status = check_rod(loading->result, loading->run);
+    const enum wb_status status = check_rod(loading->result, loading->run, why);
     *stale = status != WB_OK;
     return status;
 }
@@ -293,11 +301,12 @@ void wb_bundles_run_release(struct wb_bundles_result *result)
 
 static enum wb_status compute_published(struct wb_bundles_result *result,
                                         const struct wb_wire *beam,
-                                        const struct wb_calibrate_settings *fit)
+                                        const struct wb_calibrate_settings *fit,
+                                        struct wb_reason *why)
 {
     const struct wb_curve *const curve = &result->curve;
-    const struct wb_computed_settings how = {.n_elements = fit->n_elements,
-                                             .n_fibres = fit->n_fibres};
+    const struct wb_computed_settings how = {
+        .n_elements = fit->n_elements, .n_fibres = fit->n_fibres, .why = why};
     struct wb_test_info info = result->simulation.dataset.info;
     struct wb_computed *computed;
     info.outer_diameter = beam->outer_diameter;
@@ -311,11 +320,13 @@ static enum wb_status compute_published(struct wb_bundles_result *result,
 
 enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
                                       const struct wb_bundles_run *run,
-                                      const struct wb_calibrate_settings *fit)
+                                      const struct wb_calibrate_settings *fit,
+                                      struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &result->simulation.dataset;
     const struct wb_wire *const beam = wb_bundles_published(run);
-    WB_TRY(wb_curve_average(&result->curve, &dataset, 1, fit->step));
+    const struct wb_curve_grid grid = {.step = fit->step};
+    WB_TRY(wb_curve_average_on(&result->curve, &dataset, 1, &grid, why));
     result->rms = result->max_error = result->published_max = (double)NAN;
     if (!beam)
         return WB_OK;
@@ -323,8 +334,8 @@ enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
     result->published = malloc((size_t)n * sizeof *result->published);
     result->error = malloc((size_t)n * sizeof *result->error);
     if (!result->published || !result->error)
-        return wb_fail(WB_ERR_MEMORY, "out of memory comparing a bundle");
-    WB_TRY(compute_published(result, beam, fit));
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory comparing a bundle");
+    WB_TRY(compute_published(result, beam, fit, why));
     if (result->n_published < n)
         return WB_OK;
     result->published_max = 0.0;

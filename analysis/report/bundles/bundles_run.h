@@ -10,6 +10,7 @@
 #include "analysis/dataset.h"
 #include "analysis/report/bundles/bundles.h"
 #include "analysis/surface.h"
+#include "base/reason.h"
 #include "base/text.h"
 
 /* A row of energies.csv, J. */
@@ -55,7 +56,8 @@ void wb_bundles_run_release(struct wb_bundles_result *result); /* accepts a zero
  * fit's grid and computes the published curve on it. */
 WB_MUST_CHECK enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
                                                     const struct wb_bundles_run *run,
-                                                    const struct wb_calibrate_settings *fit);
+                                                    const struct wb_calibrate_settings *fit,
+                                                    struct wb_reason *why);
 
 /* What a run costs, beside others: its elements, and twice as much where the duration is to be
  * found first. */

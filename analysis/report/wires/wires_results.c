@@ -93,7 +93,8 @@ static enum wb_status compute_printed(struct wb_wires_results *results)
     return wb_wires_rod_compute(&results->tenfold, &wire);
 }
 
-static enum wb_status calibrate(struct wb_wires_results *results, const struct wb_wires_run *run)
+static enum wb_status calibrate(struct wb_wires_results *results, const struct wb_wires_run *run,
+                                struct wb_reason *why)
 {
     const struct wb_wires *const comparison = results->comparison;
     struct wb_wires_wire wire = wire_of(comparison, WB_WIRES_ELASTOPLASTIC);
@@ -102,7 +103,7 @@ static enum wb_status calibrate(struct wb_wires_results *results, const struct w
     settings.progress = wb_campaign_go_on;
     if (comparison->mixture)
         settings.youngs_modulus = wire.material.youngs_modulus;
-    WB_TRY(wb_calibrate_run(&results->fit, &dataset, 1, &settings));
+    WB_TRY(wb_calibrate_run(&results->fit, &dataset, 1, &settings, why));
     wire.material = results->fit.material;
     const enum wb_status status = wb_wires_rod_compute(&results->fitted, &wire);
     if (status != WB_OK)
@@ -119,15 +120,12 @@ static void fit(struct wb_wires_results *results)
         wb_text_append(&results->fit_problem, "the solid's dataset that it builds on is missing");
         return;
     }
-    struct wb_reasons reasons = {&results->fit_problem, NULL, NULL};
-    wb_reasons_begin(&reasons);
-    const enum wb_status status = calibrate(results, run);
-    wb_reasons_end();
+    const struct wb_reasons reasons = {&results->fit_problem, NULL, NULL};
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = calibrate(results, run, &why);
     results->fit_state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
-    if (status == WB_OK)
-        wb_text_release(&results->fit_problem);
-    else if (results->fit_problem.length == 0)
-        wb_text_append(&results->fit_problem, "%s", wb_status_text(status));
+    if (status != WB_OK)
+        wb_reasons_fail(&reasons, status, &why);
 }
 
 double wb_wires_split(const struct wb_wire_model *model, double change)

@@ -27,46 +27,48 @@ static void read_simulation(struct wb_wires_run *run)
 
 /* Whether the dataset is of this model as it is now, and whole. */
 static enum wb_status check_simulation(struct wb_wires_run *run, const struct wb_wires_case *item,
-                                       enum wb_wires_solver solver)
+                                       enum wb_wires_solver solver, struct wb_reason *why)
 {
     const struct wb_json *const simulation = wb_simulation_of(&run->simulation);
     const struct wb_test_info *const info = &run->simulation.dataset.info;
     const char *sha256 = "", *made_by = "", *problem = "";
     if (!info->is_simulation || !simulation || !wb_json_get_text(simulation, "model", &made_by) ||
         !wb_json_get_text(simulation, "sha256", &sha256))
-        return wb_fail(WB_ERR_DATA, "it does not say of which model it is a simulation");
+        return wb_fail_to(why, WB_ERR_DATA, "it does not say of which model it is a simulation");
     if (strcmp(made_by, wb_wires_command(solver)) != 0)
-        return wb_fail(WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
-                       wb_wires_command(solver));
+        return wb_fail_to(why, WB_ERR_DATA, "it was made by 'solve %s', not by 'solve %s'", made_by,
+                          wb_wires_command(solver));
     run->is_stale = strcmp(sha256, item->model->sha256) != 0;
     if (run->is_stale)
-        return wb_fail(WB_ERR_DATA, "the model, its wire or its materials have changed since");
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the model, its wire or its materials have changed since");
     (void)wb_json_get_text(simulation, "problem", &problem);
     run->is_cut_short = !wb_dataset_is_complete(&run->simulation.dataset);
     if (run->is_cut_short)
-        return wb_fail(WB_ERR_DATA, "it did not converge to its end%s%s", problem[0] ? ": " : "",
-                       problem);
+        return wb_fail_to(why, WB_ERR_DATA, "it did not converge to its end%s%s",
+                          problem[0] ? ": " : "", problem);
     return WB_OK;
 }
 
 /* State and axis at the end of the history. */
-static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model)
+static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model,
+                               struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &run->simulation.dataset;
     const double force = model->step[model->n_steps - 1].loads.follower[1];
     if (dataset->n_rows == 0 || dataset->n_shape_rows < 2)
-        return wb_fail(WB_ERR_DATA, "it has no rows or no shapes");
+        return wb_fail_to(why, WB_ERR_DATA, "it has no rows or no shapes");
     const struct wb_row *const last = &dataset->rows[dataset->n_rows - 1];
     size_t first = dataset->n_shape_rows;
     while (first > 0 && dataset->shape_rows[first - 1].t == last->t)
         first--;
     const size_t n = dataset->n_shape_rows - first;
     if (n < 2)
-        return wb_fail(WB_ERR_DATA, "it has no shape of its last row");
+        return wb_fail_to(why, WB_ERR_DATA, "it has no shape of its last row");
     run->s = malloc(n * sizeof *run->s);
     run->shape = malloc(n * sizeof *run->shape);
     if (!run->s || !run->shape)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a dataset");
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading a dataset");
     for (size_t i = 0; i < n; i++) {
         const struct wb_shape_row *const row = &dataset->shape_rows[first + i];
         const double z = isfinite(row->z) ? row->z : 0.0;
@@ -78,8 +80,8 @@ static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_mo
     run->force = force;
     run->tip_angle = last->tip_angle;
     if (fabs(run->s[n - 1] - model->length) > 1e-6 * model->length)
-        return wb_fail(WB_ERR_DATA, "its shapes end at %g mm, not at the wire's tip",
-                       run->s[n - 1] / WB_MM);
+        return wb_fail_to(why, WB_ERR_DATA, "its shapes end at %g mm, not at the wire's tip",
+                          run->s[n - 1] / WB_MM);
     return WB_OK;
 }
 
@@ -97,7 +99,8 @@ static int row_before_loading(const struct wb_wires_run *run)
 
 /* Tips along the last step. Its rows stand at equal steps of the force when there are as many as
  * the model asks for; else the path was followed through a limit point. */
-static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wire_model *model)
+static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wire_model *model,
+                                   struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &run->simulation.dataset;
     const int first = row_before_loading(run), rows = model->step[model->n_steps - 1].rows;
@@ -106,7 +109,7 @@ static enum wb_status take_loading(struct wb_wires_run *run, const struct wb_wir
     run->loading = malloc(((size_t)rows + 1) * sizeof *run->loading);
     run->loaded = malloc(((size_t)rows + 1) * sizeof *run->loaded);
     if (!run->loading || !run->loaded)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading a dataset");
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading a dataset");
     size_t at = 0;
     for (int i = 0; i <= rows; i++) {
         const double t = dataset->rows[first + i].t;
@@ -147,23 +150,24 @@ struct loading {
     enum wb_wires_solver solver;
 };
 
-static enum wb_status check(void *context, bool *stale)
+static enum wb_status check(void *context, bool *stale, struct wb_reason *why)
 {
     const struct loading *const loading = context;
     read_simulation(loading->run);
-    const enum wb_status status = check_simulation(loading->run, loading->item, loading->solver);
+    const enum wb_status status =
+        check_simulation(loading->run, loading->item, loading->solver, why);
     *stale = loading->run->is_stale || loading->run->is_cut_short;
     return status;
 }
 
-static enum wb_status take(void *context)
+static enum wb_status take(void *context, struct wb_reason *why)
 {
     const struct loading *const loading = context;
     const struct wb_wire_model *const model = loading->item->model;
     struct wb_wires_run *const run = loading->run;
-    WB_TRY(take_end(run, model));
-    WB_TRY(take_loading(run, model));
-    WB_TRY(wb_fields_read(&run->fields, loading->item->datasets[loading->solver].path));
+    WB_TRY(take_end(run, model, why));
+    WB_TRY(take_loading(run, model, why));
+    WB_TRY(wb_fields_read(&run->fields, loading->item->datasets[loading->solver].path, why));
     keep_to_law(&run->fields, model);
     return WB_OK;
 }

@@ -3,6 +3,7 @@
 #include <lapacke.h>
 #include <stdlib.h>
 
+#include "fe/linear/layered_private.h"
 #include "tests/check.h"
 
 enum {

@@ -606,7 +606,8 @@ static void wrong_interfaces_are_refused(void **state)
            ":18: fracture_energy_N_mm: 0.066 N/mm is not more than the 0.0666667 N/mm");
     refuse(full, "shear_strength_MPa: 1, fracture_energy_N_mm: 0.3",
            "shear_strength_MPa: 5, fracture_energy_N_mm: 0.3", ":18: fracture_energy_N_mm: ");
-    refuse(full, "kinetic: 0.1", "kinetic: 0.5", ":19: kinetic: 0.5 is more than the static one, 0.4");
+    refuse(full, "kinetic: 0.1", "kinetic: 0.5",
+           ":19: kinetic: 0.5 is more than the static one, 0.4");
     refuse(full, "decay_s_mm: 2", "decay: 2", ":19: decay: ");
     refuse(full, "static: 0.4, ", "", ":19: static: this key is missing");
     refuse(full, "{static: 0.4, kinetic: 0.1, decay_s_mm: 2}", "-0.1", ":19: friction: ");
@@ -676,6 +677,40 @@ static int remove_folder(void **state)
     return rmdir(folder);
 }
 
+/* Each is a way to change a number that the model's results depend on. */
+static void every_setting_is_part_of_the_identity(void **unused)
+{
+    (void)unused;
+    static struct wb_bundle_model changed[17];
+    char first[WB_SHA256_TEXT], other[WB_SHA256_TEXT];
+    read_text(bare);
+    for (size_t i = 0; i < WB_COUNT(changed); i++)
+        changed[i] = model;
+    changed[0].run.mesh[0] = 'x';
+    changed[1].run.deflection *= 1.0 + 1e-15;
+    changed[2].run.rows++;
+    changed[3].run.cycles++;
+    changed[4].run.duration += 1.0;
+    changed[5].run.mass_scaling += 1.0;
+    changed[6].run.selective += 1.0;
+    changed[7].run.kinetic_limit *= 2.0;
+    changed[8].run.double_precision = !model.run.double_precision;
+    changed[9].loads.strand_length += 1e-3;
+    changed[10].loads.weight = !model.loads.weight;
+    changed[11].interface.friction_static += 0.1;
+    changed[12].interface.friction_kinetic += 0.1;
+    changed[13].interface.friction_decay += 1.0;
+    changed[14].interface.normal_stiffness *= 2.0;
+    changed[15].interface.shear_stiffness *= 2.0;
+    changed[16].sha256[0] = model.sha256[0] == 'a' ? 'b' : 'a';
+    wb_bundle_model_identify(&model, first);
+    for (size_t i = 0; i < WB_COUNT(changed); i++) {
+        wb_bundle_model_identify(&changed[i], other);
+        if (strcmp(first, other) == 0)
+            fail_msg("change %zu does not show", i);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -704,6 +739,7 @@ int main(void)
         cmocka_unit_test(wrong_interfaces_are_refused),
         cmocka_unit_test(wrong_runs_are_refused),
         cmocka_unit_test(the_checksum_covers_the_files_it_names),
+        cmocka_unit_test(every_setting_is_part_of_the_identity),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

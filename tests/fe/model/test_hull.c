@@ -30,6 +30,21 @@ static void check_turn(void)
     assert_close(hull.arc[hull.n_arcs - 1].to, hull.arc[0].from + 2.0 * M_PI, 1e-12);
 }
 
+/* What the outline encloses, m2. */
+static double area_of(const struct wb_hull *of, double offset)
+{
+    double sum = 0.0;
+    for (int k = 0; k < of->n_arcs; k++) {
+        const struct wb_hull_arc *const arc = &of->arc[k];
+        const struct wb_packing_circle *const wire = &of->packing.wire[arc->wire];
+        const double R = wire->radius + offset;
+        sum += R * (wire->z * (sin(arc->to) - sin(arc->from)) -
+                    wire->y * (cos(arc->to) - cos(arc->from)) + R * (arc->to - arc->from));
+        sum += (wire->z * cos(arc->to) + wire->y * sin(arc->to) + R) * arc->straight;
+    }
+    return 0.5 * sum;
+}
+
 static void seven_wires_touch_over_sixty_degrees(void **state)
 {
     (void)state;
@@ -38,7 +53,7 @@ static void seven_wires_touch_over_sixty_degrees(void **state)
     check_turn();
     assert_int_equal(hull.n_arcs, 6);
     assert_close(wb_hull_length(&hull, 0.0), (6.0 + M_PI) * d, 1e-15);
-    assert_close(wb_hull_area(&hull, 0.0), (1.5 * sqrt(3.0) + 3.0 + M_PI / 4.0) * d * d, 1e-18);
+    assert_close(area_of(&hull, 0.0), (1.5 * sqrt(3.0) + 3.0 + M_PI / 4.0) * d * d, 1e-18);
     assert_close(wb_hull_contact(&hull, 0, &touches), 0.0, 0.0);
     assert_false(touches);
     for (int i = 1; i < 7; i++) {
@@ -92,7 +107,7 @@ static void one_wire_is_its_own_outline(void **state)
     check_turn();
     assert_int_equal(hull.n_arcs, 1);
     assert_close(wb_hull_length(&hull, 0.0), M_PI * d, 1e-15);
-    assert_close(wb_hull_area(&hull, 0.0), M_PI * d * d / 4.0, 1e-18);
+    assert_close(area_of(&hull, 0.0), M_PI * d * d / 4.0, 1e-18);
 }
 
 /* An open belt round two pulleys. */
@@ -205,7 +220,7 @@ static void check_points(const struct wb_packing *packing, double offset)
     assert_close_relative(moments.yy, yy, 1e-5);
     assert_close_relative(moments.zz, zz, 1e-5);
     assert_close_relative(walked, length, 1e-5);
-    assert_close_relative(area, wb_hull_area(&hull, offset), 1e-5);
+    assert_close_relative(area, area_of(&hull, offset), 1e-5);
 }
 
 static void outlines_of_any_circles(void **state)
@@ -232,8 +247,7 @@ static void an_outline_farther_out_is_longer_by_its_turn(void **state)
     find_lattice(12, WB_PACKING_TRIANGLE);
     const double t = 0.2e-3, length = wb_hull_length(&hull, 0.0);
     assert_close(wb_hull_length(&hull, t), length + 2.0 * M_PI * t, 1e-15);
-    assert_close(wb_hull_area(&hull, t), wb_hull_area(&hull, 0.0) + length * t + M_PI * t * t,
-                 1e-18);
+    assert_close(area_of(&hull, t), area_of(&hull, 0.0) + length * t + M_PI * t * t, 1e-18);
 }
 
 static void the_outline_goes_on_after_a_turn(void **state)

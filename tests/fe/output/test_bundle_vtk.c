@@ -1,6 +1,7 @@
 /* States of bundles as files of VTK, read back by their own heads. */
 #include "fe/output/bundle_vtk.h"
 
+#include "fe/output/bundle_vtk_private.h"
 #include "tests/fe/bundle/bundles.h"
 
 #define TWO                                                                                        \

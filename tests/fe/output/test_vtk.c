@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "fe/output/vtk_private.h"
 #include "tests/check.h"
 
 static char folder[64];

@@ -1,6 +1,7 @@
 #include "fe/rod/beam.h"
 
 #include "fe/linear/banded.h"
+#include "fe/rod/beam_private.h"
 #include "tests/fe/rod/wires.h"
 
 static struct wb_beam *make_beam(const struct wb_section *section, int n_elements)

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "fe/rod/fibres_private.h"
 #include "tests/fe/rod/wires.h"
 
 /* One section point with its history. */
@@ -42,67 +43,15 @@ static void accept(struct point *p)
     p->after = old;
 }
 
-/* A core of copper with Bauschinger effect and isotropic hardening side by side, in a jacket. */
-static struct wb_section composite(void)
-{
-    const struct wb_material kinematic = {
-        WB_HARDENING_KINEMATIC_LINEAR, 12000e6, 0.35, 9e6, 700e6, 0.0};
-    const struct wb_material isotropic = {
-        WB_HARDENING_ISOTROPIC_POWER, 9000e6, 0.35, 5e6, 1500e6, 0.6};
-    const struct wb_material jacket = {WB_HARDENING_NONE_ELASTIC, 30e6, 0.45, 0.0, 0.0, 0.0};
-    struct wb_section s;
-    wb_section_init_empty(&s);
-    assert_int_equal(wb_section_add_ring(&s, 0.0, 0.7e-3, &kinematic, 0.5, 20), WB_OK);
-    assert_int_equal(wb_section_add_ring(&s, 0.0, 0.7e-3, &isotropic, 0.5, 20), WB_OK);
-    assert_int_equal(wb_section_add_ring(&s, 0.7e-3, 1.1e-3, &jacket, 1.0, 12), WB_OK);
-    return s;
-}
-
-static void fast_kernel_agrees_with_its_slow_twin(void **unused)
-{
-    (void)unused;
-    uint64_t random = 42;
-    for (int trial = 0; trial < 40; trial++) {
-        struct test_wire wire = test_wire_type(1 + trial % 3);
-        wire.material.strength_coefficient = 1e6 * pow(10.0, 5.0 * test_random(&random));
-        wire.material.hardening_exponent = 0.05 + 1.45 * test_random(&random);
-        struct wb_section s = trial % 4 == 3 ? composite() : test_section(&wire);
-        struct point fast = make_point(&s), slow = make_point(&s);
-        wb_fibres_set_kernel(slow.fibres, WB_FIBRES_REFERENCE);
-        const double scale = wb_fibres_axial_stiffness(fast.fibres) * 1e-3;
-
-        for (int step = 0; step < 60; step++) {
-            const double eps = 2e-3 * (test_random(&random) - 0.5);
-            const double kappa = 80.0 * (test_random(&random) - 0.5);
-            const struct wb_fibres_response a = respond(&fast, eps, kappa);
-            const struct wb_fibres_response b = respond(&slow, eps, kappa);
-            assert_close(a.N, b.N, 1e-11 * scale);
-            assert_close(a.M, b.M, 1e-11 * scale * 1e-3);
-            assert_close(a.D11, b.D11, 1e-6 * scale);
-            assert_close(a.D12, b.D12, 1e-6 * scale * 1e-3);
-            assert_close(a.D22, b.D22, 1e-6 * scale * 1e-6);
-            if (step % 3 == 0) {
-                accept(&fast);
-                accept(&slow);
-            }
-        }
-        assert_close(wb_fibres_largest_plastic_strain(fast.fibres, fast.before),
-                     wb_fibres_largest_plastic_strain(slow.fibres, slow.before), 1e-12);
-        release_point(&fast);
-        release_point(&slow);
-        wb_section_release(&s);
-    }
-}
-
 static void vector_instructions_do_not_change_a_bit(void **unused)
 {
     (void)unused;
     uint64_t random = 43;
     for (int trial = 0; trial < 12; trial++) {
         const struct test_wire wire = test_wire_type(1 + trial % 3);
-        struct wb_section s = trial % 4 == 3 ? composite() : test_section(&wire);
+        struct wb_section s = trial % 4 == 3 ? test_composite_section() : test_section(&wire);
         struct point fastest = make_point(&s), portable = make_point(&s);
-        wb_fibres_set_kernel(portable.fibres, WB_FIBRES_PORTABLE);
+        wb_fibres_set_portable(portable.fibres);
         for (int step = 0; step < 200; step++) {
             const double eps = 2e-3 * (test_random(&random) - 0.5);
             /* Also beyond the table, where the law is solved. */
@@ -126,7 +75,7 @@ static void vector_instructions_do_not_change_a_bit(void **unused)
 static void tangent_is_the_derivative_of_the_resultants(void **unused)
 {
     (void)unused;
-    struct wb_section s = composite();
+    struct wb_section s = test_composite_section();
     struct point p = make_point(&s);
     respond(&p, 1e-3, 25.0);
     accept(&p);
@@ -246,25 +195,6 @@ static void springback_is_elastic(void **unused)
     wb_section_release(&s);
 }
 
-static void virgin_shortcut_is_seamless(void **unused)
-{
-    (void)unused;
-    const struct test_wire wire = test_wire_type(2);
-    struct wb_section s = test_section(&wire);
-    struct point p = make_point(&s), q = make_point(&s);
-    wb_fibres_set_kernel(q.fibres, WB_FIBRES_REFERENCE);
-    const double outermost = s.fibres[0].y;
-    const double limit = wire.material.yield_stress / wire.material.youngs_modulus / outermost;
-    for (int i = -3; i <= 3; i++) {
-        const double kappa = limit * (1.0 + 1e-6 * i);
-        const struct wb_fibres_response a = respond(&p, 0.0, kappa), b = respond(&q, 0.0, kappa);
-        assert_close_relative(a.M, b.M, 1e-13);
-    }
-    release_point(&p);
-    release_point(&q);
-    wb_section_release(&s);
-}
-
 static void exchanged_materials_act_like_new_ones(void **unused)
 {
     (void)unused;
@@ -287,14 +217,12 @@ static void exchanged_materials_act_like_new_ones(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fast_kernel_agrees_with_its_slow_twin),
         cmocka_unit_test(vector_instructions_do_not_change_a_bit),
         cmocka_unit_test(tangent_is_the_derivative_of_the_resultants),
         cmocka_unit_test(fully_plastic_moment_of_the_circle_is_four_thirds),
         cmocka_unit_test(rectangle_follows_its_closed_form),
         cmocka_unit_test(pure_power_law_moment_is_its_integral),
         cmocka_unit_test(springback_is_elastic),
-        cmocka_unit_test(virgin_shortcut_is_seamless),
         cmocka_unit_test(exchanged_materials_act_like_new_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

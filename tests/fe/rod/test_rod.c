@@ -2,6 +2,8 @@
 #include "fe/rod/rod.h"
 
 #include "fe/linear/banded.h"
+#include "fe/rod/rod_element_private.h"
+#include "fe/rod/rod_private.h"
 #include "tests/fe/rod/rods.h"
 
 static const struct wb_material copper = {

@@ -1,6 +1,8 @@
 /* Critical points of rods: moves end before them, and only there. */
 #include "tests/fe/rod/rods.h"
 
+#include "fe/rod/rod_private.h"
+
 static const struct wb_material elastic = {WB_HARDENING_NONE_ELASTIC, 13.84e9, 0.39, 0.0, 0.0, 0.0};
 
 static const double L = 0.1;

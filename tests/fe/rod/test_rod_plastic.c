@@ -3,6 +3,8 @@
 #include <stdlib.h>
 
 #include "base/json.h"
+#include "fe/rod/rod_element_private.h"
+#include "fe/rod/rod_private.h"
 #include "tests/fe/rod/rods.h"
 
 static const struct wb_material copper = {

@@ -198,13 +198,27 @@ static void solve_by_shooting(const struct shooting *p, double root[6], double y
     assert_true(size < 1e-9);
 }
 
+/* Of the virgin section. */
+static double torsion_stiffness(const struct wb_rod_section *section)
+{
+    const double none[WB_ROD_SECTION_STRAINS] = {0.0};
+    const size_t size = wb_rod_section_history_size(section);
+    double *const before = calloc(size, sizeof *before), *const after = calloc(size, sizeof *after);
+    struct wb_rod_section_response response;
+    assert_true(before && after);
+    wb_rod_section_respond(section, none, before, after, &response);
+    free(before);
+    free(after);
+    return response.tangent[1][1];
+}
+
 static struct shooting shooting_of(const struct test_rod *t, double length,
                                    const struct wb_tip_loads *tip)
 {
     return (struct shooting){
         .EA = wb_rod_section_axial_stiffness(t->section),
         .GA = wb_rod_section_shear_stiffness(t->section),
-        .GJ = wb_rod_section_torsion_stiffness(t->section),
+        .GJ = torsion_stiffness(t->section),
         .EI = wb_rod_section_bending_stiffness(t->section),
         .length = length,
         .tip = *tip,

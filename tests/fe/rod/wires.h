@@ -34,6 +34,22 @@ static inline struct wb_section test_section(const struct test_wire *wire)
     return section;
 }
 
+/* A core of copper with Bauschinger effect and isotropic hardening side by side, in a jacket. */
+static inline struct wb_section test_composite_section(void)
+{
+    const struct wb_material kinematic = {
+        WB_HARDENING_KINEMATIC_LINEAR, 12000e6, 0.35, 9e6, 700e6, 0.0};
+    const struct wb_material isotropic = {
+        WB_HARDENING_ISOTROPIC_POWER, 9000e6, 0.35, 5e6, 1500e6, 0.6};
+    const struct wb_material jacket = {WB_HARDENING_NONE_ELASTIC, 30e6, 0.45, 0.0, 0.0, 0.0};
+    struct wb_section s;
+    wb_section_init_empty(&s);
+    assert_int_equal(wb_section_add_ring(&s, 0.0, 0.7e-3, &kinematic, 0.5, 20), WB_OK);
+    assert_int_equal(wb_section_add_ring(&s, 0.0, 0.7e-3, &isotropic, 0.5, 20), WB_OK);
+    assert_int_equal(wb_section_add_ring(&s, 0.7e-3, 1.1e-3, &jacket, 1.0, 12), WB_OK);
+    return s;
+}
+
 static inline struct wb_cantilever *test_cantilever(const struct wb_cantilever_model *model)
 {
     struct wb_cantilever *cantilever = NULL;

@@ -8,6 +8,13 @@
 
 #include "fe/solid/hex20.h"
 
+/* Parent coordinates of the nodes, in the order of fe/solid/solid_mesh.h. */
+static const double test_node_place[20][3] = {
+    {-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},
+    {-1, 1, 1},   {0, -1, -1}, {1, 0, -1},  {0, 1, -1},  {-1, 0, -1}, {0, -1, 1}, {1, 0, 1},
+    {0, 1, 1},    {-1, 0, 1},  {-1, -1, 0}, {1, -1, 0},  {1, 1, 0},   {-1, 1, 0},
+};
+
 static inline double random_number(void) /* -1 to 1 */
 {
     return 2.0 * rand() / RAND_MAX - 1.0;
@@ -19,7 +26,7 @@ static inline void make_nodes(double distortion, double position[20][3])
     static const double size[3] = {2e-3, 3e-3, 1e-3};
     for (int a = 0; a < 20; a++) {
         for (int i = 0; i < 3; i++) {
-            const double place = wb_hex20_node_place[a][i] + distortion * random_number();
+            const double place = test_node_place[a][i] + distortion * random_number();
             position[a][i] = 0.5 * size[i] * place;
         }
     }

@@ -73,8 +73,9 @@ static bool twin_motion(const double *u, const double *gradient,
  * the deviatoric points: the element that locks. */
 static inline bool twin_evaluate(const struct wb_hex20_geometry *geometry, int points, bool full,
                                  const struct wb_material *material, const double *u,
-                                 const struct wb_hex20_state *before, struct wb_hex20_state *after,
-                                 double *force, double *stiffness)
+                                 const struct wb_solid_point_state *before,
+                                 struct wb_solid_point_state *after, double *force,
+                                 double *stiffness)
 {
     struct wb_solid_point_law law;
     struct wb_solid_point_motion motion;

@@ -75,7 +75,7 @@ static inline void unpack(const double t[6], real out[3][3])
 
 /* T of the log space, and the increment of p. */
 static inline real twin_log_stress(const struct wb_material *m, real E[3][3],
-                                   const struct wb_hex20_state *before, real T[3][3])
+                                   const struct wb_solid_point_state *before, real T[3][3])
 {
     const real mu = (real)m->youngs_modulus / (2 * (1 + (real)m->poissons_ratio));
     const real K = (real)m->strength_coefficient, n = (real)m->hardening_exponent;
@@ -109,7 +109,7 @@ static inline real twin_log_stress(const struct wb_material *m, real E[3][3],
 
 /* P = T : dE/dF by differences of fourth order, then tau = P F^T. */
 static inline void twin_stress(const struct wb_material *m, const double h9[9],
-                               const struct wb_hex20_state *before, real tau[3][3])
+                               const struct wb_solid_point_state *before, real tau[3][3])
 {
     static const real weight[4] = {1, -8, 8, -1};
     static const int at[4] = {-2, -1, 1, 2};

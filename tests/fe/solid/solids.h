@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid.h"
+#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
 
 static const enum wb_integration test_solid_rules[2] = {WB_INTEGRATION_SELECTIVE,

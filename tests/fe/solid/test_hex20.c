@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid_mesh.h"
+#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
 #include "tests/fe/solid/hex20_cases.h"
 #include "tests/fe/solid/hex20_twin.h"
@@ -32,9 +33,9 @@ static double largest(const double *x, int n)
 /* A history that belongs to the element, with all points yielding at some time. */
 static bool make_history(const struct wb_hex20_geometry *geometry, enum wb_integration integration,
                          const struct wb_material *material, double position[20][3], double strain,
-                         struct wb_hex20_state *state)
+                         struct wb_solid_point_state *state)
 {
-    struct wb_hex20_state virgin[27] = {{{0.0}}};
+    struct wb_solid_point_state virgin[27] = {{{0.0}}};
     struct wb_hex20_result result;
     double u[60], force[60];
     make_displacement(position, 0.0, strain, strain * 2e-4, u);
@@ -54,7 +55,7 @@ static void element_agrees_with_its_slow_twin(void **unused)
         const double strain = strains[k / 2 / N_MATERIALS];
         const int points = wb_hex20_points(integrations[k % 2]);
         struct wb_hex20_geometry geometry;
-        struct wb_hex20_state before[27] = {{{0.0}}}, after[27], after_twin[27];
+        struct wb_solid_point_state before[27] = {{{0.0}}}, after[27], after_twin[27];
         struct wb_hex20_result result;
         double position[20][3], u[60], force[60], plain[60], force_twin[60];
 
@@ -87,12 +88,12 @@ static void element_agrees_with_its_slow_twin(void **unused)
 
 static double largest_tangent_error(const struct wb_hex20_geometry *geometry,
                                     enum wb_integration integration, const struct wb_material *m,
-                                    const double *u0, const struct wb_hex20_state *before,
+                                    const double *u0, const struct wb_solid_point_state *before,
                                     double step)
 {
     static const int at[4] = {-2, -1, 1, 2};
     static double K[3600];
-    struct wb_hex20_state after[27];
+    struct wb_solid_point_state after[27];
     struct wb_hex20_result result;
     double u[60], force[4][60], error = 0.0;
 
@@ -124,7 +125,7 @@ static void stiffness_is_the_derivative_of_the_force(void **unused)
     for (int k = 0; k < 2 * N_MATERIALS; k++) {
         const struct wb_material *m = materials[k / 2];
         struct wb_hex20_geometry geometry;
-        struct wb_hex20_state before[27] = {{{0.0}}}, after[27];
+        struct wb_solid_point_state before[27] = {{{0.0}}}, after[27];
         struct wb_hex20_result result;
         double position[20][3], u[60], force[60];
 
@@ -151,7 +152,7 @@ static void rigid_motions_give_no_force(void **unused)
     srand(3);
     for (int k = 0; k < 40; k++) {
         struct wb_hex20_geometry geometry;
-        struct wb_hex20_state before[27] = {{{0.0}}}, after[27];
+        struct wb_solid_point_state before[27] = {{{0.0}}}, after[27];
         struct wb_hex20_result result;
         double position[20][3], u[60], force[60];
         make_nodes(0.1, position);
@@ -174,7 +175,7 @@ static void constant_strain_gives_the_exact_stress_at_any_distortion(void **unus
     srand(4);
     for (int k = 0; k < 20; k++) {
         struct wb_hex20_geometry geometry;
-        struct wb_hex20_state virgin[27] = {{{0.0}}}, after[27];
+        struct wb_solid_point_state virgin[27] = {{{0.0}}}, after[27];
         struct wb_hex20_result result;
         double position[20][3], u[60], force[60], stress[20][6], plastic[20];
         const double l[3] = {1.2, 0.9, 1.05};
@@ -237,7 +238,7 @@ static void forces_of_a_yielding_element_rotate_with_it(void **unused)
     (void)unused;
     srand(5);
     struct wb_hex20_geometry geometry;
-    struct wb_hex20_state before[27] = {{{0.0}}}, after[27], after_turned[27];
+    struct wb_solid_point_state before[27] = {{{0.0}}}, after[27], after_turned[27];
     struct wb_hex20_result result, turned;
     double position[20][3], u[60], u_turned[60], force[60], force_turned[60];
     make_nodes(0.1, position);
@@ -275,7 +276,7 @@ static void forces_of_a_yielding_element_rotate_with_it(void **unused)
 static double energy_error(const struct wb_material *m, enum wb_integration integration, int steps)
 {
     struct wb_hex20_geometry geometry;
-    struct wb_hex20_state state[27] = {{{0.0}}};
+    struct wb_solid_point_state state[27] = {{{0.0}}};
     struct wb_hex20_result result;
     double position[20][3], u[60] = {0.0}, from[60] = {0.0}, direction[2][60], force[60] = {0.0};
     double work = 0.0, dissipated = 0.0, error = 0.0;
@@ -356,7 +357,7 @@ static int zero_modes(enum wb_integration integration)
 {
     static double K[3600];
     struct wb_hex20_geometry geometry;
-    struct wb_hex20_state virgin[27] = {{{0.0}}}, after[27];
+    struct wb_solid_point_state virgin[27] = {{{0.0}}}, after[27];
     struct wb_hex20_result result;
     double position[20][3], u[60] = {0.0}, force[60], value[60];
     int n = 0;
@@ -427,7 +428,7 @@ static double bending_compliance(double nu, bool full)
     for (int e = 0; e < 2; e++) {
         static double K[3600];
         struct wb_hex20_geometry geometry;
-        struct wb_hex20_state virgin[27] = {{{0.0}}}, after[27];
+        struct wb_solid_point_state virgin[27] = {{{0.0}}}, after[27];
         struct wb_hex20_result result;
         double position[20][3], u[60] = {0.0}, force[60];
         for (int a = 0; a < 20; a++)
@@ -507,7 +508,7 @@ static void linear_stress_fields_reach_the_nodes(void **unused)
     const double k = 1e-6, nu = 0.34;
     for (int integration = 0; integration < 2; integration++) {
         struct wb_hex20_geometry geometry;
-        struct wb_hex20_state state[27] = {{{0.0}}};
+        struct wb_solid_point_state state[27] = {{{0.0}}};
         double position[20][3], u[60], stress[20][6], plastic[20];
         make_nodes(0.0, position);
         assert_true(make_geometry(&geometry, integrations[integration], position));
@@ -549,7 +550,7 @@ static void find_positions(int n, double position[20][3], double at[27][3])
             at[point][i] = 0.0;
         }
         for (int a = 0; a < 20; a++) {
-            const double *p = wb_hex20_node_place[a];
+            const double *p = test_node_place[a];
             const bool corner = p[0] * p[1] * p[2] != 0.0;
             double N = corner ? (p[0] * x[0] + p[1] * x[1] + p[2] * x[2] - 2.0) / 8.0 : 0.25;
             for (int i = 0; i < 3; i++)
@@ -568,10 +569,10 @@ static void linear_fields_reach_the_nodes_of_curved_elements(void **unused)
     (void)unused;
     for (int k = 0; k < 2; k++) {
         struct wb_hex20_geometry geometry;
-        struct wb_hex20_state state[27] = {{{0.0}}};
+        struct wb_solid_point_state state[27] = {{{0.0}}};
         double position[20][3], u[60] = {0.0}, stress[20][6], plastic[20];
         for (int a = 0; a < 20; a++) {
-            const double *p = wb_hex20_node_place[a];
+            const double *p = test_node_place[a];
             const double angle = 0.125 * M_PI * (1.0 + p[0]);
             const double in = 0.25 * (1.0 - p[1]), out = 0.5 * (1.0 + p[1]); /* chord and arc */
             position[a][0] = 1e-3 * (in * (1.0 - p[0]) / 2.0 + out * cos(angle));
@@ -598,7 +599,7 @@ static void plastic_strain_at_nodes_is_not_negative(void **unused)
 {
     (void)unused;
     struct wb_hex20_geometry geometry;
-    struct wb_hex20_state state[27] = {{{0.0}}};
+    struct wb_solid_point_state state[27] = {{{0.0}}};
     double position[20][3], u[60] = {0.0}, stress[20][6], plastic[20];
     make_nodes(0.0, position);
     assert_true(make_geometry(&geometry, WB_INTEGRATION_REDUCED, position));
@@ -619,7 +620,7 @@ static void inverted_elements_and_nonsense_are_refused(void **unused)
     struct wb_hex20_result result;
     double position[20][3], stress[20][6], plastic[20], force[60];
     for (int k = 0; k < 2; k++) {
-        struct wb_hex20_state before[27] = {{{0.0}}}, after[27];
+        struct wb_solid_point_state before[27] = {{{0.0}}}, after[27];
         struct wb_material material = power;
         double u[60] = {0.0};
         make_nodes(0.0, position);

@@ -16,7 +16,7 @@ static void gradients_are_those_of_the_serendipity_functions(void **unused)
                                        {-0.5773502691896258, 0.5773502691896258, 0.0}};
     double position[20][3];
     for (int a = 0; a < 20; a++)
-        memcpy(position[a], wb_hex20_node_place[a], sizeof position[a]);
+        memcpy(position[a], test_node_place[a], sizeof position[a]);
 
     for (int rule = 0; rule < 2; rule++) {
         const int n = 3 - rule;
@@ -49,7 +49,7 @@ static void gradients_are_those_of_the_serendipity_functions(void **unused)
 static void make_vault(double b, double position[20][3])
 {
     for (int a = 0; a < 20; a++) {
-        const double *p = wb_hex20_node_place[a];
+        const double *p = test_node_place[a];
         const double roof = 1.0 + b * (1.0 - p[0] * p[0]);
         position[a][0] = p[0];
         position[a][1] = 0.5 * (1.0 + p[1]) * roof;
@@ -161,7 +161,7 @@ static void find_position(const double x[3], double position[20][3], double at[3
 {
     at[0] = at[1] = at[2] = 0.0;
     for (int a = 0; a < 20; a++) {
-        const double *p = wb_hex20_node_place[a];
+        const double *p = test_node_place[a];
         const bool corner = p[0] * p[1] * p[2] != 0.0;
         double N = corner ? (p[0] * x[0] + p[1] * x[1] + p[2] * x[2] - 2.0) / 8.0 : 0.25;
         for (int i = 0; i < 3; i++)
@@ -218,7 +218,7 @@ static void far_distorted_elements_keep_moderate_shares(void **unused)
         struct wb_hex20_geometry geometry;
         double position[20][3];
         for (int a = 0; a < 20; a++) { /* a sector of a ring, thick and wide */
-            const double *p = wb_hex20_node_place[a];
+            const double *p = test_node_place[a];
             const double angle = 0.06 * k * p[0], radius = 2.0 + p[1];
             position[a][0] = radius * sin(angle) + 1e-6 * p[0];
             position[a][1] = radius * cos(angle);

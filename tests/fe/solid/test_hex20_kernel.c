@@ -1,5 +1,6 @@
 #include "fe/solid/hex20_kernel.h"
 
+#include "fe/solid/hex20_kernel_private.h"
 #include "tests/check.h"
 #include "tests/fe/solid/hex20_cases.h"
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid.h"
+#include "fe/solid/solid_mesh_private.h"
+#include "fe/solid/solid_private.h"
 #include "fe/trial/wire3d.h"
 
 /* --- two blocks --- */

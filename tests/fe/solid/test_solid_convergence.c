@@ -2,6 +2,8 @@
  * locking near incompressibility and in the plastic limit. docs/verification.md has the numbers. */
 #include "tests/fe/solid/solids.h"
 
+#include "fe/solid/solid_private.h"
+
 /* ---- Cook's membrane ---- */
 
 static const double cook_thickness = 0.5;

@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
 
 static const struct wb_solid_mesh_wire cylinder = {

@@ -23,7 +23,7 @@ static double random_number(void) /* -1 to 1 */
 
 /* The deviatoric response for F = I + H, H row by row. */
 static void respond(const struct wb_material *material, const double h[9],
-                    const struct wb_hex20_state *before, struct wb_hex20_state *after,
+                    const struct wb_solid_point_state *before, struct wb_solid_point_state *after,
                     struct wb_solid_point_response *response)
 {
     struct wb_solid_point_law law;
@@ -79,7 +79,7 @@ enum {
 };
 
 /* A history whose axes are not those of the deformation. */
-static void some_history(struct wb_hex20_state *state, double size)
+static void some_history(struct wb_solid_point_state *state, double size)
 {
     memset(state, 0, sizeof *state);
     for (int a = 0; a < 6; a++)
@@ -95,7 +95,7 @@ static void stress_agrees_with_the_slow_twin(void **unused)
     srand(1);
     for (int m = 0; m < N_MATERIALS; m++) {
         for (int k = 0; k < N_STRETCHES; k++) {
-            struct wb_hex20_state before, after;
+            struct wb_solid_point_state before, after;
             struct wb_solid_point_response response;
             double h[9], size = 0.0;
             real tau[3][3], computed[3][3];
@@ -118,11 +118,11 @@ static void stress_agrees_with_the_slow_twin(void **unused)
 
 /* First Piola-Kirchhoff stress times a direction A: P:A = tau F^-T : A. */
 static double power_of(const struct wb_material *m, const double h[9],
-                       const struct wb_hex20_state *before, const double A[9])
+                       const struct wb_solid_point_state *before, const double A[9])
 {
     struct wb_solid_point_response response;
     struct wb_solid_point_motion motion;
-    struct wb_hex20_state after;
+    struct wb_solid_point_state after;
     real tau[3][3];
     double sum = 0.0;
     respond(m, h, before, &after, &response);
@@ -163,11 +163,11 @@ static double second_variation(const struct wb_solid_point_motion *motion,
 }
 
 static void check_tangent(const struct wb_material *m, const double h[9],
-                          const struct wb_hex20_state *before, double *worst)
+                          const struct wb_solid_point_state *before, double *worst)
 {
     struct wb_solid_point_response response;
     struct wb_solid_point_motion motion;
-    struct wb_hex20_state after;
+    struct wb_solid_point_state after;
     double B[9], error = 0.0, size = m->youngs_modulus;
 
     respond(m, h, before, &after, &response);
@@ -203,7 +203,7 @@ static void tangent_is_the_derivative_of_the_stress(void **unused)
     srand(2);
     for (int m = 0; m < N_MATERIALS; m++) {
         for (int k = 0; k < N_STRETCHES; k++) {
-            struct wb_hex20_state before, after;
+            struct wb_solid_point_state before, after;
             struct wb_solid_point_response response;
             double h[9];
             some_history(&before, k == N_STRETCHES - 1 ? 0.2 : 2e-3);
@@ -276,7 +276,7 @@ static void run_path(const struct wb_material *m, int steps, double stress[8][3]
                                       {-1, 0}, {-1, 0}, {0, -1}, {0, -1}};
     const double R = 2.5e-5;
     struct wb_solid_point_law law;
-    struct wb_hex20_state state = {{0.0}};
+    struct wb_solid_point_state state = {{0.0}};
     double start[3] = {0.0}, e[3] = {0.0}, h[9];
 
     wb_solid_point_law_init(&law, m);
@@ -351,7 +351,7 @@ static void uniaxial_stress_is_the_1d_law(void **unused)
         const struct wb_material *m = materials[k];
         const double nu = m->poissons_ratio, E = m->youngs_modulus;
         struct wb_material_state line = {0.0};
-        struct wb_hex20_state state = {{0.0}};
+        struct wb_solid_point_state state = {{0.0}};
         for (int step = 1; step <= 400; step++) {
             const double e = 0.15 * sin(0.03 * step) * step / 400.0;
             double sigma, slope, h[9];
@@ -394,8 +394,8 @@ static void simple_shear_has_its_closed_form(void **unused)
     const double mu = 70e9 / (2.0 * 1.34);
     for (double gamma = 1e-9; gamma < 4.0; gamma *= 3.0) {
         const double h[9] = {0.0, gamma, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-        const struct wb_hex20_state virgin = {{0.0}};
-        struct wb_hex20_state after;
+        const struct wb_solid_point_state virgin = {{0.0}};
+        struct wb_solid_point_state after;
         struct wb_solid_point_response response;
         respond(&elastic, h, &virgin, &after, &response);
         const double size = 2.0 * mu * asinh(0.5 * gamma) / sqrt(4.0 + gamma * gamma);
@@ -415,10 +415,10 @@ static void a_rotation_of_any_size_gives_no_stress(void **unused)
     (void)unused;
     srand(4);
     for (int k = 0; k < 200; k++) {
-        const struct wb_hex20_state virgin = {{0.0}};
+        const struct wb_solid_point_state virgin = {{0.0}};
         struct wb_solid_point_response response;
         struct wb_solid_point_motion motion;
-        struct wb_hex20_state after;
+        struct wb_solid_point_state after;
         double R[3][3], h[9];
         rotation(6.4 * k / 200.0, R);
         for (int i = 0; i < 9; i++)
@@ -436,7 +436,7 @@ static void a_rotated_yielding_point_only_rotates(void **unused)
     (void)unused;
     srand(5);
     for (int m = 0; m < N_MATERIALS; m++) {
-        struct wb_hex20_state before, after, after_turned;
+        struct wb_solid_point_state before, after, after_turned;
         struct wb_solid_point_response response, turned;
         double h[9], R[3][3], h_turned[9];
         real s[3][3], s_turned[3][3];
@@ -476,8 +476,8 @@ static void tiny_strains_keep_their_digits(void **unused)
     srand(6);
     const double mu = 70e9 / (2.0 * 1.34);
     for (double size = 1e-14; size < 1e-8; size *= 10.0) {
-        const struct wb_hex20_state virgin = {{0.0}};
-        struct wb_hex20_state after;
+        const struct wb_solid_point_state virgin = {{0.0}};
+        struct wb_solid_point_state after;
         struct wb_solid_point_response response;
         struct wb_solid_point_motion motion;
         double h[9];
@@ -505,8 +505,8 @@ static void yielding_ends_on_the_yield_surface(void **unused)
             const struct wb_material *law = materials[m];
             const double e = law->yield_stress * (1.0 + over) * 2.0 * 1.34 / (3.0 * 70e9);
             const double strain[3] = {-0.5 * e, e, -0.5 * e};
-            const struct wb_hex20_state virgin = {{0.0}};
-            struct wb_hex20_state after, again;
+            const struct wb_solid_point_state virgin = {{0.0}};
+            struct wb_solid_point_state after, again;
             struct wb_solid_point_response response;
             double h[9];
             stretch_along_axes(strain, h);

@@ -2,6 +2,9 @@
  * docs/verification.md has the numbers that this prints. */
 #include "tests/fe/solid/solids.h"
 
+#include "fe/solid/solid_mesh_private.h"
+#include "fe/solid/solid_private.h"
+
 /* ---- Patch tests: the cube of seven elements of MacNeal and Harder 1985 ---- */
 
 enum {

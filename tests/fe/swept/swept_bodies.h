@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "fe/swept/swept_hex.h"
+#include "fe/swept/swept_private.h"
 #include "tests/fe/rod/wires.h"
 
 struct swept_body {

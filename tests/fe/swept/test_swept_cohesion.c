@@ -1,4 +1,6 @@
 /* Forces of cohesion that does not break: tractions, balance, energy, stable step. */
+#include "fe/swept/swept_private.h"
+
 #include "tests/fe/swept/taped_block.h"
 
 static void opening_is_borne_by_the_normal_stiffness_alone(void **unused)

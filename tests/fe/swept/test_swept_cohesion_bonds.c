@@ -1,4 +1,6 @@
 /* Where a tape is bonded, and what is refused. */
+#include "fe/swept/swept_private.h"
+
 #include "tests/fe/swept/taped_block.h"
 
 /* --- where it is bonded --- */

@@ -1,4 +1,6 @@
 /* Bonds that break. */
+#include "fe/swept/swept_private.h"
+
 #include "tests/fe/swept/taped_block.h"
 
 /* Opens by `n` and slides by `s` m in so many steps, and takes the work. */

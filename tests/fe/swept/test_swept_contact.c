@@ -1,4 +1,5 @@
 #include "fe/swept/swept_contact.h"
+#include "fe/swept/swept_private.h"
 
 #include "tests/fe/swept/contacts.h"
 

@@ -1,5 +1,6 @@
 /* Friction and damping of contact, in prescribed motion. */
 #include "fe/swept/swept_contact.h"
+#include "fe/swept/swept_private.h"
 
 #include <float.h>
 

@@ -2,6 +2,7 @@
  * the bound for the stable step against the largest eigenvalue. */
 #include "base/vec3.h"
 #include "fe/swept/swept_contact.h"
+#include "fe/swept/swept_private.h"
 
 #include "tests/fe/swept/contacts.h"
 

@@ -1,4 +1,5 @@
 #include "fe/swept/swept_hex.h"
+#include "fe/swept/swept_private.h"
 
 #include "tests/fe/swept/swept_bodies.h"
 #include "tests/fe/swept/swept_hex_twin.h"

@@ -1,6 +1,7 @@
 /* Stresses of swept hexahedra asked from outside, against the kernels' energies, the flow stress
  * and closed forms. */
 #include "fe/swept/swept_hex_stress.h"
+#include "fe/swept/swept_private.h"
 
 #include "tests/check.h"
 #include "tests/fe/swept/swept_bodies.h"

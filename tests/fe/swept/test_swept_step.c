@@ -1,3 +1,4 @@
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_step.h"
 
 #include "fe/swept/swept_frequency.h"

@@ -1,3 +1,4 @@
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape_contact.h"
 
 #include "tests/fe/swept/tapes.h"

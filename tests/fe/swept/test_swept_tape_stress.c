@@ -1,4 +1,5 @@
 /* Stresses of tapes asked from outside, against closed forms, the flow stress and the energy. */
+#include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape.h"
 
 #include "tests/fe/swept/tapes.h"

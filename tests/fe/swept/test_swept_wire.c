@@ -1,4 +1,5 @@
 /* Slow: whole runs of one wire. */
+#include "fe/swept/swept_private.h"
 #include "fe/trial/cantilever.h"
 #include "tests/fe/swept/swept_hex_twin.h"
 #include "tests/fe/swept/swept_runs.h"

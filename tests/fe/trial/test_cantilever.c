@@ -304,28 +304,6 @@ static void exchanged_material_acts_like_a_new_wire(void **unused)
     release_rig(&fresh);
 }
 
-static void slow_fibres_give_the_same_curve(void **unused)
-{
-    (void)unused;
-    const struct test_wire wire = test_wire_type(3);
-    struct rig rig = wire_rig(&wire);
-    struct wb_cantilever_model model;
-    const struct wb_cantilever_settings slow = {.reference_kernel = true};
-    struct wb_cantilever *reference = NULL;
-    wb_cantilever_default_model(&model);
-    model.section = &rig.section;
-    model.length = 0.085;
-    assert_int_equal(wb_cantilever_create(&reference, &model, &slow), WB_OK);
-    for (int i = 0; i <= 40; i++) {
-        const double y = (i <= 20 ? i : 40 - i) * 2.5e-3;
-        const double a = test_move(rig.cantilever, WB_CONTROL_DEFLECTION, y).tension;
-        const double b = test_move(reference, WB_CONTROL_DEFLECTION, y).tension;
-        assert_close(a, b, 1e-8);
-    }
-    wb_cantilever_destroy(reference);
-    release_rig(&rig);
-}
-
 static int messages;
 
 static void count_message(void *context, enum wb_log_level level, const char *domain,
@@ -396,7 +374,6 @@ int main(void)
         cmocka_unit_test(same_moves_give_the_same_bits),
         cmocka_unit_test(trial_move_can_be_taken_back),
         cmocka_unit_test(exchanged_material_acts_like_a_new_wire),
-        cmocka_unit_test(slow_fibres_give_the_same_curve),
         cmocka_unit_test(models_and_moves_that_make_no_sense_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

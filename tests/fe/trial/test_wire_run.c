@@ -2,6 +2,7 @@
 #include "tests/check.h"
 
 #include "fe/trial/wire_run.h"
+#include "fe/trial/wire_run_private.h"
 
 static struct wb_wire_model model;
 

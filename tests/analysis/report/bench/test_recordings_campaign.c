@@ -124,10 +124,10 @@ static void settings_and_limits_are_read_and_have_defaults(void **state)
                              "wires:\n  - wire: type2\n"),
         WB_OK);
     assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
-    assert_close(campaign.validate.step, 0.25e-3, 1e-15);
-    assert_true(campaign.validate.straight && campaign.calibrate.straight);
+    assert_close(campaign.calibrate.step, 0.25e-3, 1e-15);
+    assert_true(campaign.calibrate.straight);
     assert_true(campaign.calibrate.bow_corrected);
-    assert_int_equal(campaign.validate.n_elements, 20);
+    assert_int_equal(campaign.calibrate.n_elements, 20);
     assert_close(campaign.calibration_limit, 0.01, 1e-15);
     assert_close(campaign.validation_limit, 0.0365, 1e-15);
     assert_close(campaign.reference_rms[1], 0.03, 1e-15);

@@ -131,13 +131,14 @@ static void make_good(struct good *good, double validation_factor)
     const struct wb_dataset *const validation[] = {&wire->validation_tests.items[0].dataset,
                                                    &wire->validation_tests.items[1].dataset};
     assert_int_equal(
-        wb_calibrate_run(&wire->calibration, calibration, 2, &good->campaign.calibrate), WB_OK);
-    wb_properties_from_result(&wire->calibration, &wire->properties);
-    assert_int_equal(
-        wb_validate_run(&wire->fit, &wire->properties, calibration, 2, &good->campaign.validate),
+        wb_calibrate_run(&wire->calibration, calibration, 2, &good->campaign.calibrate, NULL),
         WB_OK);
+    wb_properties_from_result(&wire->calibration, &wire->properties);
+    assert_int_equal(wb_validate_run(&wire->fit, &wire->properties, calibration, 2,
+                                     &good->campaign.calibrate, NULL),
+                     WB_OK);
     assert_int_equal(wb_validate_run(&wire->validation, &wire->properties, validation, 2,
-                                     &good->campaign.validate),
+                                     &good->campaign.calibrate, NULL),
                      WB_OK);
     wire->calibration_state = wire->validation_state = WB_RECORDINGS_DONE;
     wb_recordings_results_judge(&good->results);

@@ -1,36 +1,12 @@
-/* Between stream.c and the kinds of streams: the table's entry and the line settings that serial
- * ports and pseudo-terminals share. Nobody else includes this. */
-#ifndef WB_DAQ_STREAM_PRIVATE_H
-#define WB_DAQ_STREAM_PRIVATE_H
+/* What serial ports and pseudo-terminals share: their addresses, and how a device is opened, locked
+ * and waited for. */
+#ifndef WB_DAQ_STREAM_LINE_H
+#define WB_DAQ_STREAM_LINE_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "base/status.h"
-
-/* One kind of stream. The core allocates `state_size` zeroed bytes for it. open() gets what
- * follows "scheme:"; when it fails it has released everything and logged why. */
-struct wb_stream_kind {
-    const char *scheme;
-    size_t state_size;
-    enum wb_status (*open)(void *state, const char *rest);
-    void (*close)(void *state);
-    int (*descriptors)(const void *state, int descriptors[2]);
-    enum wb_status (*read)(void *state, void *buffer, size_t size, size_t *n);
-    enum wb_status (*write)(void *state, const void *bytes, size_t n);
-    uint64_t (*kernel_drops)(const void *state); /* NULL: cannot tell */
-};
-
-extern const struct wb_stream_kind wb_stream_serial;
-extern const struct wb_stream_kind wb_stream_pty;
-extern const struct wb_stream_kind wb_stream_udp;
-extern const struct wb_stream_kind wb_stream_memory;
-
-struct wb_stream;
-
-/* The state of a stream of that kind; NULL when it is of another kind. */
-void *wb_stream_state_of(struct wb_stream *stream, const struct wb_stream_kind *kind);
 
 /* A write that takes longer fails. */
 #define WB_STREAM_WRITE_TIMEOUT_NS INT64_C(50000000)

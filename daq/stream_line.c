@@ -1,0 +1,155 @@
+#include "daq/stream_line.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <time.h>
+
+#include "base/progress.h"
+
+#define WB_LOG_DOMAIN "stream"
+
+static bool parse_switch(const char *text, int *value)
+{
+    if (strcmp(text, "on") == 0)
+        *value = 1;
+    else if (strcmp(text, "off") == 0)
+        *value = -1;
+    else
+        return false;
+    return true;
+}
+
+static bool parse_flow(const char *text, char *value)
+{
+    if (strcmp(text, "none") == 0)
+        *value = 'n';
+    else if (strcmp(text, "xonxoff") == 0)
+        *value = 'x';
+    else if (strcmp(text, "rtscts") == 0)
+        *value = 'r';
+    else
+        return false;
+    return true;
+}
+
+/* "8n1" */
+static bool parse_frame(const char *text, struct wb_stream_line *line)
+{
+    if (strlen(text) != 3 || text[0] < '5' || text[0] > '8' || (text[2] != '1' && text[2] != '2'))
+        return false;
+    char parity = (char)(text[1] | 0x20);
+    if (parity != 'n' && parity != 'e' && parity != 'o')
+        return false;
+    line->bits = text[0] - '0';
+    line->parity = parity;
+    line->stop = text[2] - '0';
+    return true;
+}
+
+static bool parse_baud(const char *text, int *baud)
+{
+    size_t n = strlen(text);
+    if (n == 0 || n > 8 || strspn(text, "0123456789") != n)
+        return false;
+    *baud = atoi(text);
+    return *baud >= 50 && *baud <= 4000000;
+}
+
+static bool parse_option(const char *text, struct wb_stream_line *line)
+{
+    if (strncmp(text, "dtr=", 4) == 0)
+        return parse_switch(text + 4, &line->dtr);
+    if (strncmp(text, "rts=", 4) == 0)
+        return parse_switch(text + 4, &line->rts);
+    if (strncmp(text, "flow=", 5) == 0)
+        return parse_flow(text + 5, &line->flow);
+    if (strlen(text) == 3 && strspn(text, "0123456789") < 3)
+        return parse_frame(text, line);
+    return parse_baud(text, &line->baud);
+}
+
+enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line)
+{
+    *line = (struct wb_stream_line){.baud = 9600, .bits = 8, .parity = 'n', .stop = 1, .flow = 'n'};
+    size_t n = strcspn(rest, ",");
+    if (n == 0 || n >= sizeof line->path)
+        return wb_fail(WB_ERR_ARGUMENT, "'%s' names no device: expected PATH,BAUD,8n1", rest);
+    memcpy(line->path, rest, n);
+    line->path[n] = '\0';
+    const char *at = rest + n;
+    while (*at == ',') {
+        char option[32];
+        n = strcspn(++at, ",");
+        if (n >= sizeof option)
+            return wb_fail(WB_ERR_ARGUMENT, "line setting '%.*s' of '%s' is not known", (int)n, at,
+                           line->path);
+        memcpy(option, at, n);
+        option[n] = '\0';
+        if (!parse_option(option, line))
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "line setting '%s' of '%s' is not known: expected a baud rate, bits "
+                           "parity and stop bits such as 8n1, dtr=on|off, rts=on|off or "
+                           "flow=none|xonxoff|rtscts",
+                           option, line->path);
+        at += n;
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_stream_fail_open(const char *path, int error, const char *hint)
+{
+    switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+    case ENOTDIR:
+        return wb_fail(WB_ERR_NOT_FOUND, "port '%s' does not exist%s", path, hint);
+    case EACCES:
+    case EPERM:
+        return wb_fail(WB_ERR_PERMISSION,
+                       "port '%s' may not be opened by you: join the group dialout with 'sudo "
+                       "usermod -aG dialout $USER' and log in again",
+                       path);
+    case EBUSY:
+    case EWOULDBLOCK:
+        return wb_fail(WB_ERR_BUSY,
+                       "port '%s' is in use by another program: close that one first ('fuser %s' "
+                       "names it)",
+                       path, path);
+    default:
+        return wb_fail(WB_ERR_IO, "port '%s' cannot be opened: %s", path, strerror(error));
+    }
+}
+
+enum wb_status wb_stream_lock(int descriptor, const char *path)
+{
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+        return WB_OK;
+    return wb_stream_fail_open(path, errno == EWOULDBLOCK ? EBUSY : errno, "");
+}
+
+bool wb_stream_gone(int descriptor)
+{
+    struct pollfd wait = {.fd = descriptor, .events = POLLIN};
+    return poll(&wait, 1, 0) > 0 && (wait.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+}
+
+bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns)
+{
+    for (;;) {
+        int64_t left_ns = deadline_ns - wb_progress_now_ns();
+        if (left_ns <= 0)
+            return false;
+        struct timespec left = {.tv_sec = (time_t)(left_ns / 1000000000),
+                                .tv_nsec = (long)(left_ns % 1000000000)};
+        struct pollfd wait = {.fd = descriptor, .events = POLLOUT};
+        int ready = ppoll(&wait, 1, &left, NULL);
+        if (ready > 0)
+            return true;
+        if (ready < 0 && errno != EINTR)
+            return false;
+    }
+}
