@@ -2,8 +2,8 @@
  *
  * A job is one command line of wirebench that makes one output folder, as `solve` does with -o. The
  * job gets `-o OUTPUT.partial` after its own arguments, and the folder takes its final name when
- * the job ended well (exit code 0): an output that is there is whole, and a job whose output is
- * there is not run again. So the same call resumes what was interrupted and repeats what failed.
+ * the job ended well (exit code 0): an output that exists is complete, and a job whose output
+ * exists is not run again. So the same call resumes what was interrupted and repeats what failed.
  *
  * Typical use:
  *
@@ -23,7 +23,7 @@ struct wb_job {
                                      without `-o OUTPUT`, which is added */
     const char *output;           /* folder that the job makes; its parent is made if need be */
     double cost;  /* expected duration in any unit: the longest go first; 0: not known */
-    bool replace; /* an output that is there is outdated: make it again, and put the new one in
+    bool replace; /* an output that exists is outdated: make it again, and put the new one in
                      its place once it is whole */
 };
 

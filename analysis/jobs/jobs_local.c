@@ -32,7 +32,8 @@ struct setting {
     char threads[2][48];
 };
 
-int wb_jobs_local_workers(const struct wb_jobs_plan *plan)
+/* Runs at once: as asked for, else cores that this process may use over cores of a run. */
+static int count_workers(const struct wb_jobs_plan *plan)
 {
     cpu_set_t cores;
     if (plan->options->workers > 0)
@@ -284,7 +285,7 @@ static struct wb_jobs_plan_item *next(struct wb_jobs_plan *plan)
 
 static void run_all(struct wb_jobs_plan *plan, const struct setting *setting)
 {
-    const int workers = wb_jobs_local_workers(plan);
+    const int workers = count_workers(plan);
     int64_t drawn_ns = 0;
     for (;;) {
         int running = look(plan);

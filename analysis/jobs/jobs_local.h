@@ -8,7 +8,4 @@
  * and what they had begun is removed. */
 WB_MUST_CHECK enum wb_status wb_jobs_local_run(struct wb_jobs_plan *plan);
 
-/* Runs at once: as asked for, else cores that this process may use over cores of a run. */
-int wb_jobs_local_workers(const struct wb_jobs_plan *plan);
-
 #endif

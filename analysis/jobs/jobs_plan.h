@@ -25,12 +25,12 @@ struct wb_jobs_plan_item {
     const struct wb_job *job; /* borrowed */
     enum wb_jobs_plan_state state;
     char output[WB_PATH], log[WB_PATH]; /* absolute */
-    bool was_there;                     /* an outdated output, told from the new one by: */
+    bool was_there;                     /* an outdated output, distinguished from the new one by: */
     dev_t old_device;
     ino_t old_inode;
     pid_t pid;                   /* of a local run */
     int64_t started_ns, took_ns; /* as seen from here */
-    bool queued;                 /* a task of a Slurm array, of which the rest tells: */
+    bool queued;                 /* a task of a Slurm array, which the rest describes: */
     char array[32], cluster[64]; /* its job id ("12"); cluster, "" for the usual one */
     char list[32];               /* folder of its script and list ("slurm-1") */
     int task;                    /* its number in the array */
@@ -47,7 +47,7 @@ struct wb_jobs_plan {
     bool on_terminal, drawn;
 };
 
-/* Checks names, arguments and outputs, sorts, makes the folders and sees what is there. */
+/* Checks names, arguments and outputs, sorts, makes the folders and looks which outputs exist. */
 WB_MUST_CHECK enum wb_status wb_jobs_plan_init(struct wb_jobs_plan *plan, const struct wb_job *jobs,
                                                int n, const struct wb_jobs_options *options);
 void wb_jobs_plan_release(struct wb_jobs_plan *plan); /* accepts a zeroed one */

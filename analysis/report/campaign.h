@@ -17,7 +17,7 @@ struct wb_campaign {
     char title[200], notes[2000];
     char name[256];              /* of the file, from fixtures/ on when it is a shipped one */
     char sha256[WB_SHA256_TEXT]; /* of the file */
-    char folder[WB_PATH];        /* of the file; no report tells it */
+    char folder[WB_PATH];        /* of the file; no report shows it */
     char simulations[WB_PATH];   /* as the file gives it; "": the shipped ones */
 };
 

@@ -1,5 +1,5 @@
 /* The report's content, once: headings, paragraphs, notices, tables and figures in order. The PDF
- * and the HTML page are two views of it, so they cannot tell different things.
+ * and the HTML page are two views of it, so they always say the same.
  *
  * Text is the markup that Pango and HTML share: <b>, <i>, <sub>, <sup>, <tt>, and &amp; &lt; &gt;.
  * Kind, title, subtitle, footer, headings and code are plain text.
@@ -36,7 +36,7 @@ struct wb_document_column {
     const char *heading; /* markup */
     bool right;          /* numbers stand to the right */
     bool monospace;
-    bool wraps; /* gives way when the table is too wide */
+    bool wraps; /* its text is wrapped when the table is too wide */
 };
 
 struct wb_document_cell {

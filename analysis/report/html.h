@@ -1,4 +1,5 @@
-/* A document as one HTML file that needs nothing else: style and figures (SVG) stand in it. */
+/* A document as one HTML file that needs no other file: it contains its style and its figures
+ * (SVG). */
 #ifndef WB_ANALYSIS_REPORT_HTML_H
 #define WB_ANALYSIS_REPORT_HTML_H
 

@@ -24,8 +24,8 @@ WB_MUST_CHECK enum wb_status wb_missing_make(struct wb_missing_outcome *outcome,
                                              const char *folder,
                                              const struct wb_jobs_options *options);
 
-/* Removes checkpoints of datasets that are usable: a changed program or model leaves some that
- * nothing goes on from. They are let be until their dataset is there. */
+/* Removes the checkpoints of datasets that are usable. A changed program or model leaves
+ * checkpoints that no run continues from; they stay until their dataset can be used. */
 void wb_missing_remove_checkpoints(wb_simulation_list *list, const void *results,
                                    const char *folder);
 

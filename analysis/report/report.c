@@ -5,6 +5,7 @@
 
 #include "analysis/report/files.h"
 #include "analysis/report/missing.h"
+#include "analysis/report/report_private.h"
 #include "base/config.h"
 #include "base/progress.h"
 

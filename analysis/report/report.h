@@ -38,8 +38,4 @@ WB_MUST_CHECK enum wb_status wb_report_make(enum wb_report_end *end,
                                             const struct wb_kind *const *kinds, size_t n_kinds,
                                             const struct wb_report_order *order);
 
-/* Writes computed results into `folder`, as wb_files_write() does. */
-WB_MUST_CHECK enum wb_status wb_report_write(const struct wb_kind *kind, const void *results,
-                                             const char *folder, bool force);
-
 #endif

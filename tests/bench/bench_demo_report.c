@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "analysis/report/bench/recordings_kind.h"
-#include "analysis/report/report.h"
+#include "analysis/report/report_private.h"
 #include "base/log.h"
 
 static double seconds(clockid_t clock)

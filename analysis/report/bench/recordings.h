@@ -1,5 +1,5 @@
-/* A campaign: which wires were tested, with which recordings, how they are calibrated and
- * validated, and within which limits. Its YAML file:
+/* A campaign of recordings: which wires were tested, in which recordings, how they are calibrated
+ * and validated, and within which limits. Its YAML file:
  *
  *     kind: recordings                            # optional, this by default
  *     title: Single wires, types 1 to 3

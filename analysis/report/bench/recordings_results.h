@@ -1,6 +1,6 @@
-/* Everything that a campaign's report tells: its recordings aligned, its wires calibrated and
- * validated. Alignment and the wires run side by side on several threads; the numbers do not depend
- * on how many.
+/* The results of a campaign of recordings: each recording aligned, each wire calibrated and
+ * validated. Recordings and wires are computed in parallel on several threads; the numbers do not
+ * depend on how many.
  */
 #ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_RESULTS_H
 #define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_RESULTS_H
@@ -76,13 +76,6 @@ WB_MUST_CHECK enum wb_status wb_recordings_results_compute(struct wb_recordings_
                                                            void *context);
 void wb_recordings_results_release(
     struct wb_recordings_results *results); /* accepts a zeroed one */
-
-/* The two ends of wb_recordings_results_compute(), for results that come from elsewhere: makes all
- * places with nothing in them, and after they were filled counts and decides what is complete,
- * where it comes from and whether it keeps the limits. */
-WB_MUST_CHECK enum wb_status wb_recordings_results_init(struct wb_recordings_results *results,
-                                                        const struct wb_recordings *campaign);
-void wb_recordings_results_judge(struct wb_recordings_results *results);
 
 /* Capacity of a rig's load cell as its maker states it: the mass, kg, that weighs so much under the
  * rig's gravity; NaN when that is not known. */

@@ -71,11 +71,11 @@ enum {
 /* A bundle as one run computes it. */
 struct wb_bundles_run {
     char name[128], label[160];    /* label: plain text */
-    char model_name[300];          /* as it is told, for commands */
+    char model_name[300];          /* as commands show it */
     struct wb_bundle_model *model; /* with the run's own settings; owned */
     const struct wb_bundle_mesh *mesh;
     struct wb_simulation dataset;
-    bool judged; /* the limits of energies are meant for it */
+    bool judged; /* the limits of energies apply to it */
 };
 
 /* A bundle with its runs (index of them; -1: none). */

@@ -1,5 +1,5 @@
-/* Everything that the report of bundles tells: datasets read and checked, compared with the
- * published curves, and the 1D properties fitted to each bundle.
+/* The results of a campaign of bundles: its datasets read, checked and compared with the published
+ * curves, and the properties of a 1D beam fitted to each bundle.
  */
 #ifndef WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RESULTS_H
 #define WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_RESULTS_H
@@ -33,7 +33,8 @@ struct wb_bundles_results {
 
 /* Reads and checks the datasets into zeroed results. Nothing fails. */
 void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign);
-/* Then compares and fits what is there, and tells of each bundle. Nothing fails. */
+/* Then compares and fits the usable ones, with progress after each bundle. Nothing fails: the
+ * results say what is wrong. */
 void wb_bundles_results_compute(struct wb_bundles_results *results, wb_kind_progress *progress,
                                 void *context);
 void wb_bundles_results_release(struct wb_bundles_results *results); /* accepts a zeroed one */

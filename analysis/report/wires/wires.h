@@ -60,7 +60,7 @@ const char *wb_wires_command(enum wb_wires_solver solver); /* "wire3d", "wire1d"
 /* A model with its datasets. */
 struct wb_wires_case {
     char label[64];
-    char model_name[300];        /* as it is told, for commands */
+    char model_name[300];        /* as commands show it */
     struct wb_wire_model *model; /* owned */
     struct wb_simulation datasets[WB_WIRES_SOLVERS];
 };

@@ -13,14 +13,16 @@
 
 static const double degrees = 180.0 / 3.14159265358979323846; /* degrees of a radian */
 
-double wb_wires_figures_force(const struct wb_wires_results *results)
+/* The follower force at the end, N. */
+static double force_of(const struct wb_wires_results *results)
 {
     const struct wb_wire_model *const model = results->comparison->cases[WB_WIRES_ELASTIC].model;
     return model->step[model->n_steps - 1].loads.follower[1];
 }
 
-const char *wb_wires_figures_number(char text[48], const struct wb_wires_results *results,
-                                    const char *number)
+/* " (the paper's Fig. N)", or "" of a campaign that has nothing of the paper's. */
+static const char *figure_number(char text[48], const struct wb_wires_results *results,
+                                 const char *number)
 {
     return wb_pages_paper_figure(text, results->comparison->printed_source[0] ? number : "");
 }
@@ -158,8 +160,7 @@ static void tell_elastic_shapes(struct wb_text *text, const void *context, int i
     wb_text_append(text,
                    "Simulated shapes of the axis at %g N%s, and how far they lie from that of the "
                    "bonded solid.",
-                   wb_wires_figures_force(results),
-                   wb_wires_figures_number(in, results, "4, linear elastic"));
+                   force_of(results), figure_number(in, results, "4, linear elastic"));
 }
 
 static enum wb_status draw_shapes(struct wb_figure **figure, const void *context, int index)
@@ -199,7 +200,7 @@ static void tell_shapes(struct wb_text *text, const void *context, int index)
         "Simulated shapes of the axis at %g N%s, and how far they lie from that of the solid. "
         "1D fibres: each material with its own law; 1D fitted: one homogenised material, "
         "fitted to the solid.",
-        wb_wires_figures_force(results), wb_wires_figures_number(in, results, "4, elastoplastic"));
+        force_of(results), figure_number(in, results, "4, elastoplastic"));
 }
 
 /* --- force against deflection and angle --- */
@@ -565,7 +566,7 @@ static void tell_elastic(struct wb_text *text, const void *context, int index)
         "Mises "
         "stress on the longitudinal section as it is deformed, and on a cross section, seen "
         "from the clamp. Ring: the largest value.",
-        wb_wires_figures_force(results), wb_wires_figures_number(in, results, "3a"));
+        force_of(results), figure_number(in, results, "3a"));
 }
 
 static enum wb_status draw_elastic(struct wb_figure **figure, const void *context, int index)
@@ -589,7 +590,7 @@ static void tell_elastoplastic(struct wb_text *text, const void *context, int in
         text,
         "The same wire of elastoplastic materials at %g N%s: von Mises stress, simulated. "
         "The colours have another scale than the elastic ones.",
-        wb_wires_figures_force(results), wb_wires_figures_number(in, results, "3b"));
+        force_of(results), figure_number(in, results, "3b"));
 }
 
 /* --- Fig. 5a --- */
@@ -653,7 +654,7 @@ static void tell_residual(struct wb_text *text, const void *context, int index)
         "fibres.",
         wb_pages_escape(label, sizeof label,
                         results->comparison->cases[WB_WIRES_RESIDUAL + index].label),
-        wb_wires_figures_number(in, results, "5a"));
+        figure_number(in, results, "5a"));
 }
 
 static int count_residual(const void *context)
@@ -757,7 +758,7 @@ static void tell_residual_stress(struct wb_text *text, const void *context, int 
                    "Von Mises stress at %g N without and with residual stresses%s, simulated: "
                    "longitudinal sections as they are deformed, seen from the side, with the "
                    "largest value of the core.",
-                   wb_wires_figures_force(results), wb_wires_figures_number(in, results, "5b"));
+                   force_of(results), figure_number(in, results, "5b"));
 }
 
 /* --- the table --- */

@@ -13,11 +13,4 @@ enum {
  * "residual" of each case with residual stress, "residual-effect". */
 extern const struct wb_figures_row wb_wires_figures[WB_WIRES_FIGURES];
 
-/* The follower force at the end, N. */
-double wb_wires_figures_force(const struct wb_wires_results *results);
-
-/* " (the paper's Fig. N)", or "" of a campaign that has nothing of the paper's. */
-const char *wb_wires_figures_number(char text[48], const struct wb_wires_results *results,
-                                    const char *number);
-
 #endif

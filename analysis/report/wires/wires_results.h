@@ -1,5 +1,5 @@
-/* Everything that the report of a comparison tells: its datasets read and checked, the 1D
- * properties fitted to the solid, and what is computed beside them.
+/* The results of a comparison of wires: its datasets read and checked, the properties of a 1D rod
+ * fitted to the solid, and the rods that are computed for comparison.
  */
 #ifndef WB_ANALYSIS_REPORT_WIRES_WIRES_RESULTS_H
 #define WB_ANALYSIS_REPORT_WIRES_WIRES_RESULTS_H
@@ -81,9 +81,6 @@ int wb_wires_results_judge(const struct wb_wires_results *results,
 
 /* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_wires_cost(const struct wb_wires_results *results, int index);
-
-/* Distance of a usable run's tip from the exact elastic one, over that one's displacement. */
-double wb_wires_tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run);
 
 /* By how much E of the jacket moves when that of the core moves by a part `change` and the
  * effective modulus of eq. 8 stays, Pa. */

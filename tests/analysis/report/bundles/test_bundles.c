@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "analysis/report/bundles/bundles_kind.h"
-#include "analysis/report/report.h"
+#include "analysis/report/report_private.h"
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/json.h"

@@ -6,8 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/report/report.h"
+#include "analysis/report/report_private.h"
 #include "analysis/report/wires/wires_kind.h"
+#include "analysis/report/wires/wires_results_private.h"
 #include "base/file.h"
 #include "base/json.h"
 
