@@ -5,26 +5,14 @@
 #include "base/log.h"
 #include "tests/analysis/synthetic.h"
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
-static char folder[64];
 static int n_recordings;
 
 static int start(void **state)
 {
-    (void)state;
     keep_messages();
-    /* In memory where there is such a place: recordings are synchronised to the disk. */
-    snprintf(folder, sizeof folder, "%s/wirebench-align-XXXXXX",
-             access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int finish(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return make_folder(state);
 }
 
 static void record(struct syn *syn, char path[WB_PATH])
@@ -626,5 +614,5 @@ int main(void)
         cmocka_unit_test(wrong_bytes_never_crash_it),
         cmocka_unit_test(the_same_recording_gives_the_same_bytes),
     };
-    return cmocka_run_group_tests(tests, start, finish);
+    return cmocka_run_group_tests(tests, start, remove_folder);
 }

@@ -12,6 +12,7 @@
 #include "fixtures/virtual/sim_cell.h"
 #include "fixtures/virtual/sim_mocap.h"
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 #include "tests/virtual/setup.h"
 
 #define HOST_ZERO_NS INT64_C(900000000000)
@@ -43,23 +44,11 @@ struct session {
 };
 
 static struct session session;
-static char folder[64];
 
 static int start(void **state)
 {
-    (void)state;
     keep_messages();
-    snprintf(folder, sizeof folder, "%s/wirebench-align-XXXXXX",
-             access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int finish(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return make_folder(state);
 }
 
 /* --- the rig, offline --- */
@@ -423,5 +412,5 @@ int main(void)
         cmocka_unit_test(a_server_without_echo_serves),
         cmocka_unit_test(what_is_stated_of_downward_bows_holds),
     };
-    return cmocka_run_group_tests(tests, start, finish);
+    return cmocka_run_group_tests(tests, start, remove_folder);
 }

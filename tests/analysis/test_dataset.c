@@ -9,24 +9,12 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "tests/messages.h"
-
-static char folder[64];
+#include "tests/own_folder.h"
 
 static int start(void **state)
 {
-    (void)state;
     keep_messages();
-    snprintf(folder, sizeof folder, "%s/wirebench-dataset-XXXXXX",
-             access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int finish(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return make_folder(state);
 }
 
 static uint64_t random_bits(uint64_t *seed)
@@ -563,5 +551,5 @@ int main(void)
         cmocka_unit_test(bow_and_curvature_match_closed_forms),
         cmocka_unit_test(phases_have_their_names),
     };
-    return cmocka_run_group_tests(tests, start, finish);
+    return cmocka_run_group_tests(tests, start, remove_folder);
 }

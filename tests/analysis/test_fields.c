@@ -1,13 +1,12 @@
 /* fields.csv: what is written is read again, and what is wrong is refused with line and column. */
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "analysis/fields.h"
 #include "base/file.h"
-
-static char folder[] = "/tmp/wirebench-fields-XXXXXX";
 
 static void fill(struct wb_field *field, double seed)
 {
@@ -303,20 +302,6 @@ static void broken_files_are_read_or_refused(void **state)
         }
     }
     assert_true(refused > (int)n);
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
 }
 
 int main(void)

@@ -1,5 +1,6 @@
 /* Scales, room for legends, and figures as bytes. */
 #include "tests/check.h"
+#include "tests/folder.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -397,8 +398,8 @@ static void an_empty_figure_and_one_of_nothing_but_nan_can_be_drawn(void **state
 static void files_are_written_whole_and_a_missing_folder_is_an_error(void **state)
 {
     (void)state;
-    char folder[] = "/tmp/wb-figure-XXXXXX", path[WB_PATH];
-    assert_non_null(mkdtemp(folder));
+    char folder[32], path[WB_PATH];
+    assert_true(temporary_folder_make(folder));
     struct wb_figure *const figure = make_figure("file", 0);
     assert_int_equal(wb_file_join(path, folder, "a.png"), WB_OK);
     assert_int_equal(wb_figure_write_png(figure, 1.0, path), WB_OK);

@@ -4,20 +4,19 @@
 
 #include "analysis/properties.h"
 #include "base/file.h"
+#include "tests/own_folder.h"
 
-static char folder[] = "/tmp/wirebench-properties-XXXXXX";
 static char path[WB_PATH];
 
-static int make_folder(void **state)
+static int set_up(void **state)
 {
-    (void)state;
     keep_messages();
-    if (!mkdtemp(folder))
+    if (make_folder(state) != 0)
         return -1;
     return wb_file_join(path, folder, "properties.yaml") == WB_OK ? 0 : -1;
 }
 
-static int remove_folder(void **state)
+static int tear_down(void **state)
 {
     (void)state;
     unlink(path);
@@ -171,5 +170,5 @@ int main(void)
         cmocka_unit_test(an_existing_file_is_kept_without_force),
         cmocka_unit_test(errors_name_file_line_and_key),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

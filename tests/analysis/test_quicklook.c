@@ -7,9 +7,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
-#include "tests/check.h"
-
-static char folder[64];
+#include "tests/own_folder.h"
 
 static void quiet(void *context, enum wb_log_level level, const char *domain, const char *message)
 {
@@ -21,19 +19,8 @@ static void quiet(void *context, enum wb_log_level level, const char *domain, co
 
 static int start(void **state)
 {
-    (void)state;
     wb_log_set_sink(quiet, NULL);
-    snprintf(folder, sizeof folder, "%s/wirebench-quicklook-XXXXXX",
-             access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int finish(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return make_folder(state);
 }
 
 /* Two cycles up and down, with a slack end. */
@@ -180,5 +167,5 @@ int main(void)
         cmocka_unit_test(the_same_dataset_gives_the_same_bytes),
         cmocka_unit_test(a_dataset_without_shapes_or_rows_has_a_summary),
     };
-    return cmocka_run_group_tests(tests, start, finish);
+    return cmocka_run_group_tests(tests, start, remove_folder);
 }

@@ -1,5 +1,5 @@
 /* Computed wires as datasets. */
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
 #include <stdlib.h>
 
@@ -8,7 +8,6 @@
 #include "base/units.h"
 #include "fe/trial/wire_run_private.h"
 
-static char folder[] = "/tmp/wirebench-simulated-XXXXXX";
 static struct wb_wire_model model;
 static struct wb_wire_run run;
 
@@ -210,20 +209,6 @@ static void raised_test_is_zeroed_and_weighs_upwards(void **state)
     assert_false(flag(simulation, "substitutes"));
     wb_dataset_release(&dataset);
     wb_wire_run_release(&run);
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
 }
 
 int main(void)

@@ -7,22 +7,12 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
-static char folder[] = "/tmp/wirebench-surface-XXXXXX";
-
-static int make_folder(void **state)
+static int tear_down(void **state)
 {
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
     wb_log_set_sink(NULL, NULL);
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return remove_folder(state);
 }
 
 static const char *path_of_file(void)
@@ -260,5 +250,5 @@ int main(void)
         cmocka_unit_test(what_is_not_finite_is_not_written),
         cmocka_unit_test(bad_files_are_refused),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_folder, tear_down);
 }

@@ -1,5 +1,5 @@
 /* Checkpoints: what was saved comes back, and nothing else is taken for one. */
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -9,19 +9,17 @@
 #include "base/checkpoint.h"
 #include "base/file.h"
 
-static char folder[] = "/tmp/wirebench-checkpoint-XXXXXX";
 static char path[64];
 
-static int make_folder(void **state)
+static int set_up(void **state)
 {
-    (void)state;
-    if (!mkdtemp(folder))
+    if (make_folder(state) != 0)
         return -1;
     snprintf(path, sizeof path, "%s/state", folder);
     return 0;
 }
 
-static int remove_folder(void **state)
+static int tear_down(void **state)
 {
     (void)state;
     (void)unlink(path);
@@ -240,5 +238,5 @@ int main(void)
         cmocka_unit_test(groups_without_end_are_refused),
         cmocka_unit_test(other_files_and_damaged_ones_are_refused),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,4 +1,4 @@
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
 #include <dirent.h>
 #include <signal.h>
@@ -10,23 +10,16 @@
 #include "base/file.h"
 #include "base/hash.h"
 
-static char folder[64];
-
 static int set_up(void **state)
 {
-    (void)state;
-    strcpy(folder, "/tmp/wb-test-file-XXXXXX");
     wb_log_set_sink(discard_message, NULL);
-    return mkdtemp(folder) ? 0 : -1;
+    return make_folder(state);
 }
 
 static int tear_down(void **state)
 {
-    (void)state;
     wb_log_set_sink(NULL, NULL);
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
+    return remove_folder(state);
 }
 
 static int entries(const char *path)

@@ -8,9 +8,7 @@
 #include "base/json.h"
 #include "daq/recording.h"
 #include "tests/analysis/synthetic.h"
-#include "tests/check.h"
-
-static char folder[64];
+#include "tests/own_folder.h"
 
 struct outcome {
     int code;
@@ -19,10 +17,7 @@ struct outcome {
 
 static int start(void **state)
 {
-    (void)state;
-    snprintf(folder, sizeof folder, "%s/wirebench-command-XXXXXX",
-             access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
-    if (!mkdtemp(folder) || setenv("DIR", folder, 1) != 0)
+    if (make_folder(state) != 0 || setenv("DIR", folder, 1) != 0)
         return -1;
     char path[128];
     struct syn syn;
@@ -42,14 +37,6 @@ static int start(void **state)
     snprintf(path, sizeof path, "%s/no-tare.wbr", folder);
     syn_record(&syn, path);
     return 0;
-}
-
-static int finish(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
 }
 
 static char *read_whole(const char *name)
@@ -234,5 +221,5 @@ int main(void)
         cmocka_unit_test(quicklook_draws_one_recording),
         cmocka_unit_test(what_is_wrong_is_said_once_and_clearly),
     };
-    return cmocka_run_group_tests(tests, start, finish);
+    return cmocka_run_group_tests(tests, start, remove_folder);
 }

@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
 struct outcome {
     int code;
@@ -13,21 +13,6 @@ struct outcome {
 };
 
 static struct outcome o;
-static char folder[] = "/tmp/wirebench-info-XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
-}
 
 static const char *path_of(const char *name)
 {

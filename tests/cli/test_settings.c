@@ -15,6 +15,7 @@
 #include "daq/bend_test.h"
 #include "fe/model/bundle_override.h"
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
 /* A command whose arguments end in a file that is not there: exit code 1, once its options are
  * read. */
@@ -37,22 +38,7 @@ static const struct command {
      0},
 };
 
-static char folder[] = "/tmp/wirebench-settings-XXXXXX";
 static char out[65536], err[16384];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
-}
 
 static void read_back(const char *name, char *text, size_t size)
 {

@@ -6,7 +6,7 @@
 
 #include "analysis/dataset.h"
 #include "base/json.h"
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
 struct outcome {
     int code;
@@ -14,21 +14,6 @@ struct outcome {
 };
 
 static struct outcome o;
-static char folder[] = "/tmp/wirebench-solve-XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
-}
 
 static void read_all(const char *name, char *text, size_t size)
 {

@@ -7,9 +7,8 @@
 #include "analysis/surface.h"
 #include "base/file.h"
 #include "base/json.h"
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
-static char folder[] = "/tmp/wirebench-solve-XXXXXX";
 static char out[65536], err[16384];
 
 static const char model[] =
@@ -19,23 +18,14 @@ static const char model[] =
     "run: {mesh: coarse, deflection_mm: 10, rows: 5, selective_mass_scaling: 100}\n"
     "loads: {weight: true, strand_mm: 760}\n";
 
-static int make_folder(void **state)
+static int set_up(void **state)
 {
     char path[128];
-    (void)state;
-    if (!mkdtemp(folder))
+    if (make_folder(state) != 0)
         return -1;
     snprintf(path, sizeof path, "%s/one.yaml", folder);
     FILE *file = fopen(path, "w");
     return file && fputs(model, file) >= 0 && fclose(file) == 0 ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
 }
 
 static void read_all(const char *name, char *text, size_t size)
@@ -318,5 +308,5 @@ int main(void)
         cmocka_unit_test(options_of_others_are_refused),
         cmocka_unit_test(cycles_have_rows_up_and_down),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -7,6 +7,7 @@
 #include "daq/bend_test.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
+#include "tests/folder.h"
 
 #define MS WB_NS_PER_MS
 
@@ -33,8 +34,7 @@ static inline int set_up(void **state)
 {
     struct fixture *const fixture = calloc(1, sizeof *fixture);
     assert_non_null(fixture);
-    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/wb-bend-XXXXXX");
-    assert_non_null(mkdtemp(fixture->folder));
+    assert_true(temporary_folder_make(fixture->folder));
     snprintf(fixture->rig, sizeof fixture->rig, "%s/rig.yaml", fixture->folder);
     snprintf(fixture->specimen, sizeof fixture->specimen, "%s/specimen.yaml", fixture->folder);
     snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
@@ -58,13 +58,11 @@ static inline int set_up(void **state)
 static inline int tear_down(void **state)
 {
     struct fixture *const fixture = *state;
-    char command[128];
     wb_log_set_sink(NULL, NULL);
     wb_interrupt_set(false);
     fake_stop(fixture->bench);
     sample_log_release(&fixture->log);
-    snprintf(command, sizeof command, "rm -rf %s", fixture->folder);
-    const int code = system(command);
+    const int code = temporary_folder_remove(fixture->folder);
     free(fixture);
     return code;
 }

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "daq/recording.h"
 #include "tests/check.h"
+#include "tests/folder.h"
 
 struct bench {
     char folder[64];
@@ -31,8 +32,7 @@ static inline void bench_log(void *context, enum wb_log_level level, const char 
 static inline int bench_set_up(void **state)
 {
     struct bench *bench = calloc(1, sizeof *bench);
-    snprintf(bench->folder, sizeof bench->folder, "/tmp/wb-recording-XXXXXX");
-    if (!mkdtemp(bench->folder))
+    if (!temporary_folder_make(bench->folder))
         return -1;
     snprintf(bench->path, sizeof bench->path, "%s/test.wbr", bench->folder);
     wb_log_set_sink(bench_log, bench);
@@ -44,9 +44,7 @@ static inline int bench_tear_down(void **state)
 {
     struct bench *bench = *state;
     wb_log_set_sink(NULL, NULL);
-    char command[256];
-    snprintf(command, sizeof command, "chmod -R u+w %s; rm -rf %s", bench->folder, bench->folder);
-    int code = system(command);
+    const int code = temporary_folder_remove(bench->folder);
     free(bench);
     return code;
 }

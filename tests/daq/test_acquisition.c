@@ -9,6 +9,7 @@
 #include "daq/stream.h"
 #include "tests/daq/fake_bench.h"
 #include "tests/daq/sample_log.h"
+#include "tests/folder.h"
 
 #define MS WB_NS_PER_MS
 
@@ -38,8 +39,7 @@ static int set_up(void **state)
 {
     struct fixture *const fixture = calloc(1, sizeof *fixture);
     assert_non_null(fixture);
-    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/wb-loop-XXXXXX");
-    assert_non_null(mkdtemp(fixture->folder));
+    assert_true(temporary_folder_make(fixture->folder));
     snprintf(fixture->rig_path, sizeof fixture->rig_path, "%s/rig.yaml", fixture->folder);
     snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
     fixture->bench = fake_start();
@@ -54,15 +54,13 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct fixture *const fixture = *state;
-    char command[128];
     wb_log_set_sink(NULL, NULL);
     wb_interrupt_set(false);
     wb_acquisition_close(fixture->acquisition);
     assert_int_equal(wb_writer_finish(fixture->writer), WB_OK);
     fake_stop(fixture->bench);
     sample_log_release(&fixture->log);
-    snprintf(command, sizeof command, "rm -rf %s", fixture->folder);
-    const int code = system(command);
+    const int code = temporary_folder_remove(fixture->folder);
     free(fixture);
     return code;
 }

@@ -6,15 +6,13 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "daq/check_log.h"
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
-static char folder[64], rig[96], log_path[WB_PATH];
+static char rig[96], log_path[WB_PATH];
 
 static int set_up(void **state)
 {
-    (void)state;
-    snprintf(folder, sizeof folder, "/tmp/wb-checks-XXXXXX");
-    assert_non_null(mkdtemp(folder));
+    assert_int_equal(make_folder(state), 0);
     snprintf(rig, sizeof rig, "%s/bench.yaml", folder);
     assert_int_equal(wb_check_log_path(log_path, rig), WB_OK);
     return 0;
@@ -22,11 +20,8 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    char command[128];
-    (void)state;
     wb_log_set_sink(NULL, NULL);
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command);
+    return remove_folder(state);
 }
 
 static struct wb_check_log_entry check(const char *utc, double read_g, const char *serial)

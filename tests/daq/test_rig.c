@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/units.h"
+#include "tests/folder.h"
 #include "tests/messages.h"
 
 static const char good[] = "name: paper bench\n"                         /* line 1 */
@@ -277,8 +278,8 @@ static void a_virtual_rig_that_is_gone_is_told(void **state)
 {
     (void)state;
     struct wb_rig rig;
-    char folder[] = "/tmp/wb-rig-XXXXXX", path[64];
-    assert_non_null(mkdtemp(folder));
+    char folder[32], path[64];
+    assert_true(temporary_folder_make(folder));
     snprintf(path, sizeof path, "%s/rig.yaml", folder);
     assert_int_equal(wb_rig_read(path, &rig), WB_ERR_NOT_FOUND);
     assert_message("has it said ready?");
@@ -312,26 +313,20 @@ static void checks_after_the_table_tell_the_line_of_their_key(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_value_arrives_in_si, set_up,
+        cmocka_unit_test_setup_teardown(every_value_arrives_in_si, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(line_protocol_keys_are_read, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(virtual_rigs_are_marked_and_their_truth_is_ignored, set_up,
                                         tear_down),
-        cmocka_unit_test_setup_teardown(line_protocol_keys_are_read, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(virtual_rigs_are_marked_and_their_truth_is_ignored,
-                                        set_up, tear_down),
         cmocka_unit_test_setup_teardown(tare_is_unloaded_unless_it_is_with_the_counterweight,
                                         set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_tare_with_a_counterweight_needs_one, set_up,
+        cmocka_unit_test_setup_teardown(a_tare_with_a_counterweight_needs_one, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(strand_and_limits_may_be_left_out, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bad_files_are_refused_with_file_line_and_key, set_up,
                                         tear_down),
-        cmocka_unit_test_setup_teardown(strand_and_limits_may_be_left_out, set_up,
+        cmocka_unit_test_setup_teardown(balances_take_no_generic_keys, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_virtual_rig_that_is_gone_is_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(checks_after_the_table_tell_the_line_of_their_key, set_up,
                                         tear_down),
-        cmocka_unit_test_setup_teardown(bad_files_are_refused_with_file_line_and_key,
-                                        set_up, tear_down),
-        cmocka_unit_test_setup_teardown(balances_take_no_generic_keys, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_virtual_rig_that_is_gone_is_told, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(checks_after_the_table_tell_the_line_of_their_key,
-                                        set_up, tear_down),
         cmocka_unit_test_setup_teardown(missing_file_is_named, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,6 +8,7 @@
 #include "daq/bend_test.h"
 #include "fixtures/virtual/bench.h"
 #include "tests/daq/sample_log.h"
+#include "tests/folder.h"
 
 struct fixture {
     char folder[64], rig[96], output[96], paper[512], specimen[512];
@@ -36,8 +37,7 @@ static void start_rig(struct fixture *fixture, const char *specimen, int major, 
 {
     const char *const root = getenv("WIREBENCH_SOURCE_ROOT");
     memset(fixture, 0, sizeof *fixture);
-    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/wb-virtual-XXXXXX");
-    assert_non_null(mkdtemp(fixture->folder));
+    assert_true(temporary_folder_make(fixture->folder));
     snprintf(fixture->rig, sizeof fixture->rig, "%s/rig.yaml", fixture->folder);
     snprintf(fixture->output, sizeof fixture->output, "%s/test.wbr", fixture->folder);
     /* 20 s of a rig that runs 20 times faster: a busy machine is no lost stream. */
@@ -64,13 +64,11 @@ static void start_rig(struct fixture *fixture, const char *specimen, int major, 
 
 static void stop_rig(struct fixture *fixture)
 {
-    char command[128];
     fixture->stop = true;
     pthread_join(fixture->thread, NULL);
     wb_bench_close(fixture->bench);
     wb_log_set_sink(NULL, NULL);
-    snprintf(command, sizeof command, "rm -rf %s", fixture->folder);
-    assert_int_equal(system(command), 0);
+    assert_int_equal(temporary_folder_remove(fixture->folder), 0);
 }
 
 static void record(struct fixture *fixture, double travel_mm, struct sample_log *log,

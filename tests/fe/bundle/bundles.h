@@ -7,24 +7,10 @@
 #include "fe/bundle/bundle_run.h"
 #include "fe/trial/loading_steps.h"
 #include "tests/fe/rod/wires.h"
+#include "tests/own_folder.h"
 
-static char folder[] = "/tmp/wirebench-bundle-XXXXXX";
 static struct wb_bundle_model model;
 static struct wb_bundle_result result;
-
-static inline int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static inline int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
-}
 
 static inline int release(void **state)
 {

@@ -1,6 +1,7 @@
 /* Bundle models: every key of the file, every refusal with file, line and key, and what follows
  * from the section: the paper's diameters and densities, and bounds of the flexural rigidity. */
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -9,7 +10,6 @@
 #include "base/file.h"
 #include "fe/model/bundle_model.h"
 
-static char folder[] = "/tmp/wirebench-bundle-XXXXXX";
 static char model_path[64];
 static struct wb_bundle_model model;
 static struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS];
@@ -642,17 +642,16 @@ static void the_checksum_covers_the_files_it_names(void **state)
     write_beside("thin.yaml", thin);
 }
 
-static int make_folder(void **state)
+static int set_up(void **state)
 {
-    (void)state;
-    if (!mkdtemp(folder))
+    if (make_folder(state) != 0)
         return -1;
     snprintf(model_path, sizeof model_path, "%s/model.yaml", folder);
     write_beside("thin.yaml", thin);
     return 0;
 }
 
-static int remove_folder(void **state)
+static int tear_down(void **state)
 {
     static const char *const names[] = {"model.yaml", "thin.yaml", "plain.yaml"};
     (void)state;
@@ -728,5 +727,5 @@ int main(void)
         cmocka_unit_test(the_checksum_covers_the_files_it_names),
         cmocka_unit_test(every_setting_is_part_of_the_identity),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

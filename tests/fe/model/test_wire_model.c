@@ -1,6 +1,7 @@
 /* Wire models: every key of the file, every refusal with file, line and key, what follows from a
  * model, and the shipped ones. */
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -8,7 +9,6 @@
 #include "base/file.h"
 #include "fe/model/wire_model.h"
 
-static char folder[] = "/tmp/wirebench-model-XXXXXX";
 static char model_path[64];
 static struct wb_wire_model model;
 
@@ -516,8 +516,8 @@ static void whole_models_are_refused_for_what_they_are(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const enum wb_status status = read_bytes(cases[i].text, strlen(cases[i].text));
         if (status == WB_OK || kept.n != 1 || !strstr(kept.last, cases[i].expected))
-            fail_msg("case %zu: status %d, %d messages, '%s' does not hold '%s'", i, status,
-                     kept.n, kept.last, cases[i].expected);
+            fail_msg("case %zu: status %d, %d messages, '%s' does not hold '%s'", i, status, kept.n,
+                     kept.last, cases[i].expected);
     }
     keep_messages();
     assert_int_equal(wb_wire_model_read(&model, "/nowhere/model.yaml"), WB_ERR_NOT_FOUND);
@@ -553,22 +553,13 @@ static void broken_files_are_read_or_refused(void **state)
     assert_true(refused > 400);
 }
 
-static int make_folder(void **state)
+static int set_up(void **state)
 {
-    (void)state;
-    if (!mkdtemp(folder))
+    if (make_folder(state) != 0)
         return -1;
     snprintf(model_path, sizeof model_path, "%s/model.yaml", folder);
     write_beside("soft.yaml", soft);
     return 0;
-}
-
-static int remove_folder(void **state)
-{
-    char command[128];
-    (void)state;
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
 }
 
 int main(void)
@@ -588,5 +579,5 @@ int main(void)
         cmocka_unit_test(whole_models_are_refused_for_what_they_are),
         cmocka_unit_test(broken_files_are_read_or_refused),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

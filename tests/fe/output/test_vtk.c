@@ -3,9 +3,8 @@
 #include <stdlib.h>
 
 #include "fe/output/vtk_private.h"
-#include "tests/check.h"
+#include "tests/own_folder.h"
 
-static char folder[64];
 static struct wb_solid_mesh mesh;
 static struct wb_wire3d_fields fields;
 
@@ -54,20 +53,15 @@ static const struct wb_solid_mesh_wire bonded = {
 
 static int set_up(void **state)
 {
-    (void)state;
-    strcpy(folder, "/tmp/wb-test-vtk-XXXXXX");
     take_fields(&bonded);
-    return mkdtemp(folder) ? 0 : -1;
+    return make_folder(state);
 }
 
 static int tear_down(void **state)
 {
-    (void)state;
     wb_log_set_sink(NULL, NULL);
     let_go_of_fields();
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
+    return remove_folder(state);
 }
 
 static char *path_of(const char *name)

@@ -7,24 +7,14 @@
 #include "analysis/report/bench/index.h"
 #include "analysis/report/bench/recordings.h"
 #include "base/file.h"
+#include "tests/own_folder.h"
 
 #define SHA_A "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
 
-static char folder[] = "/tmp/wb-campaign-XXXXXX";
-
-static int make_folder(void **state)
+static int set_up(void **state)
 {
-    (void)state;
     keep_messages();
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[256];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return make_folder(state);
 }
 
 static const char *write_file(const char *name, const char *text)
@@ -262,5 +252,5 @@ int main(void)
         cmocka_unit_test(
             the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -15,23 +15,7 @@
 #include "base/interrupt.h"
 #include "base/json.h"
 #include "tests/analysis/synthetic.h"
-
-static char folder[] = "/tmp/wb-report-XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    keep_messages();
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[256];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
-}
+#include "tests/own_folder.h"
 
 static const char *in_folder(const char *name)
 {
@@ -539,6 +523,7 @@ static void an_interrupt_ends_the_computation(void **state)
 static int setup(void **state)
 {
     static struct good good;
+    keep_messages();
     if (make_folder(state) != 0)
         return -1;
     make_good(&good, 1.0);

@@ -3,6 +3,7 @@
  * and fits are known. */
 #include "tests/analysis/made_up_bundle.h"
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,27 +14,22 @@
 #include "base/file.h"
 #include "base/json.h"
 
-static char folder[] = "/tmp/wb-bundles-XXXXXX";
 static struct wb_bundles campaign;
 static struct wb_bundles_results results;
 static struct wb_bundles whole_campaign;
 static struct wb_bundles_results whole_results;
 
-static int make_folder(void **state)
+static int set_up(void **state)
 {
-    (void)state;
     keep_messages();
-    return mkdtemp(folder) ? 0 : -1;
+    return make_folder(state);
 }
 
-static int remove_folder(void **state)
+static int tear_down(void **state)
 {
-    (void)state;
-    char command[256];
     wb_bundles_results_release(&whole_results);
     wb_bundles_release(&whole_campaign);
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return remove_folder(state);
 }
 
 static const char *in_folder(const char *name)
@@ -669,5 +665,5 @@ int main(void)
         cmocka_unit_test(the_same_datasets_give_the_same_bytes),
         cmocka_unit_test(a_report_without_datasets_says_how_to_make_them),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

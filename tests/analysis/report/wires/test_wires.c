@@ -2,6 +2,7 @@
  * report. The datasets are made up of beam theory, so its numbers must come out. */
 #include "tests/analysis/bent_wire.h"
 #include "tests/messages.h"
+#include "tests/own_folder.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,25 +13,20 @@
 #include "base/file.h"
 #include "base/json.h"
 
-static char folder[] = "/tmp/wb-comparison-XXXXXX";
 static struct wb_wires whole_comparison;
 static struct wb_wires_results whole_results;
 
-static int make_folder(void **state)
+static int set_up(void **state)
 {
-    (void)state;
     keep_messages();
-    return mkdtemp(folder) ? 0 : -1;
+    return make_folder(state);
 }
 
-static int remove_folder(void **state)
+static int tear_down(void **state)
 {
-    (void)state;
-    char command[256];
     wb_wires_results_release(&whole_results);
     wb_wires_release(&whole_comparison);
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
+    return remove_folder(state);
 }
 
 static const char *in_folder(const char *name)
@@ -612,5 +608,5 @@ int main(void)
         cmocka_unit_test(the_same_datasets_give_the_same_bytes),
         cmocka_unit_test(a_report_without_datasets_says_how_to_make_them),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }
