@@ -1,4 +1,5 @@
 #include "base/interrupt.h"
+#include "base/interrupt_private.h"
 
 #include <signal.h>
 #include <stddef.h>

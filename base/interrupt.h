@@ -16,7 +16,4 @@ void wb_interrupt_guard(void);
 /* True once a signal came. */
 bool wb_interrupted(void);
 
-/* Sets or clears the flag without a signal (tests, a stop key). */
-void wb_interrupt_set(bool interrupted);
-
 #endif

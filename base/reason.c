@@ -1,7 +1,6 @@
 #include "base/reason.h"
 
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -10,18 +9,17 @@ enum {
     MOST_MESSAGE = 2048
 };
 
-/* Adds behind the first `used` bytes, which fit. */
-static void add(struct wb_reason *reason, size_t used, const char *message)
+/* Keeps what fits of the message. */
+static void keep(struct wb_reason *reason, const char *message)
 {
     static const char mark[] = "...";
-    const size_t room = sizeof reason->text - used;
     const size_t length = strlen(message);
 
-    if (length < room) {
-        memcpy(reason->text + used, message, length + 1);
+    if (length < sizeof reason->text) {
+        memcpy(reason->text, message, length + 1);
         return;
     }
-    memcpy(reason->text + used, message, room);
+    memcpy(reason->text, message, sizeof reason->text);
     size_t end = sizeof reason->text - sizeof mark;
     /* Bytes 10xxxxxx of UTF-8 continue a character: none may lose its head. */
     while (end > 0 && ((unsigned char)reason->text[end] & 0xc0) == 0x80)
@@ -37,19 +35,7 @@ void wb_reason_set(struct wb_reason *reason, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    add(reason, 0, message);
-}
-
-void wb_reason_append(struct wb_reason *reason, const char *format, ...)
-{
-    char message[MOST_MESSAGE] = "; ";
-    const bool is_first = reason->text[0] == '\0';
-    va_list arguments;
-
-    va_start(arguments, format);
-    vsnprintf(message + 2, sizeof message - 2, format, arguments);
-    va_end(arguments);
-    add(reason, strlen(reason->text), is_first ? message + 2 : message);
+    keep(reason, message);
 }
 
 void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *format, ...)
@@ -61,7 +47,7 @@ void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *fo
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
     if (reason)
-        add(reason, 0, message);
+        keep(reason, message);
     else
         wb_log(WB_LOG_ERROR, domain, "%s", message);
 }

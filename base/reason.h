@@ -20,9 +20,6 @@ struct wb_reason {
 void wb_reason_set(struct wb_reason *reason, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Adds to the text, behind "; " where there is one already. */
-void wb_reason_append(struct wb_reason *reason, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
 
 /* Replaces the text of `reason`; logs an error of that domain where it is NULL. Called by
  * wb_fail_to(). */

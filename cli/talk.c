@@ -1,4 +1,5 @@
 #include "cli/talk.h"
+#include "cli/talk_private.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -21,9 +21,6 @@ bool wb_talk_say(const char *text);
  * is not worth saying otherwise. */
 bool wb_talk_flush(void);
 
-/* Texts dropped since wb_talk_open(). */
-uint64_t wb_talk_lost(void);
-
 /* Waits at most `patience_ms` for stderr to take what is left, and ends. */
 void wb_talk_close(int patience_ms);
 

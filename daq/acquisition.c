@@ -1,4 +1,5 @@
 #include "daq/acquisition.h"
+#include "daq/acquisition_private.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -45,10 +45,6 @@ WB_MUST_CHECK enum wb_status wb_acquisition_open(struct wb_acquisition **out,
                                                  const struct wb_rig *rig, unsigned roles,
                                                  const struct wb_sink *sink);
 
-/* Index of a role's stream in the recording: the opened roles in the order load, mocap, stage. -1
- * when it is not open. */
-int wb_acquisition_stream(const struct wb_acquisition *acquisition, enum wb_role role);
-
 /* Lets the drivers say hello; from here on bytes are stored. `writer` is borrowed and may be NULL
  * (nothing is stored). Its recording has the streams declared in the order above. */
 void wb_acquisition_start(struct wb_acquisition *acquisition, struct wb_writer *writer);
@@ -89,9 +85,6 @@ void wb_acquisition_stop(struct wb_acquisition *acquisition, enum wb_interlock_r
                          const char *text);
 /* How far the stop has come. */
 const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *acquisition);
-/* After a stop that is over: clears it and the interlock, so that the stage can be told to move
- * again (stage commands that free a specimen). The interlock is disarmed. */
-void wb_acquisition_clear_stop(struct wb_acquisition *acquisition);
 
 /* --- the latest, for live lines and sequences --- */
 

@@ -1,4 +1,5 @@
 #include "daq/bend_recording.h"
+#include "daq/bend_recording_private.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -25,9 +25,4 @@ struct wb_bend_recording {
 WB_MUST_CHECK enum wb_status wb_bend_recording_create(struct wb_recording **out,
                                                       const struct wb_bend_recording *description);
 
-/* The text of a top-level key of a YAML block map, the key's own line included, or "" when it is
- * not there; allocated, NULL when out of memory. (For the truth of a virtual rig, which is stored
- * but never read.) */
-char *wb_bend_recording_yaml_part(const char *yaml, const char *key);
-
 #endif

@@ -1,4 +1,5 @@
 #include "daq/drivers.h"
+#include "daq/drivers_private.h"
 
 #include <string.h>
 

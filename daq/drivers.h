@@ -15,9 +15,6 @@
 WB_DRIVERS(WB_DRIVERS_DECLARE)
 #undef WB_DRIVERS_DECLARE
 
-/* All of them; NULL is the end. */
-extern const struct wb_driver *const wb_drivers[];
-
 /* By role and protocol name; NULL when there is none. */
 const struct wb_driver *wb_drivers_find(enum wb_role role, const char *protocol);
 

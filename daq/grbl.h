@@ -86,7 +86,6 @@ struct wb_grbl_jog {
     bool relative;
     double target_mm, feed_mm_min;
 };
-bool wb_grbl_parse_jog(const char *text, struct wb_grbl_jog *jog);
 
 /* A status report with its line end, `<name|MPos:..|FS:..|WCO:..>`, of the fields the report has
  * (for the virtual rig). Returns its length, 0 when it does not fit. */

@@ -1,4 +1,5 @@
 #include "daq/grbl.h"
+#include "daq/grbl_private.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,4 +1,5 @@
 #include "daq/natnet_encode.h"
+#include "daq/natnet_encode_private.h"
 
 #include <string.h>
 

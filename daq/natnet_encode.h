@@ -41,8 +41,6 @@ size_t wb_natnet_encode_frame(uint8_t *buffer, size_t size, struct wb_natnet_ver
 size_t wb_natnet_encode_echo_response(uint8_t *buffer, size_t size, uint64_t stamp, uint64_t ticks);
 size_t wb_natnet_encode_response_integer(uint8_t *buffer, size_t size, int32_t value);
 size_t wb_natnet_encode_response_real(uint8_t *buffer, size_t size, float value);
-size_t wb_natnet_encode_response_text(uint8_t *buffer, size_t size, const char *text);
-size_t wb_natnet_encode_message_string(uint8_t *buffer, size_t size, const char *text);
 /* The answer to a request the server does not know. */
 size_t wb_natnet_encode_unrecognized(uint8_t *buffer, size_t size);
 

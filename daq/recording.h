@@ -91,8 +91,6 @@ struct wb_recording_stream {
 int wb_recording_n_streams(const struct wb_recording *recording);
 const struct wb_recording_stream *wb_recording_stream_at(const struct wb_recording *recording,
                                                          int index);
-/* The settings text the stream was declared with; "" when none. */
-const char *wb_recording_stream_settings(const struct wb_recording *recording, int index);
 
 struct wb_chunk {
     int stream;
@@ -143,10 +141,5 @@ wb_recording_each_meta(struct wb_recording *recording,
  * that was not closed: of the file followed by its write-ahead log (`-wal`); of a compressed one
  * that is cut short: of what can be decompressed. */
 WB_MUST_CHECK enum wb_status wb_recording_sha256(const char *path, char hex[65]);
-
-/* Compresses a closed recording to `target` (.wbr.zst), written atomically; the same recording and
- * zstd release give the same bytes. WB_ERR_EXISTS when the target exists, WB_ERR_BUSY when the
- * recording was not closed. */
-WB_MUST_CHECK enum wb_status wb_recording_compress(const char *path, const char *target);
 
 #endif

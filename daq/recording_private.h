@@ -65,4 +65,12 @@ bool wb_recording_is_zstd(const uint8_t *bytes, size_t n);
 WB_MUST_CHECK enum wb_status wb_recording_decompress(int from, int to, const char *path,
                                                      bool *whole);
 
+/* Compresses a closed recording to `target` (.wbr.zst), written atomically; the same recording and
+ * zstd release give the same bytes. WB_ERR_EXISTS when the target exists, WB_ERR_BUSY when the
+ * recording was not closed. */
+WB_MUST_CHECK enum wb_status wb_recording_compress(const char *path, const char *target);
+
+/* The settings text the stream was declared with; "" when none. */
+const char *wb_recording_stream_settings(const struct wb_recording *recording, int index);
+
 #endif

@@ -56,7 +56,4 @@ uint64_t wb_stream_kernel_drops(const struct wb_stream *stream);
 WB_MUST_CHECK enum wb_status wb_stream_memory_push(struct wb_stream *stream, const void *bytes,
                                                    size_t n);
 
-/* Memory streams only: takes what was written with wb_stream_write() so far, up to `size`. */
-size_t wb_stream_memory_take_written(struct wb_stream *stream, void *buffer, size_t size);
-
 #endif

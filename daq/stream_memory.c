@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "daq/stream.h"
 #include "daq/stream_kind.h"
+#include "daq/stream_private.h"
 
 #define WB_LOG_DOMAIN "stream"
 

@@ -1,4 +1,5 @@
 #include "daq/writer.h"
+#include "daq/writer_private.h"
 
 #include <pthread.h>
 #include <signal.h>

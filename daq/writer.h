@@ -37,8 +37,6 @@ struct wb_writer_settings {
     void *context;
 };
 
-void wb_writer_default_settings(struct wb_writer_settings *settings);
-
 struct wb_writer_counts {
     uint64_t chunks, bytes; /* accepted */
     uint64_t dropped_chunks, dropped_bytes, dropped_probes;
@@ -63,16 +61,11 @@ void wb_writer_push_event(struct wb_writer *writer, int64_t t_ns, const char *ki
 bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_ns, double t_device,
                           int64_t rtt_ns);
 
-/* A meta value known only later (how the recording ended). */
-void wb_writer_push_meta(struct wb_writer *writer, const char *key, const char *value);
-
 /* Chunks of one stream dropped so far; of all streams with stream < 0. */
 uint64_t wb_writer_drops(const struct wb_writer *writer, int stream);
 
 /* WB_OK, or the first error of the thread (logged once, by the thread). */
 WB_MUST_CHECK enum wb_status wb_writer_status(const struct wb_writer *writer);
-
-void wb_writer_counts(const struct wb_writer *writer, struct wb_writer_counts *counts);
 
 /* Writes what waits, ends the thread, closes the recording and frees the writer. Returns the first
  * error of all of this. Accepts NULL (WB_OK). */

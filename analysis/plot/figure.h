@@ -143,8 +143,6 @@ void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, co
 WB_MUST_CHECK enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg);
 WB_MUST_CHECK enum wb_status wb_figure_png(const struct wb_figure *figure, double scale,
                                            struct wb_text *png);
-WB_MUST_CHECK enum wb_status wb_figure_pdf(const struct wb_figure *figure, const char *date_utc,
-                                           struct wb_text *pdf);
 
 /* The same into files, atomically. */
 WB_MUST_CHECK enum wb_status wb_figure_write_svg(const struct wb_figure *figure, const char *path);

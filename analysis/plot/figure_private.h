@@ -56,4 +56,7 @@ struct wb_figure {
     bool failed; /* out of memory, or more panels than there are places, or no field's colours */
 };
 
+WB_MUST_CHECK enum wb_status wb_figure_pdf(const struct wb_figure *figure, const char *date_utc,
+                                           struct wb_text *pdf);
+
 #endif

@@ -30,13 +30,6 @@ struct wb_material_state {
     double back_stress;                /* Pa */
 };
 
-/* Stress and consistent tangent of one point at a total strain, from the history `before`;
- * `after` receives the history if the step is accepted (it may alias `before`). Exact return
- * mapping to round-off; backward Euler. Pure. */
-void wb_material_stress(const struct wb_material *material, double strain,
-                        const struct wb_material_state *before, struct wb_material_state *after,
-                        double *stress, double *tangent);
-
 /* The largest von Mises stress (Pa) at an accumulated plastic strain: sigma_Y + K p^n. Infinite
  * where that is no bound: elastic, and kinematic hardening, whose surface moves. */
 double wb_material_flow_stress(const struct wb_material *material, double plastic_strain);

@@ -8,7 +8,7 @@
 
 #include <cairo.h>
 
-#include "analysis/plot/figure.h"
+#include "analysis/plot/figure_private.h"
 #include "analysis/plot/layout.h"
 #include "analysis/plot/place.h"
 #include "analysis/plot/scale.h"

@@ -1,6 +1,6 @@
 #include <signal.h>
 
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "tests/check.h"
 
 static void interrupts_set_the_flag(void **state)

@@ -11,7 +11,7 @@
 #include "base/progress.h"
 #include "base/units.h"
 #include "cli/live_line.h"
-#include "cli/talk.h"
+#include "cli/talk_private.h"
 #include "tests/check.h"
 
 #define WB_LOG_DOMAIN "test"

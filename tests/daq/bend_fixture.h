@@ -2,7 +2,7 @@
 #ifndef WB_TESTS_DAQ_BEND_FIXTURE_H
 #define WB_TESTS_DAQ_BEND_FIXTURE_H
 
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "base/log.h"
 #include "daq/bend_test.h"
 #include "tests/daq/fake_bench.h"

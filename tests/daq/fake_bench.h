@@ -18,7 +18,7 @@
 
 #include "base/units.h"
 #include "daq/acquisition.h"
-#include "daq/grbl.h"
+#include "daq/grbl_private.h"
 #include "daq/natnet.h"
 #include "daq/natnet_encode.h"
 #include "tests/check.h"

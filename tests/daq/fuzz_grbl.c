@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "daq/drivers.h"
-#include "daq/grbl.h"
+#include "daq/grbl_private.h"
 
 struct total {
     uint64_t n, hash;

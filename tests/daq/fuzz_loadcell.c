@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "daq/drivers.h"
+#include "daq/drivers_private.h"
 #include "daq/loadcell_line.h"
 
 struct total {

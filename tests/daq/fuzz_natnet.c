@@ -3,7 +3,7 @@
 #include "tests/daq/fuzz.h"
 
 #include "daq/drivers.h"
-#include "daq/natnet_encode.h"
+#include "daq/natnet_encode_private.h"
 #include "tests/daq/natnet_example.h"
 
 static struct wb_natnet_frame frame;

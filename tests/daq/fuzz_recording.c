@@ -11,7 +11,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
-#include "daq/recording.h"
+#include "daq/recording_private.h"
 #include "daq/survey.h"
 #include "tests/daq/small_test.h"
 

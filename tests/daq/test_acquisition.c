@@ -2,9 +2,10 @@
  * it never waits longer than it may. */
 #include "base/file.h"
 
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "daq/acquisition_private.h"
 #include "daq/bend_recording.h"
 #include "daq/stream.h"
 #include "tests/daq/fake_bench.h"

@@ -4,7 +4,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "daq/bend_recording.h"
+#include "base/interrupt_private.h"
+#include "daq/bend_recording_private.h"
 #include "tests/daq/bend_fixture.h"
 
 static bool well_down(const struct wb_bend_test_status *status)

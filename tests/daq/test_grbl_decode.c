@@ -1,6 +1,6 @@
 #include <stdlib.h>
 
-#include "daq/grbl.h"
+#include "daq/grbl_private.h"
 #include "tests/check.h"
 
 static struct wb_grbl_line decode(const char *text)

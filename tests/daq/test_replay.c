@@ -1,7 +1,7 @@
 /* Replay: recorded bytes through the drivers give the samples that live bytes gave. */
 #include <sqlite3.h>
 
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "base/progress.h"
 #include "daq/drivers.h"
 #include "daq/replay.h"

@@ -1,6 +1,6 @@
 /* Setting the bench by hand, against a small bench in a thread: jog, home, unlock, release, and the
  * check of the load cell with a mass. */
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "base/log.h"
 #include "daq/mass_check.h"
 #include "daq/stage_job.h"

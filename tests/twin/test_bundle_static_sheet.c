@@ -1,4 +1,5 @@
 /* The sheet's material point in plane stress. */
+#include "fe/material/material_private.h"
 #include "tests/check.h"
 #include "tests/twin/bundle_static_sheet.h"
 

@@ -1,5 +1,5 @@
 /* The whole virtual rig through its ports, with the real drivers in the real acquisition loop. */
-#include "fixtures/virtual/bench.h"
+#include "fixtures/virtual/bench_private.h"
 
 #include <pthread.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* The NatNet server under the real client driver, over real sockets. */
-#include "fixtures/virtual/mocap_server.h"
+#include "fixtures/virtual/mocap_server_private.h"
 
 #include <arpa/inet.h>
 #include <stdlib.h>
@@ -9,6 +9,7 @@
 #include "daq/drivers.h"
 #include "daq/natnet_encode.h"
 #include "fixtures/virtual/random.h"
+#include "fixtures/virtual/sim_mocap_private.h"
 #include "tests/virtual/setup.h"
 
 struct scene {

@@ -1,4 +1,5 @@
 #include "fixtures/virtual/sim_mocap.h"
+#include "fixtures/virtual/sim_mocap_private.h"
 
 #include <stdlib.h>
 

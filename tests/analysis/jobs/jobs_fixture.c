@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "tests/check.h"
 
 char jobs_fixture_folder[64];

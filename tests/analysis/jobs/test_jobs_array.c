@@ -6,7 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "tests/analysis/jobs/jobs_fixture.h"
 #include "tests/check.h"
 

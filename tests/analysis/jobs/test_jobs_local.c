@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "tests/analysis/jobs/jobs_fixture.h"
 #include "tests/check.h"
 

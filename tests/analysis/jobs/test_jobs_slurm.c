@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "base/progress.h"
 #include "base/units.h"
 #include "tests/analysis/jobs/jobs_fixture.h"

@@ -1,4 +1,5 @@
 #include "fe/material/material.h"
+#include "fe/material/material_private.h"
 
 #include "tests/check.h"
 

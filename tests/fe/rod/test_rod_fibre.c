@@ -2,6 +2,7 @@
  * the rate equations. */
 #include "fe/rod/rod_fibre.h"
 
+#include "fe/material/material_private.h"
 #include "tests/fe/rod/wires.h"
 #include "tests/twin/rod_fibre_twin.h"
 

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "fe/material/material_private.h"
 #include "tests/check.h"
 #include "tests/fe/solid/solid_point_twin.h"
 

@@ -1,5 +1,6 @@
 /* Tapes under load, against closed forms: statics by relaxation, plastic flow, long runs. */
 #include "fe/material/hardening.h"
+#include "fe/material/material_private.h"
 #include "fe/swept/swept_private.h"
 #include "fe/swept/swept_step.h"
 #include "tests/fe/swept/tapes.h"

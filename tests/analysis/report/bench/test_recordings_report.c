@@ -12,7 +12,7 @@
 #include "analysis/report/bench/recordings_results_private.h"
 #include "analysis/report/report_private.h"
 #include "base/file.h"
-#include "base/interrupt.h"
+#include "base/interrupt_private.h"
 #include "base/json.h"
 #include "tests/analysis/synthetic.h"
 #include "tests/own_folder.h"

@@ -1,0 +1,10 @@
+/* What only tests ask of cli/talk.h. */
+#ifndef WB_CLI_TALK_PRIVATE_H
+#define WB_CLI_TALK_PRIVATE_H
+
+#include "cli/talk.h"
+
+/* Texts dropped since wb_talk_open(). */
+uint64_t wb_talk_lost(void);
+
+#endif
