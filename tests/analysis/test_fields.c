@@ -183,7 +183,7 @@ static enum wb_status read_bytes(const char *text, size_t size, struct wb_fields
     assert_int_equal(fclose(file), 0);
     keep_messages();
     const enum wb_status status = wb_fields_read(fields, folder, NULL);
-    /* Who asks for the reason gets the same kept.last, and the log gets nothing. */
+    /* Who asks for the reason gets the same message, and the log gets nothing. */
     if (status != WB_OK) {
         struct wb_reason why = {.text = ""};
         const int before = kept.n;

@@ -5,51 +5,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "tests/own_folder.h"
-
-struct outcome {
-    int code;
-    char out[65536], err[16384];
-};
-
-static struct outcome o;
-
-static const char *path_of(const char *name)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static void read_all(const char *name, char *text, size_t size)
-{
-    FILE *const file = fopen(path_of(name), "r");
-    assert_non_null(file);
-    text[fread(text, 1, size - 1, file)] = '\0';
-    fclose(file);
-}
-
-static void tool(const char *arguments)
-{
-    const char *const binary = getenv("WIREBENCH_BINARY");
-    char command[1024];
-    if (!binary)
-        fail_msg("WIREBENCH_BINARY is not set: run this test through meson");
-    snprintf(command, sizeof command, "cd %s && { %s %s\n} > out 2> err", folder, binary,
-             arguments);
-    const int status = system(command);
-    assert_true(WIFEXITED(status));
-    o.code = WEXITSTATUS(status);
-    read_all("out", o.out, sizeof o.out);
-    read_all("err", o.err, sizeof o.err);
-}
-
-static void expect(const char *arguments, int code, const char *part_of_err)
-{
-    tool(arguments);
-    if (o.code != code || !strstr(o.err, part_of_err))
-        fail_msg("%s: exit %d, %s", arguments, o.code, o.err);
-}
+#include "tests/cli/tool.h"
 
 static void a_bundle_is_described(void **state)
 {
@@ -66,14 +22,6 @@ static void a_bundle_is_described(void **state)
             fail_msg("no '%s' in %s", lines[i], o.out);
     }
     assert_string_equal(o.err, "");
-}
-
-static double number(const struct wb_json *object, const char *key)
-{
-    double value = (double)NAN;
-    if (!wb_json_get_number(object, key, &value))
-        fail_msg("no number '%s'", key);
-    return value;
 }
 
 static void json_has_the_numbers(void **state)

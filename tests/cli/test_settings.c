@@ -14,8 +14,8 @@
 #include "cli/solve.h"
 #include "daq/bend_test.h"
 #include "fe/model/bundle_override.h"
+#include "tests/cli/tool.h"
 #include "tests/messages.h"
-#include "tests/own_folder.h"
 
 /* A command whose arguments end in a file that is not there: exit code 1, once its options are
  * read. */
@@ -38,32 +38,11 @@ static const struct command {
      0},
 };
 
-static char out[65536], err[16384];
-
-static void read_back(const char *name, char *text, size_t size)
+/* Runs `wirebench ARGUMENTS` in the folder, with long lines of --help; returns its exit code. */
+static int run(const char *arguments)
 {
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    text[fread(text, 1, size - 1, file)] = '\0';
-    fclose(file);
-}
-
-/* Runs `wirebench ARGUMENTS` in the folder; returns its exit code. */
-static int tool(const char *arguments)
-{
-    const char *const binary = getenv("WIREBENCH_BINARY");
-    char line[1024];
-    if (!binary)
-        fail_msg("WIREBENCH_BINARY is not set: run this test through meson");
-    snprintf(line, sizeof line, "cd %s && ARGP_HELP_FMT=rmargin=900 %s %s > out 2> err", folder,
-             binary, arguments);
-    const int status = system(line);
-    assert_true(WIFEXITED(status));
-    read_back("out", out, sizeof out);
-    read_back("err", err, sizeof err);
-    return WEXITSTATUS(status);
+    run_tool("ARGP_HELP_FMT=rmargin=900", arguments);
+    return o.code;
 }
 
 /* --- values in and out of a row's range --- */
@@ -110,10 +89,10 @@ static void try_option(const struct command *command, const struct wb_setting *r
     char arguments[512], expected[128];
     snprintf(arguments, sizeof arguments, "%s %s --%s='%s'", command->name, command->arguments,
              row->option, value);
-    const int code = tool(arguments);
+    const int code = run(arguments);
     snprintf(expected, sizeof expected, "--%s: expected ", row->option);
-    if (code != (is_good ? 1 : 2) || (strstr(err, expected) != NULL) == is_good)
-        fail_msg("'%s': exit code %d, kept.last '%s'", arguments, code, err);
+    if (code != (is_good ? 1 : 2) || (strstr(o.err, expected) != NULL) == is_good)
+        fail_msg("'%s': exit code %d, message '%s'", arguments, code, o.err);
 }
 
 static void try_options(const struct command *command, const struct wb_setting *row)
@@ -184,8 +163,8 @@ static void options_of_other_kinds_are_refused(void **unused)
             snprintf(arguments, sizeof arguments, "solve %s none --%s%s", kinds[k].name,
                      row->option, row->type == WB_SETTING_BOOLEAN ? "" : "=1");
             snprintf(expected, sizeof expected, ", not for %s", kinds[k].name);
-            if (tool(arguments) != 2 || !strstr(err, expected) || !strstr(err, row->option))
-                fail_msg("'%s': kept.last '%s'", arguments, err);
+            if (run(arguments) != 2 || !strstr(o.err, expected) || !strstr(o.err, row->option))
+                fail_msg("'%s': message '%s'", arguments, o.err);
         }
 }
 
@@ -241,7 +220,7 @@ static bool is_out_of_range(const char *run, const char *interface)
     const enum wb_status status = wb_bundle_model_read(&model, path);
     wb_log_set_sink(NULL, NULL);
     if (status != WB_OK && !kept.last[0])
-        fail_msg("no kept.last about '%s'", run);
+        fail_msg("no message about '%s'", run);
     return strstr(kept.last, "is out of range") != NULL;
 }
 
@@ -257,8 +236,8 @@ static bool is_out_of_range_in_a_campaign(const char *setting)
             "groups: []\n",
             setting);
     fclose(file);
-    assert_int_equal(tool("report campaign.yaml -o report"), 1);
-    return strstr(err, "is out of range") != NULL;
+    assert_int_equal(run("report campaign.yaml -o report"), 1);
+    return strstr(o.err, "is out of range") != NULL;
 }
 
 static void try_bundle(const struct wb_setting *row, bool is_run, bool is_overridden)
@@ -277,9 +256,9 @@ static void try_bundle(const struct wb_setting *row, bool is_run, bool is_overri
                                               : ", friction: 0.4",
                  row == wb_bundle_model_cohesion_setting ? "" : ", cohesive_stiffness_N_mm3: 30");
         if (is_out_of_range(is_run ? setting : "rows: 5", interface) == values[k].is_good)
-            fail_msg("bundle file with '%s': kept.last '%s'", setting, kept.last);
+            fail_msg("bundle file with '%s': message '%s'", setting, kept.last);
         if (is_overridden && is_out_of_range_in_a_campaign(setting) == values[k].is_good)
-            fail_msg("campaign with '%s': kept.last '%s'", setting, err);
+            fail_msg("campaign with '%s': message '%s'", setting, o.err);
     }
 }
 
@@ -324,11 +303,11 @@ static void look_at_help(const struct command *command, const struct wb_setting_
     char arguments[128], option[128];
     struct wb_text text = {0};
     snprintf(arguments, sizeof arguments, "%s --help", command->name);
-    assert_int_equal(tool(arguments), 0);
+    assert_int_equal(run(arguments), 0);
     snprintf(option, sizeof option, "    --%s%s%s ", row->option, row->argument ? "=" : "",
              row->argument ? row->argument : "");
     wb_setting_describe(row, table->otherwise, &text);
-    const char *const line = strstr(out, option);
+    const char *const line = strstr(o.out, option);
     const char *const said = line ? strstr(line, wb_text_string(&text)) : NULL;
     if (!said || (size_t)(said - line) > strcspn(line, "\n"))
         fail_msg("'%s' does not say '%s...%s'", arguments, option, wb_text_string(&text));

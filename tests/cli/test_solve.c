@@ -6,55 +6,7 @@
 
 #include "analysis/dataset.h"
 #include "base/json.h"
-#include "tests/own_folder.h"
-
-struct outcome {
-    int code;
-    char out[262144], err[16384];
-};
-
-static struct outcome o;
-
-static void read_all(const char *name, char *text, size_t size)
-{
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    text[fread(text, 1, size - 1, file)] = '\0';
-    fclose(file);
-}
-
-/* Runs `wirebench ARGUMENTS` in the folder. */
-static void tool(const char *arguments)
-{
-    const char *binary = getenv("WIREBENCH_BINARY");
-    char command[1024];
-    if (!binary)
-        fail_msg("WIREBENCH_BINARY is not set: run this test through meson");
-    snprintf(command, sizeof command, "cd %s && { %s %s\n} > out 2> err", folder, binary,
-             arguments);
-    const int status = system(command);
-    assert_true(WIFEXITED(status));
-    o.code = WEXITSTATUS(status);
-    read_all("out", o.out, sizeof o.out);
-    read_all("err", o.err, sizeof o.err);
-}
-
-static double number(const struct wb_json *object, const char *key)
-{
-    double value = (double)NAN;
-    if (!wb_json_get_number(object, key, &value))
-        fail_msg("no number '%s' in %s", key, o.out);
-    return value;
-}
-
-static struct wb_json *parse_output(void)
-{
-    struct wb_json *root = NULL;
-    assert_int_equal(wb_json_parse(&root, o.out, "output"), WB_OK);
-    return root;
-}
+#include "tests/cli/tool.h"
 
 static void json_holds_the_reference_curve(void **unused)
 {

@@ -7,9 +7,7 @@
 #include "analysis/surface.h"
 #include "base/file.h"
 #include "base/json.h"
-#include "tests/own_folder.h"
-
-static char out[65536], err[16384];
+#include "tests/cli/tool.h"
 
 static const char model[] =
     "name: one\nwires: [{wire: type3}]\npacking: hexagon\nlength_mm: 114\n"
@@ -28,37 +26,12 @@ static int set_up(void **state)
     return file && fputs(model, file) >= 0 && fclose(file) == 0 ? 0 : -1;
 }
 
-static void read_all(const char *name, char *text, size_t size)
+static int solve(const char *arguments)
 {
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    text[fread(text, 1, size - 1, file)] = '\0';
-    fclose(file);
-}
-
-static int tool(const char *arguments)
-{
-    const char *binary = getenv("WIREBENCH_BINARY");
-    char command[1024];
-    if (!binary)
-        fail_msg("WIREBENCH_BINARY is not set: run this test through meson");
-    snprintf(command, sizeof command, "cd %s && %s solve bundle one.yaml %s > out 2> err", folder,
-             binary, arguments);
-    const int status = system(command);
-    assert_true(WIFEXITED(status));
-    read_all("out", out, sizeof out);
-    read_all("err", err, sizeof err);
-    return WEXITSTATUS(status);
-}
-
-static double number(const struct wb_json *object, const char *key)
-{
-    double value = (double)NAN;
-    if (!wb_json_get_number(object, key, &value))
-        fail_msg("no number '%s' in %s", key, out);
-    return value;
+    char line[512];
+    snprintf(line, sizeof line, "solve bundle one.yaml %s", arguments);
+    tool(line);
+    return o.code;
 }
 
 /* 3 E I d / L^3 of the wire, which hardly yields. */
@@ -67,8 +40,8 @@ static void json_has_the_curve_and_what_it_took(void **unused)
     (void)unused;
     struct wb_json *root = NULL;
     bool chosen = true;
-    assert_int_equal(tool("--json --dead-force --no-weight --duration-s 1.5"), 0);
-    assert_int_equal(wb_json_parse(&root, out, "output"), WB_OK);
+    assert_int_equal(solve("--json --dead-force --no-weight --duration-s 1.5"), 0);
+    assert_int_equal(wb_json_parse(&root, o.out, "output"), WB_OK);
     assert_close(number(root, "elements"), 60.0, 0.0);
     assert_close(number(root, "shells"), 0.0, 0.0);
     assert_close(number(root, "duration_s"), 1.5, 0.0);
@@ -111,12 +84,12 @@ static void a_line_tells_how_far_it_is(void **unused)
         ">/dev/null",
         folder, getenv("WIREBENCH_BINARY"));
     assert_int_equal(system(command), 0);
-    read_all("out", out, sizeof out);
+    read_all("out", o.out, sizeof o.out);
     static const char *const parts[] = {" of 6 rows, ", " s left, ",     "T 4 s, step ",    " mm",
                                         ", kinetic ",   ", artificial ", ", coming to rest"};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
-        if (!strstr(out, parts[i]))
-            fail_msg("no '%s' in %s", parts[i], out);
+        if (!strstr(o.out, parts[i]))
+            fail_msg("no '%s' in %s", parts[i], o.out);
 }
 
 static void datasets_are_those_of_the_homogenised_beam(void **unused)
@@ -124,7 +97,7 @@ static void datasets_are_those_of_the_homogenised_beam(void **unused)
     (void)unused;
     struct wb_dataset dataset;
     char path[128];
-    assert_int_equal(tool("--duration-s 1.5 -o ds"), 0);
+    assert_int_equal(solve("--duration-s 1.5 -o ds"), 0);
     snprintf(path, sizeof path, "%s/ds", folder);
     assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
     assert_int_equal(dataset.n_rows, 6);
@@ -137,12 +110,12 @@ static void datasets_are_those_of_the_homogenised_beam(void **unused)
     assert_close(dataset.rows[5].deflection, 10e-3, 1e-6);
     wb_dataset_release(&dataset);
 
-    read_all("ds/energies.csv", out, sizeof out);
+    read_all("ds/energies.csv", o.out, sizeof o.out);
     int lines = 0;
-    for (const char *c = out; *c; c++)
+    for (const char *c = o.out; *c; c++)
         lines += *c == '\n';
     assert_int_equal(lines, 7);
-    assert_non_null(strstr(out, "kinetic_over_internal"));
+    assert_non_null(strstr(o.out, "kinetic_over_internal"));
 }
 
 static bool is_there(const char *name)
@@ -160,7 +133,7 @@ static void datasets_have_the_bent_surface(void **unused)
     struct wb_surface surface;
     struct wb_json *root = NULL;
     char path[128];
-    assert_int_equal(tool("--duration-s 1.5 -o surface"), 0);
+    assert_int_equal(solve("--duration-s 1.5 -o surface"), 0);
     snprintf(path, sizeof path, "%s/surface", folder);
     assert_int_equal(wb_dataset_read(&dataset, path, NULL), WB_OK);
     assert_int_equal(wb_surface_read(&surface, path, NULL), WB_OK);
@@ -180,8 +153,8 @@ static void datasets_have_the_bent_surface(void **unused)
     assert_true(most > 4.6e6 && most < 3.0 * 4528e6 * 0.7e-3 * 0.01 / (0.114 * 0.114));
     wb_surface_release(&surface);
     wb_dataset_release(&dataset);
-    read_all("surface/dataset.json", out, sizeof out);
-    assert_int_equal(wb_json_parse(&root, out, "dataset.json"), WB_OK);
+    read_all("surface/dataset.json", o.out, sizeof o.out);
+    assert_int_equal(wb_json_parse(&root, o.out, "dataset.json"), WB_OK);
     assert_close(number(wb_json_get(root, "simulation"), "surface_deflection_mm"), 10.0, 1e-3);
     wb_json_destroy(root);
 }
@@ -189,8 +162,8 @@ static void datasets_have_the_bent_surface(void **unused)
 static int states_in(const char *name)
 {
     int n = 0;
-    read_all(name, out, sizeof out);
-    for (const char *at = out; (at = strstr(at, "<DataSet ")); at++)
+    read_all(name, o.out, sizeof o.out);
+    for (const char *at = o.out; (at = strstr(at, "<DataSet ")); at++)
         n++;
     return n;
 }
@@ -198,31 +171,31 @@ static int states_in(const char *name)
 static void vtk_files_are_written_for_every_row_or_some(void **unused)
 {
     (void)unused;
-    assert_int_equal(tool("--duration-s 1.5 --vtk all --json"), 0);
+    assert_int_equal(solve("--duration-s 1.5 --vtk all --json"), 0);
     assert_int_equal(states_in("all/one.pvd"), 6);
     assert_true(is_there("all/one-0000.vtu") && is_there("all/one-0005.vtu"));
     assert_false(is_there("all/one-0006.vtu"));
-    assert_non_null(strstr(out, "timestep=\"0\""));
+    assert_non_null(strstr(o.out, "timestep=\"0\""));
 
-    assert_int_not_equal(tool("--duration-s 1.5 --vtk all"), 0);
-    assert_non_null(strstr(err, "--force"));
-    assert_int_equal(tool("--duration-s 1.5 --vtk all --force"), 0);
+    assert_int_not_equal(solve("--duration-s 1.5 --vtk all"), 0);
+    assert_non_null(strstr(o.err, "--force"));
+    assert_int_equal(solve("--duration-s 1.5 --vtk all --force"), 0);
 
     /* Rows 0, 3 and the last, 5. */
-    assert_int_equal(tool("--duration-s 1.5 --vtk some --vtk-every 3"), 0);
+    assert_int_equal(solve("--duration-s 1.5 --vtk some --vtk-every 3"), 0);
     assert_int_equal(states_in("some/one.pvd"), 3);
     assert_false(is_there("some/one-0003.vtu"));
 
     /* Runs that begin anew leave nothing behind. */
-    assert_int_equal(tool("--vtk anew --mass-scaling 400 --json"), 0);
+    assert_int_equal(solve("--vtk anew --mass-scaling 400 --json"), 0);
     struct wb_json *root = NULL;
-    assert_int_equal(wb_json_parse(&root, out, "output"), WB_OK);
+    assert_int_equal(wb_json_parse(&root, o.out, "output"), WB_OK);
     assert_true(number(root, "attempts") >= 2.0);
     wb_json_destroy(root);
     assert_int_equal(states_in("anew/one.pvd"), 6);
 
-    assert_int_not_equal(tool("--vtk-every 2"), 0);
-    assert_non_null(strstr(err, "--vtk-every is for --vtk"));
+    assert_int_not_equal(solve("--vtk-every 2"), 0);
+    assert_non_null(strstr(o.err, "--vtk-every is for --vtk"));
 }
 
 static void what_was_overridden_is_told(void **unused)
@@ -230,11 +203,11 @@ static void what_was_overridden_is_told(void **unused)
     (void)unused;
     struct wb_json *root = NULL;
     bool flag = false;
-    assert_int_equal(tool("--duration-s 0.5 --friction 0.3,0.2,1.5 --cohesive-stiffness 60 "
-                          "--dead-force --mass-scaling 100 -o over"),
+    assert_int_equal(solve("--duration-s 0.5 --friction 0.3,0.2,1.5 --cohesive-stiffness 60 "
+                           "--dead-force --mass-scaling 100 -o over"),
                      0);
-    read_all("over/dataset.json", out, sizeof out);
-    assert_int_equal(wb_json_parse(&root, out, "dataset.json"), WB_OK);
+    read_all("over/dataset.json", o.out, sizeof o.out);
+    assert_int_equal(wb_json_parse(&root, o.out, "dataset.json"), WB_OK);
     const struct wb_json *simulation = wb_json_get(root, "simulation");
     const struct wb_json *over = wb_json_get(simulation, "overridden");
     assert_non_null(over);
@@ -250,9 +223,9 @@ static void what_was_overridden_is_told(void **unused)
     assert_null(wb_json_get(over, "mesh"));
     wb_json_destroy(root);
 
-    assert_int_equal(tool("--duration-s 0.5 --friction 0.25 -o constant"), 0);
-    read_all("constant/dataset.json", out, sizeof out);
-    assert_int_equal(wb_json_parse(&root, out, "dataset.json"), WB_OK);
+    assert_int_equal(solve("--duration-s 0.5 --friction 0.25 -o constant"), 0);
+    read_all("constant/dataset.json", o.out, sizeof o.out);
+    assert_int_equal(wb_json_parse(&root, o.out, "dataset.json"), WB_OK);
     const struct wb_json *friction = wb_json_get(wb_json_get(root, "simulation"), "friction");
     assert_close(number(friction, "static"), 0.25, 0.0);
     assert_close(number(friction, "kinetic"), 0.25, 0.0);
@@ -263,19 +236,19 @@ static void what_was_overridden_is_told(void **unused)
 static void options_of_others_are_refused(void **unused)
 {
     (void)unused;
-    assert_int_not_equal(tool("--points 5"), 0);
-    assert_non_null(strstr(err, "--points"));
-    assert_int_not_equal(tool("--mesh none"), 0);
-    assert_non_null(strstr(err, "there is no mesh 'none'"));
-    assert_int_not_equal(tool("--mass-scaling 0.5"), 0);
-    assert_int_not_equal(tool("--cohesive-stiffness 0"), 0);
-    assert_int_not_equal(tool("--friction 0.3,0.2"), 0);
-    assert_non_null(strstr(err, "expected S or S,K,D"));
-    assert_int_not_equal(tool("--friction 0.3,0.2,1,4"), 0);
-    assert_int_not_equal(tool("--friction 0.3,,1"), 0);
-    assert_int_not_equal(tool("--friction 0.2,0.3,1"), 0);
-    assert_non_null(strstr(err, "more than the static one"));
-    assert_int_not_equal(tool("--friction 11"), 0);
+    assert_int_not_equal(solve("--points 5"), 0);
+    assert_non_null(strstr(o.err, "--points"));
+    assert_int_not_equal(solve("--mesh none"), 0);
+    assert_non_null(strstr(o.err, "there is no mesh 'none'"));
+    assert_int_not_equal(solve("--mass-scaling 0.5"), 0);
+    assert_int_not_equal(solve("--cohesive-stiffness 0"), 0);
+    assert_int_not_equal(solve("--friction 0.3,0.2"), 0);
+    assert_non_null(strstr(o.err, "expected S or S,K,D"));
+    assert_int_not_equal(solve("--friction 0.3,0.2,1,4"), 0);
+    assert_int_not_equal(solve("--friction 0.3,,1"), 0);
+    assert_int_not_equal(solve("--friction 0.2,0.3,1"), 0);
+    assert_non_null(strstr(o.err, "more than the static one"));
+    assert_int_not_equal(solve("--friction 11"), 0);
 }
 
 /* The last one: it changes the model. */
@@ -286,7 +259,7 @@ static void cycles_have_rows_up_and_down(void **unused)
     snprintf(command, sizeof command, "cd %s && sed -i 's/rows: 5/rows: 5, cycles: 2/' one.yaml",
              folder);
     assert_int_equal(system(command), 0);
-    assert_int_equal(tool("--duration-s 1.5 -o cycles"), 0);
+    assert_int_equal(solve("--duration-s 1.5 -o cycles"), 0);
     struct wb_dataset dataset;
     snprintf(command, sizeof command, "%s/cycles", folder);
     assert_int_equal(wb_dataset_read(&dataset, command, NULL), WB_OK);

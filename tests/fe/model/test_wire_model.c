@@ -532,7 +532,7 @@ static void whole_models_are_refused_for_what_they_are(void **state)
     assert_message(":8: history: expected a list of 1 to 16 steps");
 }
 
-/* What is read is right or refused with a kept.last, however the file is broken. */
+/* What is read is right or refused with a message, however the file is broken. */
 static void broken_files_are_read_or_refused(void **state)
 {
     (void)state;
@@ -546,7 +546,7 @@ static void broken_files_are_read_or_refused(void **state)
             text[i] = strange[(i / 3) % (sizeof strange - 1)];
             const enum wb_status status = read_bytes(text, way == 0 ? i : n);
             if (status != WB_OK && kept.n == 0)
-                fail_msg("refused without a kept.last at byte %zu", i);
+                fail_msg("refused without a message at byte %zu", i);
             refused += status != WB_OK;
         }
     }
