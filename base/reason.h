@@ -20,7 +20,6 @@ struct wb_reason {
 void wb_reason_set(struct wb_reason *reason, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-
 /* Replaces the text of `reason`; logs an error of that domain where it is NULL. Called by
  * wb_fail_to(). */
 void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *format, ...)
