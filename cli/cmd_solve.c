@@ -108,11 +108,17 @@ static void describe(const struct kind *kind, struct wb_text *arguments, struct 
         if (kind && kind != &kinds[i])
             continue;
         wb_text_append(arguments, "%s%s", arguments->length > 0 ? "\n" : "", kinds[i].arguments);
-        wb_text_append(text, "%s%s", kinds[i].summary, kind ? " " : "\n");
+        if (kind)
+            wb_text_append(text, "%s ", kinds[i].summary);
+        else
+            wb_text_append(text, "%s: %s\n", kinds[i].name, kinds[i].summary);
     }
     wb_text_append(text, "The curve is printed as CSV or JSON, or written as a dataset.");
     if (!kind)
-        wb_text_append(text, " The options of one kind: wirebench solve bundle --help");
+        wb_text_append(
+            text,
+            " Each kind has options of its own, which for example `wirebench solve bundle --help` "
+            "shows.");
     wb_text_append(text, "\vExit code 3: the curve was cut short because the solver did not "
                          "converge, or by Ctrl-C; what was computed is there.");
 }
