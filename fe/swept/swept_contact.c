@@ -696,8 +696,7 @@ static enum wb_status find_neighbours(struct wb_swept_contact *contact)
                 continue;
             if (contact->model.n_pairs == contact->most_pairs)
                 return wb_fail(WB_ERR_MEMORY,
-                               "contact: more than %d pairs of wires are neighbours: expected at "
-                               "most that many",
+                               "contact: more pairs of wires are neighbours than the %d allowed",
                                contact->most_pairs);
             add_pair(contact, a, b);
         }
