@@ -34,8 +34,8 @@ struct wb_align_settings {
 };
 extern const struct wb_setting_table wb_align_table;
 
-/* The warning about gaps goes on with this behind their number. A report finds the warning by it
- * and prints one line for all recordings. */
+/* In the warning about gaps this text follows their number. A report finds the warning by it and
+ * prints one line for all recordings. */
 #define WB_ALIGN_GAPS_TEXT "in the rows, the longest of"
 
 /* Fills in the defaults. */

@@ -30,8 +30,10 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
     computed->why = settings->why;
     if (info->is_follower && info->strand_length != 0.0) {
         wb_computed_destroy(computed);
-        return wb_fail_to(settings->why, WB_ERR_ARGUMENT,
-                          "wire '%s': a follower force and a strand", info->wire);
+        return wb_fail_to(
+            settings->why, WB_ERR_ARGUMENT,
+            "wire '%s': the test has a follower force and a strand: expected one of them",
+            info->wire);
     }
     enum wb_status status = wb_section_init_circle(&computed->section, info->outer_diameter,
                                                    material, settings->n_fibres);
@@ -128,7 +130,8 @@ enum wb_status wb_computed_push(struct wb_computed *computed, double force, doub
     double given;
     if (!computed->info.is_follower)
         return wb_fail_to(computed->why, WB_ERR_ARGUMENT,
-                          "wire '%s': a test without a follower force", computed->info.wire);
+                          "wire '%s': the test has no follower force: expected one",
+                          computed->info.wire);
     WB_TRY(move(computed, WB_CONTROL_FOLLOWER_FORCE, force, &point, &given, reached));
     if (*reached)
         *deflection = point.deflection;

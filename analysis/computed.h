@@ -3,9 +3,9 @@
  *
  * The force is the vertical part of the strand's tension less its value at zero deflection on the
  * first loading: each run starts from the virgin wire, brings the tip to zero deflection, takes
- * that force as zero, and goes on upwards. In a follower test the force is the follower's size, and
- * a run starts from the wire under its weight only. All memory is taken at creation; a run resets
- * the state.
+ * that force as zero, and continues upwards. In a follower test the force is the follower's size,
+ * and a run starts from the wire under its weight only. All memory is taken at creation; a run
+ * resets the state.
  */
 #ifndef WB_ANALYSIS_COMPUTED_H
 #define WB_ANALYSIS_COMPUTED_H

@@ -605,7 +605,8 @@ static enum wb_status format_texts(const struct wb_dataset *dataset, struct text
 {
     *texts = (struct texts){.document = NULL};
     if (dataset->info.is_follower && dataset->info.strand_length != 0.0)
-        return wb_fail(WB_ERR_ARGUMENT, "a dataset with a follower force and a strand");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the dataset has a follower force and a strand: expected one of them");
     WB_TRY(format_document(dataset, &texts->document));
     return format_tables(dataset, &texts->rows, &texts->shapes);
 }

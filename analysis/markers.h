@@ -55,7 +55,7 @@ struct wb_marker_tracks {
     int32_t *index;     /* owned */
     size_t n_strays;    /* points that are no marker of ours, over all frames */
     size_t n_missing;   /* markers not seen, over all frames */
-    size_t n_searches;  /* how often the chain was sought anew */
+    size_t n_searches;  /* how often the chain was searched for again */
     size_t start_frame; /* where the first chain was found */
     bool symmetric;     /* the arc lengths are the same from both ends, so that the order along the
                            wire does not follow from distances and may have to be reversed */

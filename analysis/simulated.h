@@ -51,9 +51,9 @@ struct wb_simulated_wire {
     double peak_memory;                      /* bytes; 0: not known */
 };
 
-/* Fills an initialised dataset with a computed wire. Bench time goes on with the tip's way, at
- * least 1 ms a row. dataset.json's `simulation` says how it was computed and with which materials;
- * its `steps` name the row with which each step of the model ended. */
+/* Fills an initialised dataset with a computed wire. Bench time grows with the tip's way, by at
+ * least 1 ms a row. dataset.json's `simulation` says how the wire was computed and with which
+ * materials; its `steps` name the row with which each step of the model ended. */
 WB_MUST_CHECK enum wb_status wb_simulated_fill_wire(struct wb_dataset *dataset,
                                                     const struct wb_simulated_wire *wire);
 

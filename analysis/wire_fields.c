@@ -298,7 +298,7 @@ enum wb_status wb_wire_fields_rod(struct wb_fields *fields, const struct wb_wire
                                   const char *state, const struct wb_wire1d *rod, int n_slices)
 {
     if (n_slices < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "%d slices of a wire", n_slices);
+        return wb_fail(WB_ERR_ARGUMENT, "the wire has %d slices: expected 1 or more", n_slices);
     WB_TRY(add_rod_slices(fields, model, state, rod, n_slices));
     for (int i = 0; i < model->n_sections; i++)
         WB_TRY(add_rod_section(fields, state, rod, model->section[i]));

@@ -153,7 +153,10 @@ void wb_checkpoint_visit(struct wb_checkpoint *c, const char *name, void *data, 
         return;
     const int n = snprintf(whole, sizeof whole, "%s%s", c->group, name);
     if (n < 0 || n >= MOST_NAME) {
-        c->status = wb_fail(WB_ERR_ARGUMENT, "a checkpoint's field with the name '%s'", name);
+        c->status = wb_fail(
+            WB_ERR_ARGUMENT,
+            "the name of the checkpoint's field '%s%s' is too long: expected at most %d bytes",
+            c->group, name, MOST_NAME - 1);
         return;
     }
     if (c->restores) {
@@ -204,7 +207,10 @@ enum wb_status wb_checkpoint_write(const struct wb_checkpoint *c, const char *pa
     const int n = snprintf(head, sizeof head, "%s%d\n%s\n%s\n%zu\nend\n", first_words, VERSION,
                            identity, hash, c->size);
     if (n < 0 || n >= MOST_HEAD)
-        return wb_fail(WB_ERR_ARGUMENT, "%s: an identity of %zu bytes", path, strlen(identity));
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "%s: the checkpoint's identity has %zu bytes: more than its head of %d "
+                       "bytes has room for",
+                       path, strlen(identity), MOST_HEAD);
     unsigned char *all = malloc((size_t)n + c->size);
     if (!all)
         return wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint of %zu bytes", c->size);
@@ -238,21 +244,21 @@ static enum wb_status check_head(const char *path, char **at, const char *end, c
 
     if (!last || strncmp(first, first_words, strlen(first_words)) != 0 || strcmp(last, "end") != 0)
         return wb_fail(WB_ERR_FORMAT,
-                       "%s: not a checkpoint of this program; remove it to begin anew", path);
+                       "%s: not a checkpoint of this program; remove it to start over", path);
     const char *const version = first + strlen(first_words);
     if (strtol(version, NULL, 10) != VERSION)
         return wb_fail(WB_ERR_FORMAT,
                        "%s: a checkpoint of version %.8s, this program reads version %d; remove it "
-                       "to begin anew",
+                       "to start over",
                        path, version, VERSION);
     if (strcmp(whose, identity) != 0)
         return wb_fail(WB_ERR_DATA,
-                       "%s: the checkpoint is of another run; remove it to begin anew. It is of: "
+                       "%s: the checkpoint is of another run; remove it to start over. It is of: "
                        "%s. This run is: %s",
                        path, whose, identity);
     wb_hash_bytes(*at, (size_t)(end - *at), actual);
     if (strtoull(size, NULL, 10) != (unsigned long long)(end - *at) || strcmp(hash, actual) != 0)
-        return wb_fail(WB_ERR_FORMAT, "%s: the checkpoint is damaged; remove it to begin anew",
+        return wb_fail(WB_ERR_FORMAT, "%s: the checkpoint is damaged; remove it to start over",
                        path);
     return WB_OK;
 }

@@ -167,7 +167,7 @@ static void visit_purpose(const struct wb_bundle_states *states, struct wb_check
     saved.folder[sizeof saved.folder - 1] = '\0';
     if (own.wants_surface != saved.wants_surface)
         checkpoint->status =
-            wb_fail(WB_ERR_DATA, "the checkpoint is of a run %s -o: remove it to begin anew",
+            wb_fail(WB_ERR_DATA, "the checkpoint is of a run %s -o: remove it to start over",
                     saved.wants_surface ? "with" : "without");
     else if (own.wants_vtk != saved.wants_vtk || own.every != saved.every ||
              strcmp(own.folder, saved.folder) != 0)
@@ -175,10 +175,10 @@ static void visit_purpose(const struct wb_bundle_states *states, struct wb_check
             saved.wants_vtk
                 ? wb_fail(WB_ERR_DATA,
                           "the checkpoint is of a run with --vtk=%s --vtk-every=%d: remove it to "
-                          "begin anew",
+                          "start over",
                           saved.folder, saved.every)
                 : wb_fail(WB_ERR_DATA, "the checkpoint is of a run without --vtk: remove it to "
-                                       "begin anew");
+                                       "start over");
 }
 
 void wb_bundle_states_visit(struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)

@@ -35,7 +35,7 @@ struct wb_acquisition; /* opaque */
 enum wb_acquisition_end {
     WB_ACQUISITION_CONTINUE,
     WB_ACQUISITION_DONE,  /* every stream has gone: there is nothing left to wait for */
-    WB_ACQUISITION_FAILED /* the loop itself cannot go on; a message was logged */
+    WB_ACQUISITION_FAILED /* the loop itself cannot continue; a message was logged */
 };
 
 /* Opens the streams of the wanted roles and prepares their drivers; the first that fails ends it,
@@ -80,7 +80,7 @@ void wb_acquisition_motion_ended(struct wb_acquisition *acquisition);
 bool wb_acquisition_moving(const struct wb_acquisition *acquisition);
 
 /* Stops the stage now, for a reason of the caller's: trips the interlock, writes the hold byte if a
- * motion may be under way. The stop goes on in the following steps. */
+ * motion may be under way. The following steps complete the stop. */
 void wb_acquisition_stop(struct wb_acquisition *acquisition, enum wb_interlock_reason reason,
                          const char *text);
 /* How far the stop has come. */

@@ -4,8 +4,8 @@
 
 #include "daq/acquisition.h"
 
-/* After a stop that is over: clears it and the interlock, so that the stage can be told to move
- * again (stage commands that free a specimen). The interlock is disarmed. */
+/* Clears a stop that is over, and the interlock, so that the stage takes commands to move again
+ * (those that free a specimen). The interlock is disarmed. */
 void wb_acquisition_clear_stop(struct wb_acquisition *acquisition);
 
 /* Index of a role's stream in the recording: the opened roles in the order load, mocap, stage. -1

@@ -51,7 +51,7 @@ enum wb_stage_command {
     WB_STAGE_COMMAND_HOME,
     WB_STAGE_COMMAND_UNLOCK,
     WB_STAGE_COMMAND_STATUS, /* ask for a report now */
-    WB_STAGE_COMMAND_RESUME  /* go on after a hold, a real-time byte */
+    WB_STAGE_COMMAND_RESUME  /* continue after a hold, a real-time byte */
 };
 
 struct wb_channel {

@@ -63,7 +63,7 @@ struct wb_grbl_offset {
 };
 
 /* Machine position of axis 0 to 2 in mm: MPos, or WPos + WCO with the cached offset, which is
- * brought up to date. False while it cannot be told. */
+ * brought up to date. False while it is not known. */
 bool wb_grbl_position(const struct wb_grbl_report *report, struct wb_grbl_offset *offset, int axis,
                       double *position_mm);
 

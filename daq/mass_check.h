@@ -30,7 +30,7 @@ enum wb_mass_check_phase {
 WB_MUST_CHECK enum wb_status wb_mass_check_open(struct wb_mass_check **out,
                                                 const struct wb_rig *rig, double seconds);
 enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t timeout_ns);
-/* The mass hangs: go on. */
+/* The operator says that the mass hangs: the check continues. */
 void wb_mass_check_hung(struct wb_mass_check *check);
 
 struct wb_mass_check_result {

@@ -29,7 +29,7 @@ struct wb_recording {
     bool complete;   /* closed properly */
     bool shortened;  /* the file is shorter than its own header says, or not all decompressed */
     int64_t bytes_there, bytes_expected; /* decompressed; as the file's own header counts them */
-    const char *told[8];                 /* tables that were said to break off, */
+    const char *told[8];                 /* tables already reported as broken off; */
     size_t n_told;                       /* constants */
     int64_t n_rows_max;                  /* no table of a file of this size can hold more rows */
     /* Both. */

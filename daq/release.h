@@ -1,6 +1,6 @@
 /* Seeing a strand go slack: the clamp goes up in small steps and rests after each, and the readings
  * at the rests say whether the load still falls. Only readings of a clamp that stands are used, so
- * that it does not matter when they arrive. Knows no instrument and no clock.
+ * their delay does not matter. Knows no instrument and no clock.
  *
  *     wb_release_init(&release, &rig);
  *     wb_release_rest(&release, travel, t_ns);             the clamp stands since then

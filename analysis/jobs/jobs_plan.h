@@ -78,8 +78,8 @@ WB_MUST_CHECK enum wb_status wb_jobs_plan_accept(const struct wb_jobs_plan_item 
 void wb_jobs_plan_fail(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, const char *how,
                        const char *other_log);
 
-/* The live line on a terminal: done, running, left, time left when `at_once` runs go on at a time;
- * `note` may be NULL. Silent otherwise. */
+/* The live line on a terminal: done, running, left, and the time left if `at_once` runs are made at
+ * a time; `note` may be NULL. Without a terminal nothing is drawn. */
 void wb_jobs_plan_draw(struct wb_jobs_plan *plan, int at_once, const char *note);
 void wb_jobs_plan_clear(struct wb_jobs_plan *plan); /* the line; before other talk */
 

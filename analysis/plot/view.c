@@ -371,15 +371,21 @@ static enum wb_status check(const struct wb_view_scene *scene)
 {
     if (scene->width < 1 || scene->width > MOST_PIXELS || scene->height < 1 ||
         scene->height > MOST_PIXELS)
-        return wb_fail(WB_ERR_ARGUMENT, "an image of %d x %d pixels", scene->width, scene->height);
+        return wb_fail(WB_ERR_ARGUMENT, "the image has %d x %d pixels: expected 1 to %d each way",
+                       scene->width, scene->height, MOST_PIXELS);
     if (!(scene->high[0] > scene->low[0] && scene->high[1] > scene->low[1]) ||
         !(scene->colours.high > scene->colours.low))
-        return wb_fail(WB_ERR_ARGUMENT, "a view without extent, or a scale of colours without one");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the view is %g x %g large and its colours run from %g to %g: expected "
+                       "extents and a range above 0",
+                       scene->high[0] - scene->low[0], scene->high[1] - scene->low[1],
+                       scene->colours.low, scene->colours.high);
     for (int i = 0; i < scene->n_sheets; i++) {
         const struct wb_view_sheet *sheet = &scene->sheets[i];
         if (sheet->n_along < 2 || sheet->n_around < (sheet->closed ? 3 : 2))
-            return wb_fail(WB_ERR_ARGUMENT, "a surface of %d x %d nodes", sheet->n_along,
-                           sheet->n_around);
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "surface %d has %d x %d nodes: expected at least 2 x %d", i,
+                           sheet->n_along, sheet->n_around, sheet->closed ? 3 : 2);
     }
     return WB_OK;
 }

@@ -35,7 +35,7 @@ WB_MUST_CHECK enum wb_status wb_campaign_read_kind(int *kind, const char *path,
 WB_MUST_CHECK enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
                                                        struct wb_calibrate_settings *settings);
 
-/* The `progress` of such settings that goes on until an interrupt. */
+/* For the `progress` of such settings: true until an interrupt. */
 bool wb_campaign_go_on(void *context, int evaluation, double error, double size);
 
 #endif

@@ -1,8 +1,8 @@
 /* Makes the datasets that a campaign misses, and those that are outdated: on this machine or as a
  * Slurm array (analysis/jobs/jobs.h).
  *
- * Logs and checkpoints lie beside the report's folder, in FOLDER.jobs. A run that was ended goes on
- * from its checkpoint, which fits one program, one model and one command.
+ * Logs and checkpoints lie beside the report's folder, in FOLDER.jobs. A run that was stopped
+ * continues from its checkpoint, which fits one program, one model and one command.
  */
 #ifndef WB_ANALYSIS_REPORT_MISSING_H
 #define WB_ANALYSIS_REPORT_MISSING_H

@@ -16,7 +16,7 @@ struct wb_reasons {
 void wb_reasons_fail(const struct wb_reasons *reasons, enum wb_status status,
                      const struct wb_reason *why);
 
-/* Shows it as a warning that begins with the name: the report goes on without that part. */
+/* Shows it as a warning that begins with the name: the report is made without that part. */
 void wb_reasons_warn(const struct wb_reasons *reasons, enum wb_status status,
                      const struct wb_reason *why);
 

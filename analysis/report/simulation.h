@@ -102,7 +102,7 @@ struct wb_simulation_entry {
     const struct wb_simulation_result *result;
     double cost;           /* of making it, beside the others; 0: not known */
     const char *resumable; /* SHA-256 of its model: the run takes --threads, and --checkpoint FILE
-                              to go on where it was ended; NULL: it does not */
+                              to continue where it was stopped; NULL: it does not */
 };
 
 /* How a kind of report lists its datasets: the one at an index; false after the last. */

@@ -53,7 +53,8 @@ enum wb_status wb_bundle_create(struct wb_bundle **out, const struct wb_bundle_m
     if (!mesh)
         return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", model->path, name);
     if (!(settings->duration > 0.0 && isfinite(settings->duration)))
-        return wb_fail(WB_ERR_ARGUMENT, "a duration of %g s: expected above 0", settings->duration);
+        return wb_fail(WB_ERR_ARGUMENT, "the duration is %g s: expected a number above 0",
+                       settings->duration);
     struct wb_bundle *bundle = calloc(1, sizeof *bundle);
     if (!bundle)
         return wb_fail(WB_ERR_MEMORY, "out of memory for a bundle");

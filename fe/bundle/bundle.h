@@ -85,7 +85,7 @@ int wb_bundle_parts(const struct wb_bundle *bundle);
 const struct wb_bundle_part *wb_bundle_whole(const struct wb_bundle *bundle);
 
 /* Saves the state, or restores that of a bundle of the same model, settings and number of parts,
- * which then goes on bit for bit. */
+ * which then continues bit for bit. */
 void wb_bundle_visit(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint);
 
 double wb_bundle_time_step(const struct wb_bundle *bundle); /* s */

@@ -141,7 +141,9 @@ static enum wb_status find_time_step(struct wb_bundle_part *part, double safety)
     bodies->time_step = safety * 2.0 / sqrt(largest);
     return isfinite(bodies->time_step) && bodies->time_step > 0.0
                ? WB_OK
-               : wb_fail(WB_ERR_ARGUMENT, "%s: there is no stable time step", bodies->model->path);
+               : wb_fail(WB_ERR_ARGUMENT,
+                         "%s: the stable time step is %g s: expected a number above 0",
+                         bodies->model->path, bodies->time_step);
 }
 
 enum wb_status wb_bundle_part_create_whole(struct wb_bundle_part **out,

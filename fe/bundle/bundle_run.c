@@ -860,8 +860,9 @@ enum wb_status wb_bundle_run(struct wb_bundle_result *result, const struct wb_bu
     if (r.options.checkpoint_interval == 0.0)
         r.options.checkpoint_interval = usual_interval;
     if (result->capacity < wb_bundle_run_planned_rows(model))
-        return wb_fail(WB_ERR_ARGUMENT, "a result of %d rows for a test of %d", result->capacity,
-                       wb_bundle_run_planned_rows(model));
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the result has room for %d rows: expected the %d of the test",
+                       result->capacity, wb_bundle_run_planned_rows(model));
     if (r.options.checkpoint)
         WB_TRY(wb_team_agree(wb_hash_file("/proc/self/exe", r.program)));
     begin_result(&r);

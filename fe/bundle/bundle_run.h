@@ -13,14 +13,15 @@
  *
  * Duration: if the model leaves it open, it is chosen so that kinetic over internal energy stays
  * below run.kinetic_limit from 2 mm on (from half the deflection on, if that is less). This ratio
- * goes as duration^-2. A run that shows by 3 mm that it is too fast, or much too slow, begins anew
- * with the duration that follows from its ratio; so does a run that turns out too fast later. There
- * are at most WB_BUNDLE_RUN_ATTEMPTS attempts.
+ * goes as duration^-2. A run whose ratio up to 3 mm shows that it is too fast, or much too
+ * slow, is started again with the duration that follows from the ratio; so is a run that is too
+ * fast later. There are at most WB_BUNDLE_RUN_ATTEMPTS attempts.
  *
- * Checkpoints: from time to time everything that the run needs to go on is written to a file
- * (base/checkpoint.h). A later run of the same model and settings that finds the file goes on from
- * there, to the same result bit for bit. A file of another model, mesh, number of parts or program,
- * or with other overrides, is refused. A run that its observer stops leaves a last checkpoint.
+ * Checkpoints: at intervals everything that the run needs to continue is written to a file
+ * (base/checkpoint.h). A later run of the same model and settings that finds the file continues
+ * from there, with the same result bit for bit. A file of another model, mesh, number of parts or
+ * program, or with other overrides, is refused. A run that its observer stops leaves a last
+ * checkpoint.
  *
  * With several ranks (fe/team/team.h) every rank calls these functions and has the same result; the
  * observer of rank 0 decides.

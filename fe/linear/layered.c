@@ -110,7 +110,10 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
 {
     *out = NULL;
     if (!layout_is_possible(n_blocks, first, link))
-        return wb_fail(WB_ERR_ARGUMENT, "blocks of a layered system must follow one another");
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "the blocks of a layered system do not follow one another: expected the first unknowns "
+            "of the blocks in ascending order, and each link within its block");
 
     /* One thread: how many share a product decides how its sums are split, so that results would
      * depend on the machine's load to the last bit; and the blocks are too small to share well. */

@@ -84,7 +84,8 @@ static int next_wire(const struct wb_packing *packing, int wire, double normal, 
 static enum wb_status add_arc(struct wb_hull *hull, int wire, double from, double to)
 {
     if (hull->n_arcs == WB_HULL_MOST)
-        return wb_fail(WB_ERR_DATA, "the outline of %d wires does not close", hull->packing.n);
+        return wb_fail(WB_ERR_DATA, "the outline of %d wires does not close after %d arcs",
+                       hull->packing.n, WB_HULL_MOST);
     hull->arc[hull->n_arcs++] = (struct wb_hull_arc){.wire = wire, .from = from, .to = to};
     return WB_OK;
 }

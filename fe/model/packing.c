@@ -19,11 +19,14 @@ static double centre_distance(const struct wb_packing_circle *a, const struct wb
 static enum wb_status take(struct wb_packing *packing, int n, const double *diameter)
 {
     if (n < 1 || n > WB_PACKING_MOST)
-        return wb_fail(WB_ERR_ARGUMENT, "%d wires, expected 1 to %d", n, WB_PACKING_MOST);
+        return wb_fail(WB_ERR_ARGUMENT, "the bundle has %d wires: expected 1 to %d", n,
+                       WB_PACKING_MOST);
     packing->n = n;
     for (int i = 0; i < n; i++) {
         if (!(diameter[i] > 0.0 && isfinite(diameter[i])))
-            return wb_fail(WB_ERR_ARGUMENT, "a wire with a diameter of %g m", diameter[i]);
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "wire %d has a diameter of %g m: expected a number above 0", i + 1,
+                           diameter[i]);
         packing->wire[i] = (struct wb_packing_circle){0.0, 0.0, 0.5 * diameter[i]};
     }
     return WB_OK;
@@ -135,8 +138,9 @@ enum wb_status wb_packing_on_lattice(struct wb_packing *packing, int n, const do
         pitch = fmax(pitch, diameter[i]);
     const int whole = wb_packing_whole(lattice, n, &less);
     if (whole != n)
-        return wb_fail(WB_ERR_ARGUMENT, "%d wires are no whole patch of the lattice: %d or %d are",
-                       n, less, whole);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "%d wires make no whole patch of the lattice: expected %d or %d", n, less,
+                       whole);
     if (lattice == WB_PACKING_HEXAGON)
         fill_hexagon(&filled, pitch);
     else
@@ -698,7 +702,8 @@ static enum wb_status ring_settle(struct ring *ring, struct memory *memory, doub
     leave(ring, &settled);
     if (!(wb_packing_smallest_gap(&settled) >= -1e-12 * mean_radius(&settled)) ||
         !isfinite(wb_packing_enclosing(settled.n, settled.wire).radius))
-        return wb_fail(WB_ERR_CONVERGENCE, "%d wires do not settle", settled.n);
+        return wb_fail(WB_ERR_CONVERGENCE, "%d wires do not come to rest against each other",
+                       settled.n);
     *packing = settled;
     return WB_OK;
 }

@@ -10,8 +10,10 @@ static enum wb_status check(double circumference, double layer_thickness)
 {
     if (!(circumference > 0.0 && isfinite(circumference)) ||
         !(layer_thickness > 0.0 && isfinite(layer_thickness)))
-        return wb_fail(WB_ERR_ARGUMENT, "a tape of %g m round %g m", layer_thickness,
-                       circumference);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "the tape is %g m thick and its circumference %g m: expected numbers above 0",
+            layer_thickness, circumference);
     return WB_OK;
 }
 
@@ -20,7 +22,7 @@ enum wb_status wb_taping_sleeve(struct wb_taping *taping, double circumference,
 {
     WB_TRY(check(circumference, layer_thickness));
     if (layers < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "a sleeve of %d layers", layers);
+        return wb_fail(WB_ERR_ARGUMENT, "the sleeve has %d layers: expected 1 or more", layers);
     *taping = (struct wb_taping){.kind = WB_TAPING_SLEEVE,
                                  .layer_thickness = layer_thickness,
                                  .circumference = circumference,
@@ -35,12 +37,15 @@ enum wb_status wb_taping_wind(struct wb_taping *taping, double circumference,
     WB_TRY(check(circumference, layer_thickness));
     if (!(helix->lap >= 0.0 && helix->lap <= largest_lap) ||
         !(helix->width > 0.0 && isfinite(helix->width)) || (helix->hand != 1 && helix->hand != -1))
-        return wb_fail(WB_ERR_ARGUMENT, "a tape %g m wide with a lap of %g and a hand of %d",
-                       helix->width, helix->lap, helix->hand);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the tape's helix has a width of %g m, a lap of %g and a hand of %d: "
+                       "expected a width above 0, a lap from 0 to %g and a hand of 1 or -1",
+                       helix->width, helix->lap, helix->hand, largest_lap);
     const double sine = (1.0 - helix->lap) * helix->width / circumference;
     if (!(sine < 1.0))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "a tape %g mm wide with a lap of %g cannot be wound round %g mm",
+                       "a tape %g mm wide with a lap of %g cannot be wound round a circumference "
+                       "of %g mm: expected a larger lap or a narrower tape",
                        1e3 * helix->width, helix->lap, 1e3 * circumference);
     const double cosine = sqrt(1.0 - sine * sine);
     *taping = (struct wb_taping){.kind = WB_TAPING_HELIX,

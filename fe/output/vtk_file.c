@@ -92,7 +92,10 @@ enum wb_status wb_vtk_file_series_init(struct wb_vtk_file_series *series, const 
                                        const char *name)
 {
     if (name[0] == '\0' || strlen(name) >= WB_VTK_FILE_NAME || strchr(name, '/'))
-        return wb_fail(WB_ERR_ARGUMENT, "\"%s\" cannot be the name of VTK files", name);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "'%s' cannot be the name of VTK files: expected 1 to %d characters without '/'", name,
+            WB_VTK_FILE_NAME - 1);
     if (strlen(folder) >= WB_PATH)
         return wb_fail(WB_ERR_ARGUMENT, "the path of the folder for VTK files is too long");
     *series = (struct wb_vtk_file_series){0};

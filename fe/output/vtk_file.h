@@ -68,7 +68,7 @@ WB_MUST_CHECK enum wb_status wb_vtk_file_series_path(const struct wb_vtk_file_se
 WB_MUST_CHECK enum wb_status wb_vtk_file_series_count(struct wb_vtk_file_series *series,
                                                       double time);
 
-/* Removes the states so far: the run begins anew. */
+/* Removes the states so far, for a run that starts again. */
 WB_MUST_CHECK enum wb_status wb_vtk_file_series_restart(struct wb_vtk_file_series *series);
 
 #endif

@@ -28,7 +28,7 @@ WB_MUST_CHECK enum wb_status wb_fibres_create(struct wb_fibres **out,
                                               const struct wb_section *section);
 void wb_fibres_destroy(struct wb_fibres *fibres);
 
-/* Exchanges the materials (as many as the section has) and tabulates anew. */
+/* Exchanges the materials (as many as the section has) and tabulates their laws again. */
 void wb_fibres_set_materials(struct wb_fibres *fibres, const struct wb_material *materials);
 
 /* Doubles in the history of one section point. All zero is the virgin state. */

@@ -4,8 +4,8 @@
 
 #include "fe/rod/fibres.h"
 
-/* From now on responses are computed without the vector instructions that the processor has: by the
- * same source, to the same bits. A history goes on. */
+/* From now on responses are computed without the processor's vector instructions: by the same
+ * source, to the same bits. Histories stay valid. */
 void wb_fibres_set_portable(struct wb_fibres *fibres);
 
 /* The largest accumulated plastic strain of a point's fibres, 0 when it never yielded. */

@@ -98,11 +98,17 @@ enum wb_status wb_rod_solver_create(struct wb_rod_solver **out,
         return wb_fail(WB_ERR_ARGUMENT, "length %g m: expected a number above 0", model->length);
     if (!(isfinite(model->strand_length) && model->strand_length >= 0.0 &&
           isfinite(model->strand_x)))
-        return wb_fail(WB_ERR_ARGUMENT, "strand of %g m at %g m: expected 0 or more",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the strand is %g m long at x = %g m: expected a length of 0 or more",
                        model->strand_length, model->strand_x);
     if (!(s.force_tolerance > 0.0 && s.smallest_increment > 0.0 && s.largest_increment > 0.0 &&
           s.most_rotation > 0.0 && s.max_iterations > 0))
-        return wb_fail(WB_ERR_ARGUMENT, "solver settings must be above 0");
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "the solver's force_tolerance is %g, its smallest_increment %g, its largest_increment "
+            "%g, its most_rotation %g and its max_iterations %d: expected numbers above 0",
+            s.force_tolerance, s.smallest_increment, s.largest_increment, s.most_rotation,
+            s.max_iterations);
 
     struct wb_rod_solver *solver = calloc(1, sizeof *solver);
     if (!solver)

@@ -143,7 +143,8 @@ enum wb_status wb_solid_create(struct wb_solid **out, const struct wb_solid_mode
     *out = NULL;
     if (!(isfinite(model->strand_length) && model->strand_length >= 0.0 &&
           isfinite(model->strand_x)))
-        return wb_fail(WB_ERR_ARGUMENT, "strand of %g m above x = %g m: expected 0 or more",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the strand is %g m long above x = %g m: expected a length of 0 or more",
                        model->strand_length, model->strand_x);
 
     struct wb_solid *solid = calloc(1, sizeof *solid);
@@ -1043,7 +1044,8 @@ enum wb_status wb_solid_move(struct wb_solid *solid, const struct wb_solid_move 
         return wb_fail(WB_ERR_ARGUMENT, "this mesh has no free end to control");
     if (move->control == WB_SOLID_ARC &&
         !(move->arc_length > 0.0 && move->target.supports == solid->committed_loads.supports))
-        return wb_fail(WB_ERR_ARGUMENT, "an arc needs a length above 0 and supports at rest");
+        return wb_fail(WB_ERR_ARGUMENT, "a move along the path needs an arc length above 0, and "
+                                        "supports that stay where they are");
 
     struct increment increment = {
         .move = move,

@@ -27,8 +27,9 @@ static const int start_face[WB_SOLID_MESH_FACE] = {0, 1, 2, 3, 8, 9, 10, 11};
 enum wb_status wb_solid_mesh_init(struct wb_solid_mesh *mesh, int n_nodes, int n_elements)
 {
     if (n_nodes < 1 || n_nodes > MOST_NODES || n_elements < 1 || n_elements > MOST_NODES)
-        return wb_fail(WB_ERR_ARGUMENT, "a mesh has 1 to %d nodes and elements, not %d and %d",
-                       MOST_NODES, n_nodes, n_elements);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the mesh has %d nodes and %d elements: expected 1 to %d of each", n_nodes,
+                       n_elements, MOST_NODES);
 
     struct wb_solid_mesh made = {
         .n_nodes = n_nodes, .n_elements = n_elements, .n_parts = 1, .n_layers = 1};
@@ -116,7 +117,9 @@ enum wb_status wb_solid_mesh_section(const struct wb_solid_mesh *mesh, double x,
                                      struct wb_solid_face **faces, int *n)
 {
     if (mesh->n_axis < 3 || !isfinite(x))
-        return wb_fail(WB_ERR_ARGUMENT, "no section at x = %g m: the mesh is not a wire's", x);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "the mesh has no section at x = %g m: expected the mesh of a wire and a finite x", x);
 
     /* Every other node of the axis lies in a section. */
     int section = 0;
@@ -466,7 +469,9 @@ static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s,
     const long long nodes = s->n + (long long)slices * (s->n + s->n_corners);
     const long long elements = (long long)slices * s->n_quads;
     if (nodes > INT_MAX)
-        return wb_fail(WB_ERR_ARGUMENT, "a mesh of %lld elements is too large", elements);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the mesh of %lld elements has too many nodes: expected at most %d",
+                       elements, INT_MAX);
 
     struct wb_solid_mesh made;
     WB_TRY(wb_solid_mesh_init(&made, (int)nodes, (int)elements));
@@ -539,21 +544,24 @@ static void place_along(void *context, const double unit[3], double position[3])
 static enum wb_status check_wire(const struct wb_solid_mesh_wire *wire)
 {
     if (!(wire->length > 0.0) || !isfinite(wire->length))
-        return wb_fail(WB_ERR_ARGUMENT, "a wire of length %g m has no mesh", wire->length);
+        return wb_fail(WB_ERR_ARGUMENT, "the wire is %g m long: expected a number above 0",
+                       wire->length);
     if (wire->n_parts < 1 || wire->n_parts > PARTS)
-        return wb_fail(WB_ERR_ARGUMENT, "a wire has 1 or 2 parts, not %d", wire->n_parts);
+        return wb_fail(WB_ERR_ARGUMENT, "the wire has %d parts: expected 1 or %d", wire->n_parts,
+                       PARTS);
     for (int p = 0; p < wire->n_parts; p++) {
         const double inside = p > 0 ? wire->outer_diameter[p - 1] : 0.0;
         if (!(wire->outer_diameter[p] > inside) || !isfinite(wire->outer_diameter[p]))
-            return wb_fail(WB_ERR_ARGUMENT, "part %d of diameter %g m around %g m has no mesh", p,
-                           wire->outer_diameter[p], inside);
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "part %d has a diameter of %g m: expected more than the %g m inside it",
+                           p, wire->outer_diameter[p], inside);
     }
     if (wire->elements_along < 1 || wire->elements_along > MOST_ALONG)
-        return wb_fail(WB_ERR_ARGUMENT, "a mesh has 1 to %d elements along the wire, not %d",
-                       MOST_ALONG, wire->elements_along);
+        return wb_fail(WB_ERR_ARGUMENT, "the mesh has %d elements along the wire: expected 1 to %d",
+                       wire->elements_along, MOST_ALONG);
     if (wire->section_density < 1 || wire->section_density > MOST_DENSITY)
-        return wb_fail(WB_ERR_ARGUMENT, "the density of a section is 1 to %d, not %d", MOST_DENSITY,
-                       wire->section_density);
+        return wb_fail(WB_ERR_ARGUMENT, "the section's density is %d: expected 1 to %d",
+                       wire->section_density, MOST_DENSITY);
     return WB_OK;
 }
 
@@ -598,7 +606,9 @@ enum wb_status wb_solid_mesh_block(struct wb_solid_mesh *mesh, int nx, int ny, i
     const int most = 1000;
     struct section section;
     if (nx < 1 || ny < 1 || nz < 1 || nx > MOST_ALONG || ny > most || nz > most)
-        return wb_fail(WB_ERR_ARGUMENT, "no block of %d x %d x %d elements", nx, ny, nz);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the block has %d x %d x %d elements: expected 1 to %d, 1 to %d and 1 to %d",
+                       nx, ny, nz, MOST_ALONG, most, most);
     WB_TRY(block_section(&section, ny, nz));
     const struct placement to = {map ? map : place_unit, context};
     const enum wb_status status = sweep(mesh, &section, nx, &to);

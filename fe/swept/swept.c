@@ -56,7 +56,8 @@ enum wb_status wb_swept_choose_instructions(enum wb_swept_instructions *chosen,
 {
     const enum wb_swept_instructions set = wanted == WB_SWEPT_BEST ? best_supported() : wanted;
     if (!is_supported(set))
-        return wb_fail(WB_ERR_UNSUPPORTED, "this processor does not have the instructions wanted");
+        return wb_fail(WB_ERR_UNSUPPORTED,
+                       "this processor does not have the vector instructions that were asked for");
     *chosen = set;
     return WB_OK;
 }

@@ -13,9 +13,9 @@
  * padding: they are finite, and are read without effect.
  *
  * Positions and velocities are double; differences of positions are formed in double, then kernels
- * may go on in float (a displacement of 50 mm in float has no digit left for a strain of 1e-6).
+ * may use float (a displacement of 50 mm in float has no digit left for a strain of 1e-6).
  * Forces are float, or double where a model asks for double precision: they are sums of few terms,
- * computed anew in each step.
+ * computed again in each step.
  */
 #ifndef WB_FE_SWEPT_SWEPT_H
 #define WB_FE_SWEPT_SWEPT_H

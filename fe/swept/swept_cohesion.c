@@ -122,7 +122,10 @@ static enum wb_status find_facing(const struct wb_swept_cohesion *c,
     else
         face_wire(&ray, &wires[bond->to], out);
     if (!isfinite(out->offset))
-        return wb_fail(WB_ERR_ARGUMENT, "the tape's node %d faces nothing at station %d", k, j);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the tape's node %d faces no surface at station %d: expected one on the "
+                       "line along its director",
+                       k, j);
     out->area = bond->share * wb_swept_tape_area(c->tape, k, j);
     out->outwards = out->offset < 0.0 ? -1.0 : 1.0;
     return WB_OK;
@@ -174,8 +177,9 @@ static enum wb_status add_bond(struct wb_swept_cohesion *c,
     if (bond->to < WB_SWEPT_COHESION_TAPE || bond->to >= c->n_wires ||
         !(bond->share > 0.0 && bond->share <= 1.0))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "the tape's node %d is bonded to wire %d with a share of %g", k, bond->to,
-                       bond->share);
+                       "the tape's node %d is bonded to wire %d with a share of %g: expected a "
+                       "wire from 0 to %d, or %d for the tape, and a share above 0, at most 1",
+                       k, bond->to, bond->share, c->n_wires - 1, WB_SWEPT_COHESION_TAPE);
     WB_TRY(find_facing(c, wires, bond, k, j, &f));
     WB_TRY(find_strip(c, k, &f, from, &s));
     double *rows = c->numbers + (size_t)s * ROWS * LANES + j % LANES;
@@ -216,18 +220,23 @@ static enum wb_status check(const struct wb_swept_cohesion_settings *s)
 
     if (!(s->normal_stiffness > 0.0 && isfinite(s->normal_stiffness)) ||
         !(s->shear_stiffness > 0.0 && isfinite(s->shear_stiffness)))
-        return wb_fail(WB_ERR_ARGUMENT, "cohesion of K_nn = %g, K_ss = %g Pa/m",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "cohesion: the normal stiffness is %g Pa/m and the shear stiffness %g Pa/m: "
+                       "expected numbers above 0",
                        s->normal_stiffness, s->shear_stiffness);
     if (s->strength == 0.0)
         return WB_OK;
     if (!(s->strength > 0.0 && isfinite(s->strength)) ||
         !(s->shear_strength > 0.0 && isfinite(s->shear_strength)))
-        return wb_fail(WB_ERR_ARGUMENT, "cohesion of strengths %g and %g Pa", s->strength,
-                       s->shear_strength);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "cohesion: the normal strength is %g Pa and the shear strength %g Pa: expected numbers "
+            "above 0, or a normal strength of 0 for a bond that never breaks",
+            s->strength, s->shear_strength);
     if (!(s->fracture_energy > 1.001 * stored && isfinite(s->fracture_energy)))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "a fracture energy of %g J/m2 is not above the %g J/m2 stored when damage "
-                       "begins",
+                       "cohesion: the fracture energy is %g J/m2: expected more than 1.001 times "
+                       "the %g J/m2 that are stored when damage begins",
                        s->fracture_energy, stored);
     return WB_OK;
 }

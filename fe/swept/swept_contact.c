@@ -131,31 +131,45 @@ static enum wb_status check_settings(const struct wb_swept_contact_settings *s)
     const double most = 1e12;
 
     if (!(in_range(s->stiffness, 1e-12, 1e6) && in_range(s->tangential_ratio, 1e-6, 1e6)))
-        return wb_fail(WB_ERR_ARGUMENT, "a contact stiffness of %g E, tangentially %g of it",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the contact stiffness is %g E, and the tangential one %g times that: "
+                       "expected 1e-12 to 1e6 and 1e-6 to 1e6",
                        s->stiffness, s->tangential_ratio);
     if (!(in_range(s->friction_static, 0.0, 1e3) && in_range(s->friction_kinetic, 0.0, 1e3) &&
           in_range(s->friction_decay, 0.0, most) && in_range(s->damping_time, 0.0, most)))
-        return wb_fail(WB_ERR_ARGUMENT, "friction %g and %g, decay %g s/m, damping time %g s",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "friction: the static coefficient is %g, the kinetic one %g, the decay %g "
+                       "s/m and the damping time %g s: expected coefficients from 0 to 1000, and a "
+                       "decay and a time from 0 to 1e12",
                        s->friction_static, s->friction_kinetic, s->friction_decay, s->damping_time);
     if (!(in_range(s->reach, 1e-3, 10.0)) || s->refresh_interval < 1 || s->most_pairs < 0)
-        return wb_fail(WB_ERR_ARGUMENT, "reach %g, refreshed every %d steps, at most %d pairs",
-                       s->reach, s->refresh_interval, s->most_pairs);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "contact: the reach is %g radii, the refresh interval %d steps and the largest number "
+            "of pairs %d: expected 0.001 to 10, at least 1, and 0 or more",
+            s->reach, s->refresh_interval, s->most_pairs);
     return WB_OK;
 }
 
 static enum wb_status check_wire(const struct wb_swept_contact_wire *wire, int w)
 {
     if (!(in_range(wire->radius, 1e-12, 1e12) && in_range(wire->youngs_modulus, 1e-12, 1e30)))
-        return wb_fail(WB_ERR_ARGUMENT, "wire %d: radius %g m, Young's modulus %g Pa", w,
-                       wire->radius, wire->youngs_modulus);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "wire %d has a radius of %g m and a Young's modulus of %g Pa: expected "
+                       "1e-12 to 1e12 m and 1e-12 to 1e30 Pa",
+                       w, wire->radius, wire->youngs_modulus);
     if (wire->n_surface < 3 || wire->n_surface > MOST_SURFACE)
-        return wb_fail(WB_ERR_ARGUMENT, "wire %d has %d surface nodes", w, wire->n_surface);
+        return wb_fail(WB_ERR_ARGUMENT, "wire %d has %d surface nodes: expected 3 to %d", w,
+                       wire->n_surface, MOST_SURFACE);
     for (int k = 0; k < wire->n_surface; k++) {
         const int node = wire->surface[k];
         if (node < 0 || node >= wire->n_nodes ||
             !(in_range(fabs(wire->node[node][0]), 0.0, 1e12) &&
               in_range(fabs(wire->node[node][1]), 0.0, 1e12)))
-            return wb_fail(WB_ERR_ARGUMENT, "wire %d has no surface node %d", w, node);
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "wire %d: surface node %d is none of its %d nodes, or not within 1e12 "
+                           "m",
+                           w, node, wire->n_nodes);
     }
     return WB_OK;
 }
@@ -182,7 +196,9 @@ static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int
     for (int j = 0; j < 3; j++)
         det += A[0][j] * inverse[j][0];
     if (!(det > 1e-9 * A[0][0] * A[1][1] * A[2][2]))
-        return wb_fail(WB_ERR_ARGUMENT, "wire %d: surface nodes on a line", w);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "wire %d: its surface nodes lie on a line: expected nodes round its circle",
+                       w);
     for (int k = 0; k < wire->n_surface; k++) {
         const double *at = wire->node[wire->surface[k]];
         for (int i = 0; i < 3; i++) {
@@ -324,8 +340,10 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
 
     if (n_wires < 1 || n_wires > MOST_WIRES || n_stations < 2 || n_stations > MOST_STATIONS ||
         !(in_range(spacing, 1e-12, 1e12)))
-        return wb_fail(WB_ERR_ARGUMENT, "contact of %d wires with %d stations %g m apart", n_wires,
-                       n_stations, spacing);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "contact: %d wires have %d stations %g m apart: expected 1 to %d wires, 2 "
+                       "to %d stations, and 1e-12 to 1e12 m",
+                       n_wires, n_stations, spacing, MOST_WIRES, MOST_STATIONS);
     WB_TRY(check_settings(settings));
     WB_TRY(wb_swept_choose_instructions(&instructions, settings->instructions));
     for (int w = 0; w < n_wires; w++) {
@@ -677,7 +695,8 @@ static enum wb_status find_neighbours(struct wb_swept_contact *contact)
             if (is_known(contact, a, b) || !are_neighbours(contact, a, b))
                 continue;
             if (contact->model.n_pairs == contact->most_pairs)
-                return wb_fail(WB_ERR_MEMORY, "more than %d pairs of wires beside each other",
+                return wb_fail(WB_ERR_MEMORY,
+                               "contact: more pairs of wires are neighbours than the %d allowed",
                                contact->most_pairs);
             add_pair(contact, a, b);
         }
@@ -719,7 +738,8 @@ enum wb_status wb_swept_contact_refresh(struct wb_swept_contact *contact)
         check += contact->model.sums[b].check;
     if (!isfinite(check))
         return wb_fail_to(contact->settings.reason, WB_ERR_DATA,
-                          "a wire's surface is nowhere (step %lld)", contact->step);
+                          "positions of a wire's surface are not finite (step %lld)",
+                          contact->step);
     if (contact->step % contact->settings.refresh_interval != 0)
         return WB_OK;
     return search(contact);
@@ -772,7 +792,8 @@ enum wb_status wb_swept_contact_add_forces(struct wb_swept_contact *contact,
     const int n = contact->model.n_blocks;
 
     if (!(time_step > 0.0 && isfinite(time_step)))
-        return wb_fail(WB_ERR_ARGUMENT, "contact in a time step of %g s", time_step);
+        return wb_fail(WB_ERR_ARGUMENT, "contact: the time step is %g s: expected a number above 0",
+                       time_step);
     wb_swept_contact_gather(contact, position, 0, n);
     WB_TRY(wb_swept_contact_refresh(contact));
     wb_swept_contact_press(contact, time_step, 0, n);

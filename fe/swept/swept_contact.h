@@ -4,11 +4,11 @@
  * station a wire is a rigid circle of its contact radius round the centre of its surface nodes,
  * turning as these do (see fe/swept/swept_contact_kernel.h). For every pair of neighbours and every
  * station j there is one point of contact, between the place j - s/2 on one centre line and j + s/2
- * on the other, which are linear between stations; the shift s, found anew every so many steps,
- * puts them opposite each other. Both wires are treated alike: curvature then cuts the corners of
- * both lines by the same amount. Points of contact stand for the length between them, that at the
- * ends for half of it; of wires that have slipped past each other, only what lies side by side is
- * in contact.
+ * on the other, which are linear between stations; the shift s, updated every refresh_interval
+ * steps, puts them opposite each other. Both wires are treated alike: curvature then cuts the
+ * corners of both lines by the same amount. Points of contact stand for the length between them,
+ * that at the ends for half of it; of wires that have slipped past each other, only what lies side
+ * by side is in contact.
  *
  * Normal force per length: k (r_a + r_b - distance) where positive, along the line between the two
  * places: exactly the derivative of an energy of the nodes' positions while s rests, and s rests
@@ -103,7 +103,7 @@ wb_swept_contact_add_forces(struct wb_swept_contact *contact, const double *cons
 double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contact, int wire,
                                            const double *node_mass, double selective);
 
-/* The neighbours, and what goes on between them at the last step's positions. */
+/* Neighbours, and what acts between them at the last step's positions. */
 struct wb_swept_contact_point {
     double gap;    /* m */
     double length; /* that it stands for, m; 0 where one wire has no neighbour opposite */
@@ -116,7 +116,7 @@ int wb_swept_contact_pairs(const struct wb_swept_contact *contact);
 void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair, int station,
                                 struct wb_swept_contact_point *out);
 
-/* A checkpoint: what a contact of the same wires and settings needs to go on, bit for bit. */
+/* A checkpoint: what a contact of the same wires and settings needs to continue bit for bit. */
 size_t wb_swept_contact_state_size(const struct wb_swept_contact *contact);
 void wb_swept_contact_save(const struct wb_swept_contact *contact, void *state);
 void wb_swept_contact_restore(struct wb_swept_contact *contact, const void *state);

@@ -194,7 +194,8 @@ static enum wb_status largest_eigenvalue(double *K, int n, double *value)
     *value = values[0];
     free(values);
     if (info != 0 || found != 1 || !(*value > 0.0 && isfinite(*value)))
-        return wb_fail(WB_ERR_CONVERGENCE, "the layer's largest frequency was not found");
+        return wb_fail(WB_ERR_CONVERGENCE,
+                       "the largest frequency of a layer of the wire was not found");
     return WB_OK;
 }
 
@@ -206,12 +207,17 @@ enum wb_status wb_swept_frequency_bound(const struct wb_swept_hex *hex, const do
     const size_t n = 6 * (size_t)n_nodes;
 
     if (n_nodes > WB_SWEPT_FREQUENCY_MOST_NODES)
-        return wb_fail(WB_ERR_UNSUPPORTED, "frequencies of a section of %d nodes", n_nodes);
+        return wb_fail(WB_ERR_UNSUPPORTED,
+                       "the section has %d nodes: its frequencies can be found with at most %d",
+                       n_nodes, WB_SWEPT_FREQUENCY_MOST_NODES);
     if (!(selective >= 1.0 && isfinite(selective)))
-        return wb_fail(WB_ERR_ARGUMENT, "selective mass scaling by %g", selective);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the factor of selective mass scaling is %g: expected 1 or more", selective);
     for (int k = 0; k < n_nodes; k++) {
         if (!(node_mass[k] > 0.0 && isfinite(node_mass[k])))
-            return wb_fail(WB_ERR_ARGUMENT, "node %d has a mass of %g kg/m", k, node_mass[k]);
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "node %d has a mass of %g kg/m: expected a number above 0", k,
+                           node_mass[k]);
     }
     double *K = calloc(n * n + (size_t)n_nodes, sizeof *K);
     if (!K)

@@ -116,17 +116,25 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
     char why[120];
 
     if (m->n_elements < 1 || m->n_elements > MOST_ELEMENTS)
-        return wb_fail(WB_ERR_ARGUMENT, "%d elements along a wire", m->n_elements);
+        return wb_fail(WB_ERR_ARGUMENT, "the wire has %d elements along it: expected 1 to %d",
+                       m->n_elements, MOST_ELEMENTS);
     if (!(m->element_length > 0.0 && isfinite(m->element_length)))
-        return wb_fail(WB_ERR_ARGUMENT, "elements of a length of %g m", m->element_length);
+        return wb_fail(WB_ERR_ARGUMENT, "the elements are %g m long: expected a number above 0",
+                       m->element_length);
     if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
-        return wb_fail(WB_ERR_ARGUMENT, "hourglass coefficient %g, not in (0, 1]", m->hourglass);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the hourglass coefficient is %g: expected above 0, at most 1",
+                       m->hourglass);
     if (wb_hardening_law(material)->moves)
-        return wb_fail(WB_ERR_UNSUPPORTED, "hexahedra do not harden kinematically");
+        return wb_fail(
+            WB_ERR_UNSUPPORTED,
+            "the hardening law has kinematic hardening: hexahedra have isotropic hardening only");
     if (!(material->youngs_modulus > 0.0 && isfinite(material->youngs_modulus)) ||
         !(material->poissons_ratio > -1.0 && material->poissons_ratio < 0.5))
-        return wb_fail(WB_ERR_ARGUMENT, "E = %g Pa, nu = %g", material->youngs_modulus,
-                       material->poissons_ratio);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the wire's Young's modulus is %g Pa and its Poisson's ratio %g: expected "
+                       "a modulus above 0, and a ratio above -1 and below 0.5",
+                       material->youngs_modulus, material->poissons_ratio);
     if (!wb_hardening_is_possible(material, why, sizeof why))
         return wb_fail(WB_ERR_ARGUMENT, "%s", why);
     return WB_OK;

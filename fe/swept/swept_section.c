@@ -173,11 +173,15 @@ enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nod
                                      const double (*node)[2], int n_quads, const int (*quad)[4])
 {
     if (n_nodes < 4 || n_nodes > MOST_NODES || n_quads < 1 || n_quads > MOST_NODES)
-        return wb_fail(WB_ERR_ARGUMENT, "a section of %d nodes and %d elements", n_nodes, n_quads);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "the section has %d nodes and %d elements: expected 4 to %d nodes and 1 to %d elements",
+            n_nodes, n_quads, MOST_NODES, MOST_NODES);
     for (int i = 0; i < 4 * n_quads; i++) {
         if (quad[i / 4][i % 4] < 0 || quad[i / 4][i % 4] >= n_nodes)
-            return wb_fail(WB_ERR_ARGUMENT, "element %d of the section has node %d of %d", i / 4,
-                           quad[i / 4][i % 4], n_nodes);
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "element %d of the section has node %d: expected 0 to %d", i / 4,
+                           quad[i / 4][i % 4], n_nodes - 1);
     }
     WB_TRY(allocate(section, n_nodes, n_quads, 0));
     memcpy(section->node, node, (size_t)n_nodes * sizeof *node);
@@ -252,9 +256,13 @@ enum wb_status wb_swept_section_init_circle(struct wb_swept_section *section, do
                                             int core, int rings)
 {
     if (core < 2 || core > MOST_DENSITY || core % 2 != 0 || rings < 0 || rings > MOST_DENSITY)
-        return wb_fail(WB_ERR_ARGUMENT, "a circle of a core of %d and %d rings", core, rings);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the circle's mesh has a core of %d and %d rings: expected an even core "
+                       "from 2 to %d, and 0 to %d rings",
+                       core, rings, MOST_DENSITY, MOST_DENSITY);
     if (!(diameter > 0.0 && isfinite(diameter)))
-        return wb_fail(WB_ERR_ARGUMENT, "a circle of diameter %g m", diameter);
+        return wb_fail(WB_ERR_ARGUMENT, "the circle's diameter is %g m: expected a number above 0",
+                       diameter);
     WB_TRY(allocate(section, (core + 1) * (core + 1) + 4 * core * rings,
                     core * core + 4 * core * rings, 4 * core));
 

@@ -213,17 +213,26 @@ static enum wb_status check(const struct wb_swept_step_model *m)
 {
     if (m->layout.n_nodes < 1 || m->layout.n_stations < 2 ||
         m->layout.stride != wb_swept_layout(m->layout.n_nodes, m->layout.n_stations).stride)
-        return wb_fail(WB_ERR_ARGUMENT, "a body of %d nodes and %d stations", m->layout.n_nodes,
-                       m->layout.n_stations);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the body has %d nodes, %d stations and a stride of %d: expected at least 1 "
+                       "node, at least 2 stations and the stride that belongs to them",
+                       m->layout.n_nodes, m->layout.n_stations, m->layout.stride);
     if (!(m->spacing > 0.0 && isfinite(m->spacing)))
-        return wb_fail(WB_ERR_ARGUMENT, "stations %g m apart", m->spacing);
+        return wb_fail(WB_ERR_ARGUMENT, "the stations are %g m apart: expected a number above 0",
+                       m->spacing);
     if (!(m->mass_scaling > 0.0 && isfinite(m->mass_scaling)))
-        return wb_fail(WB_ERR_ARGUMENT, "mass scaling by %g", m->mass_scaling);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the factor of mass scaling is %g: expected a number above 0",
+                       m->mass_scaling);
     if (!(m->selective >= 1.0 && isfinite(m->selective)))
-        return wb_fail(WB_ERR_ARGUMENT, "selective mass scaling by %g", m->selective);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the factor of selective mass scaling is %g: expected 1 or more",
+                       m->selective);
     for (int k = 0; k < m->layout.n_nodes; k++) {
         if (!(m->node_mass[k] > 0.0 && isfinite(m->node_mass[k])))
-            return wb_fail(WB_ERR_ARGUMENT, "node %d has a mass of %g kg/m", k, m->node_mass[k]);
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "node %d has a mass of %g kg/m: expected a number above 0", k,
+                           m->node_mass[k]);
     }
     return WB_OK;
 }

@@ -251,11 +251,15 @@ static enum wb_status check_material(const struct wb_material *m)
     char why[120];
 
     if (wb_hardening_law(m)->moves)
-        return wb_fail(WB_ERR_UNSUPPORTED, "the tape does not harden kinematically");
+        return wb_fail(
+            WB_ERR_UNSUPPORTED,
+            "the hardening law has kinematic hardening: the tape has isotropic hardening only");
     if (!(m->youngs_modulus > 0.0 && isfinite(m->youngs_modulus)) ||
         !(m->poissons_ratio > -1.0 && m->poissons_ratio <= 0.5))
-        return wb_fail(WB_ERR_ARGUMENT, "tape: E = %g Pa, nu = %g", m->youngs_modulus,
-                       m->poissons_ratio);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the tape's Young's modulus is %g Pa and its Poisson's ratio %g: expected "
+                       "a modulus above 0, and a ratio above -1 and at most 0.5",
+                       m->youngs_modulus, m->poissons_ratio);
     if (!wb_hardening_is_possible(m, why, sizeof why))
         return wb_fail(WB_ERR_ARGUMENT, "tape: %s", why);
     return WB_OK;
@@ -269,19 +273,27 @@ static enum wb_status check(const struct wb_swept_tape_model *m)
     if (layout->n_nodes < (m->closed ? 3 : 2) || layout->n_nodes > MOST_NODES ||
         layout->n_stations < 2 ||
         layout->stride != wb_swept_layout(layout->n_nodes, layout->n_stations).stride)
-        return wb_fail(WB_ERR_ARGUMENT, "a tape of %d nodes and %d stations", layout->n_nodes,
-                       layout->n_stations);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the tape has %d nodes, %d stations and a stride of %d: expected %d to %d "
+                       "nodes, at least 2 stations and the stride that belongs to them",
+                       layout->n_nodes, layout->n_stations, layout->stride, m->closed ? 3 : 2,
+                       MOST_NODES);
     if (!(m->density > 0.0 && isfinite(m->density)) ||
         !(m->thickness > 0.0 && isfinite(m->thickness)) ||
         !(m->spacing > 0.0 && isfinite(m->spacing)))
         return wb_fail(WB_ERR_ARGUMENT,
-                       "tape: density %g kg/m3, thickness %g m, stations %g m apart", m->density,
-                       m->thickness, m->spacing);
+                       "the tape has a density of %g kg/m3, a thickness of %g m and stations %g m "
+                       "apart: expected numbers above 0",
+                       m->density, m->thickness, m->spacing);
     if (m->sheets < 1 || m->points < 2 || m->points > WB_SWEPT_TAPE_MOST_POINTS)
-        return wb_fail(WB_ERR_ARGUMENT, "a tape of %d sheets, %d points through the thickness",
-                       m->sheets, m->points);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the tape has %d sheets and %d points through its thickness: expected at "
+                       "least 1 sheet, and 2 to %d points",
+                       m->sheets, m->points, WB_SWEPT_TAPE_MOST_POINTS);
     if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
-        return wb_fail(WB_ERR_ARGUMENT, "hourglass coefficient %g, not in (0, 1]", m->hourglass);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the tape's hourglass coefficient is %g: expected above 0, at most 1",
+                       m->hourglass);
     return WB_OK;
 }
 
@@ -655,7 +667,8 @@ static enum wb_status element_eigenvalue(const struct wb_swept_tape *tape,
         LAPACKE_dsyevx(LAPACK_ROW_MAJOR, 'N', 'I', 'U', UNKNOWNS, K, UNKNOWNS, 0.0, 0.0, UNKNOWNS,
                        UNKNOWNS, 0.0, &found, values, &vector, 1, &ignored);
     if (info != 0 || found != 1 || !(values[0] > 0.0 && isfinite(values[0])))
-        return wb_fail(WB_ERR_CONVERGENCE, "the largest frequency of a tape's element: not found");
+        return wb_fail(WB_ERR_CONVERGENCE,
+                       "the largest frequency of an element of the tape was not found");
     *value = values[0] * (1.0 + 1e-9);
     return WB_OK;
 }

@@ -472,19 +472,28 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
 {
     if (!(s->normal_stiffness > 0.0 && isfinite(s->normal_stiffness)) ||
         !(s->shear_stiffness > 0.0 && isfinite(s->shear_stiffness)))
-        return wb_fail(WB_ERR_ARGUMENT, "contact of the tape with stiffnesses %g and %g Pa/m",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "contact of the tape: the normal stiffness is %g Pa/m and the shear "
+                       "stiffness %g Pa/m: expected numbers above 0",
                        s->normal_stiffness, s->shear_stiffness);
     if (!(s->friction_kinetic >= 0.0 && s->friction_static >= s->friction_kinetic &&
           isfinite(s->friction_static)) ||
         !(s->friction_decay >= 0.0 && isfinite(s->friction_decay)))
-        return wb_fail(WB_ERR_ARGUMENT, "friction of the tape: mu from %g to %g, decay %g s/m",
-                       s->friction_static, s->friction_kinetic, s->friction_decay);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "friction of the tape: the static coefficient is %g, the kinetic one %g and the decay "
+            "%g s/m: expected 0 or more, and the static coefficient not below the kinetic one",
+            s->friction_static, s->friction_kinetic, s->friction_decay);
     if (!(s->margin >= 0.0 && isfinite(s->margin)) || s->refresh_interval < 0)
-        return wb_fail(WB_ERR_ARGUMENT, "contact of the tape: margin %g m, every %d steps",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "contact of the tape: the margin is %g m and the refresh interval %d steps: "
+                       "expected 0 or more",
                        s->margin, s->refresh_interval);
     for (int w = 0; w < n_wires; w++) {
         if (!(wires[w].radius > 0.0 && isfinite(wires[w].radius)) || wires[w].n_surface < 3)
-            return wb_fail(WB_ERR_ARGUMENT, "wire %d with a radius of %g m and %d surface nodes",
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "wire %d has a radius of %g m and %d surface nodes: expected a radius "
+                           "above 0 and at least 3 nodes",
                            w + 1, wires[w].radius, wires[w].n_surface);
     }
     return WB_OK;

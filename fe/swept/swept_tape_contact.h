@@ -6,15 +6,15 @@
  * radius less the distance from that centre. It is the derivative of an energy: it acts along the
  * radius, and its work is what is stored, wherever the tape slides. The node faces a place y
  * between two surface nodes and between stations, at a distance o from the tape's middle surface.
- * Both are found when the node comes near, and anew whenever it has slid by a fiftieth of the
- * radius, which is looked at every so many steps. Until then the centre is found from these two
- * surface nodes. Friction is that of an elastic spring between the surfaces, stretched by the part
- * of g = x - o d - y across d and returned to
+ * Both are found when the node comes near, and again whenever it has slid by a fiftieth of the
+ * radius, which is checked every refresh_interval steps. Until then the centre is found from these
+ * two surface nodes. Friction is that of an elastic spring between the surfaces, stretched by the
+ * part of g = x - o d - y across d and returned to
  *
  *     mu = mu_k + (mu_s - mu_k) exp(-decay slip rate)                               (eq. 20).
  *
  * Forces on both sides balance exactly, moments of pressure to the round-off of places that are
- * found anew, moments of friction as far as g is small beside o. A node may slip by four stations
+ * found again, moments of friction as far as g is small beside o. A node may slip by four stations
  * along a wire; then it is in contact with it no more.
  */
 #ifndef WB_FE_SWEPT_SWEPT_TAPE_CONTACT_H
@@ -67,7 +67,7 @@ wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *contact,
                                  const struct wb_swept_cohesion_fields *fields, double time_step,
                                  struct wb_swept_tape_contact_sums *sums);
 
-/* A checkpoint: what a contact of the same tape, wires and settings needs to go on, bit for bit. */
+/* A checkpoint: what a contact of the same tape, wires and settings continues from, bit for bit. */
 size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact);
 void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state);
 void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state);

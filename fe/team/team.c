@@ -102,7 +102,7 @@ static enum wb_status start_threads(struct wb_team *team)
 {
     for (int i = 1; i < team->n_threads; i++) {
         if (pthread_create(&team->member[i].thread, NULL, serve, &team->member[i]) != 0)
-            return wb_fail(WB_ERR_MEMORY, "no %d threads can be started", team->n_threads);
+            return wb_fail(WB_ERR_MEMORY, "%d threads cannot be started", team->n_threads);
         team->n_started++;
     }
     return WB_OK;

@@ -97,15 +97,22 @@ static enum wb_status check_model(const struct wb_cantilever_model *m,
         return wb_fail(WB_ERR_ARGUMENT, "strand_length %g m: expected 0 or more", m->strand_length);
     if (!(isfinite(m->counterweight) && m->counterweight >= 0.0 && isfinite(m->mass_per_length) &&
           m->mass_per_length >= 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "counterweight %g kg, %g kg/m: expected 0 or more",
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "counterweight %g kg, mass per length %g kg/m: expected 0 or more",
                        m->counterweight, m->mass_per_length);
     if (!(isfinite(m->gravity_x) && isfinite(m->gravity_y)))
         return wb_fail(WB_ERR_ARGUMENT, "gravity (%g, %g) is not finite", m->gravity_x,
                        m->gravity_y);
     if (m->has_rest && !(isfinite(m->rest_level) && m->strand_length > 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "a rest needs a strand and a level");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the rest's level is %g m and the strand's length %g m: expected a finite "
+                       "level, and a length above 0",
+                       m->rest_level, m->strand_length);
     if (!(s->force_tolerance > 0.0 && s->max_iterations > 0 && s->smallest_step > 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "solver settings must be above 0");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the solver's force_tolerance is %g, its max_iterations %d and its "
+                       "smallest_step %g: expected numbers above 0",
+                       s->force_tolerance, s->max_iterations, s->smallest_step);
     return WB_OK;
 }
 
@@ -527,9 +534,9 @@ static enum wb_status check_move(const struct wb_cantilever *c, enum wb_cantilev
     if (!isfinite(target))
         return wb_fail(WB_ERR_ARGUMENT, "target %g is not a finite number", target);
     if (control == WB_CONTROL_STAGE && !is_unilateral(c))
-        return wb_fail(WB_ERR_ARGUMENT, "stage control needs a strand");
+        return wb_fail(WB_ERR_ARGUMENT, "the stage cannot control a model without a strand");
     if ((!drives_tip(control) || control == WB_CONTROL_FOLLOWER_DEFLECTION) && is_unilateral(c))
-        return wb_fail(WB_ERR_ARGUMENT, "force control and a strand exclude each other");
+        return wb_fail(WB_ERR_ARGUMENT, "a model with a strand has no applied force to control");
     return WB_OK;
 }
 

@@ -133,7 +133,11 @@ enum wb_status wb_loading_steps_run(struct wb_loading_steps *loading,
     WB_TRY(check_plan(plan));
     if (loading->capacity < wb_loading_steps_planned_rows(plan) ||
         loading->n_shape != plan->n_shape)
-        return wb_fail(WB_ERR_ARGUMENT, "the loading steps were made for another plan");
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the loading has room for %d rows and %d positions of a shape: expected at "
+                       "least %d rows and exactly %d positions",
+                       loading->capacity, loading->n_shape, wb_loading_steps_planned_rows(plan),
+                       plan->n_shape);
 
     loading->n_rows = 0;
     loading->zero_force = 0.0;

@@ -20,7 +20,7 @@ struct wb_wire_row {
     double tip[3];             /* m, of the axis' end */
     double tangent[3];         /* unit vector along the wire at the tip */
     double tip_angle;          /* rad, atan2 of the tangent's y and x, continued over the rows so
-                                  that a wire that curls past pi goes on */
+                                  that it has no jump where a wire curls past pi */
     double tension;            /* N: strand's tension or vertical force that makes the deflection;
                                   without either the vertical part of all tip forces */
     double vertical_force;     /* N: vertical part of the tension */

@@ -52,7 +52,7 @@ struct syn {
     double gap_from, gap_until;   /* load cell silent */
     double busy_from, busy_until; /* the host takes nothing; then all that waited at once */
     double corrupt;               /* part of the chunks that get wrong bytes */
-    double restart_at;            /* s: the server's clock starts anew; 0: never */
+    double restart_at;            /* s: the server's clock restarts then; 0: never */
     double sign;                  /* of the load cell; 0 means 1 */
     /* The bench. */
     double time_scale; /* 0 means 1 */

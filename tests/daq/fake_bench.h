@@ -41,7 +41,7 @@ struct fake_bench {
     atomic_bool stage_wild;       /* ignores the soft reset too, and answers nothing then */
     atomic_bool stage_refuses;    /* answers jogs with error:15 */
     atomic_bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
-    atomic_bool stage_overshoots; /* goes on beyond the target */
+    atomic_bool stage_overshoots; /* moves beyond the target */
     atomic_bool has_top;          /* answers jogs that end above 0 with error:15 */
     atomic_int reports_of_100;    /* how many questions for the state are answered; 0: all */
     atomic_int

@@ -7,7 +7,7 @@
  *
  * Contact: neighbours touch along lines, k times the depth (k = 0.25 E as in
  * fe/swept/swept_contact.h), between places that face each other across the mean section, found
- * anew in every increment. Friction acts along the wires only: an elastic spring on their slip,
+ * again in every increment. Friction acts along the wires only: an elastic spring on their slip,
  * returned to mu times the normal force, with a history along the path. A rate has no meaning here:
  * mu is constant. Open contact pulls back weakly (see open_stiffness).
  *

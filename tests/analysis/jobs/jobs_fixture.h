@@ -7,7 +7,7 @@
 
 #include "analysis/jobs/jobs.h"
 
-/* Does what a worker is told to; for main(), when argv[1] is "worker". */
+/* The work of a worker, as its arguments say; for main(), when argv[1] is "worker". */
 int jobs_fixture_worker(int argc, char **argv);
 
 /* A new empty folder with a space and a quote in its name, which becomes the current one; its
