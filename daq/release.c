@@ -39,6 +39,7 @@ void wb_release_rest(struct wb_release *release, double travel, int64_t t_ns)
     release->groups = 0;
     memset(&release->now, 0, sizeof release->now);
     memset(&release->before, 0, sizeof release->before);
+    memset(&release->overloaded, 0, sizeof release->overloaded);
 }
 
 static double mean_of(const struct wb_release_group *group)
@@ -67,24 +68,40 @@ static bool groups_agree(const struct wb_release *release)
     return apart <= 0.5 * LEVEL_SHARE * release->capacity + CERTAINTY * error;
 }
 
-static void end_rest(struct wb_release *release)
+static void push_place(struct wb_release *release, double force, double error)
 {
-    const int n = release->now.n + release->before.n;
     memmove(&release->places[1], &release->places[0],
             (WB_RELEASE_RESTS - 1) * sizeof release->places[0]);
     release->places[0] =
-        (struct wb_release_place){.travel = release->travel,
-                                  .force = (release->now.sum + release->before.sum) / n,
-                                  .error = sqrt(variance(release) / n)};
+        (struct wb_release_place){.travel = release->travel, .force = force, .error = error};
     if (release->n_places < WB_RELEASE_RESTS)
         release->n_places++;
     release->resting = false;
 }
 
+static void end_rest(struct wb_release *release)
+{
+    const int n = release->now.n + release->before.n;
+    push_place(release, (release->now.sum + release->before.sum) / n, sqrt(variance(release) / n));
+}
+
+/* An overloaded cell has no number to tell, but the strand is surely not slack. */
+static void add_overload(struct wb_release *release, int64_t t_ns)
+{
+    struct wb_release_group *const group = &release->overloaded;
+    if (group->n++ == 0)
+        group->first_ns = t_ns;
+    if (group->n >= GROUP_READINGS && t_ns - group->first_ns >= release->group_ns)
+        push_place(release, (double)NAN, 0.0);
+}
+
 void wb_release_add(struct wb_release *release, const struct wb_load_sample *sample)
 {
-    if (!release->resting || !sample->valid ||
-        sample->t_ns <= release->rest_ns + release->settle_ns)
+    if (!release->resting || sample->t_ns <= release->rest_ns + release->settle_ns)
+        return;
+    if (sample->overload)
+        add_overload(release, sample->t_ns);
+    if (!sample->valid || sample->overload)
         return;
     struct wb_release_group *const now = &release->now;
     if (now->n == 0)
@@ -104,6 +121,7 @@ void wb_release_add(struct wb_release *release, const struct wb_load_sample *sam
     memset(now, 0, sizeof *now);
 }
 
+/* Neither near zero nor level: NaN compares false. */
 static bool near_zero(const struct wb_release *release, const struct wb_release_place *place)
 {
     return fabs(place->force) <= SLACK_SHARE * release->capacity;

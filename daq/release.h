@@ -35,7 +35,7 @@ struct wb_release_group { /* readings in a row */
 
 struct wb_release_place { /* what was read at a rest */
     double travel;        /* m */
-    double force;         /* N, mean */
+    double force;         /* N, mean; NaN: the cell was overloaded */
     double error;         /* N, standard error of the mean */
 };
 
@@ -48,6 +48,7 @@ struct wb_release {
     bool resting;
     int groups; /* full ones of this rest */
     struct wb_release_group now, before;
+    struct wb_release_group overloaded; /* readings of this rest; only counted */
     int n_places;
     struct wb_release_place places[WB_RELEASE_RESTS]; /* the newest first */
 };
@@ -57,7 +58,8 @@ void wb_release_init(struct wb_release *release, const struct wb_rig *rig);
 /* The clamp stands at `travel` (m, any origin) since t_ns. */
 void wb_release_rest(struct wb_release *release, double travel, int64_t t_ns);
 
-/* A reading; ignored unless it is valid, of this rest and after the cell's filter. */
+/* A reading; ignored unless it is of this rest, after the cell's filter, and valid or overload. An
+ * overloaded cell means that the strand is not slack: the release goes on upwards. */
 void wb_release_add(struct wb_release *release, const struct wb_load_sample *sample);
 
 /* What the readings so far say. */
@@ -66,7 +68,7 @@ enum wb_release_verdict wb_release_judge(const struct wb_release *release);
 /* m: how far the next step up may go. */
 double wb_release_step(const struct wb_release *release);
 
-/* N: the mean at the last finished rest, NaN before the first. */
+/* N: the mean at the last finished rest; NaN before the first, or where the cell was overloaded. */
 double wb_release_force(const struct wb_release *release);
 
 #endif

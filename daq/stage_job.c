@@ -227,10 +227,12 @@ static void arm(struct wb_stage_job *job)
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
         /* It may be beyond its limits now: that is what is being mended. It must not grow. */
-        const double force = isfinite(job->first_force) ? job->first_force : 0.0;
+        const bool is_overloaded = !isfinite(job->first_force);
+        /* An overloaded cell gives its first number just below its overload. */
+        const double force = is_overloaded ? job->rig.load_cell.overload : fabs(job->first_force);
         const double growth = GROWTH_SHARE * job->rig.load_cell.capacity;
-        settings.force = fmax(settings.force, fabs(force) + growth);
-        if (!isfinite(job->first_force) || fabs(force) + growth > settings.overload) {
+        settings.force = fmax(settings.force, force + growth);
+        if (is_overloaded || force + growth > settings.overload) {
             settings.overload = 0.0;
             settings.overload_allowed = true;
         }
@@ -276,17 +278,22 @@ static void step_up(struct wb_stage_job *job, double travel)
 {
     const double left = job->reach + travel;
     const double step = fmin(wb_release_step(&job->release), job->most);
+    char now[40];
     const double force = wb_release_force(&job->release) / WB_MN;
+    if (isfinite(force))
+        snprintf(now, sizeof now, "%.2f mN now", force);
+    else
+        snprintf(now, sizeof now, "overload now");
     if (left <= POSITION_TOLERANCE)
         end_release(job, WB_STAGE_JOB_STILL_LOADED,
-                    "went up by %.2f mm, but the reading did not level off (%.2f mN now): look at "
+                    "went up by %.2f mm, but the reading did not level off (%s): look at "
                     "the strand, then release again or jog",
-                    -travel / WB_MM, force);
+                    -travel / WB_MM, now);
     else if (job->most < LEAST_STEP)
         end_release(job, WB_STAGE_JOB_STILL_LOADED,
                     "went up by %.2f mm to the end of the machine, but the reading did not level "
-                    "off (%.2f mN now): look at the strand; the stage is free to jog down",
-                    -travel / WB_MM, force);
+                    "off (%s): look at the strand; the stage is free to jog down",
+                    -travel / WB_MM, now);
     else
         jog_to(job, travel - fmin(step, left));
 }
@@ -483,7 +490,11 @@ static void step_rest(struct wb_stage_job *job)
                     job->rig.load_cell.address);
         break;
     case WB_RELEASE_GO_UP:
-        step_up(job, travel_of(job, latest->stage.position));
+        /* A report without a position says nothing of how far up it may go: the next one will. */
+        if (isfinite(latest->stage.position))
+            step_up(job, travel_of(job, latest->stage.position));
+        else if (lasts_ns(job) > REST_NS)
+            give_up(job, WB_INTERLOCK_STREAM_LOST, "the stage does not report its position");
         break;
     case WB_RELEASE_SLACK:
         end_release(job, WB_STAGE_JOB_DONE, "the strand is slack: the specimen is free");

@@ -15,6 +15,7 @@ struct bench {
     struct wb_rig rig;
     double (*load)(double travel); /* N */
     double noise;                  /* N, uniform to both sides */
+    double overload;               /* N, beyond which the cell reads no number; 0: none */
     int64_t period_ns;             /* of the readings */
     int at_once;                   /* so many arrive together */
     int late;                      /* so many from before the step arrive after it... */
@@ -75,8 +76,12 @@ static void read_at(struct bench *bench, struct wb_release *release, double trav
 {
     if (index % bench->at_once == 0)
         bench->t_ns += bench->at_once * bench->period_ns;
-    const struct wb_load_sample sample = {
-        .t_ns = bench->t_ns, .force = bench->load(travel) + noise_of(bench), .valid = true};
+    const double force = bench->load(travel) + noise_of(bench);
+    const bool overload = bench->overload > 0.0 && force > bench->overload;
+    const struct wb_load_sample sample = {.t_ns = bench->t_ns,
+                                          .force = overload ? (double)NAN : force,
+                                          .valid = !overload,
+                                          .overload = overload};
     wb_release_add(release, &sample);
 }
 
@@ -185,6 +190,19 @@ static void a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it(void **
     assert_close(bench.travel, 26.0 * WB_MM, 1e-12);
 }
 
+static void an_overloaded_cell_is_relieved(void **state)
+{
+    (void)state;
+    struct bench bench = make(slack_below_12_mm);
+    bench.overload = 60.0 * WB_MN;
+    assert_int_equal(release_from(&bench, 40.0 * WB_MM), WB_RELEASE_SLACK);
+    check_seen_below_12_mm(&bench);
+    /* However far it goes: an overload is never taken for a level reading. */
+    bench = make(heavy);
+    bench.overload = 60.0 * WB_MN;
+    assert_int_equal(release_from(&bench, 40.0 * WB_MM), WB_RELEASE_GO_UP);
+}
+
 static void invalid_readings_do_not_count(void **state)
 {
     (void)state;
@@ -209,6 +227,7 @@ int main(void)
         cmocka_unit_test(a_noisy_cell_needs_a_longer_way_and_tells_no_lie),
         cmocka_unit_test(a_strand_that_is_slack_from_the_start_moves_one_step),
         cmocka_unit_test(a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it),
+        cmocka_unit_test(an_overloaded_cell_is_relieved),
         cmocka_unit_test(invalid_readings_do_not_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
