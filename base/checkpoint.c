@@ -64,7 +64,8 @@ void wb_checkpoint_enter(struct wb_checkpoint *c, const char *format, ...)
     const int n = vsnprintf(c->group + used, room, format, arguments);
     va_end(arguments);
     if (n < 0 || (size_t)n + 1 >= room) {
-        c->status = wb_fail(WB_ERR_ARGUMENT, "too many groups in a checkpoint: %s", c->group);
+        if (c->status == WB_OK)
+            c->status = wb_fail(WB_ERR_ARGUMENT, "too many groups in a checkpoint: %s", c->group);
         c->group[used] = '\0';
         return;
     }

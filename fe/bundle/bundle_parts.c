@@ -570,6 +570,15 @@ static void save_part(struct wb_bundle_parts *parts, int number, struct wb_check
     wb_checkpoint_enter(&own, "part %d", number + 1);
     if (member)
         wb_bundle_part_visit_fields(member->part, &own);
+    enum wb_status status = own.status;
+    wb_team_share(&status, sizeof status, number / parts->n_here);
+    if (status != WB_OK) {
+        /* A checkpoint without this part must not replace the last whole one. */
+        if (out->status == WB_OK)
+            out->status = status;
+        wb_checkpoint_release(&own);
+        return;
+    }
     size_t size = own.size;
     wb_team_share(&size, sizeof size, number / parts->n_here);
     unsigned char *bytes = member ? own.bytes : malloc(size);
