@@ -1,5 +1,5 @@
 /* One dataset at a glance: a text summary and figures of the force-deflection curve and of the
- * shapes. For the operator at the bench; a report takes a campaign of many. */
+ * shapes. For the operator at the bench; a report covers a campaign of many tests. */
 #ifndef WB_ANALYSIS_QUICKLOOK_H
 #define WB_ANALYSIS_QUICKLOOK_H
 

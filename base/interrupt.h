@@ -1,4 +1,5 @@
-/* Ctrl-C as a flag that loops test, so that the stage stops first and the recording closes. */
+/* A flag that Ctrl-C sets and loops check, so that the stage stops first and the recording closes.
+ */
 #ifndef WB_BASE_INTERRUPT_H
 #define WB_BASE_INTERRUPT_H
 

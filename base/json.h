@@ -19,7 +19,7 @@
 struct wb_json; /* a document or a value in it */
 
 /* A new document whose root is an object; NULL when out of memory. All functions accept NULL: what
- * is set into it is dropped, and to format it fails. */
+ * is set into it is dropped, and formatting it fails. */
 struct wb_json *wb_json_create(void);
 void wb_json_destroy(struct wb_json *root);
 

@@ -11,7 +11,7 @@
 
 enum wb_status {
     WB_OK = 0,
-    WB_ERR_ARGUMENT = -1,    /* the caller broke the contract, or a setting is out of range */
+    WB_ERR_ARGUMENT = -1,    /* the caller misused the function, or a setting is out of range */
     WB_ERR_MEMORY = -2,      /* out of memory */
     WB_ERR_IO = -3,          /* a file, socket or port could not be read or written */
     WB_ERR_NOT_FOUND = -4,   /* a file, port, key or name does not exist */

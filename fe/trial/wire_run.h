@@ -66,7 +66,7 @@ struct wb_wire_progress {
     enum wb_status status;                   /* of the observer */
 };
 
-/* What a row is to reach. */
+/* The target of a row. */
 struct wb_wire_target {
     struct wb_tip_loads tip;
     double tension;    /* N: of the strand, or the vertical force that makes a deflection */
