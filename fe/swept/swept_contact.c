@@ -904,86 +904,40 @@ void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
 
 /* --- checkpoints --- */
 
-enum transfer_kind {
-    TRANSFER_SIZE,
-    TRANSFER_SAVE,
-    TRANSFER_RESTORE
-};
-
-struct transfer {
-    enum transfer_kind what;
-    unsigned char *at;
-    size_t size;
-};
-
-static void carry(struct transfer *t, void *data, size_t size)
+/* All pairs there is room for: those that are unused now have memory that later ones get. */
+void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint)
 {
-    if (t->what == TRANSFER_SAVE)
-        memcpy(t->at + t->size, data, size);
-    if (t->what == TRANSFER_RESTORE)
-        memcpy(data, t->at + t->size, size);
-    t->size += size;
-}
+    struct wb_swept_contact_model *m = &contact->model;
+    const size_t wires = (size_t)m->n_wires, stations = (size_t)m->n_stations;
+    const size_t stride = (size_t)m->stride, row = (size_t)m->row;
+    const size_t loads = real_size(contact) * (WB_SWEPT_CONTACT_LOAD * row - 2 * stride);
 
-/* A checkpoint's numbers in their order; all pairs there is room for, so that its size is fixed. */
-static void carry_all(struct wb_swept_contact *c, struct transfer *t)
-{
-    struct wb_swept_contact_model *m = &c->model;
-    const size_t stations = sizeof(double) * (size_t)m->n_stations;
-    const size_t loads =
-        real_size(c) * (WB_SWEPT_CONTACT_LOAD * (size_t)m->row - 2 * (size_t)m->stride);
-
-    carry(t, &c->step, sizeof c->step);
-    carry(t, &m->started, sizeof m->started);
-    carry(t, &m->n_pairs, sizeof m->n_pairs);
-    carry(t, c->searched, 3 * stations * (size_t)m->n_wires);
-    for (int w = 0; w < m->n_wires; w++) {
-        for (int i = 0; i < 3; i++)
-            carry(t, centre_row(c, w, i), stations);
-        for (int i = WB_SWEPT_CONTACT_P; i < WB_SWEPT_CONTACT_TANGENT; i++)
-            carry(t, fixed_row(c, w, i), stations);
-    }
-    for (int p = 0; p < c->most_pairs; p++) {
+    wb_checkpoint_enter(checkpoint, "contact");
+    wb_checkpoint_visit_member(checkpoint, contact, step);
+    wb_checkpoint_visit_member(checkpoint, m, started);
+    wb_checkpoint_visit_member(checkpoint, m, n_pairs);
+    wb_checkpoint_visit(checkpoint, "searched", contact->searched,
+                        wires * 3 * stations * sizeof(double));
+    wb_checkpoint_visit(checkpoint, "centre", contact->centre_memory,
+                        wires * 3 * row * sizeof(double));
+    wb_checkpoint_visit(checkpoint, "fixed", contact->fixed_memory,
+                        wires * WB_SWEPT_CONTACT_FIXED * stride * sizeof(double));
+    for (int p = 0; p < contact->most_pairs; p++) {
         struct wb_swept_contact_pair_rows *pair = &m->pair[p];
-        carry(t, pair->wire, sizeof pair->wire);
-        carry(t, pair->active, (size_t)m->n_blocks);
-        for (int i = 0; i < WB_SWEPT_CONTACT_PAIR; i++)
-            carry(t, pair_row(c, pair, i), stations);
-        carry(t, pair->load, loads);
+        wb_checkpoint_enter(checkpoint, "pair %d", p + 1);
+        wb_checkpoint_visit_member(checkpoint, pair, wire);
+        wb_checkpoint_visit(checkpoint, "active", pair->active, (size_t)m->n_blocks);
+        wb_checkpoint_visit(checkpoint, "rows", pair->rows,
+                            WB_SWEPT_CONTACT_PAIR * stride * sizeof(double));
+        wb_checkpoint_visit(checkpoint, "load", pair->load, loads);
+        wb_checkpoint_leave(checkpoint);
     }
-}
-
-/* Sizing and saving change nothing, but share the walk with restoring. */
-static struct wb_swept_contact *as_changeable(const struct wb_swept_contact *contact)
-{
-    struct wb_swept_contact *out;
-    memcpy(&out, &contact, sizeof out);
-    return out;
-}
-
-size_t wb_swept_contact_state_size(const struct wb_swept_contact *contact)
-{
-    struct transfer t = {TRANSFER_SIZE, NULL, 0};
-    carry_all(as_changeable(contact), &t);
-    return t.size;
-}
-
-void wb_swept_contact_save(const struct wb_swept_contact *contact, void *state)
-{
-    struct transfer t = {TRANSFER_SAVE, state, 0};
-    carry_all(as_changeable(contact), &t);
-}
-
-void wb_swept_contact_restore(struct wb_swept_contact *contact, const void *state)
-{
-    struct transfer t = {TRANSFER_RESTORE, NULL, 0};
-
-    memcpy(&t.at, &state, sizeof t.at);
-    carry_all(contact, &t);
-    for (int p = 0; p < contact->model.n_pairs; p++) {
-        struct wb_swept_contact_pair_rows *pair = &contact->model.pair[p];
-        begin_pair(contact, pair, pair->wire[0], pair->wire[1]);
-        find_windows(contact, pair);
+    wb_checkpoint_leave(checkpoint);
+    if (!checkpoint->restores || checkpoint->status != WB_OK)
+        return;
+    for (int p = 0; p < m->n_pairs; p++) {
+        begin_pair(contact, &m->pair[p], m->pair[p].wire[0], m->pair[p].wire[1]);
+        find_windows(contact, &m->pair[p]);
     }
     list_sides(contact);
 }

@@ -34,6 +34,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/checkpoint.h"
 #include "base/reason.h"
 #include "base/status.h"
 #include "fe/swept/swept.h"
@@ -116,9 +117,7 @@ int wb_swept_contact_pairs(const struct wb_swept_contact *contact);
 void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair, int station,
                                 struct wb_swept_contact_point *out);
 
-/* A checkpoint: what a contact of the same wires and settings needs to continue bit for bit. */
-size_t wb_swept_contact_state_size(const struct wb_swept_contact *contact);
-void wb_swept_contact_save(const struct wb_swept_contact *contact, void *state);
-void wb_swept_contact_restore(struct wb_swept_contact *contact, const void *state);
+/* Saves or restores what a contact of the same wires and settings needs to continue bit for bit. */
+void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint);
 
 #endif

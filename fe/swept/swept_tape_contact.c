@@ -647,70 +647,25 @@ int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact)
 
 /* --- checkpoints --- */
 
-struct piece {
-    void *data;
-    size_t size;
-};
-
-enum {
-    PIECES = 8
-};
-
-/* All there is room for, so that the size is fixed. */
-static void list_pieces(const struct wb_swept_tape_contact *c, struct piece out[PIECES])
+/* All there is room for, so that the sizes are fixed. */
+void wb_swept_tape_contact_visit(struct wb_swept_tape_contact *contact,
+                                 struct wb_checkpoint *checkpoint)
 {
-    struct wb_swept_tape_contact *changeable;
-    const struct wb_swept_layout *layout = layout_of(c);
-    const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
-    const size_t blocks = (size_t)layout->stride / LANES;
+    const struct wb_swept_layout *layout = layout_of(contact);
+    const size_t nodes = (size_t)layout->n_nodes, stride = (size_t)layout->stride;
+    const size_t places = nodes * (size_t)layout->n_stations, real = real_size(contact);
 
-    memcpy(&changeable, &c, sizeof changeable);
-    const struct piece pieces[PIECES] = {
-        {&changeable->steps, sizeof c->steps},
-        {&changeable->n_strips, sizeof c->n_strips},
-        {&changeable->n_near, sizeof c->n_near},
-        {c->first, (blocks + 1) * sizeof *c->first},
-        {c->strip, places * sizeof *c->strip},
-        {c->near, places * sizeof *c->near},
-        {c->rows, places * ROWS * LANES * real_size(c)},
-        {c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride * real_size(c)},
-    };
-    memcpy(out, pieces, sizeof pieces);
-}
-
-size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact)
-{
-    struct piece pieces[PIECES];
-    size_t size = 0;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++)
-        size += pieces[i].size;
-    return size;
-}
-
-void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state)
-{
-    struct piece pieces[PIECES];
-    unsigned char *at = state;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++) {
-        memcpy(at, pieces[i].data, pieces[i].size);
-        at += pieces[i].size;
-    }
-}
-
-void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state)
-{
-    struct piece pieces[PIECES];
-    const unsigned char *at = state;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++) {
-        memcpy(pieces[i].data, at, pieces[i].size);
-        at += pieces[i].size;
-    }
+    wb_checkpoint_enter(checkpoint, "tape contact");
+    wb_checkpoint_visit_member(checkpoint, contact, steps);
+    wb_checkpoint_visit_member(checkpoint, contact, n_strips);
+    wb_checkpoint_visit_member(checkpoint, contact, n_near);
+    wb_checkpoint_visit(checkpoint, "first", contact->first,
+                        (stride / LANES + 1) * sizeof *contact->first);
+    wb_checkpoint_visit(checkpoint, "strip", contact->strip, places * sizeof *contact->strip);
+    wb_checkpoint_visit(checkpoint, "near", contact->near, places * sizeof *contact->near);
+    wb_checkpoint_visit(checkpoint, "rows", contact->rows, places * ROWS * LANES * real);
+    wb_checkpoint_visit(checkpoint, "history", contact->history, nodes * HISTORY * stride * real);
+    wb_checkpoint_leave(checkpoint);
 }
 
 /* --- stable step --- */
