@@ -105,7 +105,7 @@ static inline double wb_hardening_back_modulus(const struct wb_material *materia
 /* The mean of the yield stress from 0 to p > 0, Pa: p times it is the plastic work, J/m3. */
 double wb_hardening_mean_stress(const struct wb_material *material, double p);
 
-/* r for overstress c > 0 (Pa), solved to round-off. */
+/* r for overstress c > 0 (Pa), solved to round-off; 1 of a surface that does not grow. */
 double wb_hardening_ratio(const struct wb_material *material, double overstress);
 
 /* --- the table of the fibres --- */
