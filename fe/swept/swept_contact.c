@@ -51,6 +51,7 @@ struct wb_swept_contact {
     int *node_memory, *side_memory;
     double (*weight_memory)[3];
     void *narrow_weight_memory;
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* k of two wires. */
@@ -212,49 +213,33 @@ static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int
     return WB_OK;
 }
 
-static enum wb_status allocate_rows(struct wb_swept_contact *c)
-{
-    const size_t wires = (size_t)c->model.n_wires, pairs = (size_t)c->most_pairs;
-    const size_t stride = (size_t)c->model.stride, row = (size_t)c->model.row;
-    const size_t real = real_size(c);
-    void *rows[3] = {NULL, NULL, NULL};
-
-    enum wb_status status = wb_swept_allocate(&rows[0], wires * 3 * row, sizeof(double));
-    if (status == WB_OK)
-        status =
-            wb_swept_allocate(&rows[1], wires * WB_SWEPT_CONTACT_FIXED * stride, sizeof(double));
-    if (status == WB_OK)
-        status =
-            wb_swept_allocate(&rows[2], pairs * WB_SWEPT_CONTACT_PAIR * stride, sizeof(double));
-    c->centre_memory = rows[0];
-    c->fixed_memory = rows[1];
-    c->rows_memory = rows[2];
-    WB_TRY(status);
-    WB_TRY(wb_swept_allocate(&c->turn_memory, wires * WB_SWEPT_CONTACT_TURNS * row, real));
-    WB_TRY(wb_swept_allocate(&c->inverse_memory, wires * WB_SWEPT_CONTACT_INVERSES * stride, real));
-    return wb_swept_allocate(&c->load_memory, pairs * WB_SWEPT_CONTACT_LOAD * row, real);
-}
-
 static enum wb_status allocate(struct wb_swept_contact *c, int n_surface)
 {
     struct wb_swept_contact_model *m = &c->model;
+    struct wb_memory *const memory = &c->memory;
     const size_t wires = (size_t)m->n_wires, pairs = (size_t)c->most_pairs;
     const size_t blocks = (size_t)m->n_blocks, surface = (size_t)n_surface;
+    const size_t stride = (size_t)m->stride, row = (size_t)m->row, real = real_size(c);
+    const size_t fixed = wires * WB_SWEPT_CONTACT_FIXED * stride;
 
-    WB_TRY(allocate_rows(c));
-    WB_TRY(wb_swept_allocate(&c->narrow_weight_memory, 3 * surface, real_size(c)));
-    m->wire = calloc(wires, sizeof *m->wire);
-    m->pair = calloc(pairs, sizeof *m->pair);
-    m->sums = calloc(blocks, sizeof *m->sums);
-    c->radius = calloc(2 * wires, sizeof *c->radius);
-    c->searched = calloc(wires * 3 * (size_t)m->n_stations, sizeof *c->searched);
-    c->active_memory = calloc(pairs * blocks, 1);
-    c->window_memory = calloc(4 * pairs * blocks, sizeof *c->window_memory);
-    c->node_memory = calloc(surface, sizeof *c->node_memory);
-    c->side_memory = calloc(2 * pairs, sizeof *c->side_memory);
-    c->weight_memory = calloc(surface, sizeof *c->weight_memory);
-    if (!(m->wire && m->pair && m->sums && c->radius && c->searched && c->active_memory &&
-          c->window_memory && c->node_memory && c->side_memory && c->weight_memory))
+    c->centre_memory = wb_swept_take(memory, wires * 3 * row, sizeof(double));
+    c->fixed_memory = wb_swept_take(memory, fixed, sizeof(double));
+    c->rows_memory = wb_swept_take(memory, pairs * WB_SWEPT_CONTACT_PAIR * stride, sizeof(double));
+    c->turn_memory = wb_swept_take(memory, wires * WB_SWEPT_CONTACT_TURNS * row, real);
+    c->inverse_memory = wb_swept_take(memory, wires * WB_SWEPT_CONTACT_INVERSES * stride, real);
+    c->load_memory = wb_swept_take(memory, pairs * WB_SWEPT_CONTACT_LOAD * row, real);
+    c->narrow_weight_memory = wb_swept_take(memory, 3 * surface, real);
+    m->wire = wb_memory_take(memory, wires, sizeof *m->wire);
+    m->pair = wb_memory_take(memory, pairs, sizeof *m->pair);
+    m->sums = wb_memory_take(memory, blocks, sizeof *m->sums);
+    c->radius = wb_memory_take(memory, 2 * wires, sizeof *c->radius);
+    c->searched = wb_memory_take(memory, wires * 3 * (size_t)m->n_stations, sizeof *c->searched);
+    c->active_memory = wb_memory_take(memory, pairs * blocks, 1);
+    c->window_memory = wb_memory_take(memory, 4 * pairs * blocks, sizeof *c->window_memory);
+    c->node_memory = wb_memory_take(memory, surface, sizeof *c->node_memory);
+    c->side_memory = wb_memory_take(memory, 2 * pairs, sizeof *c->side_memory);
+    c->weight_memory = wb_memory_take(memory, surface, sizeof *c->weight_memory);
+    if (memory->failed)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of %d wires", m->n_wires);
     c->youngs_modulus = c->radius + m->n_wires;
     return WB_OK;
@@ -375,23 +360,7 @@ void wb_swept_contact_destroy(struct wb_swept_contact *contact)
 {
     if (!contact)
         return;
-    free(contact->centre_memory);
-    free(contact->fixed_memory);
-    free(contact->rows_memory);
-    free(contact->turn_memory);
-    free(contact->inverse_memory);
-    free(contact->load_memory);
-    free(contact->narrow_weight_memory);
-    free(contact->model.wire);
-    free(contact->model.pair);
-    free(contact->model.sums);
-    free(contact->radius);
-    free(contact->searched);
-    free(contact->active_memory);
-    free(contact->window_memory);
-    free(contact->node_memory);
-    free(contact->side_memory);
-    free(contact->weight_memory);
+    wb_memory_release(&contact->memory);
     free(contact);
 }
 

@@ -60,6 +60,7 @@ struct wb_swept_tape_contact {
     struct near_place *near; /* (n_nodes x n_stations); wire -1: none */
     int n_strips, n_near;
     long long steps;
+    struct wb_memory memory; /* of all arrays */
 };
 
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings)
@@ -507,8 +508,8 @@ static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
 
     for (int w = 0; w < c->n_wires; w++)
         nodes += (size_t)wires[w].n_surface;
-    c->surface = calloc((size_t)c->n_wires + 1, sizeof *c->surface);
-    c->surface_nodes = calloc(nodes + 1, sizeof *c->surface_nodes);
+    c->surface = wb_memory_take(&c->memory, (size_t)c->n_wires + 1, sizeof *c->surface);
+    c->surface_nodes = wb_memory_take(&c->memory, nodes + 1, sizeof *c->surface_nodes);
     if (!c->surface || !c->surface_nodes)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     nodes = 0;
@@ -531,16 +532,18 @@ static enum wb_status allocate(struct wb_swept_tape_contact *c)
     const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
     const size_t n_blocks = (size_t)layout->stride / LANES;
 
-    c->first = calloc(n_blocks + 1, sizeof *c->first);
-    c->strip = calloc(places, sizeof *c->strip);
-    c->near = calloc(places, sizeof *c->near);
-    c->centre = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->centre);
-    c->axis = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->axis);
-    if (!c->first || !c->strip || !c->near || !c->centre || !c->axis)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
-    WB_TRY(wb_swept_allocate(&c->rows, places * ROWS * LANES, real_size(c)));
-    return wb_swept_allocate(
-        &c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride, real_size(c));
+    c->first = wb_memory_take(&c->memory, n_blocks + 1, sizeof *c->first);
+    c->strip = wb_memory_take(&c->memory, places, sizeof *c->strip);
+    c->near = wb_memory_take(&c->memory, places, sizeof *c->near);
+    c->centre = wb_memory_take(&c->memory, 3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1,
+                               sizeof *c->centre);
+    c->axis = wb_memory_take(&c->memory, 3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1,
+                             sizeof *c->axis);
+    c->rows = wb_swept_take(&c->memory, places * ROWS * LANES, real_size(c));
+    c->history = wb_swept_take(
+        &c->memory, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride, real_size(c));
+    return c->memory.failed ? wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape")
+                            : WB_OK;
 }
 
 static enum wb_status fill(struct wb_swept_tape_contact *c,
@@ -601,15 +604,7 @@ void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact)
 {
     if (!contact)
         return;
-    free(contact->surface);
-    free(contact->surface_nodes);
-    free(contact->centre);
-    free(contact->axis);
-    free(contact->first);
-    free(contact->strip);
-    free(contact->near);
-    free(contact->rows);
-    free(contact->history);
+    wb_memory_release(&contact->memory);
     free(contact);
 }
 
