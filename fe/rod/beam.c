@@ -32,7 +32,7 @@ struct strain {
 struct wb_beam {
     int n_elements, n_nodes;
     double length, element_length;
-    struct wb_beam_element_shape shape;
+    struct wb_rod_shape shape;
     struct wb_fibres *fibres;
     size_t history_size; /* of all Gauss points */
     double load_x, load_y;
@@ -177,7 +177,7 @@ enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *
         return wb_fail(WB_ERR_MEMORY, "no memory for a beam of %d elements", model->n_elements);
     }
 
-    wb_beam_element_shape_init(&beam->shape, beam->element_length);
+    wb_rod_shape_init(&beam->shape, beam->element_length);
     lay_out(beam, model);
     measure_reference(beam);
     if (!isfinite(beam->reference[beam->n_nodes - 1].x)) {

@@ -28,7 +28,7 @@ struct wb_rod {
     const struct wb_rod_section *section;
     int n_elements, n_nodes, n_points;
     double length;
-    struct wb_rod_element_shape shape;
+    struct wb_rod_shape shape;
     size_t row, history_size; /* of one point, of all */
     double load[3];
     bool has_balance;
@@ -149,7 +149,7 @@ enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *mod
     rod->history_size = rod->row * (size_t)rod->n_points;
     rod->has_balance = model->has_balance;
     memcpy(rod->load, model->load, sizeof rod->load);
-    wb_rod_element_shape_init(&rod->shape, model->length / model->n_elements);
+    wb_rod_shape_init(&rod->shape, model->length / model->n_elements);
     if (!take_memory(rod)) {
         wb_rod_destroy(rod);
         return wb_fail(WB_ERR_MEMORY, "no memory for a rod of %d elements", model->n_elements);
