@@ -60,7 +60,7 @@ struct wb_swept_contact_settings {
     double reach;         /* gap at which wires become neighbours, of the smallest radius; 0.5 */
     int refresh_interval; /* steps between refreshes of the shifts; 50 */
     struct wb_swept_range counted; /* points of contact, in energies; all are computed */
-    struct wb_reason *reason;      /* gets why a step was lost, borrowed; NULL: the log gets it */
+    struct wb_reason *reason;      /* borrowed; holds why a step failed. NULL: that is logged */
     int most_pairs;        /* of neighbours; 0: 4 a wire (touching circles have at most 3) */
     bool double_precision; /* of the forces; else float */
     enum wb_swept_instructions instructions;

@@ -38,7 +38,7 @@ struct wb_swept_tape_contact_settings {
                                 refreshes */
     int refresh_interval;    /* steps; 0: 100 */
 
-    struct wb_reason *reason; /* gets why a step was lost, borrowed; NULL: the log gets it */
+    struct wb_reason *reason; /* borrowed; holds why a step failed. NULL: that is logged */
 };
 
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings);
