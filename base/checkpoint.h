@@ -10,7 +10,7 @@
  *     }
  *
  * A checkpoint holds the name, the size and the bytes of each field. Restoring fails at the first
- * field whose name or size is another than the visitor's, and the message says which.
+ * field whose name or size differs from what the visitor asks for, and the message says which.
  *
  * A file holds what it belongs to (an identity), the fields as they lie in memory, and their
  * SHA-256. It can be read by the machine and the program that wrote it, and by no other. It is

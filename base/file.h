@@ -15,7 +15,7 @@
 /* Reads a whole file into an allocated, NUL-terminated buffer (caller frees); *size excludes the
  * NUL and may be NULL. */
 WB_MUST_CHECK enum wb_status wb_file_read(const char *path, char **bytes, size_t *size);
-/* The same; `why` receives why it failed. NULL: that is logged. */
+/* The same; On failure `why` holds the reason. NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_file_read_with_reason(const char *path, char **bytes, size_t *size,
                                                       struct wb_reason *why);
 

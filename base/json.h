@@ -47,7 +47,7 @@ WB_MUST_CHECK enum wb_status wb_json_format(const struct wb_json *root, char **t
 
 /* Reads a document whose root is an object; errors name file and line. */
 WB_MUST_CHECK enum wb_status wb_json_read(struct wb_json **root, const char *path);
-/* The same; `why` receives why it failed. NULL: that is logged. */
+/* The same; On failure `why` holds the reason. NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
                                                       struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_json_parse(struct wb_json **root, const char *text,

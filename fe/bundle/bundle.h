@@ -101,7 +101,7 @@ struct wb_bundle_watch {
 /* Applies the weight while the tip is held at zero, and waits for rest: all motion is stopped
  * whenever the kinetic energy begins to fall, until that energy is small. Does nothing to a bundle
  * without weight. WB_ERR_CONVERGENCE if it does not come to rest; WB_ERR_DATA as from
- * wb_bundle_advance(). `reason` gets the reason of a failure; if it is NULL, the log gets it.
+ * wb_bundle_advance(). On failure `reason` holds the reason; where it is NULL, that is logged.
  * `watch` may be NULL. */
 WB_MUST_CHECK enum wb_status wb_bundle_settle(struct wb_bundle *bundle,
                                               const struct wb_bundle_watch *watch,

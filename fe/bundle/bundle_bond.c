@@ -231,22 +231,11 @@ void wb_bundle_bond_add_areas(const struct wb_bundle_bond *bond, double area[2])
 /* The bonds between windings do not break: they have no state. */
 void wb_bundle_bond_visit(struct wb_bundle_bond *bond, struct wb_checkpoint *checkpoint)
 {
-    const size_t size = wb_swept_tape_contact_state_size(bond->contact);
-    void *const state = malloc(size);
     size_t bytes;
     void *const damage = wb_swept_cohesion_data(bond->cohesion, &bytes);
 
     wb_checkpoint_visit(checkpoint, "damage", damage, bytes);
-    if (!state) {
-        checkpoint->status = wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint");
-        return;
-    }
-    if (!checkpoint->restores)
-        wb_swept_tape_contact_save(bond->contact, state);
-    wb_checkpoint_visit(checkpoint, "tape contact", state, size);
-    if (checkpoint->restores && checkpoint->status == WB_OK)
-        wb_swept_tape_contact_restore(bond->contact, state);
-    free(state);
+    wb_swept_tape_contact_visit(bond->contact, checkpoint);
 }
 
 double wb_bundle_bond_wire_stiffness(const struct wb_bundle_bond *bond, int wire,

@@ -23,8 +23,8 @@ struct wb_bundle_bond_energies {
     double deepest;            /* m, penetration of the tape into a wire */
 };
 
-/* Makes bonds and contact for bodies whose wires and ring are made. `reason` gets the reason if a
- * step is lost. Both must outlive the bond. */
+/* Makes bonds and contact for bodies whose wires and ring are made. When a step fails, `reason`
+ * holds the reason. Both must outlive the bond. */
 WB_MUST_CHECK enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out,
                                                    struct wb_bundle_bodies *bodies,
                                                    struct wb_reason *reason);
@@ -35,7 +35,8 @@ void wb_bundle_bond_destroy(struct wb_bundle_bond *bond); /* accepts NULL */
 WB_MUST_CHECK enum wb_status wb_bundle_bond_add_forces(struct wb_bundle_bond *bond,
                                                        struct wb_bundle_bond_energies *energies);
 
-/* Adds areas of the bodies' own stations, m2: that was bonded at first; whose bond is broken. */
+/* Adds two areas, m2, of the bodies' own stations: what was bonded at first, and of that what has
+ * lost its bond. */
 void wb_bundle_bond_add_areas(const struct wb_bundle_bond *bond, double area[2]);
 
 /* Saves or restores damage and friction. */

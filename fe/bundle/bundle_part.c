@@ -474,28 +474,11 @@ void wb_bundle_part_stop(struct wb_bundle_part *part)
 
 /* --- checkpoints --- */
 
-static void visit_contact(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint)
-{
-    const size_t size = wb_swept_contact_state_size(contact);
-    void *state = malloc(size);
-
-    if (!state) {
-        checkpoint->status = wb_fail(WB_ERR_MEMORY, "out of memory for a checkpoint");
-        return;
-    }
-    if (!checkpoint->restores)
-        wb_swept_contact_save(contact, state);
-    wb_checkpoint_visit(checkpoint, "contact", state, size);
-    if (checkpoint->restores && checkpoint->status == WB_OK)
-        wb_swept_contact_restore(contact, state);
-    free(state);
-}
-
 void wb_bundle_part_visit_fields(struct wb_bundle_part *part, struct wb_checkpoint *checkpoint)
 {
     wb_bundle_bodies_visit(&part->bodies, checkpoint);
     if (part->contact)
-        visit_contact(part->contact, checkpoint);
+        wb_swept_contact_visit(part->contact, checkpoint);
     if (part->bond)
         wb_bundle_bond_visit(part->bond, checkpoint);
     if (part->cap)

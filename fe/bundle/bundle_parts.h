@@ -40,8 +40,8 @@ void wb_bundle_parts_destroy(struct wb_bundle_parts *parts); /* accepts NULL */
 
 int wb_bundle_parts_count(const struct wb_bundle_parts *parts);
 
-/* Makes `n` steps with all parts; the whole's clock and account follow. If the run is lost,
- * `reason` gets the reason; if it is NULL, the log gets it. */
+/* Makes `n` steps with all parts; the whole's clock and account follow. On failure
+ * `reason` holds the reason; where it is NULL, that is logged. */
 WB_MUST_CHECK enum wb_status wb_bundle_parts_advance(struct wb_bundle_parts *parts, int n,
                                                      struct wb_reason *reason);
 

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/linear/layered_private.h"
 
 #define WB_LOG_DOMAIN "layered"
@@ -48,6 +49,7 @@ struct wb_layered {
     double *bunch;        /* (n_bunch), of dsytrf */
     lapack_int n_bunch;
     size_t n_entries;
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* --- layout --- */
@@ -127,10 +129,10 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
     layered->symmetric = symmetric;
 
     const size_t n = (size_t)layered->n_unknowns;
-    layered->blocks = calloc((size_t)n_blocks, sizeof *layered->blocks);
-    layered->block_of = calloc(n, sizeof *layered->block_of);
-    layered->pivots = calloc(n, sizeof *layered->pivots);
-    if (!layered->blocks || !layered->block_of || !layered->pivots)
+    layered->blocks = wb_memory_take(&layered->memory, (size_t)n_blocks, sizeof *layered->blocks);
+    layered->block_of = wb_memory_take(&layered->memory, n, sizeof *layered->block_of);
+    layered->pivots = wb_memory_take(&layered->memory, n, sizeof *layered->pivots);
+    if (layered->memory.failed)
         goto no_memory;
 
     layered->n_entries = lay_out(layered, first, link);
@@ -139,10 +141,13 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
                                          layered->n_most, NULL, &wanted, -1) != 0)
         wanted = layered->n_most;
     layered->n_bunch = (lapack_int)wanted;
-    layered->entries = calloc(layered->n_entries, sizeof *layered->entries);
-    layered->work = calloc((size_t)layered->n_most * (size_t)layered->n_most, sizeof(double));
-    layered->bunch = calloc((size_t)layered->n_bunch, sizeof *layered->bunch);
-    if (!layered->entries || !layered->work || !layered->bunch)
+    layered->entries =
+        wb_memory_take(&layered->memory, layered->n_entries, sizeof *layered->entries);
+    layered->work = wb_memory_take(
+        &layered->memory, (size_t)layered->n_most * (size_t)layered->n_most, sizeof(double));
+    layered->bunch =
+        wb_memory_take(&layered->memory, (size_t)layered->n_bunch, sizeof *layered->bunch);
+    if (layered->memory.failed)
         goto no_memory;
     hand_out(layered);
     *out = layered;
@@ -157,12 +162,7 @@ void wb_layered_destroy(struct wb_layered *layered)
 {
     if (!layered)
         return;
-    free(layered->blocks);
-    free(layered->block_of);
-    free(layered->pivots);
-    free(layered->entries);
-    free(layered->work);
-    free(layered->bunch);
+    wb_memory_release(&layered->memory);
     free(layered);
 }
 

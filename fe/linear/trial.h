@@ -1,5 +1,5 @@
-/* What solvers and models of a bending test share, so that neither includes the other: loads of the
- * tip, phases of a loading, how hexahedra are integrated, how a jacket rests on its core.
+/* What the solvers and the models of a bending test have in common: loads of the tip, phases of a
+ * loading, how hexahedra are integrated, how a jacket rests on its core.
  */
 #ifndef WB_FE_LINEAR_TRIAL_H
 #define WB_FE_LINEAR_TRIAL_H

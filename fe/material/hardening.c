@@ -115,7 +115,8 @@ double wb_hardening_mean_stress(const struct wb_material *material, double p)
 
 double wb_hardening_ratio(const struct wb_material *material, double overstress)
 {
-    return exp(wb_hardening_law(material)->log_ratio(material, overstress, (double)NAN));
+    const struct wb_hardening_law *law = wb_hardening_law(material);
+    return law->log_ratio ? exp(law->log_ratio(material, overstress, (double)NAN)) : 1.0;
 }
 
 /* --- tables --- */

@@ -51,7 +51,7 @@ enum wb_hardening_parameters {
 extern const struct wb_hardening_parameter wb_hardening_parameters[WB_HARDENING_PARAMETERS];
 
 struct wb_hardening_law {
-    const char *name; /* in files; NULL: elastic, which is said there by giving no yield stress */
+    const char *name; /* in files; NULL: elastic, which a file says by giving no yield stress */
     bool yields;
     bool moves;                        /* the surface moves; else it grows */
     bool has[WB_HARDENING_PARAMETERS]; /* the parameters that it needs */
@@ -80,7 +80,7 @@ static inline const struct wb_hardening_law *wb_hardening_law(const struct wb_ma
     return &wb_hardening_laws[material->hardening];
 }
 
-/* Whether the numbers of yielding are possible ones; if not, `why` says which is not. */
+/* Whether the numbers of the hardening law are possible ones; if not, `why` says which is not. */
 bool wb_hardening_is_possible(const struct wb_material *material, char *why, size_t size);
 
 static inline double *wb_hardening_value(struct wb_material *material, int parameter)
@@ -105,7 +105,7 @@ static inline double wb_hardening_back_modulus(const struct wb_material *materia
 /* The mean of the yield stress from 0 to p > 0, Pa: p times it is the plastic work, J/m3. */
 double wb_hardening_mean_stress(const struct wb_material *material, double p);
 
-/* r for overstress c > 0 (Pa), solved to round-off. */
+/* r for overstress c > 0 (Pa), solved to round-off; 1 of a surface that does not grow. */
 double wb_hardening_ratio(const struct wb_material *material, double overstress);
 
 /* --- the table of the fibres --- */

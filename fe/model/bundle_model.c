@@ -1,6 +1,5 @@
 #include "fe/model/bundle_model.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -8,9 +7,9 @@
 #include <string.h>
 
 #include "base/config.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "fe/model/model_file.h"
 
 #define WB_LOG_DOMAIN "bundle"
 
@@ -541,9 +540,7 @@ int wb_bundle_model_facts(const struct wb_bundle_model *model,
 /* A model while it is read. */
 struct reader {
     struct wb_bundle_model *model;
-    const struct wb_config_node *root;
-    char folder[WB_PATH]; /* of the model's file */
-    struct wb_text texts; /* of all files, for the checksum */
+    struct wb_model_file file;
 };
 
 /* Values of a file's top level that the section is made of. */
@@ -555,55 +552,15 @@ struct section_nodes {
 
 /* --- names and files --- */
 
-/* Names go into file names and into tables without quotes. */
-static enum wb_status check_name(const struct wb_config_node *map, const char *name)
-{
-    const char *c = name;
-    while (isalnum((unsigned char)*c) || (*c && strchr("-_.+", *c)))
-        c++;
-    if (*name == '\0' || *c != '\0')
-        return wb_config_refuse(map, "name", "expected letters, digits, '-', '_', '.', '+' only");
-    return WB_OK;
-}
-
 /* A part of the checksum, to be counted up whenever files that stay as they are come to mean
  * something else: by defaults, or by what is computed of them. */
 static const char meaning[] = "# wirebench bundle files, 2\n";
 
-static enum wb_status keep_text(struct reader *reader, const char *path)
-{
-    char *bytes;
-    size_t size;
-    WB_TRY(wb_file_read(path, &bytes, &size));
-    wb_text_append_bytes(&reader->texts, bytes, size);
-    free(bytes);
-    return WB_OK;
-}
-
-/* The file that the value of `key` in `map` names. */
-static enum wb_status find_file(struct reader *reader, const struct wb_config_node *map,
-                                const char *key, const char *kind, const char *name,
-                                char path[WB_PATH])
-{
-    char named_in[WB_PATH + 64];
-    snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(map),
-             wb_config_line(wb_config_find(map, key)), key);
-    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in));
-    return keep_text(reader, path);
-}
-
 static enum wb_status find_wire(struct reader *reader, const struct wb_config_node *map,
                                 const char *key, const char *name, struct wb_wire *wire)
 {
-    char path[WB_PATH];
-    WB_TRY(find_file(reader, map, key, "wires", name, path));
-    WB_TRY(wb_wire_read(path, wire));
-    if (!wire->has_properties)
-        return wb_config_refuse(map, key, "wire %s has no properties", wire->name);
-    if (wire->material.poissons_ratio > largest_poisson)
-        return wb_config_refuse(map, key, "wire %s has poissons_ratio %g, expected at most %g",
-                                wire->name, wire->material.poissons_ratio, largest_poisson);
-    return WB_OK;
+    WB_TRY(wb_model_file_wire(&reader->file, map, key, name, wire));
+    return wb_model_file_check_wire(map, key, wire, "");
 }
 
 /* --- wires --- */
@@ -645,7 +602,7 @@ static enum wb_status read_wires(struct reader *reader, const struct wb_config_n
     struct wb_bundle_model *const m = reader->model;
     const int n = wb_config_length(list);
     if (n < 1)
-        return wb_config_refuse(reader->root, "wires", "expected a list of wires");
+        return wb_config_refuse(reader->file.root, "wires", "expected a list of wires");
     for (int i = 0; i < n; i++) {
         const struct wb_config_node *const map = wb_config_item(list, i);
         char name[64];
@@ -696,8 +653,8 @@ static enum wb_status read_places(struct reader *reader, const struct wb_config_
         .name = "places_mm", .factor = WB_MM, .minimum = -1e3, .maximum = 1e3};
     const int n = wb_config_length(list);
     if (n != packing->n)
-        return wb_config_refuse(reader->root, "places_mm", "expected a list of %d places [y, z]",
-                                packing->n);
+        return wb_config_refuse(reader->file.root, "places_mm",
+                                "expected a list of %d places [y, z]", packing->n);
     for (int i = 0; i < n; i++) {
         double place[2];
         int two;
@@ -716,9 +673,10 @@ static enum wb_status check_lattice(const struct reader *reader, enum wb_packing
     if (whole == n)
         return WB_OK;
     if (less == 0)
-        return wb_config_refuse(reader->root, "packing", "%d wires are no %s; the smallest has %d",
-                                n, packings[lattice], whole);
-    return wb_config_refuse(reader->root, "packing", "%d wires are no %s; %d or %d are", n,
+        return wb_config_refuse(reader->file.root, "packing",
+                                "%d wires are no %s; the smallest has %d", n, packings[lattice],
+                                whole);
+    return wb_config_refuse(reader->file.root, "packing", "%d wires are no %s; %d or %d are", n,
                             packings[lattice], less, whole);
 }
 
@@ -728,14 +686,14 @@ static enum wb_status check_keys(const struct reader *reader, const struct secti
     const bool is_places = m->arrangement == WB_BUNDLE_PLACES;
     const bool is_densest = m->arrangement == WB_BUNDLE_DENSEST;
     if (is_places && !section->places)
-        return wb_config_refuse(reader->root, "places_mm",
+        return wb_config_refuse(reader->file.root, "places_mm",
                                 "this key is missing: packing places needs it");
     if (!is_places && section->places)
-        return wb_config_refuse(reader->root, "places_mm", "only with packing: places");
+        return wb_config_refuse(reader->file.root, "places_mm", "only with packing: places");
     if (!is_densest && section->search)
-        return wb_config_refuse(reader->root, "search", "only with packing: densest");
+        return wb_config_refuse(reader->file.root, "search", "only with packing: densest");
     if (is_densest && section->has_settled)
-        return wb_config_refuse(reader->root, "settled", "the densest packing is settled");
+        return wb_config_refuse(reader->file.root, "settled", "the densest packing is settled");
     if (is_places && !m->settled && m->wire_gap > 0.0)
         return wb_config_refuse(section->gaps, "wires_mm",
                                 "the places say how far wires are apart");
@@ -788,7 +746,7 @@ static enum wb_status place_axis(struct reader *reader)
     }
     const double gap = wb_packing_smallest_gap(packing);
     if (gap < -touching)
-        return wb_config_refuse(reader->root, "places_mm",
+        return wb_config_refuse(reader->file.root, "places_mm",
                                 "two wires overlap by %g mm (settled: true moves them apart)",
                                 -gap / WB_MM);
     return WB_OK;
@@ -862,13 +820,13 @@ static enum wb_status read_tape_material(struct reader *reader, const char *name
 {
     struct wb_material_file *const file = &reader->model->tape.material;
     char path[WB_PATH];
-    WB_TRY(find_file(reader, reader->root, "tape", "materials", name, path));
+    WB_TRY(wb_model_file_find(&reader->file, reader->file.root, "tape", "materials", name, path));
     WB_TRY(wb_material_file_read(file, path));
     if (!(file->thickness > 0.0))
-        return wb_config_refuse(reader->root, "tape",
+        return wb_config_refuse(reader->file.root, "tape",
                                 "material %s has no thickness_of_two_layers_mm", file->name);
     if (file->material.hardening == WB_HARDENING_KINEMATIC_LINEAR)
-        return wb_config_refuse(reader->root, "tape", "material %s hardens kinematically",
+        return wb_config_refuse(reader->file.root, "tape", "material %s hardens kinematically",
                                 file->name);
     return WB_OK;
 }
@@ -902,9 +860,9 @@ static enum wb_status read_tape(struct reader *reader, const char *name,
     struct taping_settings settings = {.layers = 2, .lap = 0.5};
     if (*name == '\0') {
         if (map)
-            return wb_config_refuse(reader->root, "taping", "there is no tape");
+            return wb_config_refuse(reader->file.root, "taping", "there is no tape");
         return reader->model->tape.gap > 0.0
-                   ? wb_config_refuse(reader->root, "gaps", "there is no tape for tape_mm")
+                   ? wb_config_refuse(reader->file.root, "gaps", "there is no tape for tape_mm")
                    : WB_OK;
     }
     if (map)
@@ -1010,7 +968,7 @@ static enum wb_status read_mesh(struct wb_bundle_model *model, const struct wb_c
         WB_CONFIG_OPTIONAL_CHOICE("formulation", &formulation, formulations),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    WB_TRY(check_name(map, mesh->name));
+    WB_TRY(wb_model_file_check_name(map, mesh->name));
     mesh->formulation = formulation == 1 ? WB_BUNDLE_ONE_POINT : WB_BUNDLE_FOUR_POINTS;
     if (wb_bundle_model_mesh(model, mesh->name))
         return wb_config_refuse(map, "name", "another mesh is called %s, too", mesh->name);
@@ -1024,7 +982,7 @@ static enum wb_status read_meshes(struct reader *reader, const struct wb_config_
 {
     const int n = wb_config_length(list);
     if (n < 1 || n > WB_BUNDLE_MODEL_MESHES)
-        return wb_config_refuse(reader->root, "meshes", "expected a list of 1 to %d meshes",
+        return wb_config_refuse(reader->file.root, "meshes", "expected a list of 1 to %d meshes",
                                 WB_BUNDLE_MODEL_MESHES);
     for (int i = 0; i < n; i++)
         WB_TRY(read_mesh(reader->model, wb_config_item(list, i)));
@@ -1043,7 +1001,7 @@ static enum wb_status read_run(struct reader *reader, const struct wb_config_nod
         return wb_config_refuse(map, "mesh", "there is no mesh %s", run->mesh);
     if (run->deflection < m->length)
         return WB_OK;
-    return wb_config_refuse(map ? map : reader->root, "deflection_mm",
+    return wb_config_refuse(map ? map : reader->file.root, "deflection_mm",
                             "%g mm cannot be reached by a bundle of %g mm", run->deflection / WB_MM,
                             m->length / WB_MM);
 }
@@ -1121,8 +1079,8 @@ static enum wb_status read_root(struct reader *reader)
     };
     keys[0].present = &section.has_settled;
 
-    WB_TRY(wb_config_map(reader->root, keys, WB_COUNT(keys)));
-    WB_TRY(check_name(reader->root, m->name));
+    WB_TRY(wb_config_map(reader->file.root, keys, WB_COUNT(keys)));
+    WB_TRY(wb_model_file_check_name(reader->file.root, m->name));
     m->arrangement = (enum wb_bundle_packing)packing;
     m->length_source = (enum wb_bundle_length_source)length_source;
     WB_TRY(read_section(reader, &section));
@@ -1140,22 +1098,11 @@ static void set_defaults(struct wb_bundle_model *model)
 static enum wb_status read_all(struct reader *reader, const char *path)
 {
     struct wb_bundle_model *const m = reader->model;
-    struct wb_config *config;
     set_defaults(m);
     WB_TRY(wb_file_join(m->path, "", path));
-    wb_file_folder(reader->folder, path);
-    WB_TRY(wb_config_read(&config, path));
-    reader->root = wb_config_root(config);
-    enum wb_status status = keep_text(reader, path);
-    if (status == WB_OK)
-        status = read_root(reader);
-    wb_config_destroy(config);
-    WB_TRY(status);
-    wb_text_append(&reader->texts, "%s", meaning);
-    if (reader->texts.failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
-    wb_hash_bytes(wb_text_string(&reader->texts), reader->texts.length, m->sha256);
-    return WB_OK;
+    WB_TRY(wb_model_file_open(&reader->file, path));
+    WB_TRY(read_root(reader));
+    return wb_model_file_sum(&reader->file, meaning, m->sha256);
 }
 
 enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *path)
@@ -1165,7 +1112,7 @@ enum wb_status wb_bundle_model_read(struct wb_bundle_model *model, const char *p
         return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
     struct reader reader = {.model = read};
     const enum wb_status status = read_all(&reader, path);
-    wb_text_release(&reader.texts);
+    wb_model_file_close(&reader.file);
     if (status == WB_OK)
         *model = *read;
     free(read);

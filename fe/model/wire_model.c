@@ -1,17 +1,14 @@
 #include "fe/model/wire_model.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/config.h"
-#include "base/file.h"
-#include "base/text.h"
 #include "base/units.h"
 #include "base/vec3.h"
 #include "fe/material/material_file.h"
+#include "fe/model/model_file.h"
 
 #define WB_LOG_DOMAIN "model"
 
@@ -22,9 +19,6 @@ enum {
     MOST_ROWS = 10000
 };
 
-/* Beyond this a solid is as good as incompressible. */
-static const double largest_poisson = 0.499;
-
 static const char *const laws[] = {"elastic", "elastoplastic", NULL};
 static const char *const clamps[] = {"plane", "fixed", NULL};
 static const char *const integrations[] = {"selective", "reduced", NULL};
@@ -32,44 +26,8 @@ static const char *const integrations[] = {"selective", "reduced", NULL};
 /* A model while it is read. */
 struct reader {
     struct wb_wire_model *model;
-    const struct wb_config_node *root;
-    char folder[WB_PATH]; /* of the model's file */
-    struct wb_text texts; /* of all files, for the checksum */
+    struct wb_model_file file;
 };
-
-/* --- names and files --- */
-
-/* Names go into file names and into tables without quotes. */
-static enum wb_status check_name(const struct wb_config_node *map, const char *name)
-{
-    const char *c = name;
-    while (isalnum((unsigned char)*c) || (*c && strchr("-_.+", *c)))
-        c++;
-    if (*name == '\0' || *c != '\0')
-        return wb_config_refuse(map, "name", "expected letters, digits, '-', '_', '.', '+' only");
-    return WB_OK;
-}
-
-static enum wb_status keep_text(struct reader *reader, const char *path)
-{
-    char *bytes;
-    size_t size;
-    WB_TRY(wb_file_read(path, &bytes, &size));
-    wb_text_append_bytes(&reader->texts, bytes, size);
-    free(bytes);
-    return WB_OK;
-}
-
-/* The file that the value of `key` in `map` names. */
-static enum wb_status find(struct reader *reader, const struct wb_config_node *map, const char *key,
-                           const char *kind, const char *name, char path[WB_PATH])
-{
-    char named_in[WB_PATH + 64];
-    snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(map),
-             wb_config_line(wb_config_find(map, key)), key);
-    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in));
-    return keep_text(reader, path);
-}
 
 static enum wb_status read_triple(const struct wb_config_node *sequence, const char *name,
                                   double limit, double values[3])
@@ -107,7 +65,7 @@ static enum wb_status read_part(struct reader *reader, const struct wb_config_no
     struct wb_material_file file;
 
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    WB_TRY(check_name(map, part->name));
+    WB_TRY(wb_model_file_check_name(map, part->name));
     part->inner_diameter = index == 0 ? 0.0 : reader->model->part[index - 1].outer_diameter;
     if (!(part->outer_diameter > part->inner_diameter))
         return wb_config_refuse(map, "outer_diameter_mm",
@@ -117,7 +75,7 @@ static enum wb_status read_part(struct reader *reader, const struct wb_config_no
         if (strcmp(part->name, reader->model->part[i].name) == 0)
             return wb_config_refuse(map, "name", "another part is called %s, too", part->name);
 
-    WB_TRY(find(reader, map, "material", "materials", material, path));
+    WB_TRY(wb_model_file_find(&reader->file, map, "material", "materials", material, path));
     WB_TRY(wb_material_file_read(&file, path));
     WB_TRY(check_material(reader, map, "material", &file));
     part->material = file.material;
@@ -133,7 +91,7 @@ static enum wb_status read_parts(struct reader *reader, const struct wb_config_n
     struct wb_wire_model *const m = reader->model;
     const int n = wb_config_length(parts);
     if (n < 1 || n > WB_WIRE_MODEL_PARTS)
-        return wb_config_refuse(reader->root, "parts", "expected a list of 1 to %d parts",
+        return wb_config_refuse(reader->file.root, "parts", "expected a list of 1 to %d parts",
                                 WB_WIRE_MODEL_PARTS);
     for (int i = 0; i < n; i++)
         WB_TRY(read_part(reader, wb_config_item(parts, i), i));
@@ -152,14 +110,8 @@ static enum wb_status take_homogenised(struct reader *reader)
 {
     struct wb_wire_model *const m = reader->model;
     struct wb_wire_model_part *const part = &m->part[0];
-    if (!m->wire.has_properties)
-        return wb_config_refuse(reader->root, "wire",
-                                "wire %s has no properties, and the model has no parts",
-                                m->wire.name);
-    if (m->wire.material.poissons_ratio > largest_poisson)
-        return wb_config_refuse(reader->root, "wire",
-                                "wire %s has poissons_ratio %g, expected at most %g", m->wire.name,
-                                m->wire.material.poissons_ratio, largest_poisson);
+    WB_TRY(wb_model_file_check_wire(reader->file.root, "wire", &m->wire,
+                                    ", and the model has no parts"));
     m->is_homogenised = true;
     m->n_parts = 1;
     part->outer_diameter = m->wire.outer_diameter;
@@ -185,7 +137,8 @@ static enum wb_status read_jacket_contact(struct reader *reader, const struct wb
 
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     if (m->n_parts != 2)
-        return wb_config_refuse(reader->root, "interface", "there is none in a wire of one part");
+        return wb_config_refuse(reader->file.root, "interface",
+                                "there is none in a wire of one part");
     const struct wb_wire_model_part *const jacket = &m->part[1];
     wb_trial_default_jacket_contact(
         &m->jacket_contact, jacket->material.youngs_modulus, jacket->material.poissons_ratio,
@@ -360,7 +313,7 @@ static enum wb_status read_step(struct wb_wire_model *model, const struct wb_con
     step->loads = standing->loads;
 
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    WB_TRY(check_name(map, step->name));
+    WB_TRY(wb_model_file_check_name(map, step->name));
     WB_TRY(check_action(map, &action));
     if (action.has_deflection)
         WB_TRY(take_deflection(map, model, &action, standing, step));
@@ -379,7 +332,7 @@ static enum wb_status read_loading_steps(struct reader *reader, const struct wb_
     bool deflects = false;
     const int n = wb_config_length(list);
     if (n < 1 || n > WB_WIRE_MODEL_STEPS)
-        return wb_config_refuse(reader->root, "history", "expected a list of 1 to %d steps",
+        return wb_config_refuse(reader->file.root, "history", "expected a list of 1 to %d steps",
                                 WB_WIRE_MODEL_STEPS);
     for (int i = 0; i < n; i++) {
         const struct wb_config_node *const map = wb_config_item(list, i);
@@ -392,7 +345,7 @@ static enum wb_status read_loading_steps(struct reader *reader, const struct wb_
     }
     m->n_steps = n;
     if (m->strand_length > 0.0 && !deflects)
-        return wb_config_refuse(reader->root, "strand_mm",
+        return wb_config_refuse(reader->file.root, "strand_mm",
                                 "no step of the history makes a deflection");
     return WB_OK;
 }
@@ -403,7 +356,7 @@ static enum wb_status read_root(struct reader *reader)
 {
     struct wb_wire_model *const m = reader->model;
     const struct wb_config_node *parts, *interface, *gravity, *mesh, *sections, *history;
-    char wire[WB_PATH], path[WB_PATH]; /* a name, or the way to a file */
+    char wire[WB_PATH]; /* a name, or the way to a file */
     int law, clamp = 0;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", m->name),
@@ -422,12 +375,11 @@ static enum wb_status read_root(struct reader *reader)
         WB_CONFIG_NODE("history", &history),
     };
 
-    WB_TRY(wb_config_map(reader->root, keys, WB_COUNT(keys)));
-    WB_TRY(check_name(reader->root, m->name));
+    WB_TRY(wb_config_map(reader->file.root, keys, WB_COUNT(keys)));
+    WB_TRY(wb_model_file_check_name(reader->file.root, m->name));
     m->is_elastic = law == 0;
     m->clamp = clamp == 1 ? WB_WIRE_CLAMP_FIXED : WB_WIRE_CLAMP_PLANE;
-    WB_TRY(find(reader, reader->root, "wire", "wires", wire, path));
-    WB_TRY(wb_wire_read(path, &m->wire));
+    WB_TRY(wb_model_file_wire(&reader->file, reader->file.root, "wire", wire, &m->wire));
     if (parts)
         WB_TRY(read_parts(reader, parts));
     else
@@ -445,25 +397,14 @@ static enum wb_status read_root(struct reader *reader)
 static enum wb_status read_all(struct reader *reader, const char *path)
 {
     struct wb_wire_model *const m = reader->model;
-    struct wb_config *config;
     m->elements_along = DEFAULT_ELEMENTS;
     m->section_density = DEFAULT_DENSITY;
     WB_TRY(wb_file_join(m->path, "", path));
-    wb_file_folder(reader->folder, path);
-    WB_TRY(wb_config_read(&config, path));
-    reader->root = wb_config_root(config);
-    enum wb_status status = keep_text(reader, path);
-    if (status == WB_OK)
-        status = read_root(reader);
-    wb_config_destroy(config);
-    WB_TRY(status);
-
-    if (reader->texts.failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", path);
-    wb_hash_bytes(wb_text_string(&reader->texts), reader->texts.length, m->sha256);
+    WB_TRY(wb_model_file_open(&reader->file, path));
+    WB_TRY(read_root(reader));
     for (int i = 0; i < m->n_parts && m->is_elastic; i++)
         m->part[i].material.hardening = WB_HARDENING_NONE_ELASTIC;
-    return WB_OK;
+    return wb_model_file_sum(&reader->file, "", m->sha256);
 }
 
 enum wb_status wb_wire_model_read(struct wb_wire_model *model, const char *path)
@@ -471,7 +412,7 @@ enum wb_status wb_wire_model_read(struct wb_wire_model *model, const char *path)
     struct wb_wire_model read = {0};
     struct reader reader = {.model = &read};
     const enum wb_status status = read_all(&reader, path);
-    wb_text_release(&reader.texts);
+    wb_model_file_close(&reader.file);
     if (status == WB_OK)
         *model = read;
     return status;

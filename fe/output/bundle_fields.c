@@ -52,25 +52,25 @@ static enum wb_status allocate(struct wb_bundle_fields *f)
     const size_t points = (size_t)f->n_points;
     const size_t cells = (size_t)f->n_hexahedra + (size_t)f->n_quads;
 
-    f->bodies = calloc((size_t)f->n_bodies, sizeof *f->bodies);
-    f->reference = calloc(points, sizeof *f->reference);
-    f->position = calloc(points, sizeof *f->position);
-    f->von_mises = calloc(points, sizeof *f->von_mises);
-    f->plastic = calloc(points, sizeof *f->plastic);
-    f->hexahedron = calloc((size_t)f->n_hexahedra, sizeof *f->hexahedron);
-    f->quad = calloc((size_t)f->n_quads + 1, sizeof *f->quad);
-    f->body = calloc(cells, sizeof *f->body);
-    if (f->bodies && f->reference && f->position && f->von_mises && f->plastic && f->hexahedron &&
-        f->quad && f->body)
+    f->bodies = wb_memory_take(&f->memory, (size_t)f->n_bodies, sizeof *f->bodies);
+    f->reference = wb_memory_take(&f->memory, points, sizeof *f->reference);
+    f->position = wb_memory_take(&f->memory, points, sizeof *f->position);
+    f->von_mises = wb_memory_take(&f->memory, points, sizeof *f->von_mises);
+    f->plastic = wb_memory_take(&f->memory, points, sizeof *f->plastic);
+    f->hexahedron = wb_memory_take(&f->memory, (size_t)f->n_hexahedra, sizeof *f->hexahedron);
+    f->quad = wb_memory_take(&f->memory, (size_t)f->n_quads + 1, sizeof *f->quad);
+    f->body = wb_memory_take(&f->memory, cells, sizeof *f->body);
+    if (!f->memory.failed)
         return WB_OK;
     return wb_fail(WB_ERR_MEMORY, "no memory for the fields of %d points", f->n_points);
 }
 
-static enum wb_status set_outline(struct wb_bundle_fields_body *body,
+static enum wb_status set_outline(struct wb_bundle_fields *f, struct wb_bundle_fields_body *body,
                                   const struct wb_swept_section *section)
 {
     body->n_outline = section->n_outline;
-    body->outline = calloc((size_t)section->n_outline + 1, sizeof *body->outline);
+    body->outline =
+        wb_memory_take(&f->memory, (size_t)section->n_outline + 1, sizeof *body->outline);
     if (!body->outline)
         return wb_fail(WB_ERR_MEMORY, "no memory for an outline");
     for (int i = 0; i < section->n_outline; i++)
@@ -153,7 +153,7 @@ static enum wb_status make_mesh(struct wb_bundle_fields *f, const struct wb_bund
             mesh_tape(f, bodies);
             continue;
         }
-        WB_TRY(set_outline(&f->bodies[b], section_of(bodies, b)));
+        WB_TRY(set_outline(f, &f->bodies[b], section_of(bodies, b)));
         cell = mesh_wire(f, bodies, b, cell);
     }
     return WB_OK;
@@ -180,16 +180,7 @@ void wb_bundle_fields_release(struct wb_bundle_fields *fields)
 {
     if (!fields)
         return;
-    for (int b = 0; fields->bodies && b < fields->n_bodies; b++)
-        free(fields->bodies[b].outline);
-    free(fields->bodies);
-    free(fields->reference);
-    free(fields->position);
-    free(fields->von_mises);
-    free(fields->plastic);
-    free(fields->hexahedron);
-    free(fields->quad);
-    free(fields->body);
+    wb_memory_release(&fields->memory);
     *fields = (struct wb_bundle_fields){0};
 }
 

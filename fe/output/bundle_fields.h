@@ -15,6 +15,7 @@
 
 #include <stdbool.h>
 
+#include "base/memory.h"
 #include "base/status.h"
 #include "fe/bundle/bundle.h"
 
@@ -40,6 +41,7 @@ struct wb_bundle_fields {
                              counter-clockwise seen against the axis */
     int (*quad)[4];       /* (n_quads): points, around */
     int *body;            /* (n_hexahedra + n_quads): of each cell */
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* The mesh of a bundle, with its present state. On failure nothing needs a release. */

@@ -1,7 +1,6 @@
 #include "fe/output/bundle_vtk.h"
 
 #include <math.h>
-#include <stdint.h>
 
 #include "base/units.h"
 #include "fe/output/bundle_vtk_private.h"
@@ -13,134 +12,94 @@ enum {
     QUAD = 9
 };
 
-/* Bytes of each array, in the order in which head and data have them. */
-struct sizes {
-    uint64_t deflection, displacement, von_mises, plastic, wire;
-    uint64_t points, connectivity, offsets, types;
+struct state {
+    const struct wb_bundle_fields *fields;
+    double deflection;
 };
 
-static struct sizes sizes_of(const struct wb_bundle_fields *f)
-{
-    const uint64_t points = (uint64_t)f->n_points;
-    const uint64_t hexahedra = (uint64_t)f->n_hexahedra, quads = (uint64_t)f->n_quads;
-    const uint64_t cells = hexahedra + quads;
+/* --- the arrays' numbers --- */
 
-    return (struct sizes){
-        .deflection = 8,
-        .displacement = 12 * points,
-        .von_mises = 4 * points,
-        .plastic = 4 * points,
-        .wire = 4 * cells,
-        .points = 12 * points,
-        .connectivity = 4 * (8 * hexahedra + 4 * quads),
-        .offsets = 4 * cells,
-        .types = cells,
-    };
+static const struct wb_bundle_fields *fields_of(const void *state)
+{
+    return ((const struct state *)state)->fields;
 }
 
-static void put_head(struct wb_vtk_file *w, const struct wb_bundle_fields *f, const struct sizes *s)
+static double deflection(const void *state, size_t i)
 {
-    static const char vector[] = " NumberOfComponents=\"3\"";
-
-    wb_vtk_file_begin(w);
-    wb_text_append(&w->text, "    <FieldData>\n");
-    wb_vtk_file_declare(w, "Float64", "deflection_mm", s->deflection, " NumberOfTuples=\"1\"");
-    wb_text_append(&w->text,
-                   "    </FieldData>\n"
-                   "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n"
-                   "      <PointData>\n",
-                   f->n_points, f->n_hexahedra + f->n_quads);
-    wb_vtk_file_declare(w, "Float32", "displacement_mm", s->displacement, vector);
-    wb_vtk_file_declare(w, "Float32", "von_mises_MPa", s->von_mises, "");
-    wb_vtk_file_declare(w, "Float32", "plastic_strain", s->plastic, "");
-    wb_text_append(&w->text, "      </PointData>\n      <CellData>\n");
-    wb_vtk_file_declare(w, "Int32", "wire", s->wire, "");
-    wb_text_append(&w->text, "      </CellData>\n      <Points>\n");
-    wb_vtk_file_declare(w, "Float32", "position_mm", s->points, vector);
-    wb_text_append(&w->text, "      </Points>\n      <Cells>\n");
-    wb_vtk_file_declare(w, "Int32", "connectivity", s->connectivity, "");
-    wb_vtk_file_declare(w, "Int32", "offsets", s->offsets, "");
-    wb_vtk_file_declare(w, "UInt8", "types", s->types, "");
-    wb_vtk_file_end_head(w);
+    (void)i;
+    return ((const struct state *)state)->deflection / WB_MM;
 }
 
-static void put_point_data(struct wb_vtk_file *w, const struct wb_bundle_fields *f,
-                           const struct sizes *s)
+static double displacement(const void *state, size_t i)
 {
-    wb_vtk_file_put_size(w, s->displacement);
-    for (int i = 0; i < f->n_points; i++)
-        for (int k = 0; k < 3; k++)
-            wb_vtk_file_put_float(w, (f->position[i][k] - f->reference[i][k]) / WB_MM);
-    wb_vtk_file_put_size(w, s->von_mises);
-    for (int i = 0; i < f->n_points; i++)
-        wb_vtk_file_put_float(w, f->von_mises[i] / WB_MPA);
-    wb_vtk_file_put_size(w, s->plastic);
-    for (int i = 0; i < f->n_points; i++)
-        wb_vtk_file_put_float(w, f->plastic[i]);
+    const struct wb_bundle_fields *const f = fields_of(state);
+    return (f->position[i / 3][i % 3] - f->reference[i / 3][i % 3]) / WB_MM;
 }
 
-static void put_cells(struct wb_vtk_file *w, const struct wb_bundle_fields *f,
-                      const struct sizes *s)
+static double von_mises(const void *state, size_t i)
 {
-    const int cells = f->n_hexahedra + f->n_quads;
-    uint64_t end = 0;
-
-    wb_vtk_file_put_size(w, s->connectivity);
-    for (int e = 0; e < f->n_hexahedra; e++)
-        for (int k = 0; k < 8; k++)
-            wb_vtk_file_put_integer(w, (uint64_t)f->hexahedron[e][k], 4);
-    for (int e = 0; e < f->n_quads; e++)
-        for (int k = 0; k < 4; k++)
-            wb_vtk_file_put_integer(w, (uint64_t)f->quad[e][k], 4);
-    wb_vtk_file_put_size(w, s->offsets);
-    for (int e = 0; e < cells; e++) {
-        end += e < f->n_hexahedra ? 8 : 4;
-        wb_vtk_file_put_integer(w, end, 4);
-    }
-    wb_vtk_file_put_size(w, s->types);
-    for (int e = 0; e < cells; e++)
-        wb_vtk_file_put_integer(w, e < f->n_hexahedra ? HEXAHEDRON : QUAD, 1);
+    return fields_of(state)->von_mises[i] / WB_MPA;
 }
 
-static void put_grid(struct wb_vtk_file *w, const struct wb_bundle_fields *f, const struct sizes *s)
+static double plastic(const void *state, size_t i)
 {
-    wb_vtk_file_put_size(w, s->wire);
-    for (int e = 0; e < f->n_hexahedra + f->n_quads; e++) {
-        const int body = f->body[e];
-        wb_vtk_file_put_integer(w, f->bodies[body].is_tape ? 0 : (uint64_t)body + 1, 4);
-    }
-    wb_vtk_file_put_size(w, s->points);
-    for (int i = 0; i < f->n_points; i++)
-        for (int k = 0; k < 3; k++)
-            wb_vtk_file_put_float(w, f->reference[i][k] / WB_MM);
-    put_cells(w, f, s);
+    return fields_of(state)->plastic[i];
 }
 
-static enum wb_status check_fields(const struct wb_bundle_fields *f)
+static double wire(const void *state, size_t i)
 {
-    bool finite = true;
+    const struct wb_bundle_fields *const f = fields_of(state);
+    return f->bodies[f->body[i]].is_tape ? 0.0 : f->body[i] + 1.0;
+}
 
-    for (int i = 0; i < f->n_points; i++) {
-        for (int k = 0; k < 3; k++)
-            finite = finite && isfinite(f->position[i][k]);
-        finite = finite && isfinite(f->von_mises[i]) && isfinite(f->plastic[i]);
-    }
-    return finite ? WB_OK : wb_fail(WB_ERR_DATA, "a field has values that are not finite");
+static double position(const void *state, size_t i)
+{
+    return fields_of(state)->reference[i / 3][i % 3] / WB_MM;
+}
+
+static double connectivity(const void *state, size_t i)
+{
+    const struct wb_bundle_fields *const f = fields_of(state);
+    const size_t of_hexahedra = 8 * (size_t)f->n_hexahedra, k = i - of_hexahedra;
+    return i < of_hexahedra ? f->hexahedron[i / 8][i % 8] : f->quad[k / 4][k % 4];
+}
+
+static double end(const void *state, size_t i)
+{
+    const size_t hexahedra = (size_t)fields_of(state)->n_hexahedra;
+    return (double)(i < hexahedra ? 8 * (i + 1) : 8 * hexahedra + 4 * (i + 1 - hexahedra));
+}
+
+static double type(const void *state, size_t i)
+{
+    return i < (size_t)fields_of(state)->n_hexahedra ? HEXAHEDRON : QUAD;
 }
 
 enum wb_status wb_bundle_vtk_write(const char *path, const struct wb_bundle_fields *fields,
-                                   double deflection)
+                                   double at_deflection)
 {
-    const struct sizes sizes = sizes_of(fields);
-    struct wb_vtk_file file = {{0}, 0};
+    static const char vector[] = " NumberOfComponents=\"3\"";
+    const size_t points = (size_t)fields->n_points;
+    const size_t hexahedra = (size_t)fields->n_hexahedra, quads = (size_t)fields->n_quads;
+    const size_t cells = hexahedra + quads;
+    const struct wb_vtk_file_array arrays[] = {
+        {WB_VTK_FILE_STATE, WB_VTK_FILE_FLOAT64, "deflection_mm", " NumberOfTuples=\"1\"", 1,
+         deflection},
+        {WB_VTK_FILE_POINTS, WB_VTK_FILE_FLOAT32, "displacement_mm", vector, 3 * points,
+         displacement},
+        {WB_VTK_FILE_POINTS, WB_VTK_FILE_FLOAT32, "von_mises_MPa", NULL, points, von_mises},
+        {WB_VTK_FILE_POINTS, WB_VTK_FILE_FLOAT32, "plastic_strain", NULL, points, plastic},
+        {WB_VTK_FILE_CELLS, WB_VTK_FILE_INT32, "wire", NULL, cells, wire},
+        {WB_VTK_FILE_POSITIONS, WB_VTK_FILE_FLOAT32, "position_mm", vector, 3 * points, position},
+        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_INT32, "connectivity", NULL, 8 * hexahedra + 4 * quads,
+         connectivity},
+        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_INT32, "offsets", NULL, cells, end},
+        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_UINT8, "types", NULL, cells, type},
+    };
+    const struct state state = {fields, at_deflection};
 
-    WB_TRY(check_fields(fields));
-    put_head(&file, fields, &sizes);
-    wb_vtk_file_put_size(&file, sizes.deflection);
-    wb_vtk_file_put_double(&file, deflection / WB_MM);
-    put_point_data(&file, fields, &sizes);
-    put_grid(&file, fields, &sizes);
-    return wb_vtk_file_write(&file, path);
+    return wb_vtk_file_write(path, fields->n_points, (int)cells, arrays,
+                             sizeof arrays / sizeof arrays[0], &state);
 }
 
 enum wb_status wb_bundle_vtk_add(struct wb_vtk_file_series *series, double time, double deflection,

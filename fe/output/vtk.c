@@ -2,9 +2,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/units.h"
 #include "fe/output/vtk_private.h"
@@ -13,190 +10,163 @@
 
 enum {
     CELL_NODES = WB_SOLID_MESH_NODES,
-    QUADRATIC_HEXAHEDRON = 25, /* VTK's number; its order of nodes is ours */
-    BLOCK_HEAD = 8             /* length of an array before its bytes, UInt64 */
+    QUADRATIC_HEXAHEDRON = 25 /* VTK's number; its order of nodes is ours */
 };
 
-/* The points of the file: a node once for each part that has it. */
-struct points {
+/* A state and the points of its file: a node once for each part that has it. */
+struct state {
+    const struct wb_solid_mesh *mesh;
+    const struct wb_wire3d_fields *fields;
     int n;
     int *number;                /* (n_parts x n_nodes), -1 where a part does not have the node */
     int *node, *element, *slot; /* (n): where a point's values come from */
+    struct wb_memory memory;    /* of all arrays */
 };
 
-static void points_release(struct points *points)
+static enum wb_status number_points(struct state *state)
 {
-    free(points->number);
-    free(points->node);
-    free(points->element);
-    free(points->slot);
-}
-
-static enum wb_status points_init(struct points *points, const struct wb_solid_mesh *mesh)
-{
+    const struct wb_solid_mesh *const mesh = state->mesh;
     const size_t most = (size_t)mesh->n_parts * (size_t)mesh->n_nodes;
-    *points = (struct points){0};
-    points->number = malloc(most * sizeof *points->number);
-    points->node = malloc(most * sizeof *points->node);
-    points->element = malloc(most * sizeof *points->element);
-    points->slot = malloc(most * sizeof *points->slot);
-    if (!points->number || !points->node || !points->element || !points->slot) {
-        points_release(points);
+    state->number = wb_memory_take(&state->memory, most, sizeof *state->number);
+    state->node = wb_memory_take(&state->memory, most, sizeof *state->node);
+    state->element = wb_memory_take(&state->memory, most, sizeof *state->element);
+    state->slot = wb_memory_take(&state->memory, most, sizeof *state->slot);
+    if (state->memory.failed)
         return wb_fail(WB_ERR_MEMORY, "no memory for %zu points of a VTK file", most);
-    }
     for (size_t i = 0; i < most; i++)
-        points->number[i] = -1;
+        state->number[i] = -1;
     for (int e = 0; e < mesh->n_elements; e++) {
         for (int k = 0; k < CELL_NODES; k++) {
-            int *number = &points->number[mesh->part[e] * mesh->n_nodes + mesh->element[e][k]];
+            int *number = &state->number[mesh->part[e] * mesh->n_nodes + mesh->element[e][k]];
             if (*number >= 0)
                 continue;
-            *number = points->n++;
-            points->node[*number] = mesh->element[e][k];
-            points->element[*number] = e;
-            points->slot[*number] = k;
+            *number = state->n++;
+            state->node[*number] = mesh->element[e][k];
+            state->element[*number] = e;
+            state->slot[*number] = k;
         }
     }
     return WB_OK;
 }
 
+static bool are_finite(const double *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(values[i]))
+            return false;
+    return true;
+}
+
+/* Also at the nodes of elements whose values no point takes. */
 static enum wb_status check_fields(const struct wb_solid_mesh *mesh,
                                    const struct wb_wire3d_fields *fields)
 {
-    bool finite = true;
-    for (int i = 0; i < mesh->n_nodes; i++) {
-        for (int k = 0; k < 3; k++)
-            finite = finite && isfinite(fields->position[i][k]) && isfinite(mesh->node[i][k]);
-    }
-    for (int e = 0; e < mesh->n_elements; e++) {
-        for (int a = 0; a < CELL_NODES; a++) {
-            for (int k = 0; k < 6; k++)
-                finite = finite && isfinite(fields->stress[e][a][k]);
-            finite = finite && isfinite(fields->plastic[e][a]);
-        }
-    }
-    return finite ? WB_OK : wb_fail(WB_ERR_DATA, "a field has values that are not finite");
+    const size_t values = (size_t)mesh->n_elements * CELL_NODES;
+    if (are_finite(&fields->position[0][0], 3 * (size_t)mesh->n_nodes) &&
+        are_finite(&fields->stress[0][0][0], 6 * values) &&
+        are_finite(&fields->plastic[0][0], values))
+        return WB_OK;
+    return wb_fail(WB_ERR_DATA, "a field has values that are not finite");
 }
 
-/* Bytes of each array, in the order in which the head and the data have them. */
-struct sizes {
-    uint64_t displacement, stress, von_mises, plastic, part, points, connectivity, offsets, types;
-};
+/* --- the arrays' numbers --- */
 
-static struct sizes sizes_of(const struct wb_solid_mesh *mesh, const struct points *points)
+static double displacement(const void *context, size_t i)
 {
-    const uint64_t n = (uint64_t)points->n, cells = (uint64_t)mesh->n_elements;
-    const struct sizes sizes = {
-        .displacement = 3 * 8 * n,
-        .stress = 6 * 8 * n,
-        .von_mises = 8 * n,
-        .plastic = 8 * n,
-        .part = 4 * cells,
-        .points = 3 * 8 * n,
-        .connectivity = 4 * CELL_NODES * cells,
-        .offsets = 4 * cells,
-        .types = cells,
-    };
-    return sizes;
+    const struct state *const s = context;
+    const int node = s->node[i / 3];
+    return (s->fields->position[node][i % 3] - s->mesh->node[node][i % 3]) / WB_MM;
 }
 
-static void put_head(struct wb_vtk_file *w, const struct wb_solid_mesh *mesh,
-                     const struct points *points, const struct sizes *sizes)
+static const double *stress_of(const struct state *s, size_t point)
 {
-    const char *vector = " NumberOfComponents=\"3\"";
-    wb_vtk_file_begin(w);
-    wb_text_append(&w->text,
-                   "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n"
-                   "      <PointData>\n",
-                   points->n, mesh->n_elements);
-    wb_vtk_file_declare(w, "Float64", "displacement_mm", sizes->displacement, vector);
-    wb_vtk_file_declare(w, "Float64", "stress_MPa", sizes->stress,
-                        " NumberOfComponents=\"6\" ComponentName0=\"xx\" ComponentName1=\"yy\" "
-                        "ComponentName2=\"zz\" ComponentName3=\"xy\" ComponentName4=\"yz\" "
-                        "ComponentName5=\"xz\"");
-    wb_vtk_file_declare(w, "Float64", "von_mises_MPa", sizes->von_mises, "");
-    wb_vtk_file_declare(w, "Float64", "plastic_strain", sizes->plastic, "");
-    wb_text_append(&w->text, "      </PointData>\n      <CellData>\n");
-    wb_vtk_file_declare(w, "Int32", "part", sizes->part, "");
-    wb_text_append(&w->text, "      </CellData>\n      <Points>\n");
-    wb_vtk_file_declare(w, "Float64", "position_mm", sizes->points, vector);
-    wb_text_append(&w->text, "      </Points>\n      <Cells>\n");
-    wb_vtk_file_declare(w, "Int32", "connectivity", sizes->connectivity, "");
-    wb_vtk_file_declare(w, "Int32", "offsets", sizes->offsets, "");
-    wb_vtk_file_declare(w, "UInt8", "types", sizes->types, "");
-    wb_vtk_file_end_head(w);
+    return s->fields->stress[s->element[point]][s->slot[point]];
 }
 
-static double von_mises(const double s[6])
+static double stress(const void *context, size_t i)
 {
+    return stress_of(context, i / 6)[i % 6] / WB_MPA;
+}
+
+static double von_mises(const void *context, size_t i)
+{
+    const double *const s = stress_of(context, i);
     const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-    return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+    return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])) /
+           WB_MPA;
 }
 
-static void put_point_data(struct wb_vtk_file *w, const struct wb_solid_mesh *mesh,
-                           const struct wb_wire3d_fields *fields, const struct points *points,
-                           const struct sizes *sizes)
+static double plastic(const void *context, size_t i)
 {
-    wb_vtk_file_put_size(w, sizes->displacement);
-    for (int i = 0; i < points->n; i++) {
-        const int node = points->node[i];
-        for (int k = 0; k < 3; k++)
-            wb_vtk_file_put_double(w, (fields->position[node][k] - mesh->node[node][k]) / WB_MM);
-    }
-    wb_vtk_file_put_size(w, sizes->stress);
-    for (int i = 0; i < points->n; i++) {
-        for (int k = 0; k < 6; k++)
-            wb_vtk_file_put_double(w,
-                                   fields->stress[points->element[i]][points->slot[i]][k] / WB_MPA);
-    }
-    wb_vtk_file_put_size(w, sizes->von_mises);
-    for (int i = 0; i < points->n; i++)
-        wb_vtk_file_put_double(w, von_mises(fields->stress[points->element[i]][points->slot[i]]) /
-                                      WB_MPA);
-    wb_vtk_file_put_size(w, sizes->plastic);
-    for (int i = 0; i < points->n; i++)
-        wb_vtk_file_put_double(w, fields->plastic[points->element[i]][points->slot[i]]);
+    const struct state *const s = context;
+    return s->fields->plastic[s->element[i]][s->slot[i]];
 }
 
-static void put_grid(struct wb_vtk_file *w, const struct wb_solid_mesh *mesh,
-                     const struct points *points, const struct sizes *sizes)
+static double part(const void *context, size_t i)
 {
-    wb_vtk_file_put_size(w, sizes->part);
-    for (int e = 0; e < mesh->n_elements; e++)
-        wb_vtk_file_put_integer(w, (uint64_t)mesh->part[e], 4);
-    wb_vtk_file_put_size(w, sizes->points);
-    for (int i = 0; i < points->n; i++) {
-        for (int k = 0; k < 3; k++)
-            wb_vtk_file_put_double(w, mesh->node[points->node[i]][k] / WB_MM);
-    }
-    wb_vtk_file_put_size(w, sizes->connectivity);
-    for (int e = 0; e < mesh->n_elements; e++) {
-        const int *number = points->number + mesh->part[e] * mesh->n_nodes;
-        for (int k = 0; k < CELL_NODES; k++)
-            wb_vtk_file_put_integer(w, (uint64_t)number[mesh->element[e][k]], 4);
-    }
-    wb_vtk_file_put_size(w, sizes->offsets);
-    for (int e = 0; e < mesh->n_elements; e++)
-        wb_vtk_file_put_integer(w, (uint64_t)(e + 1) * CELL_NODES, 4);
-    wb_vtk_file_put_size(w, sizes->types);
-    for (int e = 0; e < mesh->n_elements; e++)
-        wb_vtk_file_put_integer(w, QUADRATIC_HEXAHEDRON, 1);
+    return ((const struct state *)context)->mesh->part[i];
+}
+
+static double position(const void *context, size_t i)
+{
+    const struct state *const s = context;
+    return s->mesh->node[s->node[i / 3]][i % 3] / WB_MM;
+}
+
+static double connectivity(const void *context, size_t i)
+{
+    const struct state *const s = context;
+    const size_t e = i / CELL_NODES;
+    return s->number[s->mesh->part[e] * s->mesh->n_nodes + s->mesh->element[e][i % CELL_NODES]];
+}
+
+static double end(const void *context, size_t i)
+{
+    (void)context;
+    return (double)(i + 1) * CELL_NODES;
+}
+
+static double type(const void *context, size_t i)
+{
+    (void)context;
+    (void)i;
+    return QUADRATIC_HEXAHEDRON;
+}
+
+static enum wb_status write_state(const char *path, const struct state *state)
+{
+    static const char vector[] = " NumberOfComponents=\"3\"";
+    static const char tensor[] =
+        " NumberOfComponents=\"6\" ComponentName0=\"xx\" ComponentName1=\"yy\" "
+        "ComponentName2=\"zz\" ComponentName3=\"xy\" ComponentName4=\"yz\" ComponentName5=\"xz\"";
+    const size_t n = (size_t)state->n, cells = (size_t)state->mesh->n_elements;
+    const struct wb_vtk_file_array arrays[] = {
+        {WB_VTK_FILE_POINTS, WB_VTK_FILE_FLOAT64, "displacement_mm", vector, 3 * n, displacement},
+        {WB_VTK_FILE_POINTS, WB_VTK_FILE_FLOAT64, "stress_MPa", tensor, 6 * n, stress},
+        {WB_VTK_FILE_POINTS, WB_VTK_FILE_FLOAT64, "von_mises_MPa", NULL, n, von_mises},
+        {WB_VTK_FILE_POINTS, WB_VTK_FILE_FLOAT64, "plastic_strain", NULL, n, plastic},
+        {WB_VTK_FILE_CELLS, WB_VTK_FILE_INT32, "part", NULL, cells, part},
+        {WB_VTK_FILE_POSITIONS, WB_VTK_FILE_FLOAT64, "position_mm", vector, 3 * n, position},
+        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_INT32, "connectivity", NULL, CELL_NODES * cells,
+         connectivity},
+        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_INT32, "offsets", NULL, cells, end},
+        {WB_VTK_FILE_TOPOLOGY, WB_VTK_FILE_UINT8, "types", NULL, cells, type},
+    };
+
+    return wb_vtk_file_write(path, state->n, state->mesh->n_elements, arrays,
+                             sizeof arrays / sizeof arrays[0], state);
 }
 
 enum wb_status wb_vtk_write(const char *path, const struct wb_solid_mesh *mesh,
                             const struct wb_wire3d_fields *fields)
 {
-    struct wb_vtk_file file = {{0}, 0};
-    struct points points;
+    struct state state = {.mesh = mesh, .fields = fields};
     WB_TRY(check_fields(mesh, fields));
-    WB_TRY(points_init(&points, mesh));
-
-    const struct sizes sizes = sizes_of(mesh, &points);
-    put_head(&file, mesh, &points, &sizes);
-    put_point_data(&file, mesh, fields, &points, &sizes);
-    put_grid(&file, mesh, &points, &sizes);
-    points_release(&points);
-    return wb_vtk_file_write(&file, path);
+    enum wb_status status = number_points(&state);
+    if (status == WB_OK)
+        status = write_state(path, &state);
+    wb_memory_release(&state.memory);
+    return status;
 }
 
 enum wb_status wb_vtk_add(struct wb_vtk_file_series *series, double time,

@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -17,59 +19,110 @@ enum {
 
 /* --- one file --- */
 
-void wb_vtk_file_begin(struct wb_vtk_file *file)
+static const struct {
+    const char *name;
+    int bytes;
+} types[] = {
+    [WB_VTK_FILE_UINT8] = {"UInt8", 1},
+    [WB_VTK_FILE_INT32] = {"Int32", 4},
+    [WB_VTK_FILE_FLOAT32] = {"Float32", 4},
+    [WB_VTK_FILE_FLOAT64] = {"Float64", 8},
+};
+
+static const char *const sections[WB_VTK_FILE_SECTIONS] = {
+    [WB_VTK_FILE_STATE] = "FieldData", [WB_VTK_FILE_POINTS] = "PointData",
+    [WB_VTK_FILE_CELLS] = "CellData",  [WB_VTK_FILE_POSITIONS] = "Points",
+    [WB_VTK_FILE_TOPOLOGY] = "Cells",
+};
+
+static size_t size_of(const struct wb_vtk_file_array *array)
 {
-    wb_text_append(&file->text, "<?xml version=\"1.0\"?>\n"
-                                "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
-                                "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-                                "  <UnstructuredGrid>\n");
+    return array->count * (size_t)types[array->type].bytes;
 }
 
-void wb_vtk_file_end_head(struct wb_vtk_file *file)
+/* Declares the arrays of a section; `offset` is where the next one begins. A state without arrays
+ * of its own has no such section. */
+static void put_section(struct wb_text *text, int section, const struct wb_vtk_file_array *arrays,
+                        size_t n, size_t *offset)
 {
-    wb_text_append(&file->text, "      </Cells>\n"
-                                "    </Piece>\n"
-                                "  </UnstructuredGrid>\n"
-                                "  <AppendedData encoding=\"raw\">\n"
-                                "_");
+    const char *const indent = section == WB_VTK_FILE_STATE ? "    " : "      ";
+    bool any = section != WB_VTK_FILE_STATE;
+
+    for (size_t i = 0; i < n; i++)
+        any = any || (int)arrays[i].section == section;
+    if (!any)
+        return;
+    wb_text_append(text, "%s<%s>\n", indent, sections[section]);
+    for (size_t i = 0; i < n; i++) {
+        if ((int)arrays[i].section != section)
+            continue;
+        wb_text_append(text,
+                       "        <DataArray type=\"%s\" Name=\"%s\"%s format=\"appended\" "
+                       "offset=\"%zu\"/>\n",
+                       types[arrays[i].type].name, arrays[i].name,
+                       arrays[i].more ? arrays[i].more : "", *offset);
+        *offset += BLOCK_HEAD + size_of(&arrays[i]);
+    }
+    wb_text_append(text, "%s</%s>\n", indent, sections[section]);
 }
 
-void wb_vtk_file_declare(struct wb_vtk_file *file, const char *type, const char *name,
-                         uint64_t size, const char *more)
+static void put_head(struct wb_text *text, int n_points, int n_cells,
+                     const struct wb_vtk_file_array *arrays, size_t n)
 {
-    wb_text_append(&file->text,
-                   "        <DataArray type=\"%s\" Name=\"%s\"%s format=\"appended\" "
-                   "offset=\"%llu\"/>\n",
-                   type, name, more, (unsigned long long)file->offset);
-    file->offset += BLOCK_HEAD + size;
+    size_t offset = 0;
+
+    wb_text_append(text, "<?xml version=\"1.0\"?>\n"
+                         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+                         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+                         "  <UnstructuredGrid>\n");
+    put_section(text, WB_VTK_FILE_STATE, arrays, n, &offset);
+    wb_text_append(text, "    <Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n", n_points,
+                   n_cells);
+    for (int section = WB_VTK_FILE_POINTS; section < WB_VTK_FILE_SECTIONS; section++)
+        put_section(text, section, arrays, n, &offset);
+    wb_text_append(text, "    </Piece>\n"
+                         "  </UnstructuredGrid>\n"
+                         "  <AppendedData encoding=\"raw\">\n"
+                         "_");
 }
 
-void wb_vtk_file_put_integer(struct wb_vtk_file *file, uint64_t value, int n_bytes)
+static void put_integer(struct wb_text *text, uint64_t value, int n_bytes)
 {
     unsigned char bytes[8];
     for (int k = 0; k < n_bytes; k++)
         bytes[k] = (unsigned char)(value >> (8 * k));
-    wb_text_append_bytes(&file->text, bytes, (size_t)n_bytes);
+    wb_text_append_bytes(text, bytes, (size_t)n_bytes);
 }
 
-void wb_vtk_file_put_size(struct wb_vtk_file *file, uint64_t size)
+static void put_number(struct wb_text *text, enum wb_vtk_file_type type, double value)
 {
-    wb_vtk_file_put_integer(file, size, BLOCK_HEAD);
+    const float narrow = (float)value;
+    uint64_t bits = 0;
+    uint32_t narrow_bits;
+
+    if (type == WB_VTK_FILE_FLOAT64) {
+        memcpy(&bits, &value, sizeof bits);
+    } else if (type == WB_VTK_FILE_FLOAT32) {
+        memcpy(&narrow_bits, &narrow, sizeof narrow_bits);
+        bits = narrow_bits;
+    } else {
+        bits = (uint64_t)value;
+    }
+    put_integer(text, bits, types[type].bytes);
 }
 
-void wb_vtk_file_put_float(struct wb_vtk_file *file, double value)
+/* The size of the array's numbers in bytes, then these. False where one is not finite. */
+static bool put_array(struct wb_text *text, const struct wb_vtk_file_array *array,
+                      const void *state)
 {
-    const float number = (float)value;
-    uint32_t bits;
-    memcpy(&bits, &number, sizeof bits);
-    wb_vtk_file_put_integer(file, bits, 4);
-}
-
-void wb_vtk_file_put_double(struct wb_vtk_file *file, double value)
-{
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    wb_vtk_file_put_integer(file, bits, 8);
+    put_integer(text, size_of(array), BLOCK_HEAD);
+    for (size_t i = 0; i < array->count; i++) {
+        const double value = array->value(state, i);
+        if (!isfinite(value))
+            return false;
+        put_number(text, array->type, value);
+    }
+    return true;
 }
 
 static enum wb_status write_text(const char *path, struct wb_text *text)
@@ -80,10 +133,21 @@ static enum wb_status write_text(const char *path, struct wb_text *text)
     return status;
 }
 
-enum wb_status wb_vtk_file_write(struct wb_vtk_file *file, const char *path)
+enum wb_status wb_vtk_file_write(const char *path, int n_points, int n_cells,
+                                 const struct wb_vtk_file_array *arrays, size_t n,
+                                 const void *state)
 {
-    wb_text_append(&file->text, "\n  </AppendedData>\n</VTKFile>\n");
-    return write_text(path, &file->text);
+    struct wb_text text = {0};
+
+    put_head(&text, n_points, n_cells, arrays, n);
+    for (size_t i = 0; i < n; i++) {
+        if (!put_array(&text, &arrays[i], state)) {
+            wb_text_release(&text);
+            return wb_fail(WB_ERR_DATA, "a field has values that are not finite");
+        }
+    }
+    wb_text_append(&text, "\n  </AppendedData>\n</VTKFile>\n");
+    return write_text(path, &text);
 }
 
 /* --- a series --- */

@@ -1,13 +1,13 @@
 /* VTK's XML files with appended raw data, and series of them. What a state holds is the matter of
- * fe/output/vtk.c and fe/output/bundle_vtk.c.
+ * fe/output/vtk.c and fe/output/bundle_vtk.c: each lists its arrays in a table.
  *
- * The XML head tells where in the bytes behind it each array begins, so arrays are declared first
- * and put in the same order after. Numbers stand least byte first on any machine.
+ * The XML head declares the arrays and tells where in the bytes behind it each of them begins.
+ * Numbers stand least byte first on any machine.
  */
 #ifndef WB_FE_OUTPUT_VTK_FILE_H
 #define WB_FE_OUTPUT_VTK_FILE_H
 
-#include <stdint.h>
+#include <stddef.h>
 
 #include "base/file.h"
 #include "base/status.h"
@@ -19,28 +19,36 @@ enum {
 
 /* --- one file --- */
 
-/* All zero at first; wb_vtk_file_write() releases it. */
-struct wb_vtk_file {
-    struct wb_text text;
-    uint64_t offset; /* of the next array that is declared */
+enum wb_vtk_file_section {
+    WB_VTK_FILE_STATE, /* of the state as a whole */
+    WB_VTK_FILE_POINTS,
+    WB_VTK_FILE_CELLS,
+    WB_VTK_FILE_POSITIONS,
+    WB_VTK_FILE_TOPOLOGY, /* of the cells: their points, ends and types */
+    WB_VTK_FILE_SECTIONS  /* how many */
 };
 
-/* Text up to the grid's first element, and from the cells' end to where the arrays begin. */
-void wb_vtk_file_begin(struct wb_vtk_file *file);
-void wb_vtk_file_end_head(struct wb_vtk_file *file);
+enum wb_vtk_file_type {
+    WB_VTK_FILE_UINT8,
+    WB_VTK_FILE_INT32,
+    WB_VTK_FILE_FLOAT32,
+    WB_VTK_FILE_FLOAT64
+};
 
-/* Declares an array of `size` bytes; `more` are further attributes, with a blank before each. */
-void wb_vtk_file_declare(struct wb_vtk_file *file, const char *type, const char *name,
-                         uint64_t size, const char *more);
+struct wb_vtk_file_array {
+    enum wb_vtk_file_section section;
+    enum wb_vtk_file_type type;
+    const char *name;
+    const char *more; /* further attributes, with a blank before each; NULL: none */
+    size_t count;     /* of its numbers */
+    double (*value)(const void *state, size_t i); /* the number i */
+};
 
-/* What the array begins with, then its numbers. */
-void wb_vtk_file_put_size(struct wb_vtk_file *file, uint64_t size);
-void wb_vtk_file_put_integer(struct wb_vtk_file *file, uint64_t value, int n_bytes);
-void wb_vtk_file_put_float(struct wb_vtk_file *file, double value);
-void wb_vtk_file_put_double(struct wb_vtk_file *file, double value);
-
-/* Ends the file and writes it, whole or not at all. */
-WB_MUST_CHECK enum wb_status wb_vtk_file_write(struct wb_vtk_file *file, const char *path);
+/* Writes a state, whole or not at all: its `n` arrays in the order of their sections. WB_ERR_DATA
+ * when a number is not finite. */
+WB_MUST_CHECK enum wb_status wb_vtk_file_write(const char *path, int n_points, int n_cells,
+                                               const struct wb_vtk_file_array *arrays, size_t n,
+                                               const void *state);
 
 /* --- a series --- */
 

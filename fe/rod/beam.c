@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/linear/banded.h"
 #include "fe/rod/beam_private.h"
 #include "fe/rod/fibres.h"
@@ -31,7 +32,7 @@ struct strain {
 struct wb_beam {
     int n_elements, n_nodes;
     double length, element_length;
-    struct wb_beam_element_shape shape;
+    struct wb_rod_shape shape;
     struct wb_fibres *fibres;
     size_t history_size; /* of all Gauss points */
     double load_x, load_y;
@@ -47,6 +48,7 @@ struct wb_beam {
     double (*residual)[3];        /* (n_nodes) */
     struct middle *middles;       /* (n_elements) */
     struct wb_banded banded;      /* end nodes of the elements without the clamp */
+    struct wb_memory memory;      /* of all arrays */
 };
 
 /* Integrates the natural curvature from the clamp into rotations and positions of the nodes, with
@@ -117,33 +119,35 @@ static bool take_memory(struct wb_beam *beam)
 {
     const size_t nodes = (size_t)beam->n_nodes, elements = (size_t)beam->n_elements;
 
-    beam->reference = calloc(nodes, sizeof *beam->reference);
-    beam->trial = calloc(nodes, sizeof *beam->trial);
-    beam->committed = calloc(nodes, sizeof *beam->committed);
-    beam->earlier = calloc(nodes, sizeof *beam->earlier);
-    beam->saved = calloc(nodes, sizeof *beam->saved);
-    beam->saved_earlier = calloc(nodes, sizeof *beam->saved_earlier);
-    beam->trial_strain = calloc(elements * POINTS, sizeof *beam->trial_strain);
-    beam->committed_strain = calloc(elements * POINTS, sizeof *beam->committed_strain);
-    beam->earlier_strain = calloc(elements * POINTS, sizeof *beam->earlier_strain);
-    beam->saved_strain = calloc(elements * POINTS, sizeof *beam->saved_strain);
-    beam->saved_earlier_strain = calloc(elements * POINTS, sizeof *beam->saved_earlier_strain);
-    beam->history = calloc(beam->history_size, sizeof *beam->history);
-    beam->trial_history = calloc(beam->history_size, sizeof *beam->trial_history);
-    beam->saved_history = calloc(beam->history_size, sizeof *beam->saved_history);
-    beam->points = calloc(elements * POINTS, sizeof *beam->points);
-    beam->residual = calloc(nodes, sizeof *beam->residual);
-    beam->middles = calloc(elements, sizeof *beam->middles);
+    beam->reference = wb_memory_take(&beam->memory, nodes, sizeof *beam->reference);
+    beam->trial = wb_memory_take(&beam->memory, nodes, sizeof *beam->trial);
+    beam->committed = wb_memory_take(&beam->memory, nodes, sizeof *beam->committed);
+    beam->earlier = wb_memory_take(&beam->memory, nodes, sizeof *beam->earlier);
+    beam->saved = wb_memory_take(&beam->memory, nodes, sizeof *beam->saved);
+    beam->saved_earlier = wb_memory_take(&beam->memory, nodes, sizeof *beam->saved_earlier);
+    beam->trial_strain =
+        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->trial_strain);
+    beam->committed_strain =
+        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->committed_strain);
+    beam->earlier_strain =
+        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->earlier_strain);
+    beam->saved_strain =
+        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->saved_strain);
+    beam->saved_earlier_strain =
+        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->saved_earlier_strain);
+    beam->history = wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->history);
+    beam->trial_history =
+        wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->trial_history);
+    beam->saved_history =
+        wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->saved_history);
+    beam->points = wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->points);
+    beam->residual = wb_memory_take(&beam->memory, nodes, sizeof *beam->residual);
+    beam->middles = wb_memory_take(&beam->memory, elements, sizeof *beam->middles);
     beam->banded.n = beam->n_elements;
-    beam->banded.diagonal = calloc(elements, sizeof *beam->banded.diagonal);
-    beam->banded.upper = calloc(elements, sizeof *beam->banded.upper);
-    beam->banded.right = calloc(elements, sizeof *beam->banded.right);
-    return beam->reference && beam->trial && beam->committed && beam->earlier && beam->saved &&
-           beam->saved_earlier && beam->trial_strain && beam->committed_strain &&
-           beam->earlier_strain && beam->saved_strain && beam->saved_earlier_strain &&
-           beam->history && beam->trial_history && beam->saved_history && beam->points &&
-           beam->residual && beam->middles && beam->banded.diagonal && beam->banded.upper &&
-           beam->banded.right;
+    beam->banded.diagonal = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.diagonal);
+    beam->banded.upper = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.upper);
+    beam->banded.right = wb_memory_take(&beam->memory, elements, sizeof *beam->banded.right);
+    return !beam->memory.failed;
 }
 
 enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *model)
@@ -173,7 +177,7 @@ enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *
         return wb_fail(WB_ERR_MEMORY, "no memory for a beam of %d elements", model->n_elements);
     }
 
-    wb_beam_element_shape_init(&beam->shape, beam->element_length);
+    wb_rod_shape_init(&beam->shape, beam->element_length);
     lay_out(beam, model);
     measure_reference(beam);
     if (!isfinite(beam->reference[beam->n_nodes - 1].x)) {
@@ -190,26 +194,7 @@ void wb_beam_destroy(struct wb_beam *beam)
     if (!beam)
         return;
     wb_fibres_destroy(beam->fibres);
-    free(beam->reference);
-    free(beam->trial);
-    free(beam->committed);
-    free(beam->earlier);
-    free(beam->saved);
-    free(beam->saved_earlier);
-    free(beam->trial_strain);
-    free(beam->committed_strain);
-    free(beam->earlier_strain);
-    free(beam->saved_strain);
-    free(beam->saved_earlier_strain);
-    free(beam->history);
-    free(beam->trial_history);
-    free(beam->saved_history);
-    free(beam->points);
-    free(beam->residual);
-    free(beam->middles);
-    free(beam->banded.diagonal);
-    free(beam->banded.upper);
-    free(beam->banded.right);
+    wb_memory_release(&beam->memory);
     free(beam);
 }
 

@@ -2,21 +2,7 @@
 
 #include <math.h>
 
-void wb_beam_element_shape_init(struct wb_beam_element_shape *shape, double h)
-{
-    shape->weight = 0.5 * h;
-    for (int g = 0; g < WB_BEAM_ELEMENT_POINTS; g++) {
-        const double z = (g == 0 ? -1.0 : 1.0) / sqrt(3.0);
-        shape->N[g][0] = 0.5 * z * (z - 1.0);
-        shape->N[g][1] = 1.0 - z * z;
-        shape->N[g][2] = 0.5 * z * (z + 1.0);
-        shape->dN[g][0] = (2.0 * z - 1.0) / h;
-        shape->dN[g][1] = -4.0 * z / h;
-        shape->dN[g][2] = (2.0 * z + 1.0) / h;
-    }
-}
-
-void wb_beam_element_rotation(const struct wb_beam_element_shape *shape, int g,
+void wb_beam_element_rotation(const struct wb_rod_shape *shape, int g,
                               const struct wb_beam_node *nodes, struct wb_beam_point *point)
 {
     const double *N = shape->N[g];
@@ -29,7 +15,7 @@ void wb_beam_element_rotation(const struct wb_beam_element_shape *shape, int g,
     point->sine = sin(t);
 }
 
-void wb_beam_element_kinematics(const struct wb_beam_element_shape *shape, int g,
+void wb_beam_element_kinematics(const struct wb_rod_shape *shape, int g,
                                 const struct wb_beam_node *nodes, struct wb_beam_point *point)
 {
     const double d0 = shape->dN[g][0], d2 = shape->dN[g][2];
@@ -43,7 +29,7 @@ void wb_beam_element_kinematics(const struct wb_beam_element_shape *shape, int g
 
 /* d(eps) = (c, s, b, 0), d(gamma) = (-s, c, -a, 0), d(kappa) = (0, 0, 0, 1) over (x', y', t, t').
  */
-void wb_beam_element_add_forces(const struct wb_beam_element_shape *shape, int g,
+void wb_beam_element_add_forces(const struct wb_rod_shape *shape, int g,
                                 const struct wb_beam_point *p, double *restrict f)
 {
     const double w = shape->weight;
@@ -99,8 +85,7 @@ static inline void add_block(double *restrict K, const struct point_tangent *k, 
     K[8] += Ni * Nj * k->tt + (nd + dn) * k->tk + dd * k->kk;
 }
 
-void wb_beam_element_stiffness(const struct wb_beam_element_shape *shape,
-                               const struct wb_beam_point *points,
+void wb_beam_element_stiffness(const struct wb_rod_shape *shape, const struct wb_beam_point *points,
                                struct wb_beam_element_stiffness *restrict K)
 {
     *K = (struct wb_beam_element_stiffness){0};

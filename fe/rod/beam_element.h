@@ -13,22 +13,16 @@
 #ifndef WB_FE_ROD_BEAM_ELEMENT_H
 #define WB_FE_ROD_BEAM_ELEMENT_H
 
+#include "fe/rod/rod_shape.h"
+
 enum {
-    WB_BEAM_ELEMENT_NODES = 3,
-    WB_BEAM_ELEMENT_POINTS = 2
+    WB_BEAM_ELEMENT_NODES = WB_ROD_SHAPE_NODES,
+    WB_BEAM_ELEMENT_POINTS = WB_ROD_SHAPE_POINTS
 };
 
 /* x, y, t of one node. */
 struct wb_beam_node {
     double x, y, t;
-};
-
-/* Shape functions and derivatives by arc length at the two Gauss points of an element of length h;
- * the same for all elements of a beam. */
-struct wb_beam_element_shape {
-    double weight;                                            /* m */
-    double N[WB_BEAM_ELEMENT_POINTS][WB_BEAM_ELEMENT_NODES];  /* 1 */
-    double dN[WB_BEAM_ELEMENT_POINTS][WB_BEAM_ELEMENT_NODES]; /* 1/m */
 };
 
 /* One Gauss point: what the reference subtracts, the present kinematics, and the resultants. */
@@ -45,24 +39,20 @@ struct wb_beam_element_stiffness {
     double K11[9], K12[9], K13[9], K22[9], K23[9], K33[9];
 };
 
-/* Fills in the shape functions of an element of length h, m. */
-void wb_beam_element_shape_init(struct wb_beam_element_shape *shape, double h);
-
 /* Rotation at Gauss point g: fills cosine, sine, k. */
-void wb_beam_element_rotation(const struct wb_beam_element_shape *shape, int g,
+void wb_beam_element_rotation(const struct wb_rod_shape *shape, int g,
                               const struct wb_beam_node *nodes, struct wb_beam_point *point);
 
 /* All kinematics of Gauss point g, from positions: fills cosine, sine, a, b, k. */
-void wb_beam_element_kinematics(const struct wb_beam_element_shape *shape, int g,
+void wb_beam_element_kinematics(const struct wb_rod_shape *shape, int g,
                                 const struct wb_beam_node *nodes, struct wb_beam_point *point);
 
 /* Adds the internal forces of Gauss point g to f (3 nodes x 3). */
-void wb_beam_element_add_forces(const struct wb_beam_element_shape *shape, int g,
+void wb_beam_element_add_forces(const struct wb_rod_shape *shape, int g,
                                 const struct wb_beam_point *point, double *restrict f);
 
 /* The element's tangent stiffness from its two points. */
-void wb_beam_element_stiffness(const struct wb_beam_element_shape *shape,
-                               const struct wb_beam_point *points,
+void wb_beam_element_stiffness(const struct wb_rod_shape *shape, const struct wb_beam_point *points,
                                struct wb_beam_element_stiffness *restrict stiffness);
 
 #endif

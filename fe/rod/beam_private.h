@@ -4,7 +4,7 @@
 
 #include "fe/rod/beam.h"
 
-/* The tip of the reference. */
+/* The tip in the reference configuration, without stress. */
 const struct wb_beam_node *wb_beam_reference_tip(const struct wb_beam *beam);
 
 /* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, of the state last evaluated. */

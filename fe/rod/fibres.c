@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/linear/processor.h"
 #include "fe/material/hardening.h"
 #include "fe/rod/fibres_private.h"
@@ -42,6 +43,7 @@ struct wb_fibres {
     double shear_stiffness;
     void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *rows,
                     double *rows_after, struct wb_fibres_response *response);
+    struct wb_memory memory; /* of all arrays */
 };
 
 static int padded(int n)
@@ -108,12 +110,7 @@ void wb_fibres_destroy(struct wb_fibres *f)
 {
     if (!f)
         return;
-    free(f->y);
-    free(f->area);
-    free(f->virgin);
-    free(f->batches);
-    free(f->materials);
-    free(f->tables);
+    wb_memory_release(&f->memory);
     free(f);
 }
 
@@ -410,13 +407,13 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
     const size_t count = (size_t)n, materials = (size_t)section->n_materials;
     f->n = n;
     f->n_materials = section->n_materials;
-    f->y = calloc(count, sizeof *f->y);
-    f->area = calloc(count, sizeof *f->area);
-    f->virgin = calloc(HISTORY_ROWS * count, sizeof *f->virgin);
-    f->batches = calloc(materials, sizeof *f->batches);
-    f->materials = calloc(materials, sizeof *f->materials);
-    f->tables = calloc(materials, sizeof *f->tables);
-    if (!f->y || !f->area || !f->virgin || !f->batches || !f->materials || !f->tables) {
+    f->y = wb_memory_take(&f->memory, count, sizeof *f->y);
+    f->area = wb_memory_take(&f->memory, count, sizeof *f->area);
+    f->virgin = wb_memory_take(&f->memory, HISTORY_ROWS * count, sizeof *f->virgin);
+    f->batches = wb_memory_take(&f->memory, materials, sizeof *f->batches);
+    f->materials = wb_memory_take(&f->memory, materials, sizeof *f->materials);
+    f->tables = wb_memory_take(&f->memory, materials, sizeof *f->tables);
+    if (f->memory.failed) {
         wb_fibres_destroy(f);
         return wb_fail(WB_ERR_MEMORY, "no memory for %d fibres", n);
     }

@@ -4,7 +4,7 @@
  * Stresses are those of wb_material_stress() to about 1e-11 of the yield stress
  * (tests/twin/test_fibres_twin.c): p(c) comes from the table of fe/material/hardening.h, and
  * sections that never yielded are skipped. The arithmetic is in a fixed order, so that results are
- * the same bits with every vector width.
+ * the same to the last bit with every vector width.
  */
 #ifndef WB_FE_ROD_FIBRES_H
 #define WB_FE_ROD_FIBRES_H

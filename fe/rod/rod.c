@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/linear/rod_chain.h"
 #include "fe/linear/signature.h"
 #include "fe/rod/rod_private.h"
@@ -27,7 +28,7 @@ struct wb_rod {
     const struct wb_rod_section *section;
     int n_elements, n_nodes, n_points;
     double length;
-    struct wb_rod_element_shape shape;
+    struct wb_rod_shape shape;
     size_t row, history_size; /* of one point, of all */
     double load[3];
     bool has_balance;
@@ -45,6 +46,7 @@ struct wb_rod {
     struct middle *middles;          /* (n_elements) */
     struct wb_rod_chain chain;       /* end nodes of the elements without the clamp */
     int negative;                    /* eigenvalues below zero of the middle nodes' blocks */
+    struct wb_memory memory;         /* of all arrays */
 };
 
 /* Strains of an element's points with those of the reference. */
@@ -110,26 +112,24 @@ static bool take_memory(struct wb_rod *rod)
     const size_t points = (size_t)rod->n_points;
     struct wb_rod_chain *chain = &rod->chain;
 
-    rod->natural = calloc(points, sizeof *rod->natural);
-    rod->trial = calloc(points, sizeof *rod->trial);
-    rod->committed = calloc(points, sizeof *rod->committed);
-    rod->earlier = calloc(points, sizeof *rod->earlier);
-    rod->history = calloc(rod->history_size, sizeof *rod->history);
-    rod->trial_history = calloc(rod->history_size, sizeof *rod->trial_history);
-    rod->nodes = calloc(nodes, sizeof *rod->nodes);
-    rod->committed_rotation = calloc(nodes, sizeof *rod->committed_rotation);
-    rod->points = calloc(points, sizeof *rod->points);
-    rod->residual = calloc(nodes, sizeof *rod->residual);
-    rod->middles = calloc(elements, sizeof *rod->middles);
+    rod->natural = wb_memory_take(&rod->memory, points, sizeof *rod->natural);
+    rod->trial = wb_memory_take(&rod->memory, points, sizeof *rod->trial);
+    rod->committed = wb_memory_take(&rod->memory, points, sizeof *rod->committed);
+    rod->earlier = wb_memory_take(&rod->memory, points, sizeof *rod->earlier);
+    rod->history = wb_memory_take(&rod->memory, rod->history_size, sizeof *rod->history);
+    rod->trial_history =
+        wb_memory_take(&rod->memory, rod->history_size, sizeof *rod->trial_history);
+    rod->nodes = wb_memory_take(&rod->memory, nodes, sizeof *rod->nodes);
+    rod->committed_rotation = wb_memory_take(&rod->memory, nodes, sizeof *rod->committed_rotation);
+    rod->points = wb_memory_take(&rod->memory, points, sizeof *rod->points);
+    rod->residual = wb_memory_take(&rod->memory, nodes, sizeof *rod->residual);
+    rod->middles = wb_memory_take(&rod->memory, elements, sizeof *rod->middles);
     chain->n = rod->n_elements;
-    chain->diagonal = calloc(elements, sizeof *chain->diagonal);
-    chain->upper = calloc(elements, sizeof *chain->upper);
-    chain->lower = calloc(elements, sizeof *chain->lower);
-    chain->right = calloc(elements, sizeof *chain->right);
-    return rod->natural && rod->trial && rod->committed && rod->earlier && rod->history &&
-           rod->trial_history && rod->nodes && rod->committed_rotation && rod->points &&
-           rod->residual && rod->middles && chain->diagonal && chain->upper && chain->lower &&
-           chain->right;
+    chain->diagonal = wb_memory_take(&rod->memory, elements, sizeof *chain->diagonal);
+    chain->upper = wb_memory_take(&rod->memory, elements, sizeof *chain->upper);
+    chain->lower = wb_memory_take(&rod->memory, elements, sizeof *chain->lower);
+    chain->right = wb_memory_take(&rod->memory, elements, sizeof *chain->right);
+    return !rod->memory.failed;
 }
 
 enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *model)
@@ -149,7 +149,7 @@ enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *mod
     rod->history_size = rod->row * (size_t)rod->n_points;
     rod->has_balance = model->has_balance;
     memcpy(rod->load, model->load, sizeof rod->load);
-    wb_rod_element_shape_init(&rod->shape, model->length / model->n_elements);
+    wb_rod_shape_init(&rod->shape, model->length / model->n_elements);
     if (!take_memory(rod)) {
         wb_rod_destroy(rod);
         return wb_fail(WB_ERR_MEMORY, "no memory for a rod of %d elements", model->n_elements);
@@ -168,21 +168,7 @@ void wb_rod_destroy(struct wb_rod *rod)
 {
     if (!rod)
         return;
-    free(rod->natural);
-    free(rod->trial);
-    free(rod->committed);
-    free(rod->earlier);
-    free(rod->history);
-    free(rod->trial_history);
-    free(rod->nodes);
-    free(rod->committed_rotation);
-    free(rod->points);
-    free(rod->residual);
-    free(rod->middles);
-    free(rod->chain.diagonal);
-    free(rod->chain.upper);
-    free(rod->chain.lower);
-    free(rod->chain.right);
+    wb_memory_release(&rod->memory);
     free(rod);
 }
 

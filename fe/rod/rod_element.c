@@ -12,21 +12,6 @@ enum {
     U = WB_ROD_ELEMENT_UNKNOWNS
 };
 
-void wb_rod_element_shape_init(struct wb_rod_element_shape *shape, double h)
-{
-    shape->length = h;
-    shape->weight = 0.5 * h;
-    for (int g = 0; g < POINTS; g++) {
-        const double z = (g == 0 ? -1.0 : 1.0) / sqrt(3.0);
-        shape->N[g][0] = 0.5 * z * (z - 1.0);
-        shape->N[g][1] = 1.0 - z * z;
-        shape->N[g][2] = 0.5 * z * (z + 1.0);
-        shape->dN[g][0] = (2.0 * z - 1.0) / h;
-        shape->dN[g][1] = -4.0 * z / h;
-        shape->dN[g][2] = (2.0 * z + 1.0) / h;
-    }
-}
-
 /* c = A b and c = A^T b */
 static inline void turn(const double *A, const double *b, double *restrict c)
 {
@@ -80,8 +65,8 @@ void wb_rod_element_exponential(const double vector[3], double q[4])
 }
 
 /* The line k = a + b s through the curvatures of the points. */
-static void curvature_line(const struct wb_rod_element_shape *shape,
-                           const struct wb_rod_strain *total, double *a, double *b)
+static void curvature_line(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
+                           double *a, double *b)
 {
     const double h = shape->length, first = h * (0.5 - 0.5 / sqrt(3.0));
     for (int i = 0; i < 3; i++) {
@@ -101,18 +86,16 @@ static void rotation_at(const double *a, const double *b, double s, const double
     wb_rod_element_compose(first, q, rotation);
 }
 
-void wb_rod_element_rotation(const struct wb_rod_element_shape *shape,
-                             const struct wb_rod_strain *total, double s, const double first[4],
-                             double rotation[4])
+void wb_rod_element_rotation(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
+                             double s, const double first[4], double rotation[4])
 {
     double a[3], b[3];
     curvature_line(shape, total, a, b);
     rotation_at(a, b, s, first, rotation);
 }
 
-void wb_rod_element_place(const struct wb_rod_element_shape *shape,
-                          const struct wb_rod_strain *total, struct wb_rod_node *nodes,
-                          struct wb_rod_point *points)
+void wb_rod_element_place(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
+                          struct wb_rod_node *nodes, struct wb_rod_point *points)
 {
     const double h = shape->length;
     const double at[POINTS] = {h * (0.5 - 0.5 / sqrt(3.0)), h * (0.5 + 0.5 / sqrt(3.0))};
@@ -143,7 +126,7 @@ void wb_rod_element_turn_forces(struct wb_rod_point *point, const double *shear)
     turn(point->R, force + 1, point->m);
 }
 
-void wb_rod_element_add_forces(const struct wb_rod_element_shape *shape, int g,
+void wb_rod_element_add_forces(const struct wb_rod_shape *shape, int g,
                                const struct wb_rod_point *p, double *restrict f)
 {
     double arm[3];
@@ -257,8 +240,7 @@ static inline void add_block(double *restrict K, const struct point_tangent *k,
     }
 }
 
-void wb_rod_element_stiffness(const struct wb_rod_element_shape *shape,
-                              const struct wb_rod_point *points,
+void wb_rod_element_stiffness(const struct wb_rod_shape *shape, const struct wb_rod_point *points,
                               struct wb_rod_element_stiffness *restrict K)
 {
     memset(K, 0, sizeof *K);
@@ -275,7 +257,7 @@ void wb_rod_element_stiffness(const struct wb_rod_element_shape *shape,
     }
 }
 
-void wb_rod_element_strain_increment(const struct wb_rod_element_shape *shape, int g,
+void wb_rod_element_strain_increment(const struct wb_rod_shape *shape, int g,
                                      const struct wb_rod_point *point, const double *d,
                                      struct wb_rod_strain *increment)
 {

@@ -30,23 +30,17 @@
 #define WB_FE_ROD_ROD_ELEMENT_H
 
 #include "fe/rod/rod_section.h"
+#include "fe/rod/rod_shape.h"
 
 enum {
-    WB_ROD_ELEMENT_NODES = 3,
-    WB_ROD_ELEMENT_POINTS = 2,
+    WB_ROD_ELEMENT_NODES = WB_ROD_SHAPE_NODES,
+    WB_ROD_ELEMENT_POINTS = WB_ROD_SHAPE_POINTS,
     WB_ROD_ELEMENT_UNKNOWNS = 6 /* of a node */
 };
 
 struct wb_rod_node {
     double position[3];
     double rotation[4]; /* unit quaternion, scalar first */
-};
-
-/* Shape functions and derivatives by arc length at the Gauss points of an element of length h. */
-struct wb_rod_element_shape {
-    double length, weight;                                  /* m */
-    double N[WB_ROD_ELEMENT_POINTS][WB_ROD_ELEMENT_NODES];  /* 1 */
-    double dN[WB_ROD_ELEMENT_POINTS][WB_ROD_ELEMENT_NODES]; /* 1/m */
 };
 
 /* Strains of a Gauss point: stretch (axial, shears along y, z) and curvature (twist, ky, kz). */
@@ -69,33 +63,28 @@ struct wb_rod_element_stiffness {
             [WB_ROD_ELEMENT_UNKNOWNS * WB_ROD_ELEMENT_UNKNOWNS];
 };
 
-void wb_rod_element_shape_init(struct wb_rod_element_shape *shape, double h);
-
 /* Places nodes 1 and 2 of an element from its node 0 and the total stretches (with the 1) and
  * curvatures of its points; fills in R and slope of these. */
-void wb_rod_element_place(const struct wb_rod_element_shape *shape,
-                          const struct wb_rod_strain *total, struct wb_rod_node *nodes,
-                          struct wb_rod_point *points);
+void wb_rod_element_place(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
+                          struct wb_rod_node *nodes, struct wb_rod_point *points);
 
 /* Rotation at arc length s within an element whose first node has the rotation `first`. */
-void wb_rod_element_rotation(const struct wb_rod_element_shape *shape,
-                             const struct wb_rod_strain *total, double s, const double first[4],
-                             double rotation[4]);
+void wb_rod_element_rotation(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
+                             double s, const double first[4], double rotation[4]);
 
 /* Forces in space of a point from those of its section and its shear strains (y, z). */
 void wb_rod_element_turn_forces(struct wb_rod_point *point, const double *shear);
 
 /* Adds the internal forces of Gauss point g to f (3 nodes x 6). */
-void wb_rod_element_add_forces(const struct wb_rod_element_shape *shape, int g,
+void wb_rod_element_add_forces(const struct wb_rod_shape *shape, int g,
                                const struct wb_rod_point *point, double *restrict f);
 
 /* The element's tangent stiffness from its two points. */
-void wb_rod_element_stiffness(const struct wb_rod_element_shape *shape,
-                              const struct wb_rod_point *points,
+void wb_rod_element_stiffness(const struct wb_rod_shape *shape, const struct wb_rod_point *points,
                               struct wb_rod_element_stiffness *restrict stiffness);
 
 /* Increment of the strains of point g by increments d (3 nodes x 6). */
-void wb_rod_element_strain_increment(const struct wb_rod_element_shape *shape, int g,
+void wb_rod_element_strain_increment(const struct wb_rod_shape *shape, int g,
                                      const struct wb_rod_point *point, const double *d,
                                      struct wb_rod_strain *increment);
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fe/rod/rod_fibre.h"
 #include "fe/rod/section.h"
 
@@ -37,6 +38,7 @@ struct wb_rod_section {
     double *edge;                      /* (n_parts (n_rings + 1)) radii between the rings' cells */
     struct stiffness total;
     double shear_stiffness;
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* Gauss-Legendre points and weights of [0, 1], by Newton's method on the Legendre polynomials. */
@@ -155,15 +157,15 @@ static bool take_memory(struct wb_rod_section *s)
 {
     const size_t parts = (size_t)s->n_parts, n = (size_t)s->n, rings = (size_t)s->n_rings;
 
-    s->laws = calloc(parts, sizeof *s->laws);
-    s->tables = calloc(parts, sizeof *s->tables);
-    s->stiffness = calloc(parts, sizeof *s->stiffness);
-    s->y = calloc(n, sizeof *s->y);
-    s->z = calloc(n, sizeof *s->z);
-    s->area = calloc(n, sizeof *s->area);
-    s->radius = calloc(parts * rings, sizeof *s->radius);
-    s->edge = calloc(parts * (rings + 1), sizeof *s->edge);
-    return s->laws && s->tables && s->stiffness && s->y && s->z && s->area && s->radius && s->edge;
+    s->laws = wb_memory_take(&s->memory, parts, sizeof *s->laws);
+    s->tables = wb_memory_take(&s->memory, parts, sizeof *s->tables);
+    s->stiffness = wb_memory_take(&s->memory, parts, sizeof *s->stiffness);
+    s->y = wb_memory_take(&s->memory, n, sizeof *s->y);
+    s->z = wb_memory_take(&s->memory, n, sizeof *s->z);
+    s->area = wb_memory_take(&s->memory, n, sizeof *s->area);
+    s->radius = wb_memory_take(&s->memory, parts * rings, sizeof *s->radius);
+    s->edge = wb_memory_take(&s->memory, parts * (rings + 1), sizeof *s->edge);
+    return !s->memory.failed;
 }
 
 enum wb_status wb_rod_section_create(struct wb_rod_section **out, int n_parts,
@@ -205,14 +207,7 @@ void wb_rod_section_destroy(struct wb_rod_section *section)
 {
     if (!section)
         return;
-    free(section->laws);
-    free(section->tables);
-    free(section->stiffness);
-    free(section->y);
-    free(section->z);
-    free(section->area);
-    free(section->radius);
-    free(section->edge);
+    wb_memory_release(&section->memory);
     free(section);
 }
 

@@ -8,8 +8,8 @@
  *     N = sum s A,  Mx = sum t r A,  My = sum s z A,  Mz = -sum s y A.
  *
  * The rings sit at Gauss-Legendre points of r^2 over each part, so that area, second moments and
- * torsion constant are exact, and have equally spaced fibres, every other ring turned by half a
- * space.
+ * torsion constant are exact. The fibres of a ring are equally spaced, and every other ring is
+ * turned by half the angle between two fibres.
  */
 #ifndef WB_FE_ROD_ROD_SECTION_H
 #define WB_FE_ROD_ROD_SECTION_H

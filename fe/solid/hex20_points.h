@@ -1,5 +1,6 @@
-/* Sums over the nodes at the points of a hexahedron of 20 nodes, for what vectors the processor
- * has. Nothing is contracted: all processors give the same bits. */
+/* Sums over the nodes of a 20-node hexahedron at its integration points, with the widest vectors
+ * that the processor has. No product and sum are contracted to one operation, so that all
+ * processors give the same to the last bit. */
 #ifndef WB_FE_SOLID_HEX20_POINTS_H
 #define WB_FE_SOLID_HEX20_POINTS_H
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/units.h"
 #include "fe/solid/solid_body.h"
 #include "fe/solid/solid_private.h"
@@ -84,6 +85,7 @@ struct wb_solid {
     int negative_pivots;
     bool unstable; /* of the last equilibrium */
     char problem[240];
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* --- creation --- */
@@ -108,10 +110,11 @@ static enum wb_status copy_model(struct wb_solid *solid, const struct wb_solid_m
 
     solid->strand = (struct wb_solid_tip_strand){model->strand_length, model->strand_x};
     solid->n_supports = model->n_supports;
-    solid->supports = calloc((size_t)model->n_supports + 1, sizeof *solid->supports);
+    solid->supports =
+        wb_memory_take(&solid->memory, (size_t)model->n_supports + 1, sizeof *solid->supports);
     if (model->nodal_force)
-        solid->nodal_force = calloc(n, sizeof *solid->nodal_force);
-    if (!solid->supports || (model->nodal_force && !solid->nodal_force))
+        solid->nodal_force = wb_memory_take(&solid->memory, n, sizeof *solid->nodal_force);
+    if (solid->memory.failed)
         return wb_fail(WB_ERR_MEMORY, "out of memory for supports and loads");
     memcpy(solid->supports, model->supports, (size_t)model->n_supports * sizeof *solid->supports);
     if (model->nodal_force)
@@ -126,15 +129,14 @@ static enum wb_status take_memory(struct wb_solid *solid)
                                 &solid->step, &solid->base,      &solid->committed_force,
                                 &solid->held, &solid->held_force};
 
-    for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++) {
-        *vectors[i] = calloc(n, sizeof(double));
-        if (!*vectors[i])
-            return wb_fail(WB_ERR_MEMORY, "out of memory for %zu displacements", n);
-    }
-    solid->right = calloc((size_t)solid->body.n_equations * COLUMNS, sizeof *solid->right);
-    return solid->right
-               ? WB_OK
-               : wb_fail(WB_ERR_MEMORY, "out of memory for %d equations", solid->body.n_equations);
+    for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++)
+        *vectors[i] = wb_memory_take(&solid->memory, n, sizeof(double));
+    solid->right = wb_memory_take(&solid->memory, (size_t)solid->body.n_equations * COLUMNS,
+                                  sizeof *solid->right);
+    return solid->memory.failed
+               ? wb_fail(WB_ERR_MEMORY, "out of memory for %zu displacements and %d equations", n,
+                         solid->body.n_equations)
+               : WB_OK;
 }
 
 enum wb_status wb_solid_create(struct wb_solid **out, const struct wb_solid_model *model,
@@ -176,17 +178,7 @@ void wb_solid_destroy(struct wb_solid *solid)
     wb_solid_body_release(&solid->body);
     wb_solid_tip_release(&solid->tip);
     wb_solid_update_release(&solid->update);
-    free(solid->supports);
-    free(solid->nodal_force);
-    free(solid->u);
-    free(solid->committed);
-    free(solid->before);
-    free(solid->committed_force);
-    free(solid->right);
-    free(solid->step);
-    free(solid->base);
-    free(solid->held);
-    free(solid->held_force);
+    wb_memory_release(&solid->memory);
     free(solid);
 }
 

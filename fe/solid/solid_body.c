@@ -149,21 +149,20 @@ enum wb_status wb_solid_body_init(struct wb_solid_body *body, const struct wb_so
     const size_t contacts =
         body->has_contact ? (size_t)mesh->n_pairs * WB_JACKET_CONTACT_POINTS : 1;
 
-    body->parts = calloc((size_t)mesh->n_parts, sizeof *body->parts);
-    body->geometry = calloc(elements, sizeof *body->geometry);
-    body->equation = calloc(n, sizeof *body->equation);
-    body->committed = calloc(points, sizeof *body->committed);
-    body->trial = calloc(points, sizeof *body->trial);
-    body->committed_pairs = calloc(contacts, sizeof *body->committed_pairs);
-    body->trial_pairs = calloc(contacts, sizeof *body->trial_pairs);
-    body->weight = calloc(n, sizeof *body->weight);
-    body->force = calloc(n, sizeof *body->force);
-    body->element_stiffness = calloc(WB_HEX20_UNKNOWNS * WB_HEX20_UNKNOWNS, sizeof(double));
+    body->parts = wb_memory_take(&body->memory, (size_t)mesh->n_parts, sizeof *body->parts);
+    body->geometry = wb_memory_take(&body->memory, elements, sizeof *body->geometry);
+    body->equation = wb_memory_take(&body->memory, n, sizeof *body->equation);
+    body->committed = wb_memory_take(&body->memory, points, sizeof *body->committed);
+    body->trial = wb_memory_take(&body->memory, points, sizeof *body->trial);
+    body->committed_pairs = wb_memory_take(&body->memory, contacts, sizeof *body->committed_pairs);
+    body->trial_pairs = wb_memory_take(&body->memory, contacts, sizeof *body->trial_pairs);
+    body->weight = wb_memory_take(&body->memory, n, sizeof *body->weight);
+    body->force = wb_memory_take(&body->memory, n, sizeof *body->force);
+    body->element_stiffness =
+        wb_memory_take(&body->memory, WB_HEX20_UNKNOWNS * WB_HEX20_UNKNOWNS, sizeof(double));
 
     enum wb_status status = WB_OK;
-    if (!body->parts || !body->geometry || !body->equation || !body->committed || !body->trial ||
-        !body->committed_pairs || !body->trial_pairs || !body->weight || !body->force ||
-        !body->element_stiffness)
+    if (body->memory.failed)
         status = wb_fail(WB_ERR_MEMORY, "out of memory for %d elements", mesh->n_elements);
     if (status == WB_OK) {
         memcpy(body->parts, model->parts, (size_t)mesh->n_parts * sizeof *body->parts);
@@ -180,16 +179,7 @@ enum wb_status wb_solid_body_init(struct wb_solid_body *body, const struct wb_so
 
 void wb_solid_body_release(struct wb_solid_body *body)
 {
-    free(body->parts);
-    free(body->geometry);
-    free(body->equation);
-    free(body->committed);
-    free(body->trial);
-    free(body->committed_pairs);
-    free(body->trial_pairs);
-    free(body->weight);
-    free(body->force);
-    free(body->element_stiffness);
+    wb_memory_release(&body->memory);
     wb_layered_destroy(body->tangent);
     *body = (struct wb_solid_body){0};
 }

@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 
+#include "base/memory.h"
 #include "base/status.h"
 #include "fe/linear/layered.h"
 #include "fe/solid/hex20.h"
@@ -31,6 +32,7 @@ struct wb_solid_body {
     struct wb_layered *tangent; /* of the last evaluation with stiffness */
     double *force;              /* (3 n_nodes) N: internal, of the last evaluation */
     double *element_stiffness;  /* workspace */
+    struct wb_memory memory;    /* of all arrays */
 };
 
 /* What an evaluation found. */

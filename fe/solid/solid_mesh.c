@@ -33,12 +33,12 @@ enum wb_status wb_solid_mesh_init(struct wb_solid_mesh *mesh, int n_nodes, int n
 
     struct wb_solid_mesh made = {
         .n_nodes = n_nodes, .n_elements = n_elements, .n_parts = 1, .n_layers = 1};
-    made.node = calloc((size_t)n_nodes, sizeof *made.node);
-    made.element = calloc((size_t)n_elements, sizeof *made.element);
-    made.part = calloc((size_t)n_elements, sizeof *made.part);
-    made.layer = calloc(2, sizeof *made.layer);
-    made.link = calloc(1, sizeof *made.link);
-    if (!made.node || !made.element || !made.part || !made.layer || !made.link) {
+    made.node = wb_memory_take(&made.memory, (size_t)n_nodes, sizeof *made.node);
+    made.element = wb_memory_take(&made.memory, (size_t)n_elements, sizeof *made.element);
+    made.part = wb_memory_take(&made.memory, (size_t)n_elements, sizeof *made.part);
+    made.layer = wb_memory_take(&made.memory, 2, sizeof *made.layer);
+    made.link = wb_memory_take(&made.memory, 1, sizeof *made.link);
+    if (made.memory.failed) {
         wb_solid_mesh_release(&made);
         return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %d elements", n_elements);
     }
@@ -49,15 +49,7 @@ enum wb_status wb_solid_mesh_init(struct wb_solid_mesh *mesh, int n_nodes, int n
 
 void wb_solid_mesh_release(struct wb_solid_mesh *mesh)
 {
-    free(mesh->node);
-    free(mesh->element);
-    free(mesh->part);
-    free(mesh->layer);
-    free(mesh->link);
-    free(mesh->pair);
-    free(mesh->clamp);
-    free(mesh->tip_face);
-    free(mesh->axis);
+    wb_memory_release(&mesh->memory);
     memset(mesh, 0, sizeof *mesh);
 }
 
@@ -165,7 +157,8 @@ struct section {
                        midside nodes */
     int *part;      /* (n_quads) */
     int n_edges;
-    int (*edge)[2][3]; /* (n_edges), inner and outer: corner, next corner, node between */
+    int (*edge)[2][3];       /* (n_edges), inner and outer: corner, next corner, node between */
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* Node numbers on a grid of half element steps; -1 in the middle of elements, where these elements
@@ -182,23 +175,19 @@ static int *lattice_at(const struct lattice *lattice, int i, int j)
 
 static void section_release(struct section *s)
 {
-    free(s->at);
-    free(s->halfway);
-    free(s->quad);
-    free(s->part);
-    free(s->edge);
+    wb_memory_release(&s->memory);
 }
 
 static enum wb_status section_init(struct section *s, int most_nodes, int most_quads,
                                    int most_edges)
 {
     *s = (struct section){0};
-    s->at = calloc((size_t)most_nodes, sizeof *s->at);
-    s->halfway = calloc((size_t)most_nodes, sizeof *s->halfway);
-    s->quad = calloc((size_t)most_quads, sizeof *s->quad);
-    s->part = calloc((size_t)most_quads, sizeof *s->part);
-    s->edge = calloc((size_t)most_edges + 1, sizeof *s->edge);
-    if (!s->at || !s->halfway || !s->quad || !s->part || !s->edge) {
+    s->at = wb_memory_take(&s->memory, (size_t)most_nodes, sizeof *s->at);
+    s->halfway = wb_memory_take(&s->memory, (size_t)most_nodes, sizeof *s->halfway);
+    s->quad = wb_memory_take(&s->memory, (size_t)most_quads, sizeof *s->quad);
+    s->part = wb_memory_take(&s->memory, (size_t)most_quads, sizeof *s->part);
+    s->edge = wb_memory_take(&s->memory, (size_t)most_edges + 1, sizeof *s->edge);
+    if (s->memory.failed) {
         section_release(s);
         return wb_fail(WB_ERR_MEMORY, "no memory for a section of %d elements", most_quads);
     }
@@ -475,14 +464,14 @@ static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s,
 
     struct wb_solid_mesh made;
     WB_TRY(wb_solid_mesh_init(&made, (int)nodes, (int)elements));
-    free(made.layer);
-    free(made.link);
     made.n_layers = slices + 1;
-    made.layer = calloc((size_t)slices + 2, sizeof *made.layer);
-    made.link = calloc((size_t)slices + 1, sizeof *made.link);
+    made.layer = wb_memory_take(&made.memory, (size_t)slices + 2, sizeof *made.layer);
+    made.link = wb_memory_take(&made.memory, (size_t)slices + 1, sizeof *made.link);
     made.n_pairs = slices * s->n_edges;
-    made.pair = s->n_edges > 0 ? calloc((size_t)made.n_pairs, sizeof *made.pair) : NULL;
-    if (!made.layer || !made.link || (s->n_edges > 0 && !made.pair)) {
+    made.pair = s->n_edges > 0
+                    ? wb_memory_take(&made.memory, (size_t)made.n_pairs, sizeof *made.pair)
+                    : NULL;
+    if (made.memory.failed) {
         wb_solid_mesh_release(&made);
         return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %lld elements", elements);
     }
@@ -509,10 +498,10 @@ static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s,
 static enum wb_status mark_wire(struct wb_solid_mesh *mesh, const struct section *s, int slices,
                                 int centre)
 {
-    mesh->clamp = calloc((size_t)s->n, sizeof *mesh->clamp);
-    mesh->tip_face = calloc((size_t)s->n_quads, sizeof *mesh->tip_face);
-    mesh->axis = calloc(2 * (size_t)slices + 1, sizeof *mesh->axis);
-    if (!mesh->clamp || !mesh->tip_face || !mesh->axis)
+    mesh->clamp = wb_memory_take(&mesh->memory, (size_t)s->n, sizeof *mesh->clamp);
+    mesh->tip_face = wb_memory_take(&mesh->memory, (size_t)s->n_quads, sizeof *mesh->tip_face);
+    mesh->axis = wb_memory_take(&mesh->memory, 2 * (size_t)slices + 1, sizeof *mesh->axis);
+    if (mesh->memory.failed)
         return wb_fail(WB_ERR_MEMORY, "no memory for a mesh of %d elements", mesh->n_elements);
 
     mesh->n_clamp = s->n;

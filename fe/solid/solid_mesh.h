@@ -14,6 +14,7 @@
 #ifndef WB_FE_SOLID_SOLID_MESH_H
 #define WB_FE_SOLID_SOLID_MESH_H
 
+#include "base/memory.h"
 #include "base/status.h"
 
 enum {
@@ -55,6 +56,7 @@ struct wb_solid_mesh {
     struct wb_solid_face *tip_face; /* (n_tip_faces), all faces at the free end */
     int n_axis;
     int *axis; /* (n_axis), nodes on the axis from the clamp to the tip, halfway nodes too */
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* What to sweep. Part 0 is a full circle, each further part a ring around the one before. */

@@ -2,10 +2,10 @@
  *
  * A linear increment moves a turning section along its tangent: it lengthens everything by half the
  * square of the rotation, and the next Newton iteration sees huge axial forces. So a swept wire's
- * increment is split, section by section, in a rotation and a remainder; the rotations are applied
- * as finite ones to the sections and to the chords between them. To first order this is the linear
- * increment, so Newton's method keeps its order; it needs about half the iterations. Other meshes
- * are updated linearly.
+ * increment is split, section by section, into a rotation and a remainder; the rotations are
+ * applied as finite ones to the sections and to the chords between them. To first order this is the
+ * linear increment, so Newton's method keeps its order; it needs about half the iterations. Other
+ * meshes are updated linearly.
  */
 #ifndef WB_FE_SOLID_SOLID_UPDATE_H
 #define WB_FE_SOLID_SOLID_UPDATE_H

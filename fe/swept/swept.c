@@ -70,26 +70,33 @@ const char *wb_swept_instructions_name(enum wb_swept_instructions instructions)
     return names[instructions == WB_SWEPT_BEST ? best_supported() : instructions];
 }
 
-enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)
+/* Zeroed; NULL without memory. */
+static void *allocate(size_t count, size_t size)
 {
-    *out = NULL;
     if (size == 0 || count > SIZE_MAX / 2 / size)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu values", count);
+        return NULL;
     const size_t bytes =
         (count * size + WB_SWEPT_ALIGNMENT) / WB_SWEPT_ALIGNMENT * WB_SWEPT_ALIGNMENT;
     void *memory = aligned_alloc(WB_SWEPT_ALIGNMENT, bytes);
-    if (!memory)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu values", count);
-    memset(memory, 0, bytes);
-    *out = memory;
-    return WB_OK;
+    return memory ? memset(memory, 0, bytes) : NULL;
 }
 
-enum wb_status wb_swept_kernel_convert(void **out, bool is_double, const double *numbers,
-                                       size_t count)
+enum wb_status wb_swept_allocate(void **out, size_t count, size_t size)
 {
-    WB_TRY(wb_swept_allocate(out, count, wb_swept_kernel_real_size(is_double)));
-    for (size_t i = 0; i < count; i++)
-        wb_swept_kernel_put(is_double, *out, (ptrdiff_t)i, numbers[i]);
-    return WB_OK;
+    *out = allocate(count, size);
+    return *out ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for %zu values", count);
+}
+
+void *wb_swept_take(struct wb_memory *memory, size_t count, size_t size)
+{
+    return wb_memory_keep(memory, allocate(count, size));
+}
+
+void *wb_swept_kernel_convert(struct wb_memory *memory, bool is_double, const double *numbers,
+                              size_t count)
+{
+    void *const out = wb_swept_take(memory, count, wb_swept_kernel_real_size(is_double));
+    for (size_t i = 0; out && i < count; i++)
+        wb_swept_kernel_put(is_double, out, (ptrdiff_t)i, numbers[i]);
+    return out;
 }

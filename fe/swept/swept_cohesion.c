@@ -30,6 +30,7 @@ struct wb_swept_cohesion {
     int *first;      /* (n_blocks + 1) */
     int *strip_of;   /* (n_nodes x n_stations); -1: not bonded */
     void *rows, *damage;
+    struct wb_memory memory; /* of all arrays but strip and numbers, which grow */
 };
 
 /* Where a node of the ring is bonded in the reference state. */
@@ -251,15 +252,18 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
 
     WB_TRY(check(s));
     c->kernel = kernels[c->tape_model->instructions][is_double];
-    c->first = calloc(n_blocks + 1, sizeof *c->first);
-    c->strip_of = calloc((size_t)layout->n_nodes * (size_t)layout->n_stations, sizeof *c->strip_of);
+    c->first = wb_memory_take(&c->memory, n_blocks + 1, sizeof *c->first);
+    c->strip_of = wb_memory_take(&c->memory, (size_t)layout->n_nodes * (size_t)layout->n_stations,
+                                 sizeof *c->strip_of);
     if (!c->first || !c->strip_of)
         return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     WB_TRY(make_strips(c, wires, bond));
-    WB_TRY(wb_swept_kernel_convert(&c->rows, is_double, c->numbers,
-                                   (size_t)c->n_strips * ROWS * LANES));
-    WB_TRY(wb_swept_allocate(&c->damage, (size_t)c->n_strips * LANES,
-                             wb_swept_kernel_real_size(is_double)));
+    c->rows = wb_swept_kernel_convert(&c->memory, is_double, c->numbers,
+                                      (size_t)c->n_strips * ROWS * LANES);
+    c->damage = wb_swept_take(&c->memory, (size_t)c->n_strips * LANES,
+                              wb_swept_kernel_real_size(is_double));
+    if (c->memory.failed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a bond");
     c->model = (struct wb_swept_cohesion_kernel_model){
         .stride = layout->stride,
         .first = c->first,
@@ -305,10 +309,7 @@ void wb_swept_cohesion_destroy(struct wb_swept_cohesion *cohesion)
         return;
     free(cohesion->strip);
     free(cohesion->numbers);
-    free(cohesion->first);
-    free(cohesion->strip_of);
-    free(cohesion->rows);
-    free(cohesion->damage);
+    wb_memory_release(&cohesion->memory);
     free(cohesion);
 }
 

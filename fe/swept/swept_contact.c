@@ -51,6 +51,7 @@ struct wb_swept_contact {
     int *node_memory, *side_memory;
     double (*weight_memory)[3];
     void *narrow_weight_memory;
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* k of two wires. */
@@ -212,49 +213,33 @@ static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int
     return WB_OK;
 }
 
-static enum wb_status allocate_rows(struct wb_swept_contact *c)
-{
-    const size_t wires = (size_t)c->model.n_wires, pairs = (size_t)c->most_pairs;
-    const size_t stride = (size_t)c->model.stride, row = (size_t)c->model.row;
-    const size_t real = real_size(c);
-    void *rows[3] = {NULL, NULL, NULL};
-
-    enum wb_status status = wb_swept_allocate(&rows[0], wires * 3 * row, sizeof(double));
-    if (status == WB_OK)
-        status =
-            wb_swept_allocate(&rows[1], wires * WB_SWEPT_CONTACT_FIXED * stride, sizeof(double));
-    if (status == WB_OK)
-        status =
-            wb_swept_allocate(&rows[2], pairs * WB_SWEPT_CONTACT_PAIR * stride, sizeof(double));
-    c->centre_memory = rows[0];
-    c->fixed_memory = rows[1];
-    c->rows_memory = rows[2];
-    WB_TRY(status);
-    WB_TRY(wb_swept_allocate(&c->turn_memory, wires * WB_SWEPT_CONTACT_TURNS * row, real));
-    WB_TRY(wb_swept_allocate(&c->inverse_memory, wires * WB_SWEPT_CONTACT_INVERSES * stride, real));
-    return wb_swept_allocate(&c->load_memory, pairs * WB_SWEPT_CONTACT_LOAD * row, real);
-}
-
 static enum wb_status allocate(struct wb_swept_contact *c, int n_surface)
 {
     struct wb_swept_contact_model *m = &c->model;
+    struct wb_memory *const memory = &c->memory;
     const size_t wires = (size_t)m->n_wires, pairs = (size_t)c->most_pairs;
     const size_t blocks = (size_t)m->n_blocks, surface = (size_t)n_surface;
+    const size_t stride = (size_t)m->stride, row = (size_t)m->row, real = real_size(c);
+    const size_t fixed = wires * WB_SWEPT_CONTACT_FIXED * stride;
 
-    WB_TRY(allocate_rows(c));
-    WB_TRY(wb_swept_allocate(&c->narrow_weight_memory, 3 * surface, real_size(c)));
-    m->wire = calloc(wires, sizeof *m->wire);
-    m->pair = calloc(pairs, sizeof *m->pair);
-    m->sums = calloc(blocks, sizeof *m->sums);
-    c->radius = calloc(2 * wires, sizeof *c->radius);
-    c->searched = calloc(wires * 3 * (size_t)m->n_stations, sizeof *c->searched);
-    c->active_memory = calloc(pairs * blocks, 1);
-    c->window_memory = calloc(4 * pairs * blocks, sizeof *c->window_memory);
-    c->node_memory = calloc(surface, sizeof *c->node_memory);
-    c->side_memory = calloc(2 * pairs, sizeof *c->side_memory);
-    c->weight_memory = calloc(surface, sizeof *c->weight_memory);
-    if (!(m->wire && m->pair && m->sums && c->radius && c->searched && c->active_memory &&
-          c->window_memory && c->node_memory && c->side_memory && c->weight_memory))
+    c->centre_memory = wb_swept_take(memory, wires * 3 * row, sizeof(double));
+    c->fixed_memory = wb_swept_take(memory, fixed, sizeof(double));
+    c->rows_memory = wb_swept_take(memory, pairs * WB_SWEPT_CONTACT_PAIR * stride, sizeof(double));
+    c->turn_memory = wb_swept_take(memory, wires * WB_SWEPT_CONTACT_TURNS * row, real);
+    c->inverse_memory = wb_swept_take(memory, wires * WB_SWEPT_CONTACT_INVERSES * stride, real);
+    c->load_memory = wb_swept_take(memory, pairs * WB_SWEPT_CONTACT_LOAD * row, real);
+    c->narrow_weight_memory = wb_swept_take(memory, 3 * surface, real);
+    m->wire = wb_memory_take(memory, wires, sizeof *m->wire);
+    m->pair = wb_memory_take(memory, pairs, sizeof *m->pair);
+    m->sums = wb_memory_take(memory, blocks, sizeof *m->sums);
+    c->radius = wb_memory_take(memory, 2 * wires, sizeof *c->radius);
+    c->searched = wb_memory_take(memory, wires * 3 * (size_t)m->n_stations, sizeof *c->searched);
+    c->active_memory = wb_memory_take(memory, pairs * blocks, 1);
+    c->window_memory = wb_memory_take(memory, 4 * pairs * blocks, sizeof *c->window_memory);
+    c->node_memory = wb_memory_take(memory, surface, sizeof *c->node_memory);
+    c->side_memory = wb_memory_take(memory, 2 * pairs, sizeof *c->side_memory);
+    c->weight_memory = wb_memory_take(memory, surface, sizeof *c->weight_memory);
+    if (memory->failed)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of %d wires", m->n_wires);
     c->youngs_modulus = c->radius + m->n_wires;
     return WB_OK;
@@ -375,23 +360,7 @@ void wb_swept_contact_destroy(struct wb_swept_contact *contact)
 {
     if (!contact)
         return;
-    free(contact->centre_memory);
-    free(contact->fixed_memory);
-    free(contact->rows_memory);
-    free(contact->turn_memory);
-    free(contact->inverse_memory);
-    free(contact->load_memory);
-    free(contact->narrow_weight_memory);
-    free(contact->model.wire);
-    free(contact->model.pair);
-    free(contact->model.sums);
-    free(contact->radius);
-    free(contact->searched);
-    free(contact->active_memory);
-    free(contact->window_memory);
-    free(contact->node_memory);
-    free(contact->side_memory);
-    free(contact->weight_memory);
+    wb_memory_release(&contact->memory);
     free(contact);
 }
 
@@ -904,86 +873,40 @@ void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
 
 /* --- checkpoints --- */
 
-enum transfer_kind {
-    TRANSFER_SIZE,
-    TRANSFER_SAVE,
-    TRANSFER_RESTORE
-};
-
-struct transfer {
-    enum transfer_kind what;
-    unsigned char *at;
-    size_t size;
-};
-
-static void carry(struct transfer *t, void *data, size_t size)
+/* All pairs there is room for: those that are unused now have memory that later ones get. */
+void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint)
 {
-    if (t->what == TRANSFER_SAVE)
-        memcpy(t->at + t->size, data, size);
-    if (t->what == TRANSFER_RESTORE)
-        memcpy(data, t->at + t->size, size);
-    t->size += size;
-}
+    struct wb_swept_contact_model *m = &contact->model;
+    const size_t wires = (size_t)m->n_wires, stations = (size_t)m->n_stations;
+    const size_t stride = (size_t)m->stride, row = (size_t)m->row;
+    const size_t loads = real_size(contact) * (WB_SWEPT_CONTACT_LOAD * row - 2 * stride);
 
-/* A checkpoint's numbers in their order; all pairs there is room for, so that its size is fixed. */
-static void carry_all(struct wb_swept_contact *c, struct transfer *t)
-{
-    struct wb_swept_contact_model *m = &c->model;
-    const size_t stations = sizeof(double) * (size_t)m->n_stations;
-    const size_t loads =
-        real_size(c) * (WB_SWEPT_CONTACT_LOAD * (size_t)m->row - 2 * (size_t)m->stride);
-
-    carry(t, &c->step, sizeof c->step);
-    carry(t, &m->started, sizeof m->started);
-    carry(t, &m->n_pairs, sizeof m->n_pairs);
-    carry(t, c->searched, 3 * stations * (size_t)m->n_wires);
-    for (int w = 0; w < m->n_wires; w++) {
-        for (int i = 0; i < 3; i++)
-            carry(t, centre_row(c, w, i), stations);
-        for (int i = WB_SWEPT_CONTACT_P; i < WB_SWEPT_CONTACT_TANGENT; i++)
-            carry(t, fixed_row(c, w, i), stations);
-    }
-    for (int p = 0; p < c->most_pairs; p++) {
+    wb_checkpoint_enter(checkpoint, "contact");
+    wb_checkpoint_visit_member(checkpoint, contact, step);
+    wb_checkpoint_visit_member(checkpoint, m, started);
+    wb_checkpoint_visit_member(checkpoint, m, n_pairs);
+    wb_checkpoint_visit(checkpoint, "searched", contact->searched,
+                        wires * 3 * stations * sizeof(double));
+    wb_checkpoint_visit(checkpoint, "centre", contact->centre_memory,
+                        wires * 3 * row * sizeof(double));
+    wb_checkpoint_visit(checkpoint, "fixed", contact->fixed_memory,
+                        wires * WB_SWEPT_CONTACT_FIXED * stride * sizeof(double));
+    for (int p = 0; p < contact->most_pairs; p++) {
         struct wb_swept_contact_pair_rows *pair = &m->pair[p];
-        carry(t, pair->wire, sizeof pair->wire);
-        carry(t, pair->active, (size_t)m->n_blocks);
-        for (int i = 0; i < WB_SWEPT_CONTACT_PAIR; i++)
-            carry(t, pair_row(c, pair, i), stations);
-        carry(t, pair->load, loads);
+        wb_checkpoint_enter(checkpoint, "pair %d", p + 1);
+        wb_checkpoint_visit_member(checkpoint, pair, wire);
+        wb_checkpoint_visit(checkpoint, "active", pair->active, (size_t)m->n_blocks);
+        wb_checkpoint_visit(checkpoint, "rows", pair->rows,
+                            WB_SWEPT_CONTACT_PAIR * stride * sizeof(double));
+        wb_checkpoint_visit(checkpoint, "load", pair->load, loads);
+        wb_checkpoint_leave(checkpoint);
     }
-}
-
-/* Sizing and saving change nothing, but share the walk with restoring. */
-static struct wb_swept_contact *as_changeable(const struct wb_swept_contact *contact)
-{
-    struct wb_swept_contact *out;
-    memcpy(&out, &contact, sizeof out);
-    return out;
-}
-
-size_t wb_swept_contact_state_size(const struct wb_swept_contact *contact)
-{
-    struct transfer t = {TRANSFER_SIZE, NULL, 0};
-    carry_all(as_changeable(contact), &t);
-    return t.size;
-}
-
-void wb_swept_contact_save(const struct wb_swept_contact *contact, void *state)
-{
-    struct transfer t = {TRANSFER_SAVE, state, 0};
-    carry_all(as_changeable(contact), &t);
-}
-
-void wb_swept_contact_restore(struct wb_swept_contact *contact, const void *state)
-{
-    struct transfer t = {TRANSFER_RESTORE, NULL, 0};
-
-    memcpy(&t.at, &state, sizeof t.at);
-    carry_all(contact, &t);
-    for (int p = 0; p < contact->model.n_pairs; p++) {
-        struct wb_swept_contact_pair_rows *pair = &contact->model.pair[p];
-        begin_pair(contact, pair, pair->wire[0], pair->wire[1]);
-        find_windows(contact, pair);
+    wb_checkpoint_leave(checkpoint);
+    if (!checkpoint->restores || checkpoint->status != WB_OK)
+        return;
+    for (int p = 0; p < m->n_pairs; p++) {
+        begin_pair(contact, &m->pair[p], m->pair[p].wire[0], m->pair[p].wire[1]);
+        find_windows(contact, &m->pair[p]);
     }
     list_sides(contact);
 }

@@ -34,6 +34,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/checkpoint.h"
 #include "base/reason.h"
 #include "base/status.h"
 #include "fe/swept/swept.h"
@@ -59,7 +60,7 @@ struct wb_swept_contact_settings {
     double reach;         /* gap at which wires become neighbours, of the smallest radius; 0.5 */
     int refresh_interval; /* steps between refreshes of the shifts; 50 */
     struct wb_swept_range counted; /* points of contact, in energies; all are computed */
-    struct wb_reason *reason;      /* gets why a step was lost, borrowed; NULL: the log gets it */
+    struct wb_reason *reason;      /* borrowed; holds why a step failed. NULL: that is logged */
     int most_pairs;        /* of neighbours; 0: 4 a wire (touching circles have at most 3) */
     bool double_precision; /* of the forces; else float */
     enum wb_swept_instructions instructions;
@@ -116,9 +117,7 @@ int wb_swept_contact_pairs(const struct wb_swept_contact *contact);
 void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair, int station,
                                 struct wb_swept_contact_point *out);
 
-/* A checkpoint: what a contact of the same wires and settings needs to continue bit for bit. */
-size_t wb_swept_contact_state_size(const struct wb_swept_contact *contact);
-void wb_swept_contact_save(const struct wb_swept_contact *contact, void *state);
-void wb_swept_contact_restore(struct wb_swept_contact *contact, const void *state);
+/* Saves or restores what a contact of the same wires and settings needs to continue bit for bit. */
+void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -30,13 +30,15 @@ struct wb_swept_hex {
     void *constants; /* the same in the kernel's type */
     void *table;
     int n_points;
-    int first_added; /* node */
+    int first_added;         /* node */
+    struct wb_memory memory; /* of all arrays */
 };
 
 struct wb_swept_hex_state {
     const struct wb_swept_hex *hex;
     void *history, *workspace;
-    size_t history_size; /* numbers */
+    size_t history_size;     /* numbers */
+    struct wb_memory memory; /* of both */
 };
 
 static double shear_modulus(const struct wb_material *m)
@@ -56,8 +58,9 @@ static enum wb_status make_table(struct wb_swept_hex *hex)
 
     radial.youngs_modulus = 3.0 * shear_modulus(&radial);
     WB_TRY(wb_hardening_tabulate_octaves(&radial, TERMS, &table[0][0]));
-    return wb_swept_kernel_convert(&hex->table, hex->model.double_precision, &table[0][0],
-                                   sizeof table / sizeof table[0][0]);
+    hex->table = wb_swept_kernel_convert(&hex->memory, hex->model.double_precision, &table[0][0],
+                                         sizeof table / sizeof table[0][0]);
+    return WB_OK;
 }
 
 static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
@@ -96,7 +99,7 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
     const struct wb_swept_section *section = hex->model.section;
     const size_t count = (size_t)section->n_quads * CONSTANTS;
 
-    hex->rows = calloc(count, sizeof *hex->rows);
+    hex->rows = wb_memory_take(&hex->memory, count, sizeof *hex->rows);
     if (!hex->rows)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d elements of a section", section->n_quads);
     for (int e = 0; e < section->n_quads; e++) {
@@ -107,7 +110,9 @@ static enum wb_status make_constants(struct wb_swept_hex *hex)
             memcpy(at[a], section->node[section->quad[e][a]], sizeof at[a]);
         fill_row(&hex->model, &quad, (const double(*)[2])at, hex->rows + e * CONSTANTS);
     }
-    return wb_swept_kernel_convert(&hex->constants, hex->model.double_precision, hex->rows, count);
+    hex->constants =
+        wb_swept_kernel_convert(&hex->memory, hex->model.double_precision, hex->rows, count);
+    return WB_OK;
 }
 
 static enum wb_status check(const struct wb_swept_hex_model *m)
@@ -168,6 +173,8 @@ static enum wb_status fill(struct wb_swept_hex *hex)
     hex->n_points = m->formulation == WB_SWEPT_HEX_ONE_POINT ? 1 : 4;
     WB_TRY(make_constants(hex));
     WB_TRY(make_table(hex));
+    if (hex->memory.failed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
     hex->numbers = (struct wb_swept_hex_kernel_model){
         .layout = wb_swept_layout(m->section->n_nodes, m->n_elements + 1),
         .n_quads = m->section->n_quads,
@@ -223,9 +230,7 @@ void wb_swept_hex_destroy(struct wb_swept_hex *hex)
 {
     if (!hex)
         return;
-    free(hex->rows);
-    free(hex->constants);
-    free(hex->table);
+    wb_memory_release(&hex->memory);
     free(hex);
 }
 
@@ -278,12 +283,11 @@ enum wb_status wb_swept_hex_state_create(struct wb_swept_hex_state **out,
         return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
     state->hex = hex;
     state->history_size = points * WB_SWEPT_HEX_KERNEL_HISTORY;
-    enum wb_status status = wb_swept_allocate(&state->history, state->history_size, real_size(hex));
-    if (status == WB_OK)
-        status = wb_swept_allocate(&state->workspace, vectors * WB_SWEPT_LANES, real_size(hex));
-    if (status != WB_OK) {
+    state->history = wb_swept_take(&state->memory, state->history_size, real_size(hex));
+    state->workspace = wb_swept_take(&state->memory, vectors * WB_SWEPT_LANES, real_size(hex));
+    if (state->memory.failed) {
         wb_swept_hex_state_destroy(state);
-        return status;
+        return wb_fail(WB_ERR_MEMORY, "no memory for a wire");
     }
     *out = state;
     return WB_OK;
@@ -293,8 +297,7 @@ void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state)
 {
     if (!state)
         return;
-    free(state->history);
-    free(state->workspace);
+    wb_memory_release(&state->memory);
     free(state);
 }
 

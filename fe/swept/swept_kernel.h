@@ -54,8 +54,8 @@ static inline double wb_swept_kernel_get(bool is_double, const void *numbers, pt
     return is_double ? ((const double *)numbers)[at] : (double)((const float *)numbers)[at];
 }
 
-/* A copy of `count` numbers in a kernel's type, as wb_swept_allocate() gives memory. */
-WB_MUST_CHECK enum wb_status wb_swept_kernel_convert(void **out, bool is_double,
-                                                     const double *numbers, size_t count);
+/* A copy of `count` numbers in a kernel's type, as wb_swept_take() gives memory. */
+void *wb_swept_kernel_convert(struct wb_memory *memory, bool is_double, const double *numbers,
+                              size_t count);
 
 #endif

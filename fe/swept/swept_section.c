@@ -107,12 +107,13 @@ static enum wb_status allocate(struct wb_swept_section *section, int n_nodes, in
                                int n_outline)
 {
     *section = (struct wb_swept_section){.n_nodes = n_nodes, .n_quads = n_quads};
-    section->node = calloc((size_t)n_nodes, sizeof *section->node);
-    section->share = calloc((size_t)n_nodes, sizeof *section->share);
-    section->quad = calloc((size_t)n_quads, sizeof *section->quad);
-    section->outline = calloc((size_t)n_outline + 1, sizeof *section->outline);
+    section->node = wb_memory_take(&section->memory, (size_t)n_nodes, sizeof *section->node);
+    section->share = wb_memory_take(&section->memory, (size_t)n_nodes, sizeof *section->share);
+    section->quad = wb_memory_take(&section->memory, (size_t)n_quads, sizeof *section->quad);
+    section->outline =
+        wb_memory_take(&section->memory, (size_t)n_outline + 1, sizeof *section->outline);
     section->n_outline = n_outline;
-    if (section->node && section->share && section->quad && section->outline)
+    if (!section->memory.failed)
         return WB_OK;
     wb_swept_section_release(section);
     return wb_fail(WB_ERR_MEMORY, "no memory for a section of %d elements", n_quads);
@@ -120,10 +121,7 @@ static enum wb_status allocate(struct wb_swept_section *section, int n_nodes, in
 
 void wb_swept_section_release(struct wb_swept_section *section)
 {
-    free(section->node);
-    free(section->share);
-    free(section->quad);
-    free(section->outline);
+    wb_memory_release(&section->memory);
     *section = (struct wb_swept_section){0};
 }
 

@@ -7,6 +7,7 @@
 #ifndef WB_FE_SWEPT_SWEPT_SECTION_H
 #define WB_FE_SWEPT_SWEPT_SECTION_H
 
+#include "base/memory.h"
 #include "base/status.h"
 
 struct wb_swept_section {
@@ -19,6 +20,7 @@ struct wb_swept_section {
     int *outline;   /* (n_outline): nodes, counter-clockwise, from the +y axis of a circle */
     double *share;  /* (n_nodes): of the area, by the integrals of N_a; their sum is 1 */
     double area;    /* m2 */
+    struct wb_memory memory; /* of all arrays */
 };
 
 /* Integrals over a quadrilateral, of which the matrices of its elements are made. */

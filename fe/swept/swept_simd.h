@@ -73,6 +73,34 @@ struct wide {
     part of[PARTS];
 };
 
+#if defined(__SSE2__)
+/* The registers of these vectors, and the processor's operations on them: OF_REAL(max) is
+ * _mm256_max_ps of 8 floats. */
+#if BYTES == 64
+typedef __m512 register_float;
+typedef __m512d register_double;
+#define OF_FLOAT(operation) _mm512_##operation##_ps
+#define OF_DOUBLE(operation) _mm512_##operation##_pd
+#elif BYTES == 32
+typedef __m256 register_float;
+typedef __m256d register_double;
+#define OF_FLOAT(operation) _mm256_##operation##_ps
+#define OF_DOUBLE(operation) _mm256_##operation##_pd
+#else
+typedef __m128 register_float;
+typedef __m128d register_double;
+#define OF_FLOAT(operation) _mm_##operation##_ps
+#define OF_DOUBLE(operation) _mm_##operation##_pd
+#endif
+#if REAL_IS_DOUBLE
+typedef register_double packed;
+#define OF_REAL(operation) OF_DOUBLE(operation)
+#else
+typedef register_float packed;
+#define OF_REAL(operation) OF_FLOAT(operation)
+#endif
+#endif
+
 INLINE vec splat(real x)
 {
     return x - (vec){0};
@@ -117,16 +145,8 @@ INLINE vec inverse_root(vec x)
 #if BYTES == 64 && !REAL_IS_DOUBLE
     const vec y = (vec)_mm512_rsqrt14_ps((__m512)x);
     return y * (splat(1.5f) - splat(0.5f) * x * y * y);
-#elif BYTES == 64
-    return 1.0 / (vec)_mm512_sqrt_pd((__m512d)x);
-#elif BYTES == 32 && !REAL_IS_DOUBLE
-    return 1.0f / (vec)_mm256_sqrt_ps((__m256)x);
-#elif BYTES == 32
-    return 1.0 / (vec)_mm256_sqrt_pd((__m256d)x);
-#elif defined(__SSE2__) && !REAL_IS_DOUBLE
-    return 1.0f / (vec)_mm_sqrt_ps((__m128)x);
 #elif defined(__SSE2__)
-    return 1.0 / (vec)_mm_sqrt_pd((__m128d)x);
+    return (real)1 / (vec)OF_REAL(sqrt)((packed)x);
 #else
     vec out;
     for (int i = 0; i < LANES; i++)
@@ -137,12 +157,8 @@ INLINE vec inverse_root(vec x)
 
 INLINE part part_root(part x)
 {
-#if BYTES == 64
-    return (part)_mm512_sqrt_pd((__m512d)x);
-#elif BYTES == 32
-    return (part)_mm256_sqrt_pd((__m256d)x);
-#elif defined(__SSE2__)
-    return (part)_mm_sqrt_pd((__m128d)x);
+#if defined(__SSE2__)
+    return (part)OF_DOUBLE(sqrt)((register_double)x);
 #else
     for (int i = 0; i < PART_LANES; i++)
         x[i] = sqrt(x[i]);
@@ -153,194 +169,95 @@ INLINE part part_root(part x)
 /* What comparisons give, and how it chooses. A comparison with NaN is false. */
 #if BYTES == 64 && !REAL_IS_DOUBLE
 typedef __mmask16 mask;
-INLINE mask above(vec a, vec b)
-{
-    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_GT_OQ);
-}
-INLINE bool any(mask m)
-{
-    return m != 0;
-}
-INLINE vec choose(mask m, vec a, vec b)
-{
-    return (vec)_mm512_mask_blend_ps(m, (__m512)b, (__m512)a);
-}
-INLINE vec maximum(vec a, vec b)
-{
-    return (vec)_mm512_max_ps((__m512)a, (__m512)b);
-}
-INLINE vec minimum(vec a, vec b)
-{
-    return (vec)_mm512_min_ps((__m512)a, (__m512)b);
-}
-INLINE vec narrow(struct wide a)
-{
-    const __m256 low = _mm512_cvtpd_ps((__m512d)a.of[0]);
-    const __m256 high = _mm512_cvtpd_ps((__m512d)a.of[1]);
-    return (vec)_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
-}
 #elif BYTES == 64
 typedef __mmask8 mask;
-INLINE mask above(vec a, vec b)
-{
-    return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_GT_OQ);
-}
-INLINE bool any(mask m)
-{
-    return m != 0;
-}
-INLINE vec choose(mask m, vec a, vec b)
-{
-    return (vec)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
-}
-INLINE vec maximum(vec a, vec b)
-{
-    return (vec)_mm512_max_pd((__m512d)a, (__m512d)b);
-}
-INLINE vec minimum(vec a, vec b)
-{
-    return (vec)_mm512_min_pd((__m512d)a, (__m512d)b);
-}
-#elif BYTES == 32 && !REAL_IS_DOUBLE
-typedef __m256 mask;
-INLINE mask above(vec a, vec b)
-{
-    return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_GT_OQ);
-}
-INLINE bool any(mask m)
-{
-    return _mm256_movemask_ps(m) != 0;
-}
-INLINE vec choose(mask m, vec a, vec b)
-{
-    return (vec)_mm256_blendv_ps((__m256)b, (__m256)a, m);
-}
-INLINE vec maximum(vec a, vec b)
-{
-    return (vec)_mm256_max_ps((__m256)a, (__m256)b);
-}
-INLINE vec minimum(vec a, vec b)
-{
-    return (vec)_mm256_min_ps((__m256)a, (__m256)b);
-}
-INLINE vec narrow(struct wide a)
-{
-    const __m128 low = _mm256_cvtpd_ps((__m256d)a.of[0]);
-    const __m128 high = _mm256_cvtpd_ps((__m256d)a.of[1]);
-    return (vec)_mm256_set_m128(high, low);
-}
-#elif BYTES == 32
-typedef __m256d mask;
-INLINE mask above(vec a, vec b)
-{
-    return _mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_GT_OQ);
-}
-INLINE bool any(mask m)
-{
-    return _mm256_movemask_pd(m) != 0;
-}
-INLINE vec choose(mask m, vec a, vec b)
-{
-    return (vec)_mm256_blendv_pd((__m256d)b, (__m256d)a, m);
-}
-INLINE vec maximum(vec a, vec b)
-{
-    return (vec)_mm256_max_pd((__m256d)a, (__m256d)b);
-}
-INLINE vec minimum(vec a, vec b)
-{
-    return (vec)_mm256_min_pd((__m256d)a, (__m256d)b);
-}
-#elif defined(__SSE2__) && !REAL_IS_DOUBLE
-typedef __m128 mask;
-INLINE mask above(vec a, vec b)
-{
-    return _mm_cmpgt_ps((__m128)a, (__m128)b);
-}
-INLINE bool any(mask m)
-{
-    return _mm_movemask_ps(m) != 0;
-}
-INLINE vec choose(mask m, vec a, vec b)
-{
-    return (vec)_mm_or_ps(_mm_and_ps(m, (__m128)a), _mm_andnot_ps(m, (__m128)b));
-}
-INLINE vec maximum(vec a, vec b)
-{
-    return (vec)_mm_max_ps((__m128)a, (__m128)b);
-}
-INLINE vec minimum(vec a, vec b)
-{
-    return (vec)_mm_min_ps((__m128)a, (__m128)b);
-}
-INLINE vec narrow(struct wide a)
-{
-    return (vec)_mm_movelh_ps(_mm_cvtpd_ps((__m128d)a.of[0]), _mm_cvtpd_ps((__m128d)a.of[1]));
-}
 #elif defined(__SSE2__)
-typedef __m128d mask;
-INLINE mask above(vec a, vec b)
-{
-    return _mm_cmpgt_pd((__m128d)a, (__m128d)b);
-}
-INLINE bool any(mask m)
-{
-    return _mm_movemask_pd(m) != 0;
-}
-INLINE vec choose(mask m, vec a, vec b)
-{
-    return (vec)_mm_or_pd(_mm_and_pd(m, (__m128d)a), _mm_andnot_pd(m, (__m128d)b));
-}
-INLINE vec maximum(vec a, vec b)
-{
-    return (vec)_mm_max_pd((__m128d)a, (__m128d)b);
-}
-INLINE vec minimum(vec a, vec b)
-{
-    return (vec)_mm_min_pd((__m128d)a, (__m128d)b);
-}
+typedef packed mask;
 #else
 typedef vec_bits mask;
+#endif
+
 INLINE mask above(vec a, vec b)
 {
+#if BYTES == 64 && !REAL_IS_DOUBLE
+    return _mm512_cmp_ps_mask((packed)a, (packed)b, _CMP_GT_OQ);
+#elif BYTES == 64
+    return _mm512_cmp_pd_mask((packed)a, (packed)b, _CMP_GT_OQ);
+#elif BYTES == 32
+    return OF_REAL(cmp)((packed)a, (packed)b, _CMP_GT_OQ);
+#elif defined(__SSE2__)
+    return OF_REAL(cmpgt)((packed)a, (packed)b);
+#else
     return a > b;
+#endif
 }
+
 INLINE bool any(mask m)
 {
+#if BYTES == 64
+    return m != 0;
+#elif defined(__SSE2__)
+    return OF_REAL(movemask)(m) != 0;
+#else
     bits sum = 0;
     for (int i = 0; i < LANES; i++)
         sum |= m[i];
     return sum != 0;
+#endif
 }
+
 INLINE vec choose(mask m, vec a, vec b)
 {
+#if BYTES == 64
+    return (vec)OF_REAL(mask_blend)(m, (packed)b, (packed)a);
+#elif BYTES == 32
+    return (vec)OF_REAL(blendv)((packed)b, (packed)a, m);
+#elif defined(__SSE2__)
+    return (vec)OF_REAL(or)(OF_REAL(and)(m, (packed)a), OF_REAL(andnot)(m, (packed)b));
+#else
     return (vec)((m & (vec_bits)a) | (~m & (vec_bits)b));
+#endif
 }
+
 INLINE vec maximum(vec a, vec b)
 {
+#if defined(__SSE2__)
+    return (vec)OF_REAL(max)((packed)a, (packed)b);
+#else
     return choose(above(a, b), a, b);
+#endif
 }
+
 INLINE vec minimum(vec a, vec b)
 {
+#if defined(__SSE2__)
+    return (vec)OF_REAL(min)((packed)a, (packed)b);
+#else
     return choose(above(b, a), a, b);
+#endif
 }
-#if !REAL_IS_DOUBLE
+
 INLINE vec narrow(struct wide a)
 {
+#if REAL_IS_DOUBLE
+    return a.of[0];
+#elif BYTES == 64
+    const __m256 low = _mm512_cvtpd_ps((__m512d)a.of[0]);
+    const __m256 high = _mm512_cvtpd_ps((__m512d)a.of[1]);
+    return (vec)_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+#elif BYTES == 32
+    const __m128 low = _mm256_cvtpd_ps((__m256d)a.of[0]);
+    const __m128 high = _mm256_cvtpd_ps((__m256d)a.of[1]);
+    return (vec)_mm256_set_m128(high, low);
+#elif defined(__SSE2__)
+    return (vec)_mm_movelh_ps(_mm_cvtpd_ps((__m128d)a.of[0]), _mm_cvtpd_ps((__m128d)a.of[1]));
+#else
     vec out;
     for (int i = 0; i < LANES; i++)
         out[i] = (real)a.of[i / PART_LANES][i % PART_LANES];
     return out;
+#endif
 }
-#endif
-#endif
-
-#if REAL_IS_DOUBLE
-INLINE vec narrow(struct wide a)
-{
-    return a.of[0];
-}
-#endif
 
 INLINE vec size_of(vec a)
 {

@@ -42,16 +42,18 @@ struct wb_swept_tape {
     struct wb_swept_tape_model model;
     const struct wb_swept_tape_kernel *kernel;
     struct wb_swept_tape_kernel_model numbers;
-    void *reference, *table, *length_stiffness;
+    void *reference, *length_stiffness;
     double *position, *director; /* fields */
     double *area;                /* (n_nodes x stride) */
     double *mass, *inertia;      /* (n_nodes), per length */
+    struct wb_memory memory;     /* of all arrays */
 };
 
 struct wb_swept_tape_state {
     const struct wb_swept_tape *tape;
     void *history, *carry;
-    size_t history_size; /* numbers */
+    size_t history_size;     /* numbers */
+    struct wb_memory memory; /* of both */
 };
 
 /* Gauss points from -1 to 1 and weights whose sum is 1, of 2 to 5 points. */
@@ -336,20 +338,14 @@ static enum wb_status allocate(struct wb_swept_tape *tape)
     const size_t nodes = (size_t)layout->n_nodes, stride = (size_t)layout->stride;
     const size_t size = wb_swept_kernel_real_size(tape->model.double_precision);
     const size_t elements = (size_t)tape->numbers.n_elements * stride;
-    void *fields[3] = {NULL};
 
-    enum wb_status status =
-        wb_swept_allocate(&tape->reference, elements * WB_SWEPT_TAPE_REFERENCE, size);
-    if (status == WB_OK)
-        status = wb_swept_allocate(&tape->length_stiffness, nodes * stride, size);
-    for (int i = 0; i < 2 && status == WB_OK; i++)
-        status = wb_swept_allocate(&fields[i], wb_swept_size(layout), sizeof(double));
-    if (status == WB_OK)
-        status = wb_swept_allocate(&fields[2], nodes * (stride + 2), sizeof(double));
-    tape->position = fields[0];
-    tape->director = fields[1];
-    tape->area = fields[2];
-    WB_TRY(status);
+    tape->reference = wb_swept_take(&tape->memory, elements * WB_SWEPT_TAPE_REFERENCE, size);
+    tape->length_stiffness = wb_swept_take(&tape->memory, nodes * stride, size);
+    tape->position = wb_swept_take(&tape->memory, wb_swept_size(layout), sizeof(double));
+    tape->director = wb_swept_take(&tape->memory, wb_swept_size(layout), sizeof(double));
+    tape->area = wb_swept_take(&tape->memory, nodes * (stride + 2), sizeof(double));
+    if (tape->memory.failed)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a tape of %zu nodes", nodes);
     tape->mass = tape->area + nodes * stride;
     tape->inertia = tape->mass + nodes;
     tape->numbers.reference = tape->reference;
@@ -370,9 +366,10 @@ static enum wb_status fill(struct wb_swept_tape *tape)
     set_numbers(tape);
     WB_TRY(allocate(tape));
     WB_TRY(wb_hardening_tabulate_octaves(&radial, WB_SWEPT_TAPE_TERMS, &table[0][0]));
-    WB_TRY(wb_swept_kernel_convert(&tape->table, m->double_precision, &table[0][0],
-                                   sizeof table / sizeof table[0][0]));
-    tape->numbers.table = tape->table;
+    tape->numbers.table = wb_swept_kernel_convert(&tape->memory, m->double_precision, &table[0][0],
+                                                  sizeof table / sizeof table[0][0]);
+    if (!tape->numbers.table)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a tape's hardening");
     for (int row = 0; row < 3 * m->layout.n_nodes; row++) {
         const size_t at = (size_t)row * (size_t)m->layout.stride;
         memcpy(tape->position + at, m->position + at,
@@ -409,12 +406,7 @@ void wb_swept_tape_destroy(struct wb_swept_tape *tape)
 {
     if (!tape)
         return;
-    free(tape->reference);
-    free(tape->table);
-    free(tape->length_stiffness);
-    free(tape->position);
-    free(tape->director);
-    free(tape->area);
+    wb_memory_release(&tape->memory);
     free(tape);
 }
 
@@ -462,6 +454,7 @@ enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
                                           const struct wb_swept_tape *tape)
 {
     const struct wb_swept_layout *layout = &tape->model.layout;
+    const size_t real = wb_swept_kernel_real_size(tape->model.double_precision);
 
     *out = NULL;
     struct wb_swept_tape_state *state = calloc(1, sizeof *state);
@@ -470,16 +463,12 @@ enum wb_status wb_swept_tape_state_create(struct wb_swept_tape_state **out,
     state->tape = tape;
     state->history_size = (size_t)tape->numbers.n_elements * (size_t)layout->stride *
                           (size_t)tape->numbers.n_points * WB_SWEPT_TAPE_HISTORY;
-    enum wb_status status =
-        wb_swept_allocate(&state->history, state->history_size,
-                          wb_swept_kernel_real_size(tape->model.double_precision));
-    if (status == WB_OK)
-        status =
-            wb_swept_allocate(&state->carry, (size_t)layout->n_nodes * WB_SWEPT_TAPE_CARRY * LANES,
-                              wb_swept_kernel_real_size(tape->model.double_precision));
-    if (status != WB_OK) {
+    state->history = wb_swept_take(&state->memory, state->history_size, real);
+    state->carry =
+        wb_swept_take(&state->memory, (size_t)layout->n_nodes * WB_SWEPT_TAPE_CARRY * LANES, real);
+    if (state->memory.failed) {
         wb_swept_tape_state_destroy(state);
-        return status;
+        return wb_fail(WB_ERR_MEMORY, "no memory for a tape");
     }
     *out = state;
     return WB_OK;
@@ -489,8 +478,7 @@ void wb_swept_tape_state_destroy(struct wb_swept_tape_state *state)
 {
     if (!state)
         return;
-    free(state->history);
-    free(state->carry);
+    wb_memory_release(&state->memory);
     free(state);
 }
 

@@ -60,6 +60,7 @@ struct wb_swept_tape_contact {
     struct near_place *near; /* (n_nodes x n_stations); wire -1: none */
     int n_strips, n_near;
     long long steps;
+    struct wb_memory memory; /* of all arrays */
 };
 
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings)
@@ -507,8 +508,8 @@ static enum wb_status copy_wires(struct wb_swept_tape_contact *c,
 
     for (int w = 0; w < c->n_wires; w++)
         nodes += (size_t)wires[w].n_surface;
-    c->surface = calloc((size_t)c->n_wires + 1, sizeof *c->surface);
-    c->surface_nodes = calloc(nodes + 1, sizeof *c->surface_nodes);
+    c->surface = wb_memory_take(&c->memory, (size_t)c->n_wires + 1, sizeof *c->surface);
+    c->surface_nodes = wb_memory_take(&c->memory, nodes + 1, sizeof *c->surface_nodes);
     if (!c->surface || !c->surface_nodes)
         return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
     nodes = 0;
@@ -531,16 +532,18 @@ static enum wb_status allocate(struct wb_swept_tape_contact *c)
     const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
     const size_t n_blocks = (size_t)layout->stride / LANES;
 
-    c->first = calloc(n_blocks + 1, sizeof *c->first);
-    c->strip = calloc(places, sizeof *c->strip);
-    c->near = calloc(places, sizeof *c->near);
-    c->centre = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->centre);
-    c->axis = calloc(3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1, sizeof *c->axis);
-    if (!c->first || !c->strip || !c->near || !c->centre || !c->axis)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape");
-    WB_TRY(wb_swept_allocate(&c->rows, places * ROWS * LANES, real_size(c)));
-    return wb_swept_allocate(
-        &c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride, real_size(c));
+    c->first = wb_memory_take(&c->memory, n_blocks + 1, sizeof *c->first);
+    c->strip = wb_memory_take(&c->memory, places, sizeof *c->strip);
+    c->near = wb_memory_take(&c->memory, places, sizeof *c->near);
+    c->centre = wb_memory_take(&c->memory, 3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1,
+                               sizeof *c->centre);
+    c->axis = wb_memory_take(&c->memory, 3 * (size_t)c->n_wires * (size_t)layout->n_stations + 1,
+                             sizeof *c->axis);
+    c->rows = wb_swept_take(&c->memory, places * ROWS * LANES, real_size(c));
+    c->history = wb_swept_take(
+        &c->memory, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride, real_size(c));
+    return c->memory.failed ? wb_fail(WB_ERR_MEMORY, "no memory for the contact of the tape")
+                            : WB_OK;
 }
 
 static enum wb_status fill(struct wb_swept_tape_contact *c,
@@ -601,15 +604,7 @@ void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact)
 {
     if (!contact)
         return;
-    free(contact->surface);
-    free(contact->surface_nodes);
-    free(contact->centre);
-    free(contact->axis);
-    free(contact->first);
-    free(contact->strip);
-    free(contact->near);
-    free(contact->rows);
-    free(contact->history);
+    wb_memory_release(&contact->memory);
     free(contact);
 }
 
@@ -647,70 +642,25 @@ int wb_swept_tape_contact_near(const struct wb_swept_tape_contact *contact)
 
 /* --- checkpoints --- */
 
-struct piece {
-    void *data;
-    size_t size;
-};
-
-enum {
-    PIECES = 8
-};
-
-/* All there is room for, so that the size is fixed. */
-static void list_pieces(const struct wb_swept_tape_contact *c, struct piece out[PIECES])
+/* All there is room for, so that the sizes are fixed. */
+void wb_swept_tape_contact_visit(struct wb_swept_tape_contact *contact,
+                                 struct wb_checkpoint *checkpoint)
 {
-    struct wb_swept_tape_contact *changeable;
-    const struct wb_swept_layout *layout = layout_of(c);
-    const size_t places = (size_t)layout->n_nodes * (size_t)layout->n_stations;
-    const size_t blocks = (size_t)layout->stride / LANES;
+    const struct wb_swept_layout *layout = layout_of(contact);
+    const size_t nodes = (size_t)layout->n_nodes, stride = (size_t)layout->stride;
+    const size_t places = nodes * (size_t)layout->n_stations, real = real_size(contact);
 
-    memcpy(&changeable, &c, sizeof changeable);
-    const struct piece pieces[PIECES] = {
-        {&changeable->steps, sizeof c->steps},
-        {&changeable->n_strips, sizeof c->n_strips},
-        {&changeable->n_near, sizeof c->n_near},
-        {c->first, (blocks + 1) * sizeof *c->first},
-        {c->strip, places * sizeof *c->strip},
-        {c->near, places * sizeof *c->near},
-        {c->rows, places * ROWS * LANES * real_size(c)},
-        {c->history, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride * real_size(c)},
-    };
-    memcpy(out, pieces, sizeof pieces);
-}
-
-size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact)
-{
-    struct piece pieces[PIECES];
-    size_t size = 0;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++)
-        size += pieces[i].size;
-    return size;
-}
-
-void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state)
-{
-    struct piece pieces[PIECES];
-    unsigned char *at = state;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++) {
-        memcpy(at, pieces[i].data, pieces[i].size);
-        at += pieces[i].size;
-    }
-}
-
-void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state)
-{
-    struct piece pieces[PIECES];
-    const unsigned char *at = state;
-
-    list_pieces(contact, pieces);
-    for (int i = 0; i < PIECES; i++) {
-        memcpy(pieces[i].data, at, pieces[i].size);
-        at += pieces[i].size;
-    }
+    wb_checkpoint_enter(checkpoint, "tape contact");
+    wb_checkpoint_visit_member(checkpoint, contact, steps);
+    wb_checkpoint_visit_member(checkpoint, contact, n_strips);
+    wb_checkpoint_visit_member(checkpoint, contact, n_near);
+    wb_checkpoint_visit(checkpoint, "first", contact->first,
+                        (stride / LANES + 1) * sizeof *contact->first);
+    wb_checkpoint_visit(checkpoint, "strip", contact->strip, places * sizeof *contact->strip);
+    wb_checkpoint_visit(checkpoint, "near", contact->near, places * sizeof *contact->near);
+    wb_checkpoint_visit(checkpoint, "rows", contact->rows, places * ROWS * LANES * real);
+    wb_checkpoint_visit(checkpoint, "history", contact->history, nodes * HISTORY * stride * real);
+    wb_checkpoint_leave(checkpoint);
 }
 
 /* --- stable step --- */

@@ -22,6 +22,7 @@
 
 #include <stddef.h>
 
+#include "base/checkpoint.h"
 #include "base/reason.h"
 #include "base/status.h"
 #include "fe/swept/swept_cohesion.h"
@@ -37,7 +38,7 @@ struct wb_swept_tape_contact_settings {
                                 refreshes */
     int refresh_interval;    /* steps; 0: 100 */
 
-    struct wb_reason *reason; /* gets why a step was lost, borrowed; NULL: the log gets it */
+    struct wb_reason *reason; /* borrowed; holds why a step failed. NULL: that is logged */
 };
 
 void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings);
@@ -67,10 +68,10 @@ wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *contact,
                                  const struct wb_swept_cohesion_fields *fields, double time_step,
                                  struct wb_swept_tape_contact_sums *sums);
 
-/* A checkpoint: what a contact of the same tape, wires and settings continues from, bit for bit. */
-size_t wb_swept_tape_contact_state_size(const struct wb_swept_tape_contact *contact);
-void wb_swept_tape_contact_save(const struct wb_swept_tape_contact *contact, void *state);
-void wb_swept_tape_contact_restore(struct wb_swept_tape_contact *contact, const void *state);
+/* Saves or restores what a contact of the same tape, wires and settings needs to continue bit for
+ * bit. */
+void wb_swept_tape_contact_visit(struct wb_swept_tape_contact *contact,
+                                 struct wb_checkpoint *checkpoint);
 
 /* Bounds of what contact adds to the largest eigenvalue of M^-1 K, as of cohesion, if all nodes of
  * the ring touched. */

@@ -12,21 +12,21 @@
 #include "fe/model/wire_model.h"
 
 struct wb_wire_row {
-    int step;                  /* index into the model's steps */
-    double fraction;           /* of the step, (0, 1]; the first row of all is at 0 */
-    int cycle;                 /* from 1; a new one begins with each loading after an unloading */
-    enum wb_phase phase;       /* slack: the strand carries nothing */
-    struct wb_tip_loads loads; /* that act */
-    double tip[3];             /* m, of the axis' end */
-    double tangent[3];         /* unit vector along the wire at the tip */
-    double tip_angle;          /* rad, atan2 of the tangent's y and x, continued over the rows so
-                                  that it has no jump where a wire curls past pi */
-    double tension;            /* N: strand's tension or vertical force that makes the deflection;
-                                  without either the vertical part of all tip forces */
-    double vertical_force;     /* N: vertical part of the tension */
-    double force;              /* N: as the dataset's `force`: vertical force less its value at zero
-                                  deflection on the first loading, which is the first row when the first step
-                                  is a deflection (0 otherwise); of a follower test the follower force itself */
+    int step;                   /* index into the model's steps */
+    double fraction;            /* of the step, (0, 1]; the first row of all is at 0 */
+    int cycle;                  /* from 1; a new one begins with each loading after an unloading */
+    enum wb_phase phase;        /* slack: the strand carries nothing */
+    struct wb_tip_loads loads;  /* that act */
+    double tip[3];              /* m, of the axis' end */
+    double tangent[3];          /* unit vector along the wire at the tip */
+    double tip_angle;           /* rad, atan2 of the tangent's y and x, continued over the rows so
+                                   that it has no jump where a wire curls past pi */
+    double tension;             /* N: strand's tension or vertical force that makes the deflection;
+                                   without either the vertical part of all tip forces */
+    double vertical_force;      /* N: vertical part of the tension */
+    double force;               /* N: the dataset's `force`. Of a follower test the follower force;
+                                   else the vertical force, less that of the first row where the
+                                   first step is a deflection */
     int increments, iterations; /* spent since the row before */
 };
 

@@ -2,44 +2,32 @@
 #include <stdlib.h>
 
 #include "fe/rod/fibres_private.h"
+#include "tests/fe/rod/fibre_point.h"
 #include "tests/fe/rod/wires.h"
 #include "tests/twin/fibres_swap.h"
 
 /* One section point with its history, in the fast way and in the slow one. */
 struct point {
     const struct wb_section *section;
-    struct wb_fibres *fibres;
-    double *before, *after;
+    struct fibre_point fast;
     struct wb_material_state *slow_before, *slow_after;
 };
 
 static struct point make_point(const struct wb_section *section)
 {
-    struct point p = {.section = section};
-    assert_int_equal(wb_fibres_create(&p.fibres, section), WB_OK);
-    const size_t size = wb_fibres_history_size(p.fibres), n = (size_t)section->n_fibres;
-    p.before = calloc(size, sizeof *p.before);
-    p.after = calloc(size, sizeof *p.after);
+    struct point p = {.section = section, .fast = fibre_point_make(section)};
+    const size_t n = (size_t)section->n_fibres;
     p.slow_before = calloc(n, sizeof *p.slow_before);
     p.slow_after = calloc(n, sizeof *p.slow_after);
-    assert_true(p.before && p.after && p.slow_before && p.slow_after);
+    assert_true(p.slow_before && p.slow_after);
     return p;
 }
 
 static void release_point(struct point *p)
 {
-    wb_fibres_destroy(p->fibres);
-    free(p->before);
-    free(p->after);
+    fibre_point_release(&p->fast);
     free(p->slow_before);
     free(p->slow_after);
-}
-
-static struct wb_fibres_response respond(struct point *p, double eps, double kappa)
-{
-    struct wb_fibres_response r;
-    wb_fibres_respond(p->fibres, eps, kappa, p->before, p->after, &r);
-    return r;
 }
 
 static struct wb_fibres_response respond_slowly(struct point *p, double eps, double kappa)
@@ -51,9 +39,7 @@ static struct wb_fibres_response respond_slowly(struct point *p, double eps, dou
 
 static void accept(struct point *p)
 {
-    double *old = p->before;
-    p->before = p->after;
-    p->after = old;
+    fibre_point_accept(&p->fast);
     struct wb_material_state *slow_old = p->slow_before;
     p->slow_before = p->slow_after;
     p->slow_after = slow_old;
@@ -77,12 +63,12 @@ static void fast_fibres_agree_with_their_slow_twin(void **unused)
         wire.material.hardening_exponent = 0.05 + 1.45 * test_random(&random);
         struct wb_section s = trial % 4 == 3 ? test_composite_section() : test_section(&wire);
         struct point p = make_point(&s);
-        const double scale = wb_fibres_axial_stiffness(p.fibres) * 1e-3;
+        const double scale = wb_fibres_axial_stiffness(p.fast.fibres) * 1e-3;
 
         for (int step = 0; step < 60; step++) {
             const double eps = 2e-3 * (test_random(&random) - 0.5);
             const double kappa = 80.0 * (test_random(&random) - 0.5);
-            const struct wb_fibres_response a = respond(&p, eps, kappa);
+            const struct wb_fibres_response a = fibre_point_respond(&p.fast, eps, kappa);
             const struct wb_fibres_response b = respond_slowly(&p, eps, kappa);
             assert_close(a.N, b.N, 1e-11 * scale);
             assert_close(a.M, b.M, 1e-11 * scale * 1e-3);
@@ -92,7 +78,7 @@ static void fast_fibres_agree_with_their_slow_twin(void **unused)
             if (step % 3 == 0)
                 accept(&p);
         }
-        assert_close(wb_fibres_largest_plastic_strain(p.fibres, p.before),
+        assert_close(wb_fibres_largest_plastic_strain(p.fast.fibres, p.fast.before),
                      largest_plastic_strain(&p), 1e-12);
         release_point(&p);
         wb_section_release(&s);
@@ -109,7 +95,8 @@ static void virgin_shortcut_is_seamless(void **unused)
     const double limit = wire.material.yield_stress / wire.material.youngs_modulus / outermost;
     for (int i = -3; i <= 3; i++) {
         const double kappa = limit * (1.0 + 1e-6 * i);
-        assert_close_relative(respond(&p, 0.0, kappa).M, respond_slowly(&p, 0.0, kappa).M, 1e-13);
+        assert_close_relative(fibre_point_respond(&p.fast, 0.0, kappa).M,
+                              respond_slowly(&p, 0.0, kappa).M, 1e-13);
     }
     release_point(&p);
     wb_section_release(&s);

@@ -36,6 +36,16 @@ static void ratio_solves_its_equation(void **unused)
     }
 }
 
+static void all_overstress_is_plastic_where_nothing_grows(void **unused)
+{
+    (void)unused;
+    struct wb_material m = power_law(1e9, 0.5);
+    m.hardening = WB_HARDENING_KINEMATIC_LINEAR;
+    assert_true(wb_hardening_ratio(&m, m.yield_stress) == 1.0);
+    m.hardening = WB_HARDENING_NONE_ELASTIC;
+    assert_true(wb_hardening_ratio(&m, m.yield_stress) == 1.0);
+}
+
 static void table_agrees_with_the_solved_equation(void **unused)
 {
     (void)unused;
@@ -227,6 +237,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ratio_solves_its_equation),
+        cmocka_unit_test(all_overstress_is_plastic_where_nothing_grows),
         cmocka_unit_test(table_agrees_with_the_solved_equation),
         cmocka_unit_test(table_knows_what_it_covers),
         cmocka_unit_test(ratio_is_one_without_hardening),

@@ -1,36 +1,7 @@
-/* Nothing is allocated while a test is computed. The linker sends the library's allocations here
- * (--wrap). */
-#include <stdlib.h>
-
+/* Nothing is allocated while a test is computed. */
 #include "fe/trial/loading_steps.h"
+#include "tests/fe/allocations.h"
 #include "tests/fe/rod/wires.h"
-
-static int allocations;
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t n, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-
-void *__wrap_malloc(size_t size)
-{
-    allocations++;
-    return __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t n, size_t size)
-{
-    allocations++;
-    return __real_calloc(n, size);
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    allocations++;
-    return __real_realloc(memory, size);
-}
 
 static void stepping_allocates_nothing(void **unused)
 {

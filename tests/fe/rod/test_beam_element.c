@@ -6,7 +6,7 @@
 static const double EA = 5000.0, GA = 1500.0, EI = 4e-4, ES = 0.05, h = 1.7e-3;
 
 struct element {
-    struct wb_beam_element_shape shape;
+    struct wb_rod_shape shape;
     struct wb_beam_node nodes[WB_BEAM_ELEMENT_NODES];
     struct wb_beam_point points[WB_BEAM_ELEMENT_POINTS];
 };
@@ -55,7 +55,7 @@ static struct element make_element(uint64_t *random)
 {
     struct element e;
     const double turn = 6.0 * test_random(random);
-    wb_beam_element_shape_init(&e.shape, h);
+    wb_rod_shape_init(&e.shape, h);
     for (int i = 0; i < 3; i++) {
         const double s = 0.5 * h * i;
         e.nodes[i].x = s * cos(turn) + 1e-3 * h * test_random(random);
@@ -120,7 +120,7 @@ static void rigid_motion_strains_nothing(void **unused)
     for (double turn = -3.0; turn < 3.0; turn += 0.7) {
         struct element e;
         double f[9];
-        wb_beam_element_shape_init(&e.shape, h);
+        wb_rod_shape_init(&e.shape, h);
         for (int i = 0; i < 3; i++) {
             e.nodes[i].x = 2.0 + 0.5 * h * i * cos(turn);
             e.nodes[i].y = 3.0 + 0.5 * h * i * sin(turn);

@@ -3,45 +3,8 @@
 #include <stdlib.h>
 
 #include "fe/rod/fibres_private.h"
+#include "tests/fe/rod/fibre_point.h"
 #include "tests/fe/rod/wires.h"
-
-/* One section point with its history. */
-struct point {
-    struct wb_fibres *fibres;
-    double *before, *after;
-};
-
-static struct point make_point(const struct wb_section *section)
-{
-    struct point p = {0};
-    assert_int_equal(wb_fibres_create(&p.fibres, section), WB_OK);
-    const size_t size = wb_fibres_history_size(p.fibres);
-    p.before = calloc(size, sizeof *p.before);
-    p.after = calloc(size, sizeof *p.after);
-    assert_true(p.before && p.after);
-    return p;
-}
-
-static void release_point(struct point *p)
-{
-    wb_fibres_destroy(p->fibres);
-    free(p->before);
-    free(p->after);
-}
-
-static struct wb_fibres_response respond(struct point *p, double eps, double kappa)
-{
-    struct wb_fibres_response r;
-    wb_fibres_respond(p->fibres, eps, kappa, p->before, p->after, &r);
-    return r;
-}
-
-static void accept(struct point *p)
-{
-    double *old = p->before;
-    p->before = p->after;
-    p->after = old;
-}
 
 static void vector_instructions_do_not_change_a_bit(void **unused)
 {
@@ -50,24 +13,24 @@ static void vector_instructions_do_not_change_a_bit(void **unused)
     for (int trial = 0; trial < 12; trial++) {
         const struct test_wire wire = test_wire_type(1 + trial % 3);
         struct wb_section s = trial % 4 == 3 ? test_composite_section() : test_section(&wire);
-        struct point fastest = make_point(&s), portable = make_point(&s);
+        struct fibre_point fastest = fibre_point_make(&s), portable = fibre_point_make(&s);
         wb_fibres_set_portable(portable.fibres);
         for (int step = 0; step < 200; step++) {
             const double eps = 2e-3 * (test_random(&random) - 0.5);
             /* Also beyond the table, where the law is solved. */
             const double kappa = (step % 50 == 0 ? 1e5 : 80.0) * (test_random(&random) - 0.5);
-            const struct wb_fibres_response a = respond(&fastest, eps, kappa);
-            const struct wb_fibres_response b = respond(&portable, eps, kappa);
+            const struct wb_fibres_response a = fibre_point_respond(&fastest, eps, kappa);
+            const struct wb_fibres_response b = fibre_point_respond(&portable, eps, kappa);
             assert_memory_equal(&a, &b, sizeof a);
             if (step % 3 == 0) {
-                accept(&fastest);
-                accept(&portable);
+                fibre_point_accept(&fastest);
+                fibre_point_accept(&portable);
             }
         }
         assert_memory_equal(fastest.before, portable.before,
                             wb_fibres_history_size(portable.fibres) * sizeof(double));
-        release_point(&fastest);
-        release_point(&portable);
+        fibre_point_release(&fastest);
+        fibre_point_release(&portable);
         wb_section_release(&s);
     }
 }
@@ -76,24 +39,24 @@ static void tangent_is_the_derivative_of_the_resultants(void **unused)
 {
     (void)unused;
     struct wb_section s = test_composite_section();
-    struct point p = make_point(&s);
-    respond(&p, 1e-3, 25.0);
-    accept(&p);
+    struct fibre_point p = fibre_point_make(&s);
+    fibre_point_respond(&p, 1e-3, 25.0);
+    fibre_point_accept(&p);
     const double states[][2] = {{1.2e-3, 30.0}, {0.8e-3, 10.0}, {-1e-3, -40.0}};
     const double EA = wb_fibres_axial_stiffness(p.fibres);
     for (size_t i = 0; i < 3; i++) {
         const double eps = states[i][0], kappa = states[i][1], d = 1e-8, dk = 1e-4;
-        const struct wb_fibres_response at = respond(&p, eps, kappa);
-        const struct wb_fibres_response e0 = respond(&p, eps - d, kappa);
-        const struct wb_fibres_response e1 = respond(&p, eps + d, kappa);
-        const struct wb_fibres_response k0 = respond(&p, eps, kappa - dk);
-        const struct wb_fibres_response k1 = respond(&p, eps, kappa + dk);
+        const struct wb_fibres_response at = fibre_point_respond(&p, eps, kappa);
+        const struct wb_fibres_response e0 = fibre_point_respond(&p, eps - d, kappa);
+        const struct wb_fibres_response e1 = fibre_point_respond(&p, eps + d, kappa);
+        const struct wb_fibres_response k0 = fibre_point_respond(&p, eps, kappa - dk);
+        const struct wb_fibres_response k1 = fibre_point_respond(&p, eps, kappa + dk);
         assert_close(at.D11, (e1.N - e0.N) / (2.0 * d), 1e-5 * EA);
         assert_close(at.D12, (e1.M - e0.M) / (2.0 * d), 1e-5 * EA * 1e-3);
         assert_close(at.D12, (k1.N - k0.N) / (2.0 * dk), 1e-5 * EA * 1e-3);
         assert_close(at.D22, (k1.M - k0.M) / (2.0 * dk), 1e-5 * EA * 1e-6);
     }
-    release_point(&p);
+    fibre_point_release(&p);
     wb_section_release(&s);
 }
 
@@ -104,10 +67,10 @@ static void fully_plastic_moment_of_the_circle_is_four_thirds(void **unused)
     wire.material.strength_coefficient = 0.0;
     struct wb_section s;
     assert_int_equal(wb_section_init_circle(&s, wire.diameter, &wire.material, 400), WB_OK);
-    struct point p = make_point(&s);
+    struct fibre_point p = fibre_point_make(&s);
 
     const double R = 0.5 * wire.diameter, sigma = wire.material.yield_stress;
-    const double plastic = respond(&p, 0.0, 1e4).M;
+    const double plastic = fibre_point_respond(&p, 0.0, 1e4).M;
     assert_close_relative(plastic, 4.0 / 3.0 * sigma * R * R * R, 1e-4);
 
     /* The first fibre at y = R yields at M = pi R^3 sigma / 4: the ratio is 16 / (3 pi). */
@@ -116,7 +79,7 @@ static void fully_plastic_moment_of_the_circle_is_four_thirds(void **unused)
     print_message("plastic over yield moment of the circle: %.5f (exact %.5f)\n", plastic / first,
                   16.0 / (3.0 * M_PI));
     assert_close_relative(plastic / first, 16.0 / (3.0 * M_PI), 1e-4);
-    release_point(&p);
+    fibre_point_release(&p);
     wb_section_release(&s);
 }
 
@@ -136,16 +99,16 @@ static void rectangle_follows_its_closed_form(void **unused)
         fibres[i].area = b * height / STRIPS;
     }
     const struct wb_section s = {STRIPS, fibres, 1, &m, 1e3};
-    struct point p = make_point(&s);
+    struct fibre_point p = fibre_point_make(&s);
     const double yield_kappa = m.yield_stress / (m.youngs_modulus * 0.5 * height);
     const double Mp = m.yield_stress * b * height * height / 4.0;
 
     for (double over = 1.1; over < 20.0; over *= 1.5) {
         const double exact = Mp * (1.0 - 1.0 / (3.0 * over * over));
-        assert_close_relative(respond(&p, 0.0, over * yield_kappa).M, exact, 1e-6);
+        assert_close_relative(fibre_point_respond(&p, 0.0, over * yield_kappa).M, exact, 1e-6);
     }
-    assert_close_relative(respond(&p, 0.0, yield_kappa).M, Mp / 1.5, 1e-6);
-    release_point(&p);
+    assert_close_relative(fibre_point_respond(&p, 0.0, yield_kappa).M, Mp / 1.5, 1e-6);
+    fibre_point_release(&p);
     free(fibres);
 }
 
@@ -165,11 +128,11 @@ static void pure_power_law_moment_is_its_integral(void **unused)
         for (size_t k = 0; k < 2; k++) {
             struct wb_section s;
             assert_int_equal(wb_section_init_circle(&s, 2.0 * R, &m, counts[k]), WB_OK);
-            struct point p = make_point(&s);
-            const double error = respond(&p, 0.0, kappa).M / exact - 1.0;
+            struct fibre_point p = fibre_point_make(&s);
+            const double error = fibre_point_respond(&p, 0.0, kappa).M / exact - 1.0;
             print_message("power law moment, n = %.1f, %d fibres: %+.2g\n", n, counts[k], error);
             assert_close(error, 0.0, k == 0 ? 2e-3 : 2e-5);
-            release_point(&p);
+            fibre_point_release(&p);
             wb_section_release(&s);
         }
     }
@@ -180,18 +143,18 @@ static void springback_is_elastic(void **unused)
     (void)unused;
     const struct test_wire wire = test_wire_type(3);
     struct wb_section s = test_section(&wire);
-    struct point p = make_point(&s);
+    struct fibre_point p = fibre_point_make(&s);
     const double kappa = 30.0;
-    const double M = respond(&p, 0.0, kappa).M;
-    accept(&p);
+    const double M = fibre_point_respond(&p, 0.0, kappa).M;
+    fibre_point_accept(&p);
     const double left = kappa - M / wb_fibres_bending_stiffness(p.fibres);
-    const struct wb_fibres_response r = respond(&p, 0.0, left);
+    const struct wb_fibres_response r = fibre_point_respond(&p, 0.0, left);
     assert_close(r.M, 0.0, 1e-12 * M);
     assert_close_relative(r.D22, wb_fibres_bending_stiffness(p.fibres), 1e-13);
     /* Residual stresses remain: the fibres balance but are not free. */
-    accept(&p);
+    fibre_point_accept(&p);
     assert_true(wb_fibres_largest_plastic_strain(p.fibres, p.before) > 1e-3);
-    release_point(&p);
+    fibre_point_release(&p);
     wb_section_release(&s);
 }
 
@@ -202,14 +165,15 @@ static void exchanged_materials_act_like_new_ones(void **unused)
     struct test_wire mixed = one;
     mixed.material = three.material;
     struct wb_section a = test_section(&one), b = test_section(&mixed);
-    struct point p = make_point(&a), q = make_point(&b);
+    struct fibre_point p = fibre_point_make(&a), q = fibre_point_make(&b);
     wb_fibres_set_materials(p.fibres, &three.material);
-    const struct wb_fibres_response r = respond(&p, 1e-4, 20.0), t = respond(&q, 1e-4, 20.0);
+    const struct wb_fibres_response r = fibre_point_respond(&p, 1e-4, 20.0),
+                                    t = fibre_point_respond(&q, 1e-4, 20.0);
     assert_true(r.N == t.N && r.M == t.M && r.D22 == t.D22);
     assert_close_relative(wb_fibres_shear_stiffness(p.fibres), wb_fibres_shear_stiffness(q.fibres),
                           1e-14);
-    release_point(&p);
-    release_point(&q);
+    fibre_point_release(&p);
+    fibre_point_release(&q);
     wb_section_release(&a);
     wb_section_release(&b);
 }

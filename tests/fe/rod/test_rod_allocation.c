@@ -1,34 +1,7 @@
-/* Nothing is allocated while a rod is computed, and creating one fails cleanly when memory ends.
- * The linker sends the library's allocations here (--wrap). */
-#include <stdlib.h>
-
+/* Nothing is allocated while a rod is computed, and creating one fails cleanly when memory ends. */
 #include "fe/trial/wire1d.h"
+#include "tests/fe/allocations.h"
 #include "tests/fe/rod/wires.h"
-
-static int allocations;
-static int fail_at; /* the allocation that fails, from 1; 0: none */
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t n, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-
-void *__wrap_malloc(size_t size)
-{
-    return ++allocations == fail_at ? NULL : __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t n, size_t size)
-{
-    return ++allocations == fail_at ? NULL : __real_calloc(n, size);
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    return ++allocations == fail_at ? NULL : __real_realloc(memory, size);
-}
 
 static struct wb_wire_model make_model(void)
 {

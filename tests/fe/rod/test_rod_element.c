@@ -55,10 +55,10 @@ static void rotation_follows_a_linear_curvature_to_fourth_order(void **unused)
     double error[3];
     for (int k = 0; k < 3; k++) {
         const double h = 1.0 / (1 << k);
-        struct wb_rod_element_shape shape;
+        struct wb_rod_shape shape;
         struct wb_rod_strain total[POINTS];
         double fine[4], q[4];
-        wb_rod_element_shape_init(&shape, h);
+        wb_rod_shape_init(&shape, h);
         linear_strain(a, b, h, total);
         wb_rod_element_rotation(&shape, total, h, identity, q);
         fine_rotation(a, b, h, fine);
@@ -78,11 +78,11 @@ static void constant_curvature_is_a_helix(void **unused)
     const double k = 3.0, t = 2.0, square = k * k + t * t;
     const double a[3] = {t, 0.0, k}, b[3] = {0.0, 0.0, 0.0};
     const double h = 2.0 * M_PI / sqrt(square) / 40.0;
-    struct wb_rod_element_shape shape;
+    struct wb_rod_shape shape;
     struct wb_rod_strain total[POINTS];
     struct wb_rod_node nodes[NODES] = {{.rotation = {1.0, 0.0, 0.0, 0.0}}};
     struct wb_rod_point points[POINTS];
-    wb_rod_element_shape_init(&shape, h);
+    wb_rod_shape_init(&shape, h);
     linear_strain(a, b, h, total);
     for (int e = 0; e < 40; e++) {
         wb_rod_element_place(&shape, total, nodes, points);
@@ -120,8 +120,8 @@ static void forces_do_the_work_of_the_strains(void **unused)
 {
     (void)unused;
     uint64_t seed = 2;
-    struct wb_rod_element_shape shape;
-    wb_rod_element_shape_init(&shape, 0.7);
+    struct wb_rod_shape shape;
+    wb_rod_shape_init(&shape, 0.7);
     for (int trial = 0; trial < 20; trial++) {
         double d[NODES * U], f[NODES * U] = {0}, work = 0.0, done = 0.0;
         for (int i = 0; i < NODES * U; i++)
@@ -150,14 +150,14 @@ static void forces_and_moments_balance(void **unused)
     (void)unused;
     uint64_t seed = 4;
     const double a[3] = {0.8, -0.5, 1.1}, b[3] = {-0.9, 1.4, 0.6}, h = 0.9;
-    struct wb_rod_element_shape shape;
+    struct wb_rod_shape shape;
     struct wb_rod_strain total[POINTS];
     struct wb_rod_node nodes[NODES] = {{.position = {0.3, 0.2, -0.4}}};
     struct wb_rod_point points[POINTS];
     double f[NODES * U] = {0}, force[3] = {0}, moment[3] = {0};
     const double first[3] = {0.4, -1.0, 0.7};
     wb_rod_element_exponential(first, nodes[0].rotation);
-    wb_rod_element_shape_init(&shape, h);
+    wb_rod_shape_init(&shape, h);
     linear_strain(a, b, h, total);
     for (int g = 0; g < POINTS; g++) {
         points[g] = loaded_point(&seed);
@@ -181,8 +181,8 @@ static void forces_and_moments_balance(void **unused)
 }
 
 /* Turns and stretches a point as quadratic motions do, to first order, and evaluates its forces. */
-static void move_point(const struct wb_rod_element_shape *shape, int g,
-                       const struct wb_rod_point *p, const double *d, struct wb_rod_point *moved)
+static void move_point(const struct wb_rod_shape *shape, int g, const struct wb_rod_point *p,
+                       const double *d, struct wb_rod_point *moved)
 {
     struct wb_rod_strain change;
     double spin[3] = {0}, slope[3] = {0}, turn[4], R[9], shear[2];
@@ -221,11 +221,11 @@ static void stiffness_is_the_derivative_of_the_forces(void **unused)
 {
     (void)unused;
     uint64_t seed = 9;
-    struct wb_rod_element_shape shape;
+    struct wb_rod_shape shape;
     struct wb_rod_point points[POINTS];
     struct wb_rod_element_stiffness stiffness;
     double worst = 0.0;
-    wb_rod_element_shape_init(&shape, 0.7);
+    wb_rod_shape_init(&shape, 0.7);
     for (int g = 0; g < POINTS; g++)
         points[g] = loaded_point(&seed);
     wb_rod_element_stiffness(&shape, points, &stiffness);
@@ -260,11 +260,11 @@ static void quadratic_motions_are_nearly_those_of_the_strains(void **unused)
     double error[3];
     for (int level = 0; level < 3; level++) {
         const double h = 0.4 / (1 << level), size = 1e-5;
-        struct wb_rod_element_shape shape;
+        struct wb_rod_shape shape;
         struct wb_rod_strain total[POINTS], moved[POINTS];
         struct wb_rod_node nodes[NODES] = {{.rotation = {1.0, 0.0, 0.0, 0.0}}};
         struct wb_rod_point points[POINTS];
-        wb_rod_element_shape_init(&shape, h);
+        wb_rod_shape_init(&shape, h);
         linear_strain(a, b, h, total);
         wb_rod_element_place(&shape, total, nodes, points);
         /* A spin s (1, -2, 0.5) + s^2 (1, 1, -3) about the first node, which stays. */

@@ -493,11 +493,11 @@ static void a_checkpoint_goes_on_bit_for_bit(void **state)
             jitter(&c, 1e-8);
             slide(&c, 1e-7);
         }
-        const size_t size = wb_swept_contact_state_size(c.contact);
-        void *saved = malloc(size);
-        assert_non_null(saved);
-        wb_swept_contact_save(c.contact, saved);
-        wb_swept_contact_restore(later.contact, saved);
+        struct wb_checkpoint saved = {.status = WB_OK};
+        wb_swept_contact_visit(c.contact, &saved);
+        wb_checkpoint_rewind(&saved);
+        wb_swept_contact_visit(later.contact, &saved);
+        assert_int_equal(wb_checkpoint_finish(&saved), WB_OK);
         for (int step = 0; step < 40; step++) {
             for (int w = 0; w < WIRES; w++)
                 memcpy(later.position[w], c.position[w], wb_swept_size(&c.layout) * sizeof(double));
@@ -511,7 +511,7 @@ static void a_checkpoint_goes_on_bit_for_bit(void **state)
             jitter(&c, 1e-8);
             slide(&c, 1e-7);
         }
-        free(saved);
+        wb_checkpoint_release(&saved);
         contacts_release(&c);
         contacts_release(&later);
     }
@@ -523,7 +523,7 @@ struct vibration {
     struct contacts c;
     double *rest[WIRES], *mode[WIRES], *acceleration[WIRES];
     double mass[CONTACTS_NODES], selective; /* kg/m */
-    void *saved;
+    struct wb_checkpoint saved;
 };
 
 /* -M^-1 df for a small displacement along the mode, with friction that sticks. */
@@ -534,7 +534,8 @@ static void accelerate(struct vibration *v)
     for (int w = 0; w < WIRES; w++)
         memset(v->acceleration[w], 0, wb_swept_size(&v->c.layout) * sizeof(double));
     for (int side = -1; side <= 1; side += 2) {
-        wb_swept_contact_restore(v->c.contact, v->saved);
+        wb_checkpoint_rewind(&v->saved);
+        wb_swept_contact_visit(v->c.contact, &v->saved);
         for (int w = 0; w < WIRES; w++) {
             for (size_t i = 0; i < wb_swept_size(&v->c.layout); i++)
                 v->c.position[w][i] = v->rest[w][i] + side * h * v->mode[w][i];
@@ -606,10 +607,9 @@ static void check_bound(double selective)
             v.mode[w][j / STATIONS * v.c.layout.stride + j % STATIONS] = random_number();
         bound = fmax(bound, wb_swept_contact_stiffness_per_mass(v.c.contact, w, v.mass, selective));
     }
-    v.saved = malloc(wb_swept_contact_state_size(v.c.contact));
-    assert_non_null(v.saved);
-    wb_swept_contact_save(v.c.contact, v.saved);
+    wb_swept_contact_visit(v.c.contact, &v.saved);
     const double value = largest_eigenvalue(&v);
+    assert_int_equal(wb_checkpoint_finish(&v.saved), WB_OK);
     printf("beta %g: largest eigenvalue %.4g 1/s2, bound %.4g\n", selective, value, bound);
     assert_true(value <= bound);
     assert_true(value >= 0.25 * bound);
@@ -618,7 +618,7 @@ static void check_bound(double selective)
         free(v.mode[w]);
         free(v.acceleration[w]);
     }
-    free(v.saved);
+    wb_checkpoint_release(&v.saved);
     contacts_release(&v.c);
 }
 

@@ -365,16 +365,16 @@ static void a_checkpoint_goes_on_bit_for_bit(void **unused)
         grip_create(&g, &settings, 2e-6, is_double, NULL);
         grip_create(&other, &settings, 2e-6, is_double, NULL);
         (void)slide_on(&g, 0, 24);
-        const size_t size = wb_swept_tape_contact_state_size(g.contact);
-        void *state = malloc(size);
-        assert_non_null(state);
-        wb_swept_tape_contact_save(g.contact, state);
+        struct wb_checkpoint state = {.status = WB_OK};
+        wb_swept_tape_contact_visit(g.contact, &state);
         const double force = slide_on(&g, 24, 50);
-        wb_swept_tape_contact_restore(other.contact, state);
+        wb_checkpoint_rewind(&state);
+        wb_swept_tape_contact_visit(other.contact, &state);
+        assert_int_equal(wb_checkpoint_finish(&state), WB_OK);
         assert_true(slide_on(&other, 24, 50) == force && force != 0.0);
         wb_swept_tape_contact_reset(other.contact);
         assert_true(slide_on(&other, 24, 50) != force);
-        free(state);
+        wb_checkpoint_release(&state);
         grip_destroy(&g);
         grip_destroy(&other);
     }

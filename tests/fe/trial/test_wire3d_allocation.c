@@ -1,34 +1,7 @@
-/* The 3D wire fails cleanly wherever memory ends, and takes none while it steps. The linker sends
- * the library's allocations here (--wrap). */
-#include <stdlib.h>
-
+/* The 3D wire fails cleanly wherever memory ends, and takes none while it steps. */
 #include "fe/trial/wire3d.h"
 #include "tests/check.h"
-
-static int allocations;
-static int fail_at; /* the allocation that fails, from 1; 0: none */
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t n, size_t size);
-void *__real_realloc(void *memory, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_realloc(void *memory, size_t size);
-
-void *__wrap_malloc(size_t size)
-{
-    return ++allocations == fail_at ? NULL : __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t n, size_t size)
-{
-    return ++allocations == fail_at ? NULL : __real_calloc(n, size);
-}
-
-void *__wrap_realloc(void *memory, size_t size)
-{
-    return ++allocations == fail_at ? NULL : __real_realloc(memory, size);
-}
+#include "tests/fe/allocations.h"
 
 /* A core in its jacket, bonded or with contact. */
 static struct wb_wire_model make_model(bool contact)
