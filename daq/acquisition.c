@@ -483,7 +483,7 @@ static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
-        if (a->latest.stream[line->role].gone || !line->driver->tick)
+        if (a->latest.stream[line->role].gone)
             continue;
         wb_outbox_clear(&a->outbox);
         line->driver->tick(line->state, now_ns, &a->outbox);
@@ -512,7 +512,7 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
             line->reported_lost = lost;
         }
         state->lost = lost;
-        state->ready = !state->gone && line->driver->ready && line->driver->ready(line->state);
+        state->ready = !state->gone && line->driver->ready(line->state);
         state->drops = line->kernel_drops;
         if (a->writer)
             state->drops += wb_writer_drops(a->writer, line->id);
@@ -720,8 +720,6 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
         line->rate_ns = now_ns;
-        if (!line->driver->start)
-            continue;
         wb_outbox_clear(&a->outbox);
         line->driver->start(line->state, now_ns, &a->outbox);
         send_or_note(line);

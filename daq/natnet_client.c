@@ -64,8 +64,6 @@ struct natnet_state {
     struct wb_natnet_frame frame;
 };
 
-static const struct wb_channel channels[] = {{"markers", "length", "m"}};
-
 /* True the first time since the server was found. */
 static bool first_time(struct natnet_state *state, unsigned what)
 {
@@ -486,11 +484,8 @@ static void stop(void *opaque, struct wb_outbox *outbox)
 
 const struct wb_driver wb_natnet_client = {
     .name = "natnet",
-    .summary = "OptiTrack NatNet client, protocol 2.5 to 4.1",
     .role = WB_ROLE_MOCAP,
     .state_size = sizeof(struct natnet_state),
-    .channels = channels,
-    .n_channels = 1,
     .init = init,
     .start = start,
     .receive = receive,

@@ -40,8 +40,6 @@ struct grbl_state {
     int64_t now_ns, sent_ns, next_poll_ns, fast_until_ns;
 };
 
-static const struct wb_channel channels[] = {{"position", "length", "m"}};
-
 static enum wb_status init(void *opaque, const struct wb_rig *rig)
 {
     struct grbl_state *const state = opaque;
@@ -291,25 +289,15 @@ static bool ready(const void *opaque)
     return state->answered && state->state != WB_STAGE_UNKNOWN;
 }
 
-static void stop(void *opaque, struct wb_outbox *outbox)
-{
-    /* Nothing streams. Whether the stage may go on moving is the caller's decision. */
-    (void)opaque;
-    (void)outbox;
-}
-
+/* No `stop`: nothing streams, and whether the stage may go on moving is the caller's decision. */
 const struct wb_driver wb_stage_grbl = {
     .name = "grbl",
-    .summary = "stepper stage with GRBL 1.1",
     .role = WB_ROLE_STAGE,
     .state_size = sizeof(struct grbl_state),
-    .channels = channels,
-    .n_channels = 1,
     .init = init,
     .start = start,
     .receive = receive,
     .tick = tick,
     .command = command,
     .ready = ready,
-    .stop = stop,
 };
