@@ -359,8 +359,7 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
 {
     struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
-    if (wb_interlock_mocap(&a->interlock, frame->t_ns))
-        hold_now(a);
+    wb_interlock_mocap(&a->interlock, frame->t_ns);
     a->latest.stream[WB_ROLE_MOCAP].samples++;
     line->counted++;
     a->latest.has_mocap = true;

@@ -188,65 +188,48 @@ bool wb_grbl_position(const struct wb_grbl_report *report, struct wb_grbl_offset
     return true;
 }
 
+/* By number; what is not listed has no text. */
+static const char *text_of(const char *const *texts, size_t n, int number)
+{
+    const char *const text = number >= 0 && (size_t)number < n ? texts[number] : NULL;
+    return text ? text : "see the GRBL manual";
+}
+
 const char *wb_grbl_error_text(int number)
 {
-    switch (number) {
-    case 1:
-        return "a word has no letter";
-    case 2:
-        return "a number is malformed";
-    case 3:
-        return "the $ command is not known";
-    case 5:
-        return "homing is not enabled ($22)";
-    case 7:
-        return "the stored settings could not be read";
-    case 8:
-        return "only possible when idle";
-    case 9:
-        return "locked out during an alarm or jog";
-    case 10:
-        return "soft limits need homing";
-    case 11:
-        return "the line is too long";
-    case 13:
-        return "the safety door is open";
-    case 15:
-        return "the jog goes beyond the machine's travel";
-    case 16:
-        return "the jog command is malformed";
-    case 20:
-        return "the command is not supported";
-    case 22:
-        return "no feed rate was given";
-    default:
-        return "see the GRBL manual";
-    }
+    static const char *const texts[] = {
+        [1] = "a word has no letter",
+        [2] = "a number is malformed",
+        [3] = "the $ command is not known",
+        [5] = "homing is not enabled ($22)",
+        [7] = "the stored settings could not be read",
+        [8] = "only possible when idle",
+        [9] = "locked out during an alarm or jog",
+        [10] = "soft limits need homing",
+        [11] = "the line is too long",
+        [13] = "the safety door is open",
+        [15] = "the jog goes beyond the machine's travel",
+        [16] = "the jog command is malformed",
+        [20] = "the command is not supported",
+        [22] = "no feed rate was given",
+    };
+    return text_of(texts, WB_COUNT(texts), number);
 }
 
 const char *wb_grbl_alarm_text(int number)
 {
-    switch (number) {
-    case 1:
-        return "hard limit: the position is lost, home the stage";
-    case 2:
-        return "soft limit: the move goes beyond the machine's travel";
-    case 3:
-        return "reset while moving: the position is lost, home the stage";
-    case 4:
-    case 5:
-        return "probe failed";
-    case 6:
-        return "homing failed: reset while homing";
-    case 7:
-        return "homing failed: door opened while homing";
-    case 8:
-        return "homing failed: the limit switch did not clear";
-    case 9:
-        return "homing failed: no limit switch found";
-    default:
-        return "see the GRBL manual";
-    }
+    static const char *const texts[] = {
+        [1] = "hard limit: the position is lost, home the stage",
+        [2] = "soft limit: the move goes beyond the machine's travel",
+        [3] = "reset while moving: the position is lost, home the stage",
+        [4] = "probe failed",
+        [5] = "probe failed",
+        [6] = "homing failed: reset while homing",
+        [7] = "homing failed: door opened while homing",
+        [8] = "homing failed: the limit switch did not clear",
+        [9] = "homing failed: no limit switch found",
+    };
+    return text_of(texts, WB_COUNT(texts), number);
 }
 
 bool wb_grbl_alarm_loses_position(int number)
