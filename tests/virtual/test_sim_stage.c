@@ -26,7 +26,7 @@ static void open_scene(struct scene *scene, const struct wb_sim_stage_settings *
 
 static const char *listen(struct scene *scene)
 {
-    scene->said[wb_sim_stage_take(&scene->stage, scene->said, sizeof scene->said - 1)] = '\0';
+    scene->said[wb_reply_take(&scene->stage.out, scene->said, sizeof scene->said - 1)] = '\0';
     return scene->said;
 }
 
