@@ -1,5 +1,4 @@
 #include "daq/grbl.h"
-#include "daq/grbl_private.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -256,45 +255,6 @@ bool wb_grbl_format_jog(char *text, size_t size, char axis, double distance, dou
     format_thousandths(feed, sizeof feed, llround(um_min));
     const int n = snprintf(text, size, "$J=G91 G21 %c%s F%s\n", axis, target, feed);
     return n > 0 && (size_t)n < size;
-}
-
-bool wb_grbl_parse_jog(const char *text, struct wb_grbl_jog *jog)
-{
-    struct wb_grbl_jog read = {.axis = -1, .feed_mm_min = (double)NAN};
-    const char *c = after(text, "$J=");
-    if (!c)
-        return false;
-    while (*c) {
-        if (isspace((unsigned char)*c)) {
-            c++;
-            continue;
-        }
-        const char letter = (char)toupper((unsigned char)*c++);
-        char word[24];
-        const size_t n = strspn(c, "+-.0123456789");
-        double value;
-        if (n == 0 || n >= sizeof word)
-            return false;
-        memcpy(word, c, n);
-        word[n] = '\0';
-        if (!wb_number_parse(word, &value))
-            return false;
-        c += n;
-        if (letter == 'G' && (value == 90.0 || value == 91.0)) {
-            read.relative = value == 91.0;
-        } else if (letter == 'F') {
-            read.feed_mm_min = value;
-        } else if (letter >= 'X' && letter <= 'Z' && read.axis < 0) {
-            read.axis = letter - 'X';
-            read.target_mm = value;
-        } else if (!(letter == 'G' && value == 21.0)) {
-            return false;
-        }
-    }
-    if (read.axis < 0 || !(read.feed_mm_min > 0.0))
-        return false;
-    *jog = read;
-    return true;
 }
 
 size_t wb_grbl_format_report(char *text, size_t size, const struct wb_grbl_report *report)

@@ -441,7 +441,8 @@ static void send_query(struct natnet_state *state, int64_t now_ns, struct wb_out
     const bool waits = state->n_asked > state->n_answers && now_ns < state->next_query_ns;
     if (state->n_answers == N_QUERIES || waits)
         return;
-    const size_t n = wb_natnet_encode_request(buffer, sizeof buffer, queries[state->n_answers]);
+    const size_t n =
+        wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_REQUEST, queries[state->n_answers]);
     wb_outbox_add(outbox, buffer, n);
     state->n_asked = state->n_answers + 1;
     state->next_query_ns = now_ns + QUERY_PERIOD_NS;
@@ -461,7 +462,8 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     if (!state->connected)
         return;
     if (now_ns >= state->next_keepalive_ns) {
-        wb_outbox_add(outbox, buffer, wb_natnet_encode_keepalive(buffer, sizeof buffer));
+        wb_outbox_add(outbox, buffer,
+                      wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_KEEPALIVE));
         state->next_keepalive_ns = now_ns + KEEPALIVE_PERIOD_NS;
     }
     send_query(state, now_ns, outbox);
@@ -479,7 +481,8 @@ static void stop(void *opaque, struct wb_outbox *outbox)
     const struct natnet_state *const state = opaque;
     uint8_t buffer[16];
     if (state->connected)
-        wb_outbox_add(outbox, buffer, wb_natnet_encode_disconnect(buffer, sizeof buffer));
+        wb_outbox_add(outbox, buffer,
+                      wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_DISCONNECT));
 }
 
 const struct wb_driver wb_natnet_client = {

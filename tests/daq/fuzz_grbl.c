@@ -1,10 +1,11 @@
 /* Any bytes from a stage are lines or remarks, and how they are cut into reads does not matter. */
 #include "tests/daq/fuzz.h"
+#include "tests/daq/grbl_jog.h"
 
 #include <math.h>
 
 #include "daq/drivers.h"
-#include "daq/grbl_private.h"
+#include "daq/grbl.h"
 
 struct total {
     uint64_t n, hash;
@@ -51,7 +52,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
 {
     struct wb_grbl_line line;
     struct wb_grbl_offset offset = {0};
-    struct wb_grbl_jog jog;
+    struct grbl_jog jog;
     char text[256];
     double position;
     wb_grbl_decode((const char *)bytes, n, &line);
@@ -66,7 +67,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
         if (n)
             memcpy(text, bytes, n);
         text[n] = '\0';
-        if (wb_grbl_parse_jog(text, &jog))
+        if (grbl_jog_parse(text, &jog))
             FUZZ_REQUIRE(jog.axis >= 0 && jog.axis < 3 && jog.feed_mm_min > 0.0 &&
                          isfinite(jog.target_mm));
     }

@@ -3,7 +3,7 @@
 #include "tests/daq/fuzz.h"
 
 #include "daq/drivers.h"
-#include "daq/natnet_encode_private.h"
+#include "daq/natnet_encode.h"
 #include "tests/daq/natnet_example.h"
 
 static struct wb_natnet_frame frame;
@@ -154,11 +154,14 @@ int main(int argc, char **argv)
     n++;
     sizes[n] = 2 + wb_natnet_encode_response_real(put_version(seeds[n], 3, 0), room, 120.0F);
     n++;
-    sizes[n] = 2 + wb_natnet_encode_response_text(put_version(seeds[n], 3, 0), room, "no");
+    sizes[n] =
+        2 + wb_natnet_encode_text(put_version(seeds[n], 3, 0), room, WB_NATNET_RESPONSE, "no");
     n++;
-    sizes[n] = 2 + wb_natnet_encode_message_string(put_version(seeds[n], 3, 0), room, "hello");
+    sizes[n] = 2 + wb_natnet_encode_text(put_version(seeds[n], 3, 0), room, WB_NATNET_MESSAGESTRING,
+                                         "hello");
     n++;
-    sizes[n] = 2 + wb_natnet_encode_unrecognized(put_version(seeds[n], 3, 0), room);
+    sizes[n] = 2 + wb_natnet_encode_empty(put_version(seeds[n], 3, 0), room,
+                                          WB_NATNET_UNRECOGNIZED_REQUEST);
     n++;
     FUZZ_REQUIRE(n == N_SEEDS);
     for (size_t i = 0; i < n; i++)

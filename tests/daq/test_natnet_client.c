@@ -368,9 +368,12 @@ static void a_server_that_knows_no_queries_is_fine(void **state)
     natnet_example(&frame, 7);
     void *const driver = collect_open(&wb_natnet_client, &rig);
     receive(driver, 0, server_info(2, 7, false));
-    receive(driver, 1, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
-    receive(driver, 2, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
-    receive(driver, 3, wb_natnet_encode_unrecognized(buffer, sizeof buffer));
+    receive(driver, 1,
+            wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_UNRECOGNIZED_REQUEST));
+    receive(driver, 2,
+            wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_UNRECOGNIZED_REQUEST));
+    receive(driver, 3,
+            wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_UNRECOGNIZED_REQUEST));
     receive(driver, 4, frame_of(2, 7));
     assert_int_equal(collect.n_mocap, 1);
     assert_memory_equal(collect.mocap.markers[6].position, frame.mocap.markers[6].position, 12);
