@@ -236,7 +236,7 @@ static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
         break;
     case WB_STOP_DO_RESET:
         status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
-        wb_warn("the stage did not confirm the hold within %d ms: soft reset",
+        wb_warn("the stage did not confirm the feed hold within %d ms: a soft reset stops it",
                 (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
         push_event(a, wb_acquisition_now_ns(), "reset",
                    status == WB_OK ? "hold not confirmed in time: soft reset sent"
@@ -411,8 +411,9 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
     const bool store = wb_remark_gate_store(&line->gate, t_ns, &held);
     if (held > 0) {
         char more[96];
-        snprintf(more, sizeof more, "%u more remarks of the %s stream within a second", held,
-                 wb_role_name(line->role));
+        snprintf(more, sizeof more,
+                 "%u more remarks on the %s stream came within the same second and are not stored",
+                 held, wb_role_name(line->role));
         push_event(a, t_ns, "remarks", more);
     }
     if (store)
@@ -434,7 +435,8 @@ static void note_kernel_drops(struct line *line, int64_t t_ns)
         return;
     char text[120];
     snprintf(text, sizeof text,
-             "%s stream lost %" PRIu64 " datagrams in the kernel: they were not read in time",
+             "the %s stream lost %" PRIu64
+             " datagrams: this computer did not read them in time; close other programs",
              wb_role_name(line->role), drops - line->kernel_drops);
     line->kernel_drops = drops;
     push_event(line->owner, t_ns, "drop", text);
@@ -504,10 +506,10 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
             push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
             /* A device that went away has been told already. */
             if (lost && !state->gone)
-                wb_warn("stream lost: %s (%s)", wb_role_name(line->role),
-                        wb_stream_address(line->stream));
+                wb_warn("the %s stream is lost: nothing valid comes from %s",
+                        wb_role_name(line->role), wb_stream_address(line->stream));
             else if (!lost)
-                wb_info("stream found again: %s", wb_role_name(line->role));
+                wb_info("the %s stream is back", wb_role_name(line->role));
             line->reported_lost = lost;
         }
         state->lost = lost;
@@ -548,7 +550,7 @@ static void check_rest(struct wb_acquisition *a)
         if (!a->latest.stream[a->lines[i].role].gone)
             continue;
         char text[WB_INTERLOCK_TEXT];
-        snprintf(text, sizeof text, "the %s's port %s went away",
+        snprintf(text, sizeof text, "the %s's port %s went away: check its cable and power",
                  a->lines[i].role == WB_ROLE_LOAD ? "load cell" : "stage",
                  wb_stream_address(a->lines[i].stream));
         wb_acquisition_stop(a, WB_INTERLOCK_STREAM_LOST, text);
@@ -665,7 +667,8 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
     line->id = a->n_lines;
     line->driver = wb_drivers_find(role, protocol);
     if (!line->driver)
-        return wb_fail(WB_ERR_UNSUPPORTED, "no %s protocol '%s'", wb_role_name(role), protocol);
+        return wb_fail(WB_ERR_UNSUPPORTED, "the %s protocol '%s' is not known", wb_role_name(role),
+                       protocol);
     line->state = calloc(1, line->driver->state_size);
     if (!line->state)
         return wb_fail(WB_ERR_MEMORY, "no memory for the %s driver", protocol);

@@ -212,12 +212,15 @@ static void step_connect(struct wb_bend_test *test)
         wb_ns_from_seconds(test->request.connect_timeout) + test->run.rig.load_cell.settle_ns;
     if (gone(test, WB_ROLE_LOAD))
         wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
-                            "the load cell's port %s went away", test->run.rig.load_cell.address);
+                            "the load cell's port %s went away: check its cable and power",
+                            test->run.rig.load_cell.address);
     else if (gone(test, WB_ROLE_STAGE))
-        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST, "the stage's port %s went away",
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
+                            "the stage's port %s went away: check its cable and power",
                             test->run.rig.stage.address);
     else if (wb_writer_status(test->writer) != WB_OK)
-        wb_sequence_give_up(&test->run, WB_INTERLOCK_DISK, "the recording cannot be written");
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_DISK,
+                            "the recording cannot be written: the message before says why");
     else if (latest->has_load && latest->has_mocap && latest->has_stage &&
              latest->stream[WB_ROLE_MOCAP].ready && latest->stream[WB_ROLE_LOAD].ready &&
              latest->stream[WB_ROLE_STAGE].ready) {
@@ -246,7 +249,10 @@ static void step_check(struct wb_bend_test *test)
         (!enough && waited_ns < CHECK_TIMEOUT_NS))
         return;
     if (!enough)
-        snprintf(text, sizeof text, "only %" PRId64 " readings and %d frames came in %.1f s",
+        snprintf(text, sizeof text,
+                 "only %" PRId64
+                 " readings of the load cell and %d frames of the cameras came in %.1f "
+                 "s, at least 10 of each are needed",
                  check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
     if (!enough || !wb_start_check_stage(&latest->stage, test->rig_path, text) ||
         !wb_start_check_markers(check, &test->specimen, text) ||
@@ -271,9 +277,10 @@ static bool arrived(struct wb_bend_test *test)
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
     if (latest->stage_reports == test->run.reports_seen) {
         if (wb_sequence_lasts_ns(&test->run) > test->run.allowed_ns)
-            wb_sequence_give_up(&test->run, WB_INTERLOCK_STAGE,
-                                "the stage did not arrive at %.2f mm in time",
-                                test->run.target / WB_MM);
+            wb_sequence_give_up(
+                &test->run, WB_INTERLOCK_STAGE,
+                "the stage did not arrive at %.2f mm in time: check that nothing blocks it",
+                test->run.target / WB_MM);
         return false;
     }
     test->run.reports_seen = latest->stage_reports;
@@ -282,7 +289,8 @@ static bool arrived(struct wb_bend_test *test)
         test->run.idle_reports = 0;
         if (wb_sequence_lasts_ns(&test->run) > test->run.allowed_ns)
             wb_sequence_give_up(&test->run, WB_INTERLOCK_STAGE,
-                                "the stage is at %.2f mm and did not arrive at %.2f mm in time",
+                                "the stage is at %.2f mm and did not arrive at %.2f mm in time: "
+                                "check that nothing blocks it",
                                 travel / WB_MM, test->run.target / WB_MM);
         return false;
     }
@@ -415,7 +423,7 @@ static enum wb_status check_request(const struct wb_bend_test *test)
     const double travel = test->request.travel;
     const double limit = rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
     if (test->request.cycles < 1)
-        return wb_fail(WB_ERR_ARGUMENT, "a test has at least one cycle, not %d",
+        return wb_fail(WB_ERR_ARGUMENT, "expected at least one cycle, not %d: see --cycles",
                        test->request.cycles);
     if (!(travel > 0.0) || !(travel <= limit))
         return wb_fail(WB_ERR_ARGUMENT,

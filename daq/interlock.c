@@ -94,10 +94,10 @@ bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_samp
     /* Before the overload, which a wrong unit may only pretend. */
     if (sample->unit_changed)
         return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
-                    "the load cell changed its unit in mid-stream");
+                    "the load cell changed its unit while it was read: set the unit back");
     if (sample->overload && !limit->overload_allowed)
         return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
-                    "the load cell reports overload");
+                    "the load cell reports overload: it is loaded beyond its range");
     if (!sample->valid)
         return false;
     if (limit->overload > 0.0 && !(fabs(sample->force) <= limit->overload))
@@ -125,8 +125,8 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
     if (report->state == WB_STAGE_ALARM && limit->alarm_allowed)
         return false;
     if (report->state == WB_STAGE_ALARM && report->alarm != 0)
-        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage raised ALARM:%d",
-                    report->alarm);
+        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns,
+                    "the stage raised ALARM:%d of its firmware", report->alarm);
     if (report->state == WB_STAGE_ALARM)
         return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage is in alarm");
     if (report->state == WB_STAGE_HOLD || report->state == WB_STAGE_OTHER)

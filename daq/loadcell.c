@@ -45,9 +45,10 @@ static void refuse(struct wb_loadcell *loadcell, int64_t t_ns, const char *reaso
     char text[64];
     loadcell->n_refused++;
     if (wb_driver_worth_saying(loadcell->n_refused))
-        wb_driver_remark(
-            sink, WB_LOG_WARNING, t_ns, "refused", "line '%s' refused: %s; %" PRIu64 " so far",
-            wb_loadcell_printable(&loadcell->line, text, sizeof text), reason, loadcell->n_refused);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
+                         "a line of the load cell is not understood: '%s': %s; %" PRIu64 " so far",
+                         wb_loadcell_printable(&loadcell->line, text, sizeof text), reason,
+                         loadcell->n_refused);
 }
 
 /* Keeps the unit's history; true when the line's unit is not the first one seen. A line without a
@@ -62,8 +63,8 @@ static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *u
         strcpy(loadcell->last_unit, unit);
     }
     if (strcmp(loadcell->last_unit, unit) != 0)
-        wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "unit", "the unit changed from %s to %s",
-                         loadcell->last_unit, unit);
+        wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "unit",
+                         "the load cell's unit changed from %s to %s", loadcell->last_unit, unit);
     strcpy(loadcell->last_unit, unit);
     return strcmp(loadcell->first_unit, unit) != 0;
 }
@@ -111,8 +112,8 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
     double force;
     if (!wb_line_force(&complete, cell, loadcell->rig.gravity, &force)) {
         refuse(loadcell, t_ns,
-               complete.unit[0] ? "its unit is not known: set load_cell.unit"
-                                : "it has no unit: set load_cell.unit",
+               complete.unit[0] ? "its unit is not known: set load_cell.unit in the rig file"
+                                : "it has no unit: set load_cell.unit in the rig file",
                sink);
         return;
     }

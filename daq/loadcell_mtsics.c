@@ -63,11 +63,13 @@ static void check_serial(const struct wb_loadcell *loadcell, int64_t t_ns, const
         return;
     memcpy(number, serial + quoted, length);
     number[length] = '\0';
-    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected", "balance with serial number %s", number);
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected",
+                     "the balance with serial number %s answers", number);
     if (expected[0] && strcmp(expected, number) != 0)
-        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "serial",
-                         "the balance has serial number %s, the rig file names %s", number,
-                         expected);
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "serial",
+            "the balance has serial number %s, the rig file names %s: is it the right one?", number,
+            expected);
 }
 
 static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct wb_sink *sink)
@@ -76,7 +78,7 @@ static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct
     char text[sizeof line->bytes + 1];
     char *words[4] = {NULL, NULL, NULL, NULL};
     struct wb_line_reading reading = {.kind = WB_LINE_REFUSED, .value = (double)NAN};
-    reading.reason = "not understood";
+    reading.reason = "it is no answer of MT-SICS: check load_cell.protocol";
     wb_loadcell_printable(line, text, sizeof text);
     /* Printable copies show a CR as '?'; here it is a blank like any other. */
     for (size_t i = 0; i < line->n; i++)
@@ -84,7 +86,7 @@ static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct
             text[i] = ' ';
     const int n = split(text, words);
     if (line->overlong)
-        reading.reason = "it is far too long: check the line settings";
+        reading.reason = "it is far too long: check baud rate and parity in load_cell.address";
     else if (n == 0)
         return;
     else if (strcmp(words[0], "S") == 0)

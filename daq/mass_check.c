@@ -83,7 +83,7 @@ static void watch(struct wb_mass_check *check, int64_t now_ns)
         wb_error("stopped by the operator");
         fail(check);
     } else if (load->gone) {
-        wb_error("the load cell's port %s went away", address);
+        wb_error("the load cell's port %s went away: check its cable and power", address);
         fail(check);
     } else if (check->overload) {
         wb_error("the load cell reports overload: the mass is beyond its range");
@@ -96,7 +96,7 @@ static void watch(struct wb_mass_check *check, int64_t now_ns)
         fail(check);
     } else if ((check->phase == WB_MASS_CHECK_ZERO || check->phase == WB_MASS_CHECK_LOADED) &&
                waited_ns > check->duration_ns + CONNECT_NS) {
-        wb_error("the load cell at %s sends too few readings", address);
+        wb_error("the load cell at %s sends too few readings: at least 10 are needed", address);
         fail(check);
     }
 }

@@ -73,7 +73,7 @@ static void receive_report(struct grbl_state *state, int64_t t_ns,
     state->answered = true;
     if (report->state == WB_STAGE_ALARM && state->state != WB_STAGE_ALARM && state->alarm == 0)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "locked",
-                         "the stage is locked (state Alarm): home or unlock it");
+                         "the stage is locked (state Alarm): run 'home' or 'unlock'");
     if (report->limit[state->axis] && !state->limit_pressed)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "switch",
                          "the limit switch of axis %c is pressed", state->rig.stage.axis);
@@ -121,7 +121,7 @@ static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct w
     else if (state->waits && strcmp(state->pending, "$H") == 0 && state->position_lost) {
         state->position_lost = false;
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "homed",
-                         "the stage was homed, its position is known");
+                         "the stage was homed: its position is known again");
     }
     state->waits = false;
 }
@@ -154,8 +154,8 @@ static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb
         state->n_unknown++;
         if (wb_driver_worth_saying(state->n_unknown))
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                             "line not understood: '%s'; %" PRIu64 " so far", line.text,
-                             state->n_unknown);
+                             "a line of the stage is not understood: '%s'; %" PRIu64 " so far",
+                             line.text, state->n_unknown);
     }
 }
 
@@ -173,7 +173,9 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
         }
         if (state->overlong)
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                             "a line of more than %d bytes is dropped", LINE_BYTES);
+                             "the stage sent a line of more than %d bytes, which is dropped: check "
+                             "the baud rate",
+                             LINE_BYTES);
         else
             receive_line(state, t_ns, sink);
         state->n_line = 0;
@@ -205,7 +207,7 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     state->now_ns = now_ns;
     /* A lost reply must not lock the stage out for ever. */
     if (state->waits && now_ns - state->sent_ns > REPLY_NS && strcmp(state->pending, "$H") != 0) {
-        wb_warn("the stage did not answer '%s' within %d ms", state->pending,
+        wb_warn("the stage did not answer '%s' within %d ms: check its cable", state->pending,
                 (int)(REPLY_NS / WB_NS_PER_MS));
         state->waits = false;
     }
@@ -219,7 +221,7 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 static enum wb_status send_byte(struct wb_outbox *outbox, uint8_t byte)
 {
     if (!wb_outbox_add(outbox, &byte, 1))
-        return wb_fail(WB_ERR_MEMORY, "the stage's outbox is full");
+        return wb_fail(WB_ERR_MEMORY, "the stage takes no more commands: too many wait to be sent");
     return WB_OK;
 }
 
@@ -232,7 +234,7 @@ static enum wb_status send_line(struct grbl_state *state, const char *text,
     if (state->waits)
         return WB_ERR_BUSY;
     if (length >= sizeof state->pending || !wb_outbox_add_text(outbox, text))
-        return wb_fail(WB_ERR_MEMORY, "the stage's outbox is full");
+        return wb_fail(WB_ERR_MEMORY, "the stage takes no more commands: too many wait to be sent");
     memcpy(state->pending, text, length);
     state->pending[length] = '\0';
     state->waits = true;

@@ -204,7 +204,8 @@ static void begin_motion(struct wb_stage_job *job)
         return;
     }
     if (!isfinite(job->run.start_position)) {
-        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "the stage does not tell its position");
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE,
+                            "the stage does not tell its position: set $10=1 in its firmware");
         return;
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
@@ -260,11 +261,13 @@ static void step_connect(struct wb_stage_job *job)
     const int64_t allowed_ns =
         wb_ns_from_seconds(job->request.connect_timeout) + job->run.rig.load_cell.settle_ns;
     if (latest->stream[WB_ROLE_STAGE].gone)
-        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST, "the stage's port %s went away",
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                            "the stage's port %s went away: check its cable and power",
                             job->run.rig.stage.address);
     else if (load->gone)
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
-                            "the load cell's port %s went away", job->run.rig.load_cell.address);
+                            "the load cell's port %s went away: check its cable and power",
+                            job->run.rig.load_cell.address);
     else if (wb_sequence_lasts_ns(&job->run) > allowed_ns && !latest->has_stage)
         wb_sequence_give_up(
             &job->run, WB_INTERLOCK_STREAM_LOST,
@@ -303,8 +306,9 @@ static void step_reset(struct wb_stage_job *job)
         }
     }
     if (wb_sequence_lasts_ns(&job->run) > RESET_NS)
-        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE,
-                            "the stage does not come back from its reset");
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "the stage does not come back from its reset: switch it off and on, then run 'home'");
 }
 
 static void step_unlock(struct wb_stage_job *job)
@@ -338,15 +342,19 @@ static void step_home(struct wb_stage_job *job)
         }
     }
     if (wb_sequence_lasts_ns(&job->run) > HOMING_NS)
-        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "homing did not end within %d s",
-                            (int)(HOMING_NS / WB_NS_PER_S));
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "homing did not end within %d s: check the limit switch, then run 'unlock'",
+            (int)(HOMING_NS / WB_NS_PER_S));
 }
 
 static void step_move(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     if (wb_sequence_lasts_ns(&job->run) > job->run.allowed_ns)
-        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "the stage did not arrive in time");
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "the stage did not arrive at its target in time: check that nothing blocks it");
     if (!fresh_report(job, 0) || latest->stage.state != WB_STAGE_IDLE)
         return;
     const double travel = wb_sequence_travel(&job->run, latest->stage.position);
@@ -375,9 +383,10 @@ static void step_move(struct wb_stage_job *job)
                             travel / WB_MM, latest->stage_error);
     } else if (job->run.idle_reports >= 5 && wb_sequence_lasts_ns(&job->run) > WB_NS_PER_S) {
         wb_acquisition_motion_ended(job->run.acquisition);
-        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE,
-                            "the stage stands after %.2f mm of %.2f mm", travel / WB_MM,
-                            job->run.target / WB_MM);
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "the stage stopped after %.2f mm of %.2f mm: check that nothing blocks it",
+            travel / WB_MM, job->run.target / WB_MM);
     }
 }
 
@@ -398,7 +407,7 @@ static void step_rest(struct wb_stage_job *job)
             step_up(job, wb_sequence_travel(&job->run, latest->stage.position));
         else if (wb_sequence_lasts_ns(&job->run) > REST_NS)
             wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
-                                "the stage does not report its position");
+                                "the stage does not tell its position: set $10=1 in its firmware");
         break;
     case WB_RELEASE_SLACK:
         end_release(job, WB_SEQUENCE_DONE, "the strand is slack: the specimen is free");

@@ -88,8 +88,10 @@ bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_
         n_missing++;
     }
     if (n_missing == n)
-        snprintf(text, WB_START_CHECK_TEXT, "none of the %d markers is seen on a wire of %g mm", n,
-                 specimen->length / WB_MM);
+        snprintf(text, WB_START_CHECK_TEXT,
+                 "none of the %d markers is seen on a wire of %g mm: do the cameras stream, and is "
+                 "it this specimen?",
+                 n, specimen->length / WB_MM);
     else if (n_missing > 0)
         snprintf(text, WB_START_CHECK_TEXT,
                  "%d of %d markers seen; not seen, counted from one end: %s", n - n_missing, n,

@@ -77,7 +77,9 @@ enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *lin
     *line = (struct wb_stream_line){.baud = 9600, .bits = 8, .parity = 'n', .stop = 1, .flow = 'n'};
     size_t n = strcspn(rest, ",");
     if (n == 0 || n >= sizeof line->path)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s' names no device: expected PATH,BAUD,8n1", rest);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "'%s' names no device: expected PATH,BAUD,8n1 such as /dev/ttyUSB0,9600,8n1",
+                       rest);
     memcpy(line->path, rest, n);
     line->path[n] = '\0';
     const char *at = rest + n;
@@ -200,7 +202,9 @@ enum wb_status wb_stream_port_write(void *state, const void *bytes, size_t n)
             return wb_fail(WB_ERR_IO, "port '%s' cannot be written to: %s", port->path,
                            strerror(errno));
         if (!wb_stream_wait_writable(port->descriptor, deadline_ns))
-            return wb_fail(WB_ERR_TIMEOUT, "port '%s' took only %zu of %zu bytes within 50 ms",
+            return wb_fail(WB_ERR_TIMEOUT,
+                           "port '%s' took only %zu of %zu bytes within 50 ms: is the instrument "
+                           "on, and its flow control as in the rig file?",
                            port->path, done, n);
     }
     return WB_OK;

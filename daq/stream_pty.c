@@ -38,8 +38,9 @@ static enum wb_status apply_line(int descriptor, const struct wb_stream_line *li
     cfmakeraw(&settings);
     speed_t speed = find_speed(line->baud);
     if (speed == 0)
-        return wb_fail(WB_ERR_ARGUMENT, "baud rate %d of '%s' is not a standard one", line->baud,
-                       line->path);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "baud rate %d of '%s' is not a standard one such as 9600 or 115200",
+                       line->baud, line->path);
     cfsetispeed(&settings, speed);
     cfsetospeed(&settings, speed);
     static const tcflag_t sizes[] = {CS5, CS6, CS7, CS8};

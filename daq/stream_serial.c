@@ -20,7 +20,7 @@ struct serial_state {
     struct sp_port *port;
 };
 
-/* "; ports here: /dev/ttyUSB0, /dev/ttyACM0" or "; no serial port is there at all". */
+/* "; ports that exist: /dev/ttyUSB0, /dev/ttyACM0", or that there is none. */
 static void describe_ports(char *text, size_t size)
 {
     struct sp_port **ports = NULL;

@@ -98,14 +98,13 @@ static enum wb_status write_entry(struct wb_recording *recording, const struct e
 static enum wb_status write_loss(struct wb_recording *recording, int stream,
                                  const struct loss *loss)
 {
-    char text[200];
-    snprintf(
-        text, sizeof text,
-        "%s stream %d lost %llu chunks of %llu bytes and %llu clock probes from %.3f s to %.3f "
-        "s of the host's clock: the writer's queue was full",
-        role_of(recording, stream), stream, (unsigned long long)loss->chunks,
-        (unsigned long long)loss->bytes, (unsigned long long)loss->probes,
-        wb_seconds_from_ns(loss->first_ns), wb_seconds_from_ns(loss->last_ns));
+    char text[240];
+    snprintf(text, sizeof text,
+             "the %s stream (number %d) lost %llu chunks of %llu bytes and %llu clock probes from "
+             "%.3f s to %.3f s of the host's clock: the disk was too slow",
+             role_of(recording, stream), stream, (unsigned long long)loss->chunks,
+             (unsigned long long)loss->bytes, (unsigned long long)loss->probes,
+             wb_seconds_from_ns(loss->first_ns), wb_seconds_from_ns(loss->last_ns));
     wb_warn("%s", text);
     return wb_recording_append_event(recording, loss->first_ns, "drop", text);
 }

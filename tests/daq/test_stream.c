@@ -333,7 +333,7 @@ static void datagrams_of_strangers_are_ignored(void **state)
     send_text(server, &client, "good");
     wait_readable(stream);
     assert_reads(stream, "good");
-    assert_message("127.0.0.2 ignored");
+    assert_message("127.0.0.2 are ignored");
     wb_stream_close(stream);
     close(stranger);
     close(server);

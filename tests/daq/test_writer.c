@@ -201,7 +201,7 @@ static void full_queue_drops_counts_and_records_every_chunk_and_no_event(void **
     assert_int_equal(drops.n, 2);
     for (int stream = 0; stream < 2; stream++) {
         char expected[64];
-        snprintf(expected, sizeof expected, "%s stream %d lost %llu chunks",
+        snprintf(expected, sizeof expected, "%s stream (number %d) lost %llu chunks",
                  stream == 0 ? "load" : "mocap", stream, (unsigned long long)refused[stream]);
         bool found = false;
         for (int i = 0; i < 2; i++)
