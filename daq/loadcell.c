@@ -69,6 +69,14 @@ static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *u
     return strcmp(loadcell->first_unit, unit) != 0;
 }
 
+static void pass_on(struct wb_loadcell *loadcell, const struct wb_load_sample *sample,
+                    const struct wb_sink *sink)
+{
+    loadcell->n_samples++;
+    if (sink->load)
+        sink->load(sink->context, sample);
+}
+
 static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample *sample,
                              const struct wb_sink *sink)
 {
@@ -80,9 +88,7 @@ static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample
                          "the load cell is out of range: '%s'",
                          wb_loadcell_printable(&loadcell->line, text, sizeof text));
     loadcell->overloaded = true;
-    loadcell->n_samples++;
-    if (sink->load)
-        sink->load(sink->context, sample);
+    pass_on(loadcell, sample, sink);
 }
 
 void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
@@ -127,7 +133,5 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
     if (sample.valid)
         sample.force = force;
     loadcell->overloaded = false;
-    loadcell->n_samples++;
-    if (sink->load)
-        sink->load(sink->context, &sample);
+    pass_on(loadcell, &sample, sink);
 }

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "daq/driver.h"
+#include "daq/line_buffer.h"
 #include "daq/loadcell_line.h"
 #include "daq/rig.h"
 #include "daq/sample.h"

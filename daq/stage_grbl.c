@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "daq/grbl.h"
+#include "daq/line_buffer.h"
 
 #define WB_LOG_DOMAIN "stage"
 
@@ -17,15 +18,11 @@
 #define FAST_POLL_PERIOD_NS (100 * WB_NS_PER_MS) /* and 10 for a while are fine */
 #define FAST_POLL_NS (1000 * WB_NS_PER_MS)
 #define REPLY_NS (2000 * WB_NS_PER_MS) /* a line is answered in far less, but for homing */
-#define LINE_BYTES 256
 
 struct grbl_state {
     struct wb_rig rig;
-    int axis; /* 0 to 2 */
-    /* Bytes of the line that is coming in. */
-    char line[LINE_BYTES];
-    size_t n_line;
-    bool overlong;
+    int axis;                   /* 0 to 2 */
+    struct wb_line_buffer line; /* that is coming in */
     /* What the firmware told. */
     bool answered;
     bool position_lost, limit_pressed;
@@ -129,7 +126,7 @@ static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct w
 static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     struct wb_grbl_line line;
-    wb_grbl_decode(state->line, state->n_line, &line);
+    wb_grbl_decode(state->line.bytes, state->line.n, &line);
     switch (line.kind) {
     case WB_GRBL_LINE_OK:
     case WB_GRBL_LINE_ERROR:
@@ -164,22 +161,16 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
 {
     struct grbl_state *const state = opaque;
     for (size_t i = 0; i < n; i++) {
-        if (bytes[i] != '\n') {
-            if (state->n_line < LINE_BYTES)
-                state->line[state->n_line++] = (char)bytes[i];
-            else
-                state->overlong = true;
+        if (!wb_line_buffer_push(&state->line, bytes[i], "lf"))
             continue;
-        }
-        if (state->overlong)
+        if (state->line.overlong)
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
                              "the stage sent a line of more than %d bytes, which is dropped: check "
                              "the baud rate",
-                             LINE_BYTES);
+                             (int)sizeof state->line.bytes);
         else
             receive_line(state, t_ns, sink);
-        state->n_line = 0;
-        state->overlong = false;
+        wb_line_buffer_clear(&state->line);
     }
 }
 

@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -148,18 +147,9 @@ static void rest(struct wb_stage_job *job, double travel)
     wb_release_rest(&job->release, travel, job->run.phase_ns);
 }
 
-static void end_release(struct wb_stage_job *job, enum wb_sequence_end end, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static void end_release(struct wb_stage_job *job, enum wb_sequence_end end, const char *format, ...)
+static void end_release(struct wb_stage_job *job)
 {
-    char text[WB_INTERLOCK_TEXT];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
     wb_acquisition_motion_ended(job->run.acquisition);
-    wb_sequence_set_end(&job->run, end, "%s", text);
     finish(job);
 }
 
@@ -175,15 +165,18 @@ static void step_up(struct wb_stage_job *job, double travel)
     else
         snprintf(now, sizeof now, "overload now");
     if (left <= WB_SEQUENCE_TOLERANCE)
-        end_release(job, WB_SEQUENCE_STILL_LOADED,
-                    "went up by %.2f mm, but the reading did not level off (%s): look at "
-                    "the strand, then release again or jog",
-                    -travel / WB_MM, now);
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_STILL_LOADED,
+                            "went up by %.2f mm, but the reading did not level off (%s): look at "
+                            "the strand, then release again or jog",
+                            -travel / WB_MM, now);
     else if (job->most < LEAST_STEP)
-        end_release(job, WB_SEQUENCE_STILL_LOADED,
-                    "went up by %.2f mm to the end of the machine, but the reading did not level "
-                    "off (%s): look at the strand; the stage is free to jog down",
-                    -travel / WB_MM, now);
+        wb_sequence_set_end(
+            &job->run, WB_SEQUENCE_STILL_LOADED,
+            "went up by %.2f mm to the end of the machine, but the reading did not level "
+            "off (%s): look at the strand; the stage is free to jog down",
+            -travel / WB_MM, now);
+    if (job->run.end != WB_SEQUENCE_RUNNING)
+        end_release(job);
     else
         wb_sequence_jog_to(&job->run, travel - fmin(step, left), job->request.speed, PHASE_MOVE);
 }
@@ -410,15 +403,19 @@ static void step_rest(struct wb_stage_job *job)
                                 "the stage does not tell its position: set $10=1 in its firmware");
         break;
     case WB_RELEASE_SLACK:
-        end_release(job, WB_SEQUENCE_DONE, "the strand is slack: the specimen is free");
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE,
+                            "the strand is slack: the specimen is free");
+        end_release(job);
         break;
     case WB_RELEASE_STUCK:
-        end_release(job, WB_SEQUENCE_STILL_LOADED,
-                    "went up by %.2f mm, but the reading stays at %.2f mN, more than a slack "
-                    "strand leaves on the load cell: look at the strand and what hangs on the "
-                    "cell, then jog",
-                    -wb_sequence_travel(&job->run, latest->stage.position) / WB_MM,
-                    wb_release_force(&job->release) / WB_MN);
+        wb_sequence_set_end(
+            &job->run, WB_SEQUENCE_STILL_LOADED,
+            "went up by %.2f mm, but the reading stays at %.2f mN, more than a slack "
+            "strand leaves on the load cell: look at the strand and what hangs on the "
+            "cell, then jog",
+            -wb_sequence_travel(&job->run, latest->stage.position) / WB_MM,
+            wb_release_force(&job->release) / WB_MN);
+        end_release(job);
         break;
     }
 }
