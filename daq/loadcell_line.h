@@ -19,7 +19,7 @@ enum wb_line_kind {
     WB_LINE_EMPTY,    /* nothing but blanks */
     WB_LINE_VALUE,    /* a reading */
     WB_LINE_OVERLOAD, /* over or under range */
-    WB_LINE_REFUSED   /* an error code, a banner, something else; `reason` says what */
+    WB_LINE_REFUSED   /* no reading: an error code, a greeting, rubbish; `reason` says what */
 };
 
 struct wb_line_reading {
