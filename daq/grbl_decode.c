@@ -62,19 +62,13 @@ static enum wb_stage_state state_of(const char *name)
 /* One field of a report, "MPos:0.000,0.000,0.000". Unknown fields are left alone. */
 static bool parse_field(const char *field, struct wb_grbl_report *report)
 {
+    static const char *const names[] = {"MPos:", "WPos:", "WCO:"};
+    double *const triples[] = {report->machine_mm, report->work_mm, report->offset_mm};
+    bool *const has[] = {&report->has_machine, &report->has_work, &report->has_offset};
     double values[3] = {0.0, 0.0, 0.0};
-    if (strncmp(field, "MPos:", 5) == 0) {
-        report->has_machine = parse_triple(field + 5, report->machine_mm) > 0;
-        return report->has_machine;
-    }
-    if (strncmp(field, "WPos:", 5) == 0) {
-        report->has_work = parse_triple(field + 5, report->work_mm) > 0;
-        return report->has_work;
-    }
-    if (strncmp(field, "WCO:", 4) == 0) {
-        report->has_offset = parse_triple(field + 4, report->offset_mm) > 0;
-        return report->has_offset;
-    }
+    for (size_t i = 0; i < WB_COUNT(names); i++)
+        if (strncmp(field, names[i], strlen(names[i])) == 0)
+            return *has[i] = parse_triple(field + strlen(names[i]), triples[i]) > 0;
     if (strncmp(field, "FS:", 3) == 0 || strncmp(field, "F:", 2) == 0) {
         if (parse_triple(strchr(field, ':') + 1, values) == 0)
             return false;
