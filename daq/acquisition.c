@@ -48,7 +48,7 @@ struct line {
 
 struct wb_acquisition {
     struct wb_rig rig;
-    struct wb_sink user;
+    struct wb_sink sinks[2]; /* see every sample, in this order */
     struct wb_writer *writer;
     int n_lines;
     struct line lines[WB_INTERLOCK_ROLES];
@@ -339,6 +339,14 @@ const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *a)
 
 /* --- receiving: what the drivers deliver --- */
 
+/* To both sinks. */
+#define PASS_ON(a, member, ...)                                                                    \
+    do {                                                                                           \
+        for (int i_ = 0; i_ < 2; i_++)                                                             \
+            if ((a)->sinks[i_].member)                                                             \
+                (a)->sinks[i_].member((a)->sinks[i_].context, __VA_ARGS__);                        \
+    } while (0)
+
 static void on_load(void *context, const struct wb_load_sample *sample)
 {
     struct line *const line = context;
@@ -351,8 +359,7 @@ static void on_load(void *context, const struct wb_load_sample *sample)
         a->latest.has_load = true;
         a->latest.load = *sample;
     }
-    if (a->user.load)
-        a->user.load(a->user.context, sample);
+    PASS_ON(a, load, sample);
 }
 
 static void on_mocap(void *context, const struct wb_mocap_frame *frame)
@@ -368,8 +375,7 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
     for (int i = 0; i < frame->n_markers; i++)
         if (wb_acquisition_marker_measured(&frame->markers[i]))
             a->latest.markers_seen++;
-    if (a->user.mocap)
-        a->user.mocap(a->user.context, frame);
+    PASS_ON(a, mocap, frame);
 }
 
 static void on_stage(void *context, const struct wb_stage_report *report)
@@ -384,8 +390,7 @@ static void on_stage(void *context, const struct wb_stage_report *report)
     a->latest.has_stage = true;
     a->latest.stage = *report;
     a->latest.stage_reports++;
-    if (a->user.stage)
-        a->user.stage(a->user.context, report);
+    PASS_ON(a, stage, report);
 }
 
 static void on_probe(void *context, const struct wb_clock_probe *probe)
@@ -396,8 +401,7 @@ static void on_probe(void *context, const struct wb_clock_probe *probe)
     if (a->writer)
         (void)wb_writer_push_clock(a->writer, line->id, probe->t_sent_ns + rtt_ns / 2,
                                    probe->t_device, rtt_ns);
-    if (a->user.probe)
-        a->user.probe(a->user.context, probe);
+    PASS_ON(a, probe, probe);
 }
 
 static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
@@ -423,8 +427,7 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
         wb_debug("%s: %s", wb_role_name(line->role), text);
     else if (wb_remark_gate_show(&line->gate, t_ns, kind))
         wb_warn("%s: %s", wb_role_name(line->role), text);
-    if (a->user.remark)
-        a->user.remark(a->user.context, level, t_ns, kind, text);
+    PASS_ON(a, remark, level, t_ns, kind, text);
 }
 
 /* Datagrams that the kernel threw away never reached us: the recording says so. */
@@ -688,7 +691,7 @@ enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_
         return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
     a->rig = *rig;
     if (sink)
-        a->user = *sink;
+        a->sinks[0] = *sink;
     enum wb_status status = WB_OK;
     if (roles & WB_ACQUISITION_LOAD)
         status = open_line(a, WB_ROLE_LOAD, rig->load_cell.address, rig->load_cell.protocol);
@@ -702,6 +705,11 @@ enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_
     }
     *out = a;
     return WB_OK;
+}
+
+void wb_acquisition_also_tell(struct wb_acquisition *a, const struct wb_sink *sink)
+{
+    a->sinks[1] = *sink;
 }
 
 int wb_acquisition_stream(const struct wb_acquisition *a, enum wb_role role)

@@ -45,6 +45,9 @@ WB_MUST_CHECK enum wb_status wb_acquisition_open(struct wb_acquisition **out,
                                                  const struct wb_rig *rig, unsigned roles,
                                                  const struct wb_sink *sink);
 
+/* A second sink, copied, that sees everything after the first one. */
+void wb_acquisition_also_tell(struct wb_acquisition *acquisition, const struct wb_sink *sink);
+
 /* Greets the instruments (connect, start to stream); from here on bytes are stored. `writer` is
  * borrowed and may be NULL (nothing is stored). Its recording has the streams declared in the order
  * above. */

@@ -30,7 +30,7 @@ enum phase {
 };
 
 struct wb_bend_test {
-    struct wb_bend_test_request request; /* its paths are not kept beyond open */
+    struct wb_bend_test_request request; /* its paths and sink are not kept beyond open */
     char output_path[WB_PATH], rig_path[WB_PATH];
     struct wb_sequence run;
     struct wb_specimen specimen;
@@ -376,8 +376,6 @@ static void on_load(void *context, const struct wb_load_sample *sample)
         wb_average_add(&test->zero, sample->force);
     if (sample->valid && test->result.started && test->run.phase < WB_SEQUENCE_STOP)
         test->result.peak_tension = fmax(test->result.peak_tension, sample->force - test->unloaded);
-    if (test->request.sink.load)
-        test->request.sink.load(test->request.sink.context, sample);
 }
 
 static void on_mocap(void *context, const struct wb_mocap_frame *frame)
@@ -389,30 +387,6 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
         wb_tip_watch_rest(&test->tip, frame, &test->specimen, test->run.rig.mocap.up);
     else if (test->run.phase > PHASE_TARE)
         wb_tip_watch_follow(&test->tip, frame);
-    if (test->request.sink.mocap)
-        test->request.sink.mocap(test->request.sink.context, frame);
-}
-
-static void on_stage(void *context, const struct wb_stage_report *report)
-{
-    struct wb_bend_test *const test = context;
-    if (test->request.sink.stage)
-        test->request.sink.stage(test->request.sink.context, report);
-}
-
-static void on_probe(void *context, const struct wb_clock_probe *probe)
-{
-    struct wb_bend_test *const test = context;
-    if (test->request.sink.probe)
-        test->request.sink.probe(test->request.sink.context, probe);
-}
-
-static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
-                      const char *text)
-{
-    struct wb_bend_test *const test = context;
-    if (test->request.sink.remark)
-        test->request.sink.remark(test->request.sink.context, level, t_ns, kind, text);
 }
 
 /* --- opening --- */
@@ -442,8 +416,9 @@ static enum wb_status start(struct wb_bend_test *test, const struct wb_bend_test
         return wb_fail(WB_ERR_EXISTS,
                        "'%s' exists: a recording is never overwritten, choose another name",
                        request->output_path);
-    const struct wb_sink sink = {test, on_load, on_mocap, on_stage, on_probe, on_remark};
+    const struct wb_sink sink = {.context = test, .load = on_load, .mocap = on_mocap};
     WB_TRY(wb_acquisition_open(&test->run.acquisition, &test->run.rig, WB_ACQUISITION_ALL, &sink));
+    wb_acquisition_also_tell(test->run.acquisition, &request->sink);
     test->started_ns = wb_acquisition_now_ns();
     const struct wb_bend_recording description = {
         .path = request->output_path,
