@@ -189,14 +189,14 @@ static void obey(struct wb_bend_test *test, int key)
 
 static void run(struct wb_bend_test *test)
 {
-    while (wb_bend_test_step(test, 20 * WB_NS_PER_MS) == WB_BEND_TEST_RUNNING) {
+    while (wb_bend_test_step(test, 20 * WB_NS_PER_MS) == WB_SEQUENCE_RUNNING) {
         if (wb_live_line_due())
             show(test);
         obey(test, wb_live_line_key());
     }
 }
 
-static const char *end_name(enum wb_bend_test_end end)
+static const char *end_name(enum wb_sequence_end end)
 {
     static const char *const names[] = {"running", "done", "limit", "interrupted", "failed"};
     return names[end];
@@ -205,9 +205,9 @@ static const char *end_name(enum wb_bend_test_end end)
 /* What a stop leaves behind, and how to go on. */
 static void tell_stop(const struct wb_bend_test_result *result, const char *rig_path)
 {
-    if (result->end == WB_BEND_TEST_LIMIT)
+    if (result->end == WB_SEQUENCE_LIMIT)
         wb_warn("stopped by a limit: %s", result->text);
-    else if (result->end == WB_BEND_TEST_INTERRUPTED)
+    else if (result->end == WB_SEQUENCE_INTERRUPTED)
         wb_warn("%s", result->text);
     else
         wb_error("%s", result->text);
@@ -256,9 +256,9 @@ static void print_summary(const struct wb_bend_test_result *result, const char *
 
 static int exit_code(const struct wb_bend_test_result *result, enum wb_status status)
 {
-    if (result->end == WB_BEND_TEST_DONE && status == WB_OK && result->drops == 0)
+    if (result->end == WB_SEQUENCE_DONE && status == WB_OK && result->drops == 0)
         return WB_EXIT_OK;
-    if (result->end == WB_BEND_TEST_INTERRUPTED && result->recorded)
+    if (result->end == WB_SEQUENCE_INTERRUPTED && result->recorded)
         return WB_EXIT_INCOMPLETE;
     return result->started ? WB_EXIT_INCOMPLETE : WB_EXIT_FAILED;
 }
@@ -281,7 +281,7 @@ int wb_cmd_record(int argc, char **argv)
     run(test);
     const enum wb_status status = wb_bend_test_close(test, &result);
     wb_live_line_close();
-    if (result.end != WB_BEND_TEST_DONE)
+    if (result.end != WB_SEQUENCE_DONE)
         tell_stop(&result, options.request.rig_path);
     if (result.drops > 0)
         wb_warn("%" PRIu64 " reads are missing from the recording", result.drops);

@@ -172,8 +172,8 @@ int wb_cmd_rig(int argc, char **argv)
     enum wb_status status = wb_bench_write_rig(bench, path);
     if (status == WB_OK) {
         wb_info("virtual rig: load cell %s, motion capture %s, stage %s; rig file '%s'",
-                wb_bench_load_cell_address(bench), wb_bench_mocap_address(bench),
-                wb_bench_stage_address(bench), path);
+                wb_bench_address(bench, WB_ROLE_LOAD), wb_bench_address(bench, WB_ROLE_MOCAP),
+                wb_bench_address(bench, WB_ROLE_STAGE), path);
         const bool known = stat(path, &written) == 0;
         fprintf(stderr, "ready\n");
         wb_bench_run(bench, &never);

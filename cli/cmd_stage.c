@@ -177,9 +177,9 @@ static int print_job_json(const struct wb_rig *rig, const struct wb_stage_job_re
 static void tell_job(const struct wb_rig *rig, const struct wb_stage_job_result *result, bool quiet)
 {
     const char *const virtual_rig = rig->is_virtual ? "virtual rig: " : "";
-    if (result->end != WB_STAGE_JOB_DONE)
+    if (result->end != WB_SEQUENCE_DONE)
         wb_error("%s%s", virtual_rig, result->text);
-    if (result->end == WB_STAGE_JOB_DONE && !quiet) {
+    if (result->end == WB_SEQUENCE_DONE && !quiet) {
         printf("%s%s", virtual_rig, result->text);
         if (isfinite(result->position))
             printf("; the stage stands at %.3f mm", result->position / WB_MM);
@@ -200,7 +200,7 @@ static int run_job(const struct options *options, const struct wb_rig *rig)
     if (wb_stage_job_open(&job, rig, &options->job) != WB_OK)
         return WB_EXIT_FAILED;
     wb_live_line_open();
-    while (wb_stage_job_step(job, 20 * WB_NS_PER_MS) == WB_STAGE_JOB_RUNNING) {
+    while (wb_stage_job_step(job, 20 * WB_NS_PER_MS) == WB_SEQUENCE_RUNNING) {
         if (wb_live_line_due())
             show_job(job);
     }
@@ -209,9 +209,9 @@ static int run_job(const struct options *options, const struct wb_rig *rig)
     tell_job(rig, &result, options->json);
     if (options->json && print_job_json(rig, &result) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
-    if (result.end == WB_STAGE_JOB_DONE)
+    if (result.end == WB_SEQUENCE_DONE)
         return WB_EXIT_OK;
-    return result.end == WB_STAGE_JOB_FAILED ? WB_EXIT_FAILED : WB_EXIT_INCOMPLETE;
+    return result.end == WB_SEQUENCE_FAILED ? WB_EXIT_FAILED : WB_EXIT_INCOMPLETE;
 }
 
 /* --- check --- */

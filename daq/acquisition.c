@@ -48,7 +48,7 @@ struct line {
 
 struct wb_acquisition {
     struct wb_rig rig;
-    struct wb_sink user;
+    struct wb_sink sinks[2]; /* see every sample, in this order */
     struct wb_writer *writer;
     int n_lines;
     struct line lines[WB_INTERLOCK_ROLES];
@@ -236,7 +236,7 @@ static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
         break;
     case WB_STOP_DO_RESET:
         status = send_command(stage, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
-        wb_warn("the stage did not confirm the hold within %d ms: soft reset",
+        wb_warn("the stage did not confirm the feed hold within %d ms: a soft reset stops it",
                 (int)(WB_STOP_CONFIRM_NS / WB_NS_PER_MS));
         push_event(a, wb_acquisition_now_ns(), "reset",
                    status == WB_OK ? "hold not confirmed in time: soft reset sent"
@@ -339,6 +339,14 @@ const struct wb_stop *wb_acquisition_stop_state(const struct wb_acquisition *a)
 
 /* --- receiving: what the drivers deliver --- */
 
+/* To both sinks. */
+#define PASS_ON(a, member, ...)                                                                    \
+    do {                                                                                           \
+        for (int i_ = 0; i_ < 2; i_++)                                                             \
+            if ((a)->sinks[i_].member)                                                             \
+                (a)->sinks[i_].member((a)->sinks[i_].context, __VA_ARGS__);                        \
+    } while (0)
+
 static void on_load(void *context, const struct wb_load_sample *sample)
 {
     struct line *const line = context;
@@ -351,16 +359,14 @@ static void on_load(void *context, const struct wb_load_sample *sample)
         a->latest.has_load = true;
         a->latest.load = *sample;
     }
-    if (a->user.load)
-        a->user.load(a->user.context, sample);
+    PASS_ON(a, load, sample);
 }
 
 static void on_mocap(void *context, const struct wb_mocap_frame *frame)
 {
     struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
-    if (wb_interlock_mocap(&a->interlock, frame->t_ns))
-        hold_now(a);
+    wb_interlock_mocap(&a->interlock, frame->t_ns);
     a->latest.stream[WB_ROLE_MOCAP].samples++;
     line->counted++;
     a->latest.has_mocap = true;
@@ -369,8 +375,7 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
     for (int i = 0; i < frame->n_markers; i++)
         if (wb_acquisition_marker_measured(&frame->markers[i]))
             a->latest.markers_seen++;
-    if (a->user.mocap)
-        a->user.mocap(a->user.context, frame);
+    PASS_ON(a, mocap, frame);
 }
 
 static void on_stage(void *context, const struct wb_stage_report *report)
@@ -385,8 +390,7 @@ static void on_stage(void *context, const struct wb_stage_report *report)
     a->latest.has_stage = true;
     a->latest.stage = *report;
     a->latest.stage_reports++;
-    if (a->user.stage)
-        a->user.stage(a->user.context, report);
+    PASS_ON(a, stage, report);
 }
 
 static void on_probe(void *context, const struct wb_clock_probe *probe)
@@ -397,8 +401,7 @@ static void on_probe(void *context, const struct wb_clock_probe *probe)
     if (a->writer)
         (void)wb_writer_push_clock(a->writer, line->id, probe->t_sent_ns + rtt_ns / 2,
                                    probe->t_device, rtt_ns);
-    if (a->user.probe)
-        a->user.probe(a->user.context, probe);
+    PASS_ON(a, probe, probe);
 }
 
 static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
@@ -412,8 +415,9 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
     const bool store = wb_remark_gate_store(&line->gate, t_ns, &held);
     if (held > 0) {
         char more[96];
-        snprintf(more, sizeof more, "%u more remarks of the %s stream within a second", held,
-                 wb_role_name(line->role));
+        snprintf(more, sizeof more,
+                 "%u more remarks on the %s stream came within the same second and are not stored",
+                 held, wb_role_name(line->role));
         push_event(a, t_ns, "remarks", more);
     }
     if (store)
@@ -423,8 +427,7 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
         wb_debug("%s: %s", wb_role_name(line->role), text);
     else if (wb_remark_gate_show(&line->gate, t_ns, kind))
         wb_warn("%s: %s", wb_role_name(line->role), text);
-    if (a->user.remark)
-        a->user.remark(a->user.context, level, t_ns, kind, text);
+    PASS_ON(a, remark, level, t_ns, kind, text);
 }
 
 /* Datagrams that the kernel threw away never reached us: the recording says so. */
@@ -435,7 +438,8 @@ static void note_kernel_drops(struct line *line, int64_t t_ns)
         return;
     char text[120];
     snprintf(text, sizeof text,
-             "%s stream lost %" PRIu64 " datagrams in the kernel: they were not read in time",
+             "the %s stream lost %" PRIu64
+             " datagrams: this computer did not read them in time; close other programs",
              wb_role_name(line->role), drops - line->kernel_drops);
     line->kernel_drops = drops;
     push_event(line->owner, t_ns, "drop", text);
@@ -483,7 +487,7 @@ static void tick_lines(struct wb_acquisition *a, int64_t now_ns)
 {
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
-        if (a->latest.stream[line->role].gone || !line->driver->tick)
+        if (a->latest.stream[line->role].gone)
             continue;
         wb_outbox_clear(&a->outbox);
         line->driver->tick(line->state, now_ns, &a->outbox);
@@ -505,14 +509,14 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
             push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
             /* A device that went away has been told already. */
             if (lost && !state->gone)
-                wb_warn("stream lost: %s (%s)", wb_role_name(line->role),
-                        wb_stream_address(line->stream));
+                wb_warn("the %s stream is lost: nothing valid comes from %s",
+                        wb_role_name(line->role), wb_stream_address(line->stream));
             else if (!lost)
-                wb_info("stream found again: %s", wb_role_name(line->role));
+                wb_info("the %s stream is back", wb_role_name(line->role));
             line->reported_lost = lost;
         }
         state->lost = lost;
-        state->ready = !state->gone && line->driver->ready && line->driver->ready(line->state);
+        state->ready = !state->gone && line->driver->ready(line->state);
         state->drops = line->kernel_drops;
         if (a->writer)
             state->drops += wb_writer_drops(a->writer, line->id);
@@ -549,7 +553,7 @@ static void check_rest(struct wb_acquisition *a)
         if (!a->latest.stream[a->lines[i].role].gone)
             continue;
         char text[WB_INTERLOCK_TEXT];
-        snprintf(text, sizeof text, "the %s's port %s went away",
+        snprintf(text, sizeof text, "the %s's port %s went away: check its cable and power",
                  a->lines[i].role == WB_ROLE_LOAD ? "load cell" : "stage",
                  wb_stream_address(a->lines[i].stream));
         wb_acquisition_stop(a, WB_INTERLOCK_STREAM_LOST, text);
@@ -666,7 +670,8 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
     line->id = a->n_lines;
     line->driver = wb_drivers_find(role, protocol);
     if (!line->driver)
-        return wb_fail(WB_ERR_UNSUPPORTED, "no %s protocol '%s'", wb_role_name(role), protocol);
+        return wb_fail(WB_ERR_UNSUPPORTED, "the %s protocol '%s' is not known", wb_role_name(role),
+                       protocol);
     line->state = calloc(1, line->driver->state_size);
     if (!line->state)
         return wb_fail(WB_ERR_MEMORY, "no memory for the %s driver", protocol);
@@ -686,7 +691,7 @@ enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_
         return wb_fail(WB_ERR_MEMORY, "no memory for the acquisition");
     a->rig = *rig;
     if (sink)
-        a->user = *sink;
+        a->sinks[0] = *sink;
     enum wb_status status = WB_OK;
     if (roles & WB_ACQUISITION_LOAD)
         status = open_line(a, WB_ROLE_LOAD, rig->load_cell.address, rig->load_cell.protocol);
@@ -700,6 +705,11 @@ enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_
     }
     *out = a;
     return WB_OK;
+}
+
+void wb_acquisition_also_tell(struct wb_acquisition *a, const struct wb_sink *sink)
+{
+    a->sinks[1] = *sink;
 }
 
 int wb_acquisition_stream(const struct wb_acquisition *a, enum wb_role role)
@@ -720,8 +730,6 @@ void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
     for (int i = 0; i < a->n_lines; i++) {
         struct line *const line = &a->lines[i];
         line->rate_ns = now_ns;
-        if (!line->driver->start)
-            continue;
         wb_outbox_clear(&a->outbox);
         line->driver->start(line->state, now_ns, &a->outbox);
         send_or_note(line);

@@ -2,7 +2,7 @@
  * raw bytes to the writer, then into the drivers, decoded samples to the interlock and the caller.
  *
  *     WB_TRY(wb_acquisition_open(&a, &rig, roles, &sink));   ports are open, nothing is sent yet
- *     wb_acquisition_start(a, writer);                       drivers say hello
+ *     wb_acquisition_start(a, writer);                       the instruments are greeted
  *     while (wb_acquisition_step(a, timeout) == WB_ACQUISITION_CONTINUE) ...
  *     wb_acquisition_close(a);
  *
@@ -45,8 +45,12 @@ WB_MUST_CHECK enum wb_status wb_acquisition_open(struct wb_acquisition **out,
                                                  const struct wb_rig *rig, unsigned roles,
                                                  const struct wb_sink *sink);
 
-/* Lets the drivers say hello; from here on bytes are stored. `writer` is borrowed and may be NULL
- * (nothing is stored). Its recording has the streams declared in the order above. */
+/* A second sink, copied, that sees everything after the first one. */
+void wb_acquisition_also_tell(struct wb_acquisition *acquisition, const struct wb_sink *sink);
+
+/* Greets the instruments (connect, start to stream); from here on bytes are stored. `writer` is
+ * borrowed and may be NULL (nothing is stored). Its recording has the streams declared in the order
+ * above. */
 void wb_acquisition_start(struct wb_acquisition *acquisition, struct wb_writer *writer);
 
 /* Waits for bytes at most `timeout_ns` (and never longer than 20 ms), and does all that is due. */

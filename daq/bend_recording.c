@@ -108,7 +108,9 @@ static enum wb_status set_check(struct wb_recording *recording,
     if (!wb_check_log_parse(line, &check))
         return WB_OK;
     if (!check.passed)
-        wb_warn("the last check of the load cell, on %s, did not pass", check.utc);
+        wb_warn(
+            "the last check of the load cell, on %s, did not pass: calibrate it or check it again",
+            check.utc);
     if (strcmp(check.serial_number, serial) != 0)
         wb_warn("the last check was of the load cell '%s', the rig file now has '%s': check again",
                 check.serial_number, serial);

@@ -2,7 +2,7 @@
  * from the first byte to the last.
  *
  *     WB_TRY(wb_bend_test_open(&test, &request));
- *     while (wb_bend_test_step(test, timeout_ns) == WB_BEND_TEST_RUNNING) ...show, keys...
+ *     while (wb_bend_test_step(test, timeout_ns) == WB_SEQUENCE_RUNNING) ...show, keys...
  *     status = wb_bend_test_close(test, &result);
  *
  * Every way out stops the stage first, then closes the recording: a limit, Ctrl-C, a full disk, an
@@ -17,7 +17,7 @@
 #include "base/setting.h"
 #include "base/status.h"
 #include "daq/acquisition.h"
-#include "daq/rig.h"
+#include "daq/sequence.h"
 #include "daq/specimen.h"
 
 struct wb_bend_test; /* opaque */
@@ -46,17 +46,9 @@ void wb_bend_test_default_request(struct wb_bend_test_request *request);
 WB_MUST_CHECK enum wb_status wb_bend_test_open(struct wb_bend_test **out,
                                                const struct wb_bend_test_request *request);
 
-enum wb_bend_test_end {
-    WB_BEND_TEST_RUNNING,
-    WB_BEND_TEST_DONE,        /* all cycles */
-    WB_BEND_TEST_LIMIT,       /* a limit of the interlock stopped it */
-    WB_BEND_TEST_INTERRUPTED, /* Ctrl-C or the stop key */
-    WB_BEND_TEST_FAILED       /* an instrument did not answer, the start check refused, ... */
-};
-
 /* Waits at most timeout_ns (and 20 ms) for the instruments and does what is due. After it returned
  * anything but RUNNING it does nothing any more. */
-enum wb_bend_test_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeout_ns);
+enum wb_sequence_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeout_ns);
 
 /* The operator's mark, and the stop key. */
 void wb_bend_test_mark(struct wb_bend_test *test, const char *text);
@@ -78,7 +70,7 @@ struct wb_bend_test_status {
 void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_status *status);
 
 struct wb_bend_test_result {
-    enum wb_bend_test_end end;
+    enum wb_sequence_end end;
     char text[WB_INTERLOCK_TEXT]; /* why it ended, for people */
     bool is_virtual;
     bool recorded;  /* the recording was kept: all instruments had answered */

@@ -31,7 +31,8 @@ enum wb_status wb_check_log_path(char path[WB_PATH], const char *rig_path)
         }
     }
     if ((size_t)snprintf(path, WB_PATH, "%.*s.checks.csv", (int)n, rig_path) >= WB_PATH)
-        return wb_fail(WB_ERR_ARGUMENT, "the path of the checks beside '%s' is too long", rig_path);
+        return wb_fail(WB_ERR_ARGUMENT, "the path of the check log beside '%s' is too long",
+                       rig_path);
     return WB_OK;
 }
 

@@ -6,15 +6,9 @@
 
 const char *wb_role_name(enum wb_role role)
 {
-    switch (role) {
-    case WB_ROLE_LOAD:
-        return "load";
-    case WB_ROLE_MOCAP:
-        return "mocap";
-    case WB_ROLE_STAGE:
-        return "stage";
-    }
-    return "unknown";
+    static const char *const names[] = {
+        [WB_ROLE_LOAD] = "load", [WB_ROLE_MOCAP] = "mocap", [WB_ROLE_STAGE] = "stage"};
+    return (size_t)role < sizeof names / sizeof names[0] ? names[role] : "unknown";
 }
 
 bool wb_outbox_add(struct wb_outbox *outbox, const void *bytes, size_t n)

@@ -3,8 +3,8 @@
  * A driver turns received bytes into samples (`receive`), and gives the bytes to send (`start`,
  * `tick`, `command`). It never reads a port or a clock: times come in as arguments, so the same
  * driver decodes live bytes and recorded ones and gives the same samples bit for bit. The core
- * allocates `state_size` zeroed bytes and calls `init` with the instrument's settings. A NULL
- * operation is not supported by the instrument.
+ * allocates `state_size` zeroed bytes and calls `init` with the instrument's settings. Only
+ * `command` and `stop` may be NULL: an instrument without commands, one that needs no goodbye.
  */
 #ifndef WB_DAQ_DRIVER_H
 #define WB_DAQ_DRIVER_H
@@ -54,19 +54,10 @@ enum wb_stage_command {
     WB_STAGE_COMMAND_RESUME  /* continue after a hold, a real-time byte */
 };
 
-struct wb_channel {
-    const char *name;     /* "force", "position", "markers" */
-    const char *quantity; /* "force", "length" */
-    const char *unit;     /* SI, "N", "m" */
-};
-
 struct wb_driver {
-    const char *name;    /* protocol name in rig files: "generic", "mt-sics", "natnet", "grbl" */
-    const char *summary; /* one line */
+    const char *name; /* protocol name in rig files: "generic", "mt-sics", "natnet", "grbl" */
     enum wb_role role;
     size_t state_size;
-    const struct wb_channel *channels;
-    int n_channels;
 
     /* Prepares zeroed state for the rig's settings of this role. */
     enum wb_status (*init)(void *state, const struct wb_rig *rig);

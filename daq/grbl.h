@@ -79,14 +79,6 @@ bool wb_grbl_alarm_loses_position(int number);
  * or a speed below 1 um a minute. */
 bool wb_grbl_format_jog(char *text, size_t size, char axis, double distance, double speed);
 
-/* Reads a jog line back (for the virtual rig): axis 0 to 2, target in mm, relative or absolute,
- * feed in mm/min. False when it is not a jog of exactly one axis in mm with a feed. */
-struct wb_grbl_jog {
-    int axis;
-    bool relative;
-    double target_mm, feed_mm_min;
-};
-
 /* A status report with its line end, `<name|MPos:..|FS:..|WCO:..>`, of the fields the report has
  * (for the virtual rig). Returns its length, 0 when it does not fit. */
 size_t wb_grbl_format_report(char *text, size_t size, const struct wb_grbl_report *report);

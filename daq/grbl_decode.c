@@ -1,5 +1,4 @@
 #include "daq/grbl.h"
-#include "daq/grbl_private.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -63,19 +62,13 @@ static enum wb_stage_state state_of(const char *name)
 /* One field of a report, "MPos:0.000,0.000,0.000". Unknown fields are left alone. */
 static bool parse_field(const char *field, struct wb_grbl_report *report)
 {
+    static const char *const names[] = {"MPos:", "WPos:", "WCO:"};
+    double *const triples[] = {report->machine_mm, report->work_mm, report->offset_mm};
+    bool *const has[] = {&report->has_machine, &report->has_work, &report->has_offset};
     double values[3] = {0.0, 0.0, 0.0};
-    if (strncmp(field, "MPos:", 5) == 0) {
-        report->has_machine = parse_triple(field + 5, report->machine_mm) > 0;
-        return report->has_machine;
-    }
-    if (strncmp(field, "WPos:", 5) == 0) {
-        report->has_work = parse_triple(field + 5, report->work_mm) > 0;
-        return report->has_work;
-    }
-    if (strncmp(field, "WCO:", 4) == 0) {
-        report->has_offset = parse_triple(field + 4, report->offset_mm) > 0;
-        return report->has_offset;
-    }
+    for (size_t i = 0; i < WB_COUNT(names); i++)
+        if (strncmp(field, names[i], strlen(names[i])) == 0)
+            return *has[i] = parse_triple(field + strlen(names[i]), triples[i]) > 0;
     if (strncmp(field, "FS:", 3) == 0 || strncmp(field, "F:", 2) == 0) {
         if (parse_triple(strchr(field, ':') + 1, values) == 0)
             return false;
@@ -188,65 +181,48 @@ bool wb_grbl_position(const struct wb_grbl_report *report, struct wb_grbl_offset
     return true;
 }
 
+/* By number; what is not listed has no text. */
+static const char *text_of(const char *const *texts, size_t n, int number)
+{
+    const char *const text = number >= 0 && (size_t)number < n ? texts[number] : NULL;
+    return text ? text : "see the GRBL manual";
+}
+
 const char *wb_grbl_error_text(int number)
 {
-    switch (number) {
-    case 1:
-        return "a word has no letter";
-    case 2:
-        return "a number is malformed";
-    case 3:
-        return "the $ command is not known";
-    case 5:
-        return "homing is not enabled ($22)";
-    case 7:
-        return "the stored settings could not be read";
-    case 8:
-        return "only possible when idle";
-    case 9:
-        return "locked out during an alarm or jog";
-    case 10:
-        return "soft limits need homing";
-    case 11:
-        return "the line is too long";
-    case 13:
-        return "the safety door is open";
-    case 15:
-        return "the jog goes beyond the machine's travel";
-    case 16:
-        return "the jog command is malformed";
-    case 20:
-        return "the command is not supported";
-    case 22:
-        return "no feed rate was given";
-    default:
-        return "see the GRBL manual";
-    }
+    static const char *const texts[] = {
+        [1] = "a word has no letter",
+        [2] = "a number is malformed",
+        [3] = "the $ command is not known",
+        [5] = "homing is not enabled ($22)",
+        [7] = "the stored settings could not be read",
+        [8] = "only possible when idle",
+        [9] = "locked out during an alarm or jog",
+        [10] = "soft limits need homing",
+        [11] = "the line is too long",
+        [13] = "the safety door is open",
+        [15] = "the jog goes beyond the machine's travel",
+        [16] = "the jog command is malformed",
+        [20] = "the command is not supported",
+        [22] = "no feed rate was given",
+    };
+    return text_of(texts, WB_COUNT(texts), number);
 }
 
 const char *wb_grbl_alarm_text(int number)
 {
-    switch (number) {
-    case 1:
-        return "hard limit: the position is lost, home the stage";
-    case 2:
-        return "soft limit: the move goes beyond the machine's travel";
-    case 3:
-        return "reset while moving: the position is lost, home the stage";
-    case 4:
-    case 5:
-        return "probe failed";
-    case 6:
-        return "homing failed: reset while homing";
-    case 7:
-        return "homing failed: door opened while homing";
-    case 8:
-        return "homing failed: the limit switch did not clear";
-    case 9:
-        return "homing failed: no limit switch found";
-    default:
-        return "see the GRBL manual";
-    }
+    static const char *const texts[] = {
+        [1] = "hard limit: the position is lost, home the stage",
+        [2] = "soft limit: the move goes beyond the machine's travel",
+        [3] = "reset while moving: the position is lost, home the stage",
+        [4] = "probe failed",
+        [5] = "probe failed",
+        [6] = "homing failed: reset while homing",
+        [7] = "homing failed: door opened while homing",
+        [8] = "homing failed: the limit switch did not clear",
+        [9] = "homing failed: no limit switch found",
+    };
+    return text_of(texts, WB_COUNT(texts), number);
 }
 
 bool wb_grbl_alarm_loses_position(int number)
@@ -273,45 +249,6 @@ bool wb_grbl_format_jog(char *text, size_t size, char axis, double distance, dou
     format_thousandths(feed, sizeof feed, llround(um_min));
     const int n = snprintf(text, size, "$J=G91 G21 %c%s F%s\n", axis, target, feed);
     return n > 0 && (size_t)n < size;
-}
-
-bool wb_grbl_parse_jog(const char *text, struct wb_grbl_jog *jog)
-{
-    struct wb_grbl_jog read = {.axis = -1, .feed_mm_min = (double)NAN};
-    const char *c = after(text, "$J=");
-    if (!c)
-        return false;
-    while (*c) {
-        if (isspace((unsigned char)*c)) {
-            c++;
-            continue;
-        }
-        const char letter = (char)toupper((unsigned char)*c++);
-        char word[24];
-        const size_t n = strspn(c, "+-.0123456789");
-        double value;
-        if (n == 0 || n >= sizeof word)
-            return false;
-        memcpy(word, c, n);
-        word[n] = '\0';
-        if (!wb_number_parse(word, &value))
-            return false;
-        c += n;
-        if (letter == 'G' && (value == 90.0 || value == 91.0)) {
-            read.relative = value == 91.0;
-        } else if (letter == 'F') {
-            read.feed_mm_min = value;
-        } else if (letter >= 'X' && letter <= 'Z' && read.axis < 0) {
-            read.axis = letter - 'X';
-            read.target_mm = value;
-        } else if (!(letter == 'G' && value == 21.0)) {
-            return false;
-        }
-    }
-    if (read.axis < 0 || !(read.feed_mm_min > 0.0))
-        return false;
-    *jog = read;
-    return true;
 }
 
 size_t wb_grbl_format_report(char *text, size_t size, const struct wb_grbl_report *report)

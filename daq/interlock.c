@@ -13,29 +13,14 @@
 
 const char *wb_interlock_reason_name(enum wb_interlock_reason reason)
 {
-    switch (reason) {
-    case WB_INTERLOCK_NONE:
-        return "none";
-    case WB_INTERLOCK_FORCE:
-        return "force";
-    case WB_INTERLOCK_OVERLOAD:
-        return "overload";
-    case WB_INTERLOCK_UNIT:
-        return "unit";
-    case WB_INTERLOCK_TRAVEL:
-        return "travel";
-    case WB_INTERLOCK_ALARM:
-        return "alarm";
-    case WB_INTERLOCK_STAGE:
-        return "stage";
-    case WB_INTERLOCK_STREAM_LOST:
-        return "stream_lost";
-    case WB_INTERLOCK_DISK:
-        return "disk";
-    case WB_INTERLOCK_INTERRUPT:
-        return "interrupt";
-    }
-    return "unknown";
+    static const char *const names[] = {
+        [WB_INTERLOCK_NONE] = "none",         [WB_INTERLOCK_FORCE] = "force",
+        [WB_INTERLOCK_OVERLOAD] = "overload", [WB_INTERLOCK_UNIT] = "unit",
+        [WB_INTERLOCK_TRAVEL] = "travel",     [WB_INTERLOCK_ALARM] = "alarm",
+        [WB_INTERLOCK_STAGE] = "stage",       [WB_INTERLOCK_STREAM_LOST] = "stream_lost",
+        [WB_INTERLOCK_DISK] = "disk",         [WB_INTERLOCK_INTERRUPT] = "interrupt",
+    };
+    return (size_t)reason < sizeof names / sizeof names[0] ? names[reason] : "unknown";
 }
 
 static int64_t later(int64_t a, int64_t b)
@@ -109,10 +94,10 @@ bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_samp
     /* Before the overload, which a wrong unit may only pretend. */
     if (sample->unit_changed)
         return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
-                    "the load cell changed its unit in mid-stream");
+                    "the load cell changed its unit while it was read: set the unit back");
     if (sample->overload && !limit->overload_allowed)
         return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
-                    "the load cell reports overload");
+                    "the load cell reports overload: it is loaded beyond its range");
     if (!sample->valid)
         return false;
     if (limit->overload > 0.0 && !(fabs(sample->force) <= limit->overload))
@@ -126,10 +111,9 @@ bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_samp
     return false;
 }
 
-bool wb_interlock_mocap(struct wb_interlock *interlock, int64_t t_ns)
+void wb_interlock_mocap(struct wb_interlock *interlock, int64_t t_ns)
 {
     renew(interlock, WB_ROLE_MOCAP, t_ns);
-    return false;
 }
 
 bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_report *report)
@@ -141,8 +125,8 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
     if (report->state == WB_STAGE_ALARM && limit->alarm_allowed)
         return false;
     if (report->state == WB_STAGE_ALARM && report->alarm != 0)
-        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage raised ALARM:%d",
-                    report->alarm);
+        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns,
+                    "the stage raised ALARM:%d of its firmware", report->alarm);
     if (report->state == WB_STAGE_ALARM)
         return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage is in alarm");
     if (report->state == WB_STAGE_HOLD || report->state == WB_STAGE_OTHER)

@@ -85,11 +85,12 @@ struct wb_interlock {
 void wb_interlock_init(struct wb_interlock *interlock, const struct wb_interlock_settings *settings,
                        int64_t now_ns);
 
-/* Each returns true when this very call tripped the interlock. Samples always renew their stream's
+/* Each that returns a bool returns true when this very call tripped the interlock; a frame trips
+ * nothing. Samples always renew their stream's
  * `last_ns`; limits trip only while armed. An invalid reading does not count as a sign of life
  * unless it is an overload. */
 bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_sample *sample);
-bool wb_interlock_mocap(struct wb_interlock *interlock, int64_t t_ns);
+void wb_interlock_mocap(struct wb_interlock *interlock, int64_t t_ns);
 bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_report *report);
 /* Looks at the silences: all that arrived before now_ns has been handed over. */
 bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns);

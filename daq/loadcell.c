@@ -5,7 +5,30 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "daq/driver.h"
+enum wb_status wb_loadcell_init(void *state, const struct wb_rig *rig)
+{
+    struct wb_loadcell *const loadcell = state;
+    loadcell->rig = *rig;
+    return WB_OK;
+}
+
+bool wb_loadcell_ready(const void *state)
+{
+    const struct wb_loadcell *const loadcell = state;
+    return loadcell->n_samples > 0;
+}
+
+void wb_loadcell_poll(struct wb_loadcell *loadcell, int64_t now_ns, const char *question,
+                      struct wb_outbox *outbox)
+{
+    const int64_t period = loadcell->rig.load_cell.poll_period_ns;
+    if (now_ns < loadcell->next_ask_ns)
+        return;
+    wb_outbox_add_text(outbox, question);
+    loadcell->next_ask_ns += period;
+    if (loadcell->next_ask_ns <= now_ns)
+        loadcell->next_ask_ns = now_ns + period;
+}
 
 char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size)
 {
@@ -17,14 +40,15 @@ char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_
 }
 
 static void refuse(struct wb_loadcell *loadcell, int64_t t_ns, const char *reason,
-                   const struct wb_line_buffer *line, const struct wb_sink *sink)
+                   const struct wb_sink *sink)
 {
     char text[64];
     loadcell->n_refused++;
     if (wb_driver_worth_saying(loadcell->n_refused))
-        wb_driver_remark(
-            sink, WB_LOG_WARNING, t_ns, "refused", "line '%s' refused: %s; %" PRIu64 " so far",
-            wb_loadcell_printable(line, text, sizeof text), reason, loadcell->n_refused);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
+                         "a line of the load cell is not understood: '%s': %s; %" PRIu64 " so far",
+                         wb_loadcell_printable(&loadcell->line, text, sizeof text), reason,
+                         loadcell->n_refused);
 }
 
 /* Keeps the unit's history; true when the line's unit is not the first one seen. A line without a
@@ -39,14 +63,22 @@ static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *u
         strcpy(loadcell->last_unit, unit);
     }
     if (strcmp(loadcell->last_unit, unit) != 0)
-        wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "unit", "the unit changed from %s to %s",
-                         loadcell->last_unit, unit);
+        wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "unit",
+                         "the load cell's unit changed from %s to %s", loadcell->last_unit, unit);
     strcpy(loadcell->last_unit, unit);
     return strcmp(loadcell->first_unit, unit) != 0;
 }
 
+static void pass_on(struct wb_loadcell *loadcell, const struct wb_load_sample *sample,
+                    const struct wb_sink *sink)
+{
+    loadcell->n_samples++;
+    if (sink->load)
+        sink->load(sink->context, sample);
+}
+
 static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample *sample,
-                             const struct wb_line_buffer *line, const struct wb_sink *sink)
+                             const struct wb_sink *sink)
 {
     char text[64];
     sample->overload = true;
@@ -54,16 +86,13 @@ static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample
     if (!loadcell->overloaded)
         wb_driver_remark(sink, WB_LOG_ERROR, sample->t_ns, "overload",
                          "the load cell is out of range: '%s'",
-                         wb_loadcell_printable(line, text, sizeof text));
+                         wb_loadcell_printable(&loadcell->line, text, sizeof text));
     loadcell->overloaded = true;
-    loadcell->n_samples++;
-    if (sink->load)
-        sink->load(sink->context, sample);
+    pass_on(loadcell, sample, sink);
 }
 
 void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
-                         const struct wb_line_reading *reading, const struct wb_line_buffer *line,
-                         const struct wb_sink *sink)
+                         const struct wb_line_reading *reading, const struct wb_sink *sink)
 {
     const struct wb_rig_load_cell *const cell = &loadcell->rig.load_cell;
     struct wb_load_sample sample = {
@@ -75,11 +104,11 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
     if (reading->kind == WB_LINE_EMPTY)
         return;
     if (reading->kind == WB_LINE_REFUSED) {
-        refuse(loadcell, t_ns, reading->reason, line, sink);
+        refuse(loadcell, t_ns, reading->reason, sink);
         return;
     }
     if (reading->kind == WB_LINE_OVERLOAD) {
-        deliver_overload(loadcell, &sample, line, sink);
+        deliver_overload(loadcell, &sample, sink);
         return;
     }
     /* A line without a unit goes by the last one: the scale's unit is not known to have changed. */
@@ -89,14 +118,14 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
     double force;
     if (!wb_line_force(&complete, cell, loadcell->rig.gravity, &force)) {
         refuse(loadcell, t_ns,
-               complete.unit[0] ? "its unit is not known: set load_cell.unit"
-                                : "it has no unit: set load_cell.unit",
-               line, sink);
+               complete.unit[0] ? "its unit is not known: set load_cell.unit in the rig file"
+                                : "it has no unit: set load_cell.unit in the rig file",
+               sink);
         return;
     }
     sample.unit_changed = watch_unit(loadcell, t_ns, reading->unit, sink);
     if (cell->overload > 0.0 && !(fabs(force) <= cell->overload)) {
-        deliver_overload(loadcell, &sample, line, sink);
+        deliver_overload(loadcell, &sample, sink);
         return;
     }
     /* With a unit of the rig file's own, a line in another unit than before is worth nothing. */
@@ -104,7 +133,5 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
     if (sample.valid)
         sample.force = force;
     loadcell->overloaded = false;
-    loadcell->n_samples++;
-    if (sink->load)
-        sink->load(sink->context, &sample);
+    pass_on(loadcell, &sample, sink);
 }

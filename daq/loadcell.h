@@ -1,5 +1,6 @@
-/* What every load-cell driver does with a decoded line: it counts the line, checks its unit, turns
- * it into a sample, and remarks on faults without flooding the recording. */
+/* What the load-cell drivers share: the bytes of a line on their way, the questions of a polled
+ * cell, and what becomes of a decoded line: it is counted, its unit is checked, it turns into a
+ * sample, and faults are remarked on without flooding the recording. */
 #ifndef WB_DAQ_LOADCELL_H
 #define WB_DAQ_LOADCELL_H
 
@@ -7,24 +8,37 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "daq/driver.h"
+#include "daq/line_buffer.h"
 #include "daq/loadcell_line.h"
 #include "daq/rig.h"
 #include "daq/sample.h"
 
-/* Part of a driver's state; zero, but for the copy of the rig. */
+/* The beginning of each driver's state; zero, but for the copy of the rig. */
 struct wb_loadcell {
     struct wb_rig rig;
+    struct wb_line_buffer line; /* that is coming in */
+    bool whole;                 /* a line's end has been seen: what follows are whole lines */
+    int64_t next_ask_ns;
     uint64_t n_samples; /* delivered: the next sample's index */
     uint64_t n_refused, n_overloads;
     char first_unit[16], last_unit[16]; /* as printed */
     bool overloaded;                    /* the last sample was */
 };
 
-/* Delivers what a line says: a value, an overload, or a remark that it was refused. `line` is for
- * the remark. */
+/* `init` and `ready` of the drivers. `state` points to a struct wb_loadcell. */
+WB_MUST_CHECK enum wb_status wb_loadcell_init(void *state, const struct wb_rig *rig);
+bool wb_loadcell_ready(const void *state);
+
+/* Sends the question when it is due. Questions keep to the grid of the rig's poll period, but do
+ * not come in a rush after a pause. */
+void wb_loadcell_poll(struct wb_loadcell *loadcell, int64_t now_ns, const char *question,
+                      struct wb_outbox *outbox);
+
+/* Delivers what the line in the buffer says: a value, an overload, or a remark that it was
+ * refused. */
 void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
-                         const struct wb_line_reading *reading, const struct wb_line_buffer *line,
-                         const struct wb_sink *sink);
+                         const struct wb_line_reading *reading, const struct wb_sink *sink);
 
 /* A printable copy of a line, cut to `size`. Returns `text`. */
 char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size);

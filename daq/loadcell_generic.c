@@ -11,42 +11,30 @@
 #include "daq/loadcell.h"
 
 struct generic_state {
-    struct wb_loadcell loadcell;
-    struct wb_line_buffer line;
-    int64_t first_ns, last_ns; /* arrival of the first and the last bytes */
-    bool anything;             /* a byte has come */
-    bool settled;              /* and the settling time is over */
-    bool whole;                /* a line's end has been seen: what follows are whole lines */
-    int64_t next_poll_ns;
+    struct wb_loadcell loadcell; /* comes first */
+    int64_t first_ns, last_ns;   /* arrival of the first and the last bytes */
+    bool anything;               /* a byte has come */
+    bool settled;                /* and the settling time is over */
 };
 
-static const struct wb_channel channels[] = {{"force", "force", "N"}};
-
-static enum wb_status init(void *opaque, const struct wb_rig *rig)
+static void end_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct wb_sink *sink)
 {
-    struct generic_state *const state = opaque;
-    state->loadcell.rig = *rig;
-    return WB_OK;
-}
-
-static void end_line(struct generic_state *state, int64_t t_ns, const struct wb_sink *sink)
-{
-    const struct wb_rig_load_cell *const cell = &state->loadcell.rig.load_cell;
+    struct wb_line_buffer *const line = &loadcell->line;
     struct wb_line_reading reading;
     char text[64];
-    if (!state->whole) {
+    if (!loadcell->whole) {
         /* Reading may have begun amid a line: `00.00 g` would look like a value. */
-        if (state->line.n > 0)
+        if (line->n > 0)
             wb_driver_remark(sink, WB_LOG_INFO, t_ns, "partial",
                              "the first line may be incomplete and is dropped: '%s'",
-                             wb_loadcell_printable(&state->line, text, sizeof text));
-        state->whole = true;
+                             wb_loadcell_printable(line, text, sizeof text));
+        loadcell->whole = true;
     } else {
-        const size_t n = state->line.overlong ? sizeof state->line.bytes : state->line.n;
-        wb_line_decode(state->line.bytes, n, cell, &reading);
-        wb_loadcell_deliver(&state->loadcell, t_ns, &reading, &state->line, sink);
+        const size_t n = line->overlong ? sizeof line->bytes : line->n;
+        wb_line_decode(line->bytes, n, &loadcell->rig.load_cell, &reading);
+        wb_loadcell_deliver(loadcell, t_ns, &reading, sink);
     }
-    wb_line_buffer_clear(&state->line);
+    wb_line_buffer_clear(line);
 }
 
 /* False as long as the instrument settles; times count from its first byte. */
@@ -64,64 +52,44 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
                     const struct wb_sink *sink)
 {
     struct generic_state *const state = opaque;
-    const struct wb_rig_load_cell *const cell = &state->loadcell.rig.load_cell;
+    struct wb_loadcell *const loadcell = &state->loadcell;
+    const struct wb_rig_load_cell *const cell = &loadcell->rig.load_cell;
     if (n == 0 || !has_settled(state, t_ns))
         return;
     const bool idle = strcmp(cell->terminator, "idle") == 0;
-    if (idle && state->line.n > 0 && t_ns - state->last_ns >= cell->idle_gap_ns)
-        end_line(state, state->last_ns, sink);
+    if (idle && loadcell->line.n > 0 && t_ns - state->last_ns >= cell->idle_gap_ns)
+        end_line(loadcell, state->last_ns, sink);
     for (size_t i = 0; i < n; i++)
-        if (wb_line_buffer_push(&state->line, bytes[i], cell->terminator))
-            end_line(state, t_ns, sink);
+        if (wb_line_buffer_push(&loadcell->line, bytes[i], cell->terminator))
+            end_line(loadcell, t_ns, sink);
     state->last_ns = t_ns;
 }
 
 static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 {
-    struct generic_state *const state = opaque;
-    const struct wb_rig_load_cell *const cell = &state->loadcell.rig.load_cell;
+    struct wb_loadcell *const loadcell = opaque;
+    const struct wb_rig_load_cell *const cell = &loadcell->rig.load_cell;
     if (cell->start_command[0])
         wb_outbox_add_text(outbox, cell->start_command);
-    state->next_poll_ns = now_ns + cell->settle_ns;
+    loadcell->next_ask_ns = now_ns + cell->settle_ns;
 }
 
 static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 {
-    struct generic_state *const state = opaque;
-    const struct wb_rig_load_cell *const cell = &state->loadcell.rig.load_cell;
-    if (!cell->poll_command[0] || now_ns < state->next_poll_ns)
-        return;
-    wb_outbox_add_text(outbox, cell->poll_command);
-    /* Kept to the grid, but not in a rush after a pause. */
-    state->next_poll_ns += cell->poll_period_ns;
-    if (state->next_poll_ns <= now_ns)
-        state->next_poll_ns = now_ns + cell->poll_period_ns;
+    struct wb_loadcell *const loadcell = opaque;
+    const char *const command = loadcell->rig.load_cell.poll_command;
+    if (command[0])
+        wb_loadcell_poll(loadcell, now_ns, command, outbox);
 }
 
-static bool ready(const void *opaque)
-{
-    const struct generic_state *const state = opaque;
-    return state->loadcell.n_samples > 0;
-}
-
-static void stop(void *opaque, struct wb_outbox *outbox)
-{
-    /* The protocol is the instrument's own: there is no common way to end its stream. */
-    (void)opaque;
-    (void)outbox;
-}
-
+/* No `stop`: the protocol is the instrument's own, and there is no common way to end its stream. */
 const struct wb_driver wb_loadcell_generic = {
     .name = "generic",
-    .summary = "load cell or scale that prints one reading a line",
     .role = WB_ROLE_LOAD,
     .state_size = sizeof(struct generic_state),
-    .channels = channels,
-    .n_channels = 1,
-    .init = init,
+    .init = wb_loadcell_init,
     .start = start,
     .receive = receive,
     .tick = tick,
-    .ready = ready,
-    .stop = stop,
+    .ready = wb_loadcell_ready,
 };

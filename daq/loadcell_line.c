@@ -225,10 +225,11 @@ static bool take_number(struct cursor *cursor)
         } else if (!point && (*c == '.' || *c == ',')) {
             const bool wanted = cursor->cell->decimal_comma ? *c == ',' : *c == '.';
             if (!wanted) {
-                refuse(cursor, cursor->cell->decimal_comma
-                                   ? "a point in a number, but decimal_comma is set"
-                                   : "a comma in or after a number: set decimal_comma, or a "
-                                     "delimiter and a column");
+                refuse(cursor,
+                       cursor->cell->decimal_comma
+                           ? "a point in a number, but the rig file sets load_cell.decimal_comma"
+                           : "a comma in or after a number: set load_cell.decimal_comma, or "
+                             "delimiter and column");
                 return false;
             }
             point = true;
@@ -334,7 +335,7 @@ static void take_rest(struct cursor *cursor)
         if (n == 0 && *cursor->at == '?')
             n = 1;
         if (n == 0 || words == 3) {
-            refuse(cursor, "more than one value on the line: set a delimiter and a column");
+            refuse(cursor, "more than one value on the line: set load_cell.delimiter and column");
             return;
         }
         if (!take_word(cursor, cursor->at, n)) {
@@ -390,26 +391,6 @@ static bool clean(const char *bytes, size_t length, char text[MAX_LINE])
     return true;
 }
 
-bool wb_line_buffer_push(struct wb_line_buffer *buffer, uint8_t byte, const char *terminator)
-{
-    const bool cr = byte == '\r' && (terminator[0] == '\0' || strcmp(terminator, "any") == 0 ||
-                                     strcmp(terminator, "cr") == 0);
-    const bool lf = byte == '\n' && strcmp(terminator, "cr") != 0;
-    if ((cr || lf) && strcmp(terminator, "idle") != 0)
-        return true;
-    if (buffer->n < sizeof buffer->bytes)
-        buffer->bytes[buffer->n++] = (char)byte;
-    else
-        buffer->overlong = true;
-    return false;
-}
-
-void wb_line_buffer_clear(struct wb_line_buffer *buffer)
-{
-    buffer->n = 0;
-    buffer->overlong = false;
-}
-
 void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_cell *cell,
                     struct wb_line_reading *reading)
 {
@@ -419,7 +400,8 @@ void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_c
     memset(reading, 0, sizeof *reading);
     reading->value = (double)NAN;
     if (!clean(bytes, length, line)) {
-        refuse(&cursor, "bytes that are not text, or too many: check the line settings");
+        refuse(&cursor, "bytes that are not text, or too many: check baud rate and parity in "
+                        "load_cell.address");
         return;
     }
     if (line[0] == '\0')

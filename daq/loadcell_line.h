@@ -19,7 +19,7 @@ enum wb_line_kind {
     WB_LINE_EMPTY,    /* nothing but blanks */
     WB_LINE_VALUE,    /* a reading */
     WB_LINE_OVERLOAD, /* over or under range */
-    WB_LINE_REFUSED   /* an error code, a banner, something else; `reason` says what */
+    WB_LINE_REFUSED   /* no reading: an error code, a greeting, rubbish; `reason` says what */
 };
 
 struct wb_line_reading {
@@ -29,19 +29,6 @@ struct wb_line_reading {
     bool unstable;      /* the line calls it unstable, or dynamic */
     const char *reason; /* static text, when refused */
 };
-
-/* Bytes on their way to be a line. All zero is empty. */
-struct wb_line_buffer {
-    char bytes[256];
-    size_t n;
-    bool overlong; /* bytes were dropped: the line is no line */
-};
-
-/* Appends a byte; true when it ends the line, which then stands in the buffer until it is cleared.
- * `terminator` is the rig file's: "cr", "lf", "crlf" (LF ends, the CR before it is a blank), "any"
- * or "" (CR or LF), "idle" (no byte ends a line, silence does). */
-bool wb_line_buffer_push(struct wb_line_buffer *buffer, uint8_t byte, const char *terminator);
-void wb_line_buffer_clear(struct wb_line_buffer *buffer);
 
 /* Reads one line of `length` bytes without its terminator. Uses of `cell`: delimiter, column,
  * decimal_comma, unstable_tokens, overload_tokens. */

@@ -68,10 +68,7 @@ static void enter(struct wb_mass_check *check, enum wb_mass_check_phase phase)
     check->phase_ns = wb_acquisition_now_ns();
 }
 
-static void fail(struct wb_mass_check *check)
-{
-    enter(check, WB_MASS_CHECK_FAILED);
-}
+#define FAIL(check, ...) (wb_error(__VA_ARGS__), enter((check), WB_MASS_CHECK_FAILED))
 
 static void watch(struct wb_mass_check *check, int64_t now_ns)
 {
@@ -79,26 +76,21 @@ static void watch(struct wb_mass_check *check, int64_t now_ns)
         &wb_acquisition_latest(check->acquisition)->stream[WB_ROLE_LOAD];
     const int64_t waited_ns = now_ns - check->phase_ns;
     const char *const address = check->rig.load_cell.address;
-    if (wb_interrupted()) {
-        wb_error("stopped by the operator");
-        fail(check);
-    } else if (load->gone) {
-        wb_error("the load cell's port %s went away", address);
-        fail(check);
-    } else if (check->overload) {
-        wb_error("the load cell reports overload: the mass is beyond its range");
-        fail(check);
-    } else if (check->phase == WB_MASS_CHECK_CONNECTING && !isfinite(check->reading) &&
-               waited_ns > CONNECT_NS + check->rig.load_cell.settle_ns) {
-        wb_error("the load cell at %s sent no reading within %d s (%" PRIu64 " bytes came): check "
-                 "power, cable and load_cell.protocol",
-                 address, (int)(CONNECT_NS / WB_NS_PER_S), load->bytes);
-        fail(check);
-    } else if ((check->phase == WB_MASS_CHECK_ZERO || check->phase == WB_MASS_CHECK_LOADED) &&
-               waited_ns > check->duration_ns + CONNECT_NS) {
-        wb_error("the load cell at %s sends too few readings", address);
-        fail(check);
-    }
+    if (wb_interrupted())
+        FAIL(check, "stopped by the operator");
+    else if (load->gone)
+        FAIL(check, "the load cell's port %s went away: check its cable and power", address);
+    else if (check->overload)
+        FAIL(check, "the load cell reports overload: the mass is beyond its range");
+    else if (check->phase == WB_MASS_CHECK_CONNECTING && !isfinite(check->reading) &&
+             waited_ns > CONNECT_NS + check->rig.load_cell.settle_ns)
+        FAIL(check,
+             "the load cell at %s sent no reading within %d s (%" PRIu64 " bytes came): check "
+             "power, cable and load_cell.protocol",
+             address, (int)(CONNECT_NS / WB_NS_PER_S), load->bytes);
+    else if ((check->phase == WB_MASS_CHECK_ZERO || check->phase == WB_MASS_CHECK_LOADED) &&
+             waited_ns > check->duration_ns + CONNECT_NS)
+        FAIL(check, "the load cell at %s sends too few readings: at least 10 are needed", address);
 }
 
 enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t timeout_ns)
@@ -110,7 +102,7 @@ enum wb_mass_check_phase wb_mass_check_step(struct wb_mass_check *check, int64_t
     const int64_t now_ns = wb_acquisition_now_ns();
     const bool long_enough = now_ns - check->phase_ns >= check->duration_ns;
     if (failed) {
-        fail(check);
+        enter(check, WB_MASS_CHECK_FAILED);
         return check->phase;
     }
     watch(check, now_ns);

@@ -64,8 +64,6 @@ struct natnet_state {
     struct wb_natnet_frame frame;
 };
 
-static const struct wb_channel channels[] = {{"markers", "length", "m"}};
-
 /* True the first time since the server was found. */
 static bool first_time(struct natnet_state *state, unsigned what)
 {
@@ -90,9 +88,9 @@ static void check_group(const struct natnet_state *state, int64_t t_ns, const st
     if (!server->multicast) {
         /* A group of 255.255.255.255 listens to broadcasts, of which server info says nothing. */
         if (listed && strncmp(listed, ",group=255.", 11) != 0)
-            wb_driver_remark(
-                sink, WB_LOG_WARNING, t_ns, "group",
-                "the server streams unicast: the group in mocap.address will stay silent");
+            wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "group",
+                             "the server streams unicast, so the group in mocap.address stays "
+                             "silent: remove the group");
         return;
     }
     if (!listed) {
@@ -123,18 +121,19 @@ static void remark_version(const struct natnet_state *state, int64_t t_ns,
     }
     name[n] = '\0';
     const uint8_t *const app = state->server.app_version;
-    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected", "'%s' %u.%u.%u.%u, NatNet %u.%u", name,
-                     app[0], app[1], app[2], app[3], version.major, version.minor);
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected",
+                     "the server is '%s' %u.%u.%u.%u, NatNet %u.%u", name, app[0], app[1], app[2],
+                     app[3], version.major, version.minor);
     if (wb_natnet_version_at_least(version, 4, 2))
-        wb_driver_remark(
-            sink, WB_LOG_WARNING, t_ns, "version",
-            "NatNet %u.%u is newer than 4.1, the newest we know: sections are skipped by size",
-            version.major, version.minor);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
+                         "the server speaks NatNet %u.%u, newer than 4.1, the newest known here: "
+                         "what is not known is skipped",
+                         version.major, version.minor);
     else if (!wb_natnet_version_at_least(version, 2, 5))
-        wb_driver_remark(
-            sink, WB_LOG_WARNING, t_ns, "version",
-            "NatNet %u.%u is older than 2.5, the oldest we know: markers may be missing",
-            version.major, version.minor);
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "version",
+                         "the server speaks NatNet %u.%u, older than 2.5, the oldest known here: "
+                         "markers may be missing",
+                         version.major, version.minor);
 }
 
 static void receive_server(struct natnet_state *state, int64_t t_ns,
@@ -149,7 +148,8 @@ static void receive_server(struct natnet_state *state, int64_t t_ns,
     if (state->connected && memcmp(&server, &state->server, sizeof server) == 0)
         return;
     if (state->connected)
-        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "server", "the server announces itself anew");
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "server",
+                         "the motion-capture server announces itself anew, with other settings");
     state->server = server;
     state->version = (struct wb_natnet_version){server.natnet_version[0], server.natnet_version[1]};
     state->connected = true;
@@ -179,9 +179,8 @@ static void take_units(struct natnet_state *state, double units, int64_t t_ns,
                        const struct wb_sink *sink)
 {
     if (!is_unit(units)) {
-        wb_driver_remark(
-            sink, WB_LOG_WARNING, t_ns, "units",
-            "the server does not tell a unit of length that we know; metres are assumed");
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "units",
+                         "the server tells no known unit of length: metres are assumed");
         return;
     }
     state->units_factor = 1.0;
@@ -222,7 +221,7 @@ static void receive_response(struct natnet_state *state, int64_t t_ns,
         state->n_strays++;
         wb_driver_remark(
             sink, WB_LOG_WARNING, t_ns, "units",
-            "the server answers %g, which is no unit of length that we know: it is asked again",
+            "the server answers %g, which is no known unit of length: it is asked again",
             (double)response.real);
         return;
     }
@@ -274,11 +273,11 @@ static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct 
             "unlabelled markers in the server's streaming settings");
     if (frame->n_labelled > frame->mocap.n_markers && first_time(state, SAID_TOO_MANY))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
-                         "%d markers in a frame, %d are kept", frame->n_labelled,
-                         frame->mocap.n_markers);
+                         "a frame has %d markers, of which the first %d are kept: mask reflections",
+                         frame->n_labelled, frame->mocap.n_markers);
     if (frame->skipped > 0 && first_time(state, SAID_SKIPPED))
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "version",
-                         "%zu bytes a frame are of sections we do not know and skip",
+                         "each frame has %zu bytes of sections that are not known here and skipped",
                          frame->skipped);
     if (wb_natnet_version_at_least(state->version, 2, 6) && !(frame->mocap.params & 4) &&
         first_time(state, SAID_NOT_LIVE))
@@ -309,7 +308,7 @@ static void mend_markers(struct natnet_state *state, int64_t t_ns, const struct 
         if (first_time(state, SAID_NOT_FINITE))
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
                              "marker %" PRId32
-                             " has no finite position: such are taken as occluded",
+                             " has no finite position: such markers count as occluded",
                              marker->id);
     }
 }
@@ -322,7 +321,7 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
         if (first_time(state, SAID_EARLY))
             wb_driver_remark(
                 sink, WB_LOG_INFO, t_ns, "early",
-                "frames come before the server told its version: they are not decoded");
+                "frames come before the server told its NatNet version: they are not decoded");
         return;
     }
     struct wb_mocap_frame *const mocap = &state->frame.mocap;
@@ -397,15 +396,18 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
             break;
         }
         case WB_NATNET_DISCONNECTBYTIMEOUT:
-            wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "disconnected",
-                             "the server ended the connection for want of keepalives");
+            wb_driver_remark(
+                sink, WB_LOG_WARNING, t_ns, "disconnected",
+                "the server ended the connection because it heard nothing from this computer");
             break;
         case WB_NATNET_MODELDEF:
             break;
         default:
             if (first_time(state, SAID_UNKNOWN))
-                wb_driver_remark(sink, WB_LOG_INFO, t_ns, "unknown",
-                                 "message %d is not known and ignored", packet.message);
+                wb_driver_remark(
+                    sink, WB_LOG_INFO, t_ns, "unknown",
+                    "the server sends messages of kind %d, which are not known and ignored",
+                    packet.message);
         }
     }
     if (!fault.reason)
@@ -443,7 +445,8 @@ static void send_query(struct natnet_state *state, int64_t now_ns, struct wb_out
     const bool waits = state->n_asked > state->n_answers && now_ns < state->next_query_ns;
     if (state->n_answers == N_QUERIES || waits)
         return;
-    const size_t n = wb_natnet_encode_request(buffer, sizeof buffer, queries[state->n_answers]);
+    const size_t n =
+        wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_REQUEST, queries[state->n_answers]);
     wb_outbox_add(outbox, buffer, n);
     state->n_asked = state->n_answers + 1;
     state->next_query_ns = now_ns + QUERY_PERIOD_NS;
@@ -463,7 +466,8 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     if (!state->connected)
         return;
     if (now_ns >= state->next_keepalive_ns) {
-        wb_outbox_add(outbox, buffer, wb_natnet_encode_keepalive(buffer, sizeof buffer));
+        wb_outbox_add(outbox, buffer,
+                      wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_KEEPALIVE));
         state->next_keepalive_ns = now_ns + KEEPALIVE_PERIOD_NS;
     }
     send_query(state, now_ns, outbox);
@@ -481,16 +485,14 @@ static void stop(void *opaque, struct wb_outbox *outbox)
     const struct natnet_state *const state = opaque;
     uint8_t buffer[16];
     if (state->connected)
-        wb_outbox_add(outbox, buffer, wb_natnet_encode_disconnect(buffer, sizeof buffer));
+        wb_outbox_add(outbox, buffer,
+                      wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_DISCONNECT));
 }
 
 const struct wb_driver wb_natnet_client = {
     .name = "natnet",
-    .summary = "OptiTrack NatNet client, protocol 2.5 to 4.1",
     .role = WB_ROLE_MOCAP,
     .state_size = sizeof(struct natnet_state),
-    .channels = channels,
-    .n_channels = 1,
     .init = init,
     .start = start,
     .receive = receive,

@@ -272,41 +272,28 @@ static void read_bodies(struct reader *reader, struct wb_natnet_frame *frame)
     close_section(reader, &section);
 }
 
-static void read_skeletons(struct reader *reader, struct wb_natnet_frame *frame)
+/* Skeletons and trained assets, whose groups end with markers. Returns how many were sent. */
+static int read_groups(struct reader *reader, struct wb_natnet_frame *frame,
+                       struct wb_natnet_group *groups, bool assets)
 {
-    const struct section section = open_section(reader, 8);
+    const struct section section = open_section(reader, assets ? 12 : 8);
     if (skip_section(reader, &section, frame))
-        return;
-    frame->n_skeletons = section.count;
+        return 0;
     for (int i = 0; i < section.count && !reader->reason; i++) {
         struct wb_natnet_group group = {.id = get_i32(reader), .first_body = frame->n_bodies_kept};
         group.n_bodies = get_count(reader, body_minimum(reader));
         for (int k = 0; k < group.n_bodies && !reader->reason; k++)
             group.n_kept += read_body(reader, frame);
+        if (assets) {
+            /* id, position, size, params, residual: of no use for a bare wire */
+            group.n_markers = get_count(reader, 26);
+            take(reader, (size_t)group.n_markers * 26);
+        }
         if (i < WB_NATNET_MAX_GROUPS)
-            frame->skeletons[i] = group;
+            groups[i] = group;
     }
     close_section(reader, &section);
-}
-
-static void read_assets(struct reader *reader, struct wb_natnet_frame *frame)
-{
-    const struct section section = open_section(reader, 12);
-    if (skip_section(reader, &section, frame))
-        return;
-    frame->n_assets = section.count;
-    for (int i = 0; i < section.count && !reader->reason; i++) {
-        struct wb_natnet_group group = {.id = get_i32(reader), .first_body = frame->n_bodies_kept};
-        group.n_bodies = get_count(reader, body_minimum(reader));
-        for (int k = 0; k < group.n_bodies && !reader->reason; k++)
-            group.n_kept += read_body(reader, frame);
-        /* id, position, size, params, residual: of no use for a bare wire */
-        group.n_markers = get_count(reader, 26);
-        take(reader, (size_t)group.n_markers * 26);
-        if (i < WB_NATNET_MAX_GROUPS)
-            frame->assets[i] = group;
-    }
-    close_section(reader, &section);
+    return section.count;
 }
 
 static size_t labelled_minimum(const struct reader *reader)
@@ -422,9 +409,9 @@ static void read_frame(struct reader *reader, struct wb_natnet_frame *frame)
     read_others(reader, frame);
     read_bodies(reader, frame);
     if (at_least(reader, 2, 1))
-        read_skeletons(reader, frame);
+        frame->n_skeletons = read_groups(reader, frame, frame->skeletons, false);
     if (at_least(reader, 4, 1))
-        read_assets(reader, frame);
+        frame->n_assets = read_groups(reader, frame, frame->assets, true);
     if (at_least(reader, 2, 3))
         read_labelled(reader, frame);
     if (at_least(reader, 2, 9))
@@ -442,13 +429,17 @@ static struct reader reader_of(const struct wb_natnet_packet *packet)
     return (struct reader){.bytes = packet->payload, .n = packet->n_payload};
 }
 
+static enum wb_status fail(struct wb_natnet_fault *fault, size_t offset, const char *reason)
+{
+    *fault = (struct wb_natnet_fault){offset, reason};
+    return WB_ERR_FORMAT;
+}
+
 static enum wb_status finish(const struct reader *reader, struct wb_natnet_fault *fault)
 {
     if (!reader->reason)
         return WB_OK;
-    fault->offset = WB_NATNET_HEADER + reader->fault_at;
-    fault->reason = reader->reason;
-    return WB_ERR_FORMAT;
+    return fail(fault, WB_NATNET_HEADER + reader->fault_at, reader->reason);
 }
 
 enum wb_status wb_natnet_decode_packet(const uint8_t *bytes, size_t length,
@@ -458,11 +449,8 @@ enum wb_status wb_natnet_decode_packet(const uint8_t *bytes, size_t length,
     struct reader reader = {.bytes = bytes, .n = length};
     const int message = get_u16(&reader);
     const size_t n_payload = get_u16(&reader);
-    if (reader.reason || n_payload > remaining(&reader)) {
-        fault->offset = 0;
-        fault->reason = "the datagram is shorter than its header says";
-        return WB_ERR_FORMAT;
-    }
+    if (reader.reason || n_payload > remaining(&reader))
+        return fail(fault, 0, "the datagram is shorter than its header says");
     *packet = (struct wb_natnet_packet){message, bytes + WB_NATNET_HEADER, n_payload};
     return WB_OK;
 }
@@ -550,11 +538,8 @@ static void copy_text(const struct wb_natnet_packet *packet, char *text, size_t 
 enum wb_status wb_natnet_decode_text(const struct wb_natnet_packet *packet, char *text, size_t size,
                                      struct wb_natnet_fault *fault)
 {
-    if (packet->n_payload == 0 || size == 0) {
-        fault->offset = WB_NATNET_HEADER;
-        fault->reason = "there is no text";
-        return WB_ERR_FORMAT;
-    }
+    if (packet->n_payload == 0 || size == 0)
+        return fail(fault, WB_NATNET_HEADER, "there is no text");
     copy_text(packet, text, size);
     return WB_OK;
 }
@@ -564,11 +549,8 @@ enum wb_status wb_natnet_decode_response(const struct wb_natnet_packet *packet,
                                          struct wb_natnet_fault *fault)
 {
     struct wb_natnet_response read = {.is_number = packet->n_payload == 4};
-    if (packet->n_payload == 0) {
-        fault->offset = WB_NATNET_HEADER;
-        fault->reason = "the response is empty";
-        return WB_ERR_FORMAT;
-    }
+    if (packet->n_payload == 0)
+        return fail(fault, WB_NATNET_HEADER, "the response is empty");
     if (read.is_number) {
         struct reader reader = reader_of(packet);
         read.integer = get_i32(&reader);

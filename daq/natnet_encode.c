@@ -1,5 +1,4 @@
 #include "daq/natnet_encode.h"
-#include "daq/natnet_encode_private.h"
 
 #include <string.h>
 
@@ -110,15 +109,15 @@ static void put_field(struct writer *writer, const char *text, size_t size)
     put_zeros(writer, size - length);
 }
 
-static size_t encode_text(uint8_t *buffer, size_t size, enum wb_natnet_message message,
-                          const char *text)
+size_t wb_natnet_encode_text(uint8_t *buffer, size_t size, enum wb_natnet_message message,
+                             const char *text)
 {
     struct writer writer = begin(buffer, size, message);
     put(&writer, text, strlen(text) + 1);
     return finish(&writer);
 }
 
-static size_t encode_empty(uint8_t *buffer, size_t size, enum wb_natnet_message message)
+size_t wb_natnet_encode_empty(uint8_t *buffer, size_t size, enum wb_natnet_message message)
 {
     struct writer writer = begin(buffer, size, message);
     return finish(&writer);
@@ -141,26 +140,11 @@ size_t wb_natnet_encode_connect(uint8_t *buffer, size_t size, const char *name, 
     return finish(&writer);
 }
 
-size_t wb_natnet_encode_keepalive(uint8_t *buffer, size_t size)
-{
-    return encode_empty(buffer, size, WB_NATNET_KEEPALIVE);
-}
-
-size_t wb_natnet_encode_disconnect(uint8_t *buffer, size_t size)
-{
-    return encode_empty(buffer, size, WB_NATNET_DISCONNECT);
-}
-
 size_t wb_natnet_encode_echo_request(uint8_t *buffer, size_t size, uint64_t stamp)
 {
     struct writer writer = begin(buffer, size, WB_NATNET_ECHOREQUEST);
     put_u64(&writer, stamp);
     return finish(&writer);
-}
-
-size_t wb_natnet_encode_request(uint8_t *buffer, size_t size, const char *text)
-{
-    return encode_text(buffer, size, WB_NATNET_REQUEST, text);
 }
 
 /* --- server --- */
@@ -341,9 +325,10 @@ size_t wb_natnet_encode_echo_response(uint8_t *buffer, size_t size, uint64_t sta
     return finish(&writer);
 }
 
-size_t wb_natnet_encode_response_integer(uint8_t *buffer, size_t size, int32_t value)
+size_t wb_natnet_encode_integer(uint8_t *buffer, size_t size, enum wb_natnet_message message,
+                                int32_t value)
 {
-    struct writer writer = begin(buffer, size, WB_NATNET_RESPONSE);
+    struct writer writer = begin(buffer, size, message);
     put_i32(&writer, value);
     return finish(&writer);
 }
@@ -353,19 +338,4 @@ size_t wb_natnet_encode_response_real(uint8_t *buffer, size_t size, float value)
     struct writer writer = begin(buffer, size, WB_NATNET_RESPONSE);
     put_f32(&writer, value);
     return finish(&writer);
-}
-
-size_t wb_natnet_encode_response_text(uint8_t *buffer, size_t size, const char *text)
-{
-    return encode_text(buffer, size, WB_NATNET_RESPONSE, text);
-}
-
-size_t wb_natnet_encode_message_string(uint8_t *buffer, size_t size, const char *text)
-{
-    return encode_text(buffer, size, WB_NATNET_MESSAGESTRING, text);
-}
-
-size_t wb_natnet_encode_unrecognized(uint8_t *buffer, size_t size)
-{
-    return encode_empty(buffer, size, WB_NATNET_UNRECOGNIZED_REQUEST);
 }

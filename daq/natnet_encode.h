@@ -13,17 +13,22 @@
 
 #include "daq/natnet.h"
 
+/* Messages of no payload (KEEPALIVE, DISCONNECT, UNRECOGNIZED_REQUEST, the answer to a request the
+ * server does not know), of a text (REQUEST: "FrameRate", "UnitsToMillimeters", ...) and of one
+ * number (RESPONSE). */
+size_t wb_natnet_encode_empty(uint8_t *buffer, size_t size, enum wb_natnet_message message);
+size_t wb_natnet_encode_text(uint8_t *buffer, size_t size, enum wb_natnet_message message,
+                             const char *text);
+size_t wb_natnet_encode_integer(uint8_t *buffer, size_t size, enum wb_natnet_message message,
+                                int32_t value);
+
 /* --- client --- */
 
 /* CONNECT in the 3.x form of 264 bytes, or `extended` in the 4.x form of 271 bytes, which also asks
  * a unicast server for a bitstream of 4.1 at most. */
 size_t wb_natnet_encode_connect(uint8_t *buffer, size_t size, const char *name, bool extended);
-size_t wb_natnet_encode_keepalive(uint8_t *buffer, size_t size);
-size_t wb_natnet_encode_disconnect(uint8_t *buffer, size_t size);
 /* The response repeats the stamp verbatim: pass the client's clock. */
 size_t wb_natnet_encode_echo_request(uint8_t *buffer, size_t size, uint64_t stamp);
-/* "FrameRate", "UnitsToMillimeters", ... */
-size_t wb_natnet_encode_request(uint8_t *buffer, size_t size, const char *text);
 
 /* --- server --- */
 
@@ -39,9 +44,6 @@ size_t wb_natnet_encode_frame(uint8_t *buffer, size_t size, struct wb_natnet_ver
                               const struct wb_natnet_frame *frame);
 
 size_t wb_natnet_encode_echo_response(uint8_t *buffer, size_t size, uint64_t stamp, uint64_t ticks);
-size_t wb_natnet_encode_response_integer(uint8_t *buffer, size_t size, int32_t value);
 size_t wb_natnet_encode_response_real(uint8_t *buffer, size_t size, float value);
-/* The answer to a request the server does not know. */
-size_t wb_natnet_encode_unrecognized(uint8_t *buffer, size_t size);
 
 #endif

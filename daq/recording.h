@@ -51,10 +51,9 @@ WB_MUST_CHECK enum wb_status wb_recording_append_event(struct wb_recording *reco
 WB_MUST_CHECK enum wb_status wb_recording_append_clock(struct wb_recording *recording, int stream,
                                                        int64_t t_host_ns, double t_device,
                                                        int64_t rtt_ns);
-WB_MUST_CHECK enum wb_status wb_recording_flush(struct wb_recording *recording);
-
 /* Once a write failed, all further ones return the same status without another message, and the
  * recording counts as not closed properly. */
+WB_MUST_CHECK enum wb_status wb_recording_flush(struct wb_recording *recording);
 
 /* Flushes, checkpoints, leaves one plain file, and frees. Accepts NULL. For a recording opened for
  * reading it only frees. */
@@ -81,6 +80,7 @@ bool wb_recording_is_complete(const struct wb_recording *recording);
 WB_MUST_CHECK enum wb_status wb_recording_meta(struct wb_recording *recording, const char *key,
                                                char **value);
 
+/* The bytes of one instrument. */
 struct wb_recording_stream {
     int id;
     enum wb_role role;
@@ -92,6 +92,7 @@ int wb_recording_n_streams(const struct wb_recording *recording);
 const struct wb_recording_stream *wb_recording_stream_at(const struct wb_recording *recording,
                                                          int index);
 
+/* One read of a port, or one datagram. */
 struct wb_chunk {
     int stream;
     int64_t seq, t_ns;
@@ -101,12 +102,14 @@ struct wb_chunk {
     bool intact;    /* stored CRC equals the computed one */
 };
 
+/* Something that happened, in words: a step of the test, a remark on an instrument, a mark. */
 struct wb_event {
     int64_t t_ns;
     char kind[32];
     char text[1024];
 };
 
+/* One probe of a device's clock: what it read at the middle of the round trip. */
 struct wb_clock_row {
     int stream;
     int64_t t_host_ns;
@@ -115,9 +118,8 @@ struct wb_clock_row {
 };
 
 /* Visits all chunks in order of arrival (t_ns, then stream, then seq; ties in the order of
- * writing). A visitor returns a status;
- * anything but WB_OK ends the walk and is returned. Events and clock rows are visited in order of
- * time as well. WB_ERR_DATA (logged) when the database breaks
+ * writing); events and clock rows are visited in order of time as well. A visitor returns a status:
+ * anything but WB_OK ends the walk and is returned. WB_ERR_DATA (logged) when the database breaks
  * off or rows cannot be read; everything else has been visited. */
 WB_MUST_CHECK enum wb_status
 wb_recording_each_chunk(struct wb_recording *recording,

@@ -121,21 +121,6 @@ static enum wb_status open_file(const char *path, int *descriptor)
                    strerror(errno));
 }
 
-static enum wb_status hash_compressed(int from, const char *path, char hex[65])
-{
-    char temporary[WB_PATH];
-    int to = -1;
-    bool whole = true;
-    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
-    unlink(temporary);
-    enum wb_status status = wb_recording_decompress(from, to, path, &whole);
-    /* Of one cut short what is there counts, as with one that is not compressed; opening tells. */
-    if (status == WB_OK)
-        status = wb_hash_descriptor(to, path, hex);
-    close(to);
-    return status;
-}
-
 /* The log beside a recording that was not closed holds a part of it. */
 static bool find_wal(const char *path, char wal[WB_PATH])
 {
@@ -155,15 +140,19 @@ static enum wb_status append_file(int to, const char *path)
     return status;
 }
 
-static enum wb_status hash_with_wal(const char *path, const char *wal, char hex[65])
+/* The sum of what `from` (compressed) holds or, without it, of the file followed by its log. */
+static enum wb_status hash_whole(const char *path, int from, const char *wal, char hex[65])
 {
     char temporary[WB_PATH];
     int to = -1;
+    bool whole = true;
     WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
     unlink(temporary);
-    enum wb_status status = append_file(to, path);
-    if (status == WB_OK)
+    enum wb_status status =
+        from >= 0 ? wb_recording_decompress(from, to, path, &whole) : append_file(to, path);
+    if (status == WB_OK && from < 0)
         status = append_file(to, wal);
+    /* Of one cut short what is there counts, as with one that is not compressed; opening tells. */
     if (status == WB_OK)
         status = wb_hash_descriptor(to, path, hex);
     close(to);
@@ -174,14 +163,14 @@ enum wb_status wb_recording_sha256(const char *path, char hex[65])
 {
     char wal[WB_PATH];
     if (find_wal(path, wal))
-        return hash_with_wal(path, wal, hex);
+        return hash_whole(path, -1, wal, hex);
     int descriptor;
     WB_TRY(open_file(path, &descriptor));
     uint8_t magic[4];
     ssize_t n = pread(descriptor, magic, sizeof magic, 0);
     enum wb_status status;
     if (n > 0 && wb_recording_is_zstd(magic, (size_t)n))
-        status = hash_compressed(descriptor, path, hex);
+        status = hash_whole(path, descriptor, NULL, hex);
     else
         status = wb_hash_descriptor(descriptor, path, hex);
     close(descriptor);

@@ -41,10 +41,11 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
                        recording->path);
     uint32_t version = big_endian(header + 60);
     if (version > WB_RECORDING_SCHEMA)
-        return wb_fail(WB_ERR_UNSUPPORTED,
-                       "'%s' is of schema %u, and this program knows schemas up to %d: use a newer "
-                       "wirebench",
-                       recording->path, version, WB_RECORDING_SCHEMA);
+        return wb_fail(
+            WB_ERR_UNSUPPORTED,
+            "'%s' is of schema %u, and this program knows schemas up to %d only: use a newer "
+            "wirebench",
+            recording->path, version, WB_RECORDING_SCHEMA);
     int64_t page = (int64_t)header[16] << 8 | header[17];
     if (page == 1)
         page = 65536;

@@ -10,7 +10,7 @@
 /* Remarks stored in one second. */
 #define WB_REMARK_GATE_A_SECOND 20
 
-/* All zero is open. */
+/* All zero is a gate that held nothing back yet. */
 struct wb_remark_gate {
     int64_t second;
     unsigned stored, held; /* in this second */

@@ -83,8 +83,8 @@ static enum wb_status open_channel(struct channel *channel,
     channel->id = recorded->id;
     const struct wb_driver *driver = wb_drivers_find(recorded->role, recorded->protocol);
     if (!driver) {
-        wb_warn("stream %d (%s) speaks '%s', which no driver knows; it is left out", recorded->id,
-                wb_role_name(recorded->role), recorded->protocol);
+        wb_warn("stream %d (%s) speaks the protocol '%s', which is not known here: it is left out",
+                recorded->id, wb_role_name(recorded->role), recorded->protocol);
         return WB_OK;
     }
     WB_TRY(wb_stream_open(&channel->stream, "memory:"));

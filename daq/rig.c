@@ -168,17 +168,18 @@ static enum wb_status check_line_keys(const struct wb_config_node *map,
         return WB_OK;
     }
     if (keys->has_column != (cell->delimiter != 0))
-        return wb_config_refuse(map, keys->has_column ? "column" : "delimiter",
-                                "delimiter and column belong together, one of them is missing");
+        return wb_config_refuse(
+            map, keys->has_column ? "column" : "delimiter",
+            "delimiter and column belong together, and the other one is missing");
     if (cell->decimal_comma && cell->delimiter == ',')
         return wb_config_refuse(map, "decimal_comma",
                                 "a comma cannot be both the delimiter and the decimal sign");
     if ((cell->poll_command[0] != '\0') != (cell->poll_period_ns > 0))
         return wb_config_refuse(map, cell->poll_command[0] ? "poll_period_ms" : "poll_command",
-                                "poll_command and poll_period_ms belong together, this one is "
+                                "poll_command and poll_period_ms belong together, and this one is "
                                 "missing");
     if (cell->scale == 0.0)
-        return wb_config_refuse(map, "scale", "expected anything but 0");
+        return wb_config_refuse(map, "scale", "expected a number other than 0");
     double newtons;
     if (cell->unit[0] && !wb_line_unit_factor(cell->unit, WB_STANDARD_GRAVITY, &newtons))
         return wb_config_refuse(map, "unit", "expected a unit such as g, kg, mN, N or lb, not '%s'",

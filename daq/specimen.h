@@ -26,6 +26,8 @@ struct wb_specimen {
     double marker_offset_uncertainty;        /* m */
 };
 
+/* Reads a specimen file, or the same from text (a recording's meta), where `origin` stands for the
+ * file in errors. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_specimen_read(const char *path, struct wb_specimen *specimen);
 WB_MUST_CHECK enum wb_status wb_specimen_parse(const char *text, const char *origin,
                                                struct wb_specimen *specimen);

@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "daq/grbl.h"
+#include "daq/line_buffer.h"
 
 #define WB_LOG_DOMAIN "stage"
 
@@ -17,15 +18,11 @@
 #define FAST_POLL_PERIOD_NS (100 * WB_NS_PER_MS) /* and 10 for a while are fine */
 #define FAST_POLL_NS (1000 * WB_NS_PER_MS)
 #define REPLY_NS (2000 * WB_NS_PER_MS) /* a line is answered in far less, but for homing */
-#define LINE_BYTES 256
 
 struct grbl_state {
     struct wb_rig rig;
-    int axis; /* 0 to 2 */
-    /* Bytes of the line that is coming in. */
-    char line[LINE_BYTES];
-    size_t n_line;
-    bool overlong;
+    int axis;                   /* 0 to 2 */
+    struct wb_line_buffer line; /* that is coming in */
     /* What the firmware told. */
     bool answered;
     bool position_lost, limit_pressed;
@@ -39,8 +36,6 @@ struct grbl_state {
     /* For sending. */
     int64_t now_ns, sent_ns, next_poll_ns, fast_until_ns;
 };
-
-static const struct wb_channel channels[] = {{"position", "length", "m"}};
 
 static enum wb_status init(void *opaque, const struct wb_rig *rig)
 {
@@ -75,7 +70,7 @@ static void receive_report(struct grbl_state *state, int64_t t_ns,
     state->answered = true;
     if (report->state == WB_STAGE_ALARM && state->state != WB_STAGE_ALARM && state->alarm == 0)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "locked",
-                         "the stage is locked (state Alarm): home or unlock it");
+                         "the stage is locked (state Alarm): run 'home' or 'unlock'");
     if (report->limit[state->axis] && !state->limit_pressed)
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "switch",
                          "the limit switch of axis %c is pressed", state->rig.stage.axis);
@@ -123,7 +118,7 @@ static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct w
     else if (state->waits && strcmp(state->pending, "$H") == 0 && state->position_lost) {
         state->position_lost = false;
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "homed",
-                         "the stage was homed, its position is known");
+                         "the stage was homed: its position is known again");
     }
     state->waits = false;
 }
@@ -131,7 +126,7 @@ static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct w
 static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb_sink *sink)
 {
     struct wb_grbl_line line;
-    wb_grbl_decode(state->line, state->n_line, &line);
+    wb_grbl_decode(state->line.bytes, state->line.n, &line);
     switch (line.kind) {
     case WB_GRBL_LINE_OK:
     case WB_GRBL_LINE_ERROR:
@@ -156,8 +151,8 @@ static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb
         state->n_unknown++;
         if (wb_driver_worth_saying(state->n_unknown))
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                             "line not understood: '%s'; %" PRIu64 " so far", line.text,
-                             state->n_unknown);
+                             "a line of the stage is not understood: '%s'; %" PRIu64 " so far",
+                             line.text, state->n_unknown);
     }
 }
 
@@ -166,20 +161,16 @@ static void receive(void *opaque, int64_t t_ns, const uint8_t *bytes, size_t n,
 {
     struct grbl_state *const state = opaque;
     for (size_t i = 0; i < n; i++) {
-        if (bytes[i] != '\n') {
-            if (state->n_line < LINE_BYTES)
-                state->line[state->n_line++] = (char)bytes[i];
-            else
-                state->overlong = true;
+        if (!wb_line_buffer_push(&state->line, bytes[i], "lf"))
             continue;
-        }
-        if (state->overlong)
+        if (state->line.overlong)
             wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                             "a line of more than %d bytes is dropped", LINE_BYTES);
+                             "the stage sent a line of more than %d bytes, which is dropped: check "
+                             "the baud rate",
+                             (int)sizeof state->line.bytes);
         else
             receive_line(state, t_ns, sink);
-        state->n_line = 0;
-        state->overlong = false;
+        wb_line_buffer_clear(&state->line);
     }
 }
 
@@ -207,7 +198,7 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     state->now_ns = now_ns;
     /* A lost reply must not lock the stage out for ever. */
     if (state->waits && now_ns - state->sent_ns > REPLY_NS && strcmp(state->pending, "$H") != 0) {
-        wb_warn("the stage did not answer '%s' within %d ms", state->pending,
+        wb_warn("the stage did not answer '%s' within %d ms: check its cable", state->pending,
                 (int)(REPLY_NS / WB_NS_PER_MS));
         state->waits = false;
     }
@@ -221,7 +212,7 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 static enum wb_status send_byte(struct wb_outbox *outbox, uint8_t byte)
 {
     if (!wb_outbox_add(outbox, &byte, 1))
-        return wb_fail(WB_ERR_MEMORY, "the stage's outbox is full");
+        return wb_fail(WB_ERR_MEMORY, "the stage takes no more commands: too many wait to be sent");
     return WB_OK;
 }
 
@@ -234,7 +225,7 @@ static enum wb_status send_line(struct grbl_state *state, const char *text,
     if (state->waits)
         return WB_ERR_BUSY;
     if (length >= sizeof state->pending || !wb_outbox_add_text(outbox, text))
-        return wb_fail(WB_ERR_MEMORY, "the stage's outbox is full");
+        return wb_fail(WB_ERR_MEMORY, "the stage takes no more commands: too many wait to be sent");
     memcpy(state->pending, text, length);
     state->pending[length] = '\0';
     state->waits = true;
@@ -291,25 +282,15 @@ static bool ready(const void *opaque)
     return state->answered && state->state != WB_STAGE_UNKNOWN;
 }
 
-static void stop(void *opaque, struct wb_outbox *outbox)
-{
-    /* Nothing streams. Whether the stage may go on moving is the caller's decision. */
-    (void)opaque;
-    (void)outbox;
-}
-
+/* No `stop`: nothing streams, and whether the stage may go on moving is the caller's decision. */
 const struct wb_driver wb_stage_grbl = {
     .name = "grbl",
-    .summary = "stepper stage with GRBL 1.1",
     .role = WB_ROLE_STAGE,
     .state_size = sizeof(struct grbl_state),
-    .channels = channels,
-    .n_channels = 1,
     .init = init,
     .start = start,
     .receive = receive,
     .tick = tick,
     .command = command,
     .ready = ready,
-    .stop = stop,
 };

@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,13 +12,9 @@
 
 #define WB_LOG_DOMAIN "stage"
 
-#define POSITION_TOLERANCE (0.05 * WB_MM)
 /* A report that comes sooner after a command may be the answer to an earlier question. */
 #define STALE_NS (300 * WB_NS_PER_MS)
 #define RESET_NS (4 * WB_NS_PER_S)
-/* An earlier line that is not answered keeps a command waiting; the driver stops waiting after 2 s.
- */
-#define SEND_NS (4 * WB_NS_PER_S)
 #define HOMING_NS (180 * WB_NS_PER_S)
 
 /* Release: at the end of the machine's travel steps become smaller, down to this; it keeps so far
@@ -34,94 +29,29 @@ enum phase {
     PHASE_UNLOCK,
     PHASE_HOME,
     PHASE_MOVE,
-    PHASE_REST, /* release: the stage stands and the load cell is read */
-    PHASE_STOP,
-    PHASE_END
+    PHASE_REST /* release: the stage stands and the load cell is read */
 };
 
-static const char *const phase_names[] = {"connecting", "resetting", "unlocking", "homing",
-                                          "moving",     "reading",   "stopping",  "end"};
+static const char *const phase_names[] = {
+    [PHASE_CONNECT] = "connecting",  [PHASE_RESET] = "resetting", [PHASE_UNLOCK] = "unlocking",
+    [PHASE_HOME] = "homing",         [PHASE_MOVE] = "moving",     [PHASE_REST] = "reading",
+    [WB_SEQUENCE_STOP] = "stopping", [WB_SEQUENCE_OVER] = "end",
+};
 
 struct wb_stage_job {
-    struct wb_rig rig;
+    struct wb_sequence run;
     struct wb_stage_job_request request;
-    struct wb_acquisition *acquisition;
-    enum phase phase;
-    int64_t phase_ns;
-    int64_t heard_ns;   /* when the phase began, on the clock that stands while nobody listens */
-    int64_t allowed_ns; /* for a motion, on that clock */
-    bool unsent;        /* the command of this phase is not taken yet */
-    enum wb_stage_command command;
-    double distance;               /* m, of the command */
-    double start_position, target; /* m, machine; m travel from the start, down positive */
-    double most, reach;            /* m, release: of one step, and of all of them */
-    double first_force;            /* N; NaN before the first reading */
-    uint64_t reports_seen;
-    int idle_reports;
+    double most, reach; /* m, release: of one step, and of all of them */
+    double first_force; /* N; NaN before the first reading */
     struct wb_release release;
     bool standing;
-    enum wb_stage_job_end end;
-    char text[WB_INTERLOCK_TEXT];
 };
-
-static double travel_of(const struct wb_stage_job *job, double position)
-{
-    return job->rig.stage.down * (position - job->start_position);
-}
-
-static void enter(struct wb_stage_job *job, enum phase phase)
-{
-    job->phase = phase;
-    job->phase_ns = wb_acquisition_now_ns();
-    job->heard_ns = wb_acquisition_heard_ns(job->acquisition);
-    job->reports_seen = wb_acquisition_latest(job->acquisition)->stage_reports;
-    job->idle_reports = 0;
-}
-
-/* How long the phase lasts, without the time in which this process was kept from listening: an
- * instrument is not blamed for that. */
-static int64_t lasts_ns(const struct wb_stage_job *job)
-{
-    return wb_acquisition_heard_ns(job->acquisition) - job->heard_ns;
-}
-
-static void set_end(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static void set_end(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format, ...)
-{
-    if (job->end != WB_STAGE_JOB_RUNNING)
-        return;
-    job->end = end;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(job->text, sizeof job->text, format, arguments);
-    va_end(arguments);
-}
 
 static void finish(struct wb_stage_job *job)
 {
     job->standing = true;
-    wb_acquisition_disarm(job->acquisition);
-    enter(job, PHASE_END);
-}
-
-static void give_up(struct wb_stage_job *job, enum wb_interlock_reason reason, const char *format,
-                    ...) __attribute__((format(printf, 3, 4)));
-
-static void give_up(struct wb_stage_job *job, enum wb_interlock_reason reason, const char *format,
-                    ...)
-{
-    char text[WB_INTERLOCK_TEXT];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (wb_acquisition_moving(job->acquisition))
-        wb_acquisition_stop(job->acquisition, reason, text);
-    set_end(job, reason == WB_INTERLOCK_INTERRUPT ? WB_STAGE_JOB_INTERRUPTED : WB_STAGE_JOB_FAILED,
-            "%s", text);
-    enter(job, PHASE_STOP);
+    wb_acquisition_disarm(job->run.acquisition);
+    wb_sequence_enter(&job->run, WB_SEQUENCE_OVER);
 }
 
 static void on_load(void *context, const struct wb_load_sample *sample)
@@ -129,7 +59,7 @@ static void on_load(void *context, const struct wb_load_sample *sample)
     struct wb_stage_job *const job = context;
     if (sample->valid && !isfinite(job->first_force))
         job->first_force = sample->force;
-    if (job->phase == PHASE_REST)
+    if (job->run.phase == PHASE_REST)
         wb_release_add(&job->release, sample);
 }
 
@@ -157,10 +87,11 @@ enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig 
     struct wb_stage_job *const job = calloc(1, sizeof *job);
     if (!job)
         return wb_fail(WB_ERR_MEMORY, "no memory for the stage's job");
-    job->rig = *rig;
+    job->run.rig = *rig;
     job->request = *request;
     job->first_force = (double)NAN;
-    job->start_position = (double)NAN;
+    job->run.start_position = (double)NAN;
+    job->run.remedy = ", then run 'unlock'";
     if (!(job->request.connect_timeout > 0.0))
         job->request.connect_timeout = 6.0;
     if (!(job->request.speed > 0.0))
@@ -168,57 +99,24 @@ enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig 
             request->kind == WB_STAGE_JOB_RELEASE ? 0.5 * rig->stage.speed : rig->stage.speed;
     const struct wb_sink sink = {.context = job, .load = on_load};
     const enum wb_status status =
-        wb_acquisition_open(&job->acquisition, rig, roles_of(request), &sink);
+        wb_acquisition_open(&job->run.acquisition, rig, roles_of(request), &sink);
     if (status != WB_OK) {
         free(job);
         return status;
     }
-    wb_acquisition_start(job->acquisition, NULL);
-    enter(job, PHASE_CONNECT);
+    wb_acquisition_start(job->run.acquisition, NULL);
+    wb_sequence_enter(&job->run, PHASE_CONNECT);
     *out = job;
     return WB_OK;
 }
 
 /* --- sequence --- */
 
-/* Offers the command of this phase to the stage; the phase counts from when it is taken. */
-static void try_to_send(struct wb_stage_job *job)
-{
-    const double speed = job->request.speed * job->rig.time_scale;
-    const enum wb_status status =
-        wb_acquisition_command(job->acquisition, job->command, job->distance, speed);
-    job->unsent = status == WB_ERR_BUSY;
-    if (status == WB_OK) {
-        enter(job, job->phase);
-        job->allowed_ns = 5 * WB_NS_PER_S + wb_ns_from_seconds(1.5 * fabs(job->distance) / speed);
-    } else if (!job->unsent) {
-        give_up(job, WB_INTERLOCK_STAGE,
-                "the command could not be sent to the stage at %s: check its cable and power, then "
-                "run 'unlock'",
-                job->rig.stage.address);
-    } else if (lasts_ns(job) > SEND_NS) {
-        job->unsent = false;
-        give_up(job, WB_INTERLOCK_STAGE,
-                "the stage at %s does not answer an earlier command: check its cable, then run "
-                "'unlock'",
-                job->rig.stage.address);
-    }
-}
-
-static void send(struct wb_stage_job *job, enum wb_stage_command command, double distance,
-                 enum phase next)
-{
-    job->command = command;
-    job->distance = distance;
-    enter(job, next);
-    try_to_send(job);
-}
-
 static void arm(struct wb_stage_job *job)
 {
     struct wb_interlock_settings settings;
-    wb_interlock_default_settings(&settings, &job->rig);
-    settings.rise = settings.travel = job->rig.stage.travel + 1.0 * WB_MM;
+    wb_interlock_default_settings(&settings, &job->run.rig);
+    settings.rise = settings.travel = job->run.rig.stage.travel + 1.0 * WB_MM;
     if (job->request.kind == WB_STAGE_JOB_HOME) {
         /* A homing controller is busy and says nothing; its position jumps in the end. */
         settings.stream_lost_ns[WB_ROLE_STAGE] = 0;
@@ -229,47 +127,29 @@ static void arm(struct wb_stage_job *job)
         /* It may be beyond its limits now: that is what is being mended. It must not grow. */
         const bool is_overloaded = !isfinite(job->first_force);
         /* An overloaded cell gives its first number just below its overload. */
-        const double force = is_overloaded ? job->rig.load_cell.overload : fabs(job->first_force);
-        const double growth = GROWTH_SHARE * job->rig.load_cell.capacity;
+        const double force =
+            is_overloaded ? job->run.rig.load_cell.overload : fabs(job->first_force);
+        const double growth = GROWTH_SHARE * job->run.rig.load_cell.capacity;
         settings.force = fmax(settings.force, force + growth);
         if (is_overloaded || force + growth > settings.overload) {
             settings.overload = 0.0;
             settings.overload_allowed = true;
         }
     }
-    wb_acquisition_arm(job->acquisition, &settings, job->start_position);
-}
-
-/* Starts a jog to a travel from the start. */
-static void jog_to(struct wb_stage_job *job, double target)
-{
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
-    const double distance = target - travel_of(job, latest->stage.position);
-    job->target = target;
-    send(job, WB_STAGE_COMMAND_JOG, distance, PHASE_MOVE);
+    wb_acquisition_arm(job->run.acquisition, &settings, job->run.start_position);
 }
 
 /* Release: the stage stands; the readings from now on tell whether the strand is slack. */
 static void rest(struct wb_stage_job *job, double travel)
 {
-    wb_acquisition_motion_ended(job->acquisition);
-    enter(job, PHASE_REST);
-    wb_release_rest(&job->release, travel, job->phase_ns);
+    wb_acquisition_motion_ended(job->run.acquisition);
+    wb_sequence_enter(&job->run, PHASE_REST);
+    wb_release_rest(&job->release, travel, job->run.phase_ns);
 }
 
-static void end_release(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format,
-                        ...) __attribute__((format(printf, 3, 4)));
-
-static void end_release(struct wb_stage_job *job, enum wb_stage_job_end end, const char *format,
-                        ...)
+static void end_release(struct wb_stage_job *job)
 {
-    char text[WB_INTERLOCK_TEXT];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    wb_acquisition_motion_ended(job->acquisition);
-    set_end(job, end, "%s", text);
+    wb_acquisition_motion_ended(job->run.acquisition);
     finish(job);
 }
 
@@ -284,56 +164,60 @@ static void step_up(struct wb_stage_job *job, double travel)
         snprintf(now, sizeof now, "%.2f mN now", force);
     else
         snprintf(now, sizeof now, "overload now");
-    if (left <= POSITION_TOLERANCE)
-        end_release(job, WB_STAGE_JOB_STILL_LOADED,
-                    "went up by %.2f mm, but the reading did not level off (%s): look at "
-                    "the strand, then release again or jog",
-                    -travel / WB_MM, now);
+    if (left <= WB_SEQUENCE_TOLERANCE)
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_STILL_LOADED,
+                            "went up by %.2f mm, but the reading did not level off (%s): look at "
+                            "the strand, then release again or jog",
+                            -travel / WB_MM, now);
     else if (job->most < LEAST_STEP)
-        end_release(job, WB_STAGE_JOB_STILL_LOADED,
-                    "went up by %.2f mm to the end of the machine, but the reading did not level "
-                    "off (%s): look at the strand; the stage is free to jog down",
-                    -travel / WB_MM, now);
+        wb_sequence_set_end(
+            &job->run, WB_SEQUENCE_STILL_LOADED,
+            "went up by %.2f mm to the end of the machine, but the reading did not level "
+            "off (%s): look at the strand; the stage is free to jog down",
+            -travel / WB_MM, now);
+    if (job->run.end != WB_SEQUENCE_RUNNING)
+        end_release(job);
     else
-        jog_to(job, travel - fmin(step, left));
+        wb_sequence_jog_to(&job->run, travel - fmin(step, left), job->request.speed, PHASE_MOVE);
 }
 
 static void begin_motion(struct wb_stage_job *job)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     const double distance = job->request.distance;
     if (job->request.kind == WB_STAGE_JOB_UNLOCK) {
-        set_end(job, WB_STAGE_JOB_DONE, "the stage is unlocked");
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE, "the stage is unlocked");
         finish(job);
         return;
     }
-    job->start_position = latest->stage.position;
+    job->run.start_position = latest->stage.position;
     arm(job);
     if (job->request.kind == WB_STAGE_JOB_HOME) {
-        send(job, WB_STAGE_COMMAND_HOME, 0.0, PHASE_HOME);
+        wb_sequence_send(&job->run, WB_STAGE_COMMAND_HOME, 0.0, job->request.speed, PHASE_HOME);
         return;
     }
-    if (!isfinite(job->start_position)) {
-        give_up(job, WB_INTERLOCK_STAGE, "the stage does not tell its position");
+    if (!isfinite(job->run.start_position)) {
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE,
+                            "the stage does not tell its position: set $10=1 in its firmware");
         return;
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
-        job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->rig.stage.travel)
-                                          : job->rig.stage.travel;
-        job->most = job->rig.stage.travel;
-        wb_release_init(&job->release, &job->rig);
+        job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->run.rig.stage.travel)
+                                          : job->run.rig.stage.travel;
+        job->most = job->run.rig.stage.travel;
+        wb_release_init(&job->release, &job->run.rig);
         rest(job, 0.0);
         return;
     }
-    jog_to(job, job->request.distance);
+    wb_sequence_jog_to(&job->run, job->request.distance, job->request.speed, PHASE_MOVE);
 }
 
 static void step_connect(struct wb_stage_job *job)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
     const bool load_speaks = !load->open || load->samples > 0;
-    if (latest->has_stage && load_speaks && lasts_ns(job) > STALE_NS) {
+    if (latest->has_stage && load_speaks && wb_sequence_lasts_ns(&job->run) > STALE_NS) {
         const enum wb_stage_state state = latest->stage.state;
         const bool frees =
             job->request.kind == WB_STAGE_JOB_UNLOCK || job->request.kind == WB_STAGE_JOB_RELEASE;
@@ -342,61 +226,71 @@ static void step_connect(struct wb_stage_job *job)
         const bool moving =
             state == WB_STAGE_RUN || state == WB_STAGE_JOG || state == WB_STAGE_HOME;
         if ((frees && locked) || (job->request.kind == WB_STAGE_JOB_UNLOCK && moving))
-            send(job, WB_STAGE_COMMAND_SOFT_RESET, 0.0, PHASE_RESET);
+            wb_sequence_send(&job->run, WB_STAGE_COMMAND_SOFT_RESET, 0.0, job->request.speed,
+                             PHASE_RESET);
         else if (state == WB_STAGE_IDLE ||
                  (job->request.kind == WB_STAGE_JOB_HOME && state == WB_STAGE_ALARM))
             begin_motion(job);
         else if (state == WB_STAGE_ALARM)
-            give_up(job, WB_INTERLOCK_ALARM,
-                    "the stage is in alarm (%d): mend the cause, then run 'unlock' or 'home'",
-                    latest->stage.alarm);
+            wb_sequence_give_up(
+                &job->run, WB_INTERLOCK_ALARM,
+                "the stage is in alarm (%d): mend the cause, then run 'unlock' or 'home'",
+                latest->stage.alarm);
         else if (state == WB_STAGE_HOLD)
-            give_up(job, WB_INTERLOCK_STAGE,
-                    "the stage is on hold: run 'release' to free the specimen, or 'unlock'");
+            wb_sequence_give_up(
+                &job->run, WB_INTERLOCK_STAGE,
+                "the stage is on hold: run 'release' to free the specimen, or 'unlock'");
         else if (state == WB_STAGE_OTHER)
-            give_up(job, WB_INTERLOCK_STAGE,
-                    "the stage is not idle (door open, check or sleep mode): run 'unlock'");
+            wb_sequence_give_up(
+                &job->run, WB_INTERLOCK_STAGE,
+                "the stage is not idle (door open, check or sleep mode): run 'unlock'");
         else
-            give_up(job, WB_INTERLOCK_STAGE,
-                    "the stage is moving at somebody else's command: wait until it stands, or stop "
-                    "it with 'unlock'");
+            wb_sequence_give_up(
+                &job->run, WB_INTERLOCK_STAGE,
+                "the stage is moving at somebody else's command: wait until it stands, or stop "
+                "it with 'unlock'");
         return;
     }
     const int64_t allowed_ns =
-        wb_ns_from_seconds(job->request.connect_timeout) + job->rig.load_cell.settle_ns;
+        wb_ns_from_seconds(job->request.connect_timeout) + job->run.rig.load_cell.settle_ns;
     if (latest->stream[WB_ROLE_STAGE].gone)
-        give_up(job, WB_INTERLOCK_STREAM_LOST, "the stage's port %s went away",
-                job->rig.stage.address);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                            "the stage's port %s went away: check its cable and power",
+                            job->run.rig.stage.address);
     else if (load->gone)
-        give_up(job, WB_INTERLOCK_STREAM_LOST, "the load cell's port %s went away",
-                job->rig.load_cell.address);
-    else if (lasts_ns(job) > allowed_ns && !latest->has_stage)
-        give_up(job, WB_INTERLOCK_STREAM_LOST,
-                "the stage at %s gave no status within %g s: check power, cable and stage.protocol",
-                job->rig.stage.address, job->request.connect_timeout);
-    else if (lasts_ns(job) > allowed_ns)
-        give_up(job, WB_INTERLOCK_STREAM_LOST,
-                "the load cell at %s sent no reading within %g s: check it, or move blindly with "
-                "--without-load-cell",
-                job->rig.load_cell.address, job->request.connect_timeout);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                            "the load cell's port %s went away: check its cable and power",
+                            job->run.rig.load_cell.address);
+    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns && !latest->has_stage)
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STREAM_LOST,
+            "the stage at %s gave no status within %g s: check power, cable and stage.protocol",
+            job->run.rig.stage.address, job->request.connect_timeout);
+    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns)
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STREAM_LOST,
+            "the load cell at %s sent no reading within %g s: check it, or move blindly with "
+            "--without-load-cell",
+            job->run.rig.load_cell.address, job->request.connect_timeout);
 }
 
 /* True when a report came that cannot be older than the command of this phase. */
 static bool fresh_report(struct wb_stage_job *job, int64_t stale_ns)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
-    if (latest->stage_reports == job->reports_seen)
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
+    if (latest->stage_reports == job->run.reports_seen)
         return false;
-    job->reports_seen = latest->stage_reports;
-    return latest->stage.t_ns > job->phase_ns + stale_ns;
+    job->run.reports_seen = latest->stage_reports;
+    return latest->stage.t_ns > job->run.phase_ns + stale_ns;
 }
 
 static void step_reset(struct wb_stage_job *job)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     if (fresh_report(job, STALE_NS)) {
         if (latest->stage.state == WB_STAGE_ALARM) {
-            send(job, WB_STAGE_COMMAND_UNLOCK, 0.0, PHASE_UNLOCK);
+            wb_sequence_send(&job->run, WB_STAGE_COMMAND_UNLOCK, 0.0, job->request.speed,
+                             PHASE_UNLOCK);
             return;
         }
         if (latest->stage.state == WB_STAGE_IDLE) {
@@ -404,149 +298,144 @@ static void step_reset(struct wb_stage_job *job)
             return;
         }
     }
-    if (lasts_ns(job) > RESET_NS)
-        give_up(job, WB_INTERLOCK_STAGE, "the stage does not come back from its reset");
+    if (wb_sequence_lasts_ns(&job->run) > RESET_NS)
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "the stage does not come back from its reset: switch it off and on, then run 'home'");
 }
 
 static void step_unlock(struct wb_stage_job *job)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     if (fresh_report(job, STALE_NS) && latest->stage.state == WB_STAGE_IDLE)
         begin_motion(job);
-    else if (lasts_ns(job) > RESET_NS)
-        give_up(job, WB_INTERLOCK_STAGE, "the stage does not unlock%s%s",
-                latest->stage_error[0] ? ": " : "", latest->stage_error);
+    else if (wb_sequence_lasts_ns(&job->run) > RESET_NS)
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "the stage does not unlock%s%s",
+                            latest->stage_error[0] ? ": " : "", latest->stage_error);
 }
 
 static void step_home(struct wb_stage_job *job)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     if (latest->stage_error[0] && latest->stage.state != WB_STAGE_HOME) {
-        give_up(job, WB_INTERLOCK_STAGE, "homing failed: %s", latest->stage_error);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "homing failed: %s",
+                            latest->stage_error);
         return;
     }
     if (fresh_report(job, STALE_NS)) {
         if (latest->stage.state == WB_STAGE_IDLE)
-            job->idle_reports++;
+            job->run.idle_reports++;
         else
-            job->idle_reports = 0;
-        if (job->idle_reports >= 2) {
-            wb_acquisition_motion_ended(job->acquisition);
-            set_end(job, WB_STAGE_JOB_DONE, "the stage is homed");
+            job->run.idle_reports = 0;
+        if (job->run.idle_reports >= 2) {
+            wb_acquisition_motion_ended(job->run.acquisition);
+            wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE, "the stage is homed");
             finish(job);
             return;
         }
     }
-    if (lasts_ns(job) > HOMING_NS)
-        give_up(job, WB_INTERLOCK_STAGE, "homing did not end within %d s",
-                (int)(HOMING_NS / WB_NS_PER_S));
+    if (wb_sequence_lasts_ns(&job->run) > HOMING_NS)
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "homing did not end within %d s: check the limit switch, then run 'unlock'",
+            (int)(HOMING_NS / WB_NS_PER_S));
 }
 
 static void step_move(struct wb_stage_job *job)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
-    if (lasts_ns(job) > job->allowed_ns)
-        give_up(job, WB_INTERLOCK_STAGE, "the stage did not arrive in time");
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
+    if (wb_sequence_lasts_ns(&job->run) > job->run.allowed_ns)
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "the stage did not arrive at its target in time: check that nothing blocks it");
     if (!fresh_report(job, 0) || latest->stage.state != WB_STAGE_IDLE)
         return;
-    const double travel = travel_of(job, latest->stage.position);
+    const double travel = wb_sequence_travel(&job->run, latest->stage.position);
     const bool releases = job->request.kind == WB_STAGE_JOB_RELEASE;
-    if (fabs(travel - job->target) <= POSITION_TOLERANCE && releases) {
+    if (fabs(travel - job->run.target) <= WB_SEQUENCE_TOLERANCE && releases) {
         rest(job, travel);
         return;
     }
-    if (fabs(travel - job->target) <= POSITION_TOLERANCE) {
-        wb_acquisition_motion_ended(job->acquisition);
-        set_end(job, WB_STAGE_JOB_DONE, "moved by %.3f mm", travel / WB_MM);
+    if (fabs(travel - job->run.target) <= WB_SEQUENCE_TOLERANCE) {
+        wb_acquisition_motion_ended(job->run.acquisition);
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE, "moved by %.3f mm", travel / WB_MM);
         finish(job);
         return;
     }
-    job->idle_reports++;
-    if (job->idle_reports >= 2 && releases && strncmp(latest->stage_error, "error:15", 8) == 0) {
+    job->run.idle_reports++;
+    if (job->run.idle_reports >= 2 && releases &&
+        strncmp(latest->stage_error, "error:15", 8) == 0) {
         job->most = 0.5 * fmin(wb_release_step(&job->release), job->most);
         step_up(job, travel);
         return;
     }
     /* It stands: no hold is needed, which would only have to be released again. */
-    if (job->idle_reports >= 2 && latest->stage_error[0]) {
-        wb_acquisition_motion_ended(job->acquisition);
-        give_up(job, WB_INTERLOCK_STAGE, "the stage stopped after %.2f mm: %s", travel / WB_MM,
-                latest->stage_error);
-    } else if (job->idle_reports >= 5 && lasts_ns(job) > WB_NS_PER_S) {
-        wb_acquisition_motion_ended(job->acquisition);
-        give_up(job, WB_INTERLOCK_STAGE, "the stage stands after %.2f mm of %.2f mm",
-                travel / WB_MM, job->target / WB_MM);
+    if (job->run.idle_reports >= 2 && latest->stage_error[0]) {
+        wb_acquisition_motion_ended(job->run.acquisition);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STAGE, "the stage stopped after %.2f mm: %s",
+                            travel / WB_MM, latest->stage_error);
+    } else if (job->run.idle_reports >= 5 && wb_sequence_lasts_ns(&job->run) > WB_NS_PER_S) {
+        wb_acquisition_motion_ended(job->run.acquisition);
+        wb_sequence_give_up(
+            &job->run, WB_INTERLOCK_STAGE,
+            "the stage stopped after %.2f mm of %.2f mm: check that nothing blocks it",
+            travel / WB_MM, job->run.target / WB_MM);
     }
 }
 
 static void step_rest(struct wb_stage_job *job)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     switch (wb_release_judge(&job->release)) {
     case WB_RELEASE_LISTEN:
-        if (lasts_ns(job) > REST_NS)
-            give_up(job, WB_INTERLOCK_STREAM_LOST,
-                    "the load cell at %s sends too few readings to see the strand go slack",
-                    job->rig.load_cell.address);
+        if (wb_sequence_lasts_ns(&job->run) > REST_NS)
+            wb_sequence_give_up(
+                &job->run, WB_INTERLOCK_STREAM_LOST,
+                "the load cell at %s sends too few readings to see the strand go slack",
+                job->run.rig.load_cell.address);
         break;
     case WB_RELEASE_GO_UP:
         /* A report without a position says nothing of how far up it may go: the next one will. */
         if (isfinite(latest->stage.position))
-            step_up(job, travel_of(job, latest->stage.position));
-        else if (lasts_ns(job) > REST_NS)
-            give_up(job, WB_INTERLOCK_STREAM_LOST, "the stage does not report its position");
+            step_up(job, wb_sequence_travel(&job->run, latest->stage.position));
+        else if (wb_sequence_lasts_ns(&job->run) > REST_NS)
+            wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                                "the stage does not tell its position: set $10=1 in its firmware");
         break;
     case WB_RELEASE_SLACK:
-        end_release(job, WB_STAGE_JOB_DONE, "the strand is slack: the specimen is free");
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE,
+                            "the strand is slack: the specimen is free");
+        end_release(job);
         break;
     case WB_RELEASE_STUCK:
-        end_release(job, WB_STAGE_JOB_STILL_LOADED,
-                    "went up by %.2f mm, but the reading stays at %.2f mN, more than a slack "
-                    "strand leaves on the load cell: look at the strand and what hangs on the "
-                    "cell, then jog",
-                    -travel_of(job, latest->stage.position) / WB_MM,
-                    wb_release_force(&job->release) / WB_MN);
+        wb_sequence_set_end(
+            &job->run, WB_SEQUENCE_STILL_LOADED,
+            "went up by %.2f mm, but the reading stays at %.2f mN, more than a slack "
+            "strand leaves on the load cell: look at the strand and what hangs on the "
+            "cell, then jog",
+            -wb_sequence_travel(&job->run, latest->stage.position) / WB_MM,
+            wb_release_force(&job->release) / WB_MN);
+        end_release(job);
         break;
     }
 }
 
-static void note_trip(struct wb_stage_job *job)
-{
-    const struct wb_interlock *const interlock = wb_acquisition_interlock(job->acquisition);
-    if (interlock->reason == WB_INTERLOCK_NONE || job->phase >= PHASE_STOP)
-        return;
-    set_end(job,
-            interlock->reason == WB_INTERLOCK_INTERRUPT ? WB_STAGE_JOB_INTERRUPTED
-                                                        : WB_STAGE_JOB_LIMIT,
-            "%s", interlock->text);
-    enter(job, PHASE_STOP);
-}
-
 static void step_stop(struct wb_stage_job *job)
 {
-    const struct wb_stop *const stop = wb_acquisition_stop_state(job->acquisition);
+    const struct wb_stop *const stop = wb_acquisition_stop_state(job->run.acquisition);
     if (stop->state != WB_STOP_NONE && !wb_stop_over(stop))
         return;
     finish(job);
     job->standing = stop->state != WB_STOP_FAILED;
 }
 
-enum wb_stage_job_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeout_ns)
+enum wb_sequence_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeout_ns)
 {
-    if (job->phase == PHASE_END)
-        return job->end;
-    if (wb_acquisition_step(job->acquisition, timeout_ns) == WB_ACQUISITION_FAILED &&
-        job->phase < PHASE_STOP)
-        give_up(job, WB_INTERLOCK_STREAM_LOST, "the instruments cannot be waited for");
-    note_trip(job);
-    /* Before the interlock is armed nothing moves. */
-    if (wb_interrupted() && job->phase < PHASE_STOP)
-        give_up(job, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
-    if (job->unsent && job->phase < PHASE_STOP) {
-        try_to_send(job);
-        return WB_STAGE_JOB_RUNNING;
-    }
-    switch (job->phase) {
+    if (job->run.phase == WB_SEQUENCE_OVER)
+        return job->run.end;
+    if (!wb_sequence_wait(&job->run, timeout_ns, true))
+        return WB_SEQUENCE_RUNNING;
+    switch (job->run.phase) {
     case PHASE_CONNECT:
         step_connect(job);
         break;
@@ -565,48 +454,49 @@ enum wb_stage_job_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeou
     case PHASE_REST:
         step_rest(job);
         break;
-    case PHASE_STOP:
+    case WB_SEQUENCE_STOP:
         step_stop(job);
         break;
-    case PHASE_END:
-        break;
     }
-    return job->phase == PHASE_END ? job->end : WB_STAGE_JOB_RUNNING;
+    return job->run.phase == WB_SEQUENCE_OVER ? job->run.end : WB_SEQUENCE_RUNNING;
 }
 
 void wb_stage_job_status(const struct wb_stage_job *job, struct wb_stage_job_status *status)
 {
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     memset(status, 0, sizeof *status);
-    status->phase = phase_names[job->phase];
+    status->phase = phase_names[job->run.phase];
     status->has_force = latest->has_load;
     status->force = latest->load.force;
     status->has_position = latest->has_stage && isfinite(latest->stage.position);
     status->position = latest->stage.position;
-    status->moved = isfinite(job->start_position) ? travel_of(job, latest->stage.position) : 0.0;
-    status->gravity = job->rig.gravity;
-    status->is_virtual = job->rig.is_virtual;
+    status->moved = isfinite(job->run.start_position)
+                        ? wb_sequence_travel(&job->run, latest->stage.position)
+                        : 0.0;
+    status->gravity = job->run.rig.gravity;
+    status->is_virtual = job->run.rig.is_virtual;
 }
 
 void wb_stage_job_close(struct wb_stage_job *job, struct wb_stage_job_result *result)
 {
     if (!job)
         return;
-    if (job->phase < PHASE_STOP)
-        give_up(job, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
-    while (wb_stage_job_step(job, 10 * WB_NS_PER_MS) == WB_STAGE_JOB_RUNNING) {
+    if (job->run.phase < WB_SEQUENCE_STOP)
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_INTERRUPT, "stopped by the operator");
+    while (wb_stage_job_step(job, 10 * WB_NS_PER_MS) == WB_SEQUENCE_RUNNING) {
     }
     if (result) {
-        const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->acquisition);
+        const struct wb_acquisition_latest *const latest =
+            wb_acquisition_latest(job->run.acquisition);
         memset(result, 0, sizeof *result);
-        result->end = job->end;
-        memcpy(result->text, job->text, sizeof result->text);
+        result->end = job->run.end;
+        memcpy(result->text, job->run.text, sizeof result->text);
         result->standing = job->standing;
         result->position = latest->has_stage ? latest->stage.position : (double)NAN;
-        result->moved = travel_of(job, result->position);
+        result->moved = wb_sequence_travel(&job->run, result->position);
         result->force = latest->has_load ? latest->load.force : (double)NAN;
         result->change = result->force - job->first_force;
     }
-    wb_acquisition_close(job->acquisition);
+    wb_acquisition_close(job->run.acquisition);
     free(job);
 }

@@ -2,7 +2,7 @@
  * watched on the way, and every way out stops the stage first.
  *
  *     WB_TRY(wb_stage_job_open(&job, &rig, &request));
- *     while (wb_stage_job_step(job, timeout_ns) == WB_STAGE_JOB_RUNNING) ...
+ *     while (wb_stage_job_step(job, timeout_ns) == WB_SEQUENCE_RUNNING) ...
  *     wb_stage_job_close(job, &result);
  */
 #ifndef WB_DAQ_STAGE_JOB_H
@@ -11,8 +11,8 @@
 #include <stdbool.h>
 
 #include "base/status.h"
-#include "daq/acquisition.h"
 #include "daq/rig.h"
+#include "daq/sequence.h"
 
 struct wb_stage_job; /* opaque */
 
@@ -35,21 +35,11 @@ struct wb_stage_job_request {
     double connect_timeout; /* s of host time; 0: 6 s */
 };
 
-enum wb_stage_job_end {
-    WB_STAGE_JOB_RUNNING,
-    WB_STAGE_JOB_DONE,
-    WB_STAGE_JOB_LIMIT,        /* a limit stopped it */
-    WB_STAGE_JOB_INTERRUPTED,  /* Ctrl-C */
-    WB_STAGE_JOB_STILL_LOADED, /* release: went as far as it may or as helps, the strand is not seen
-                                  slack; the stage is idle */
-    WB_STAGE_JOB_FAILED
-};
-
 WB_MUST_CHECK enum wb_status wb_stage_job_open(struct wb_stage_job **out, const struct wb_rig *rig,
                                                const struct wb_stage_job_request *request);
 
 /* Waits at most timeout_ns (and 20 ms) and does what is due. */
-enum wb_stage_job_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeout_ns);
+enum wb_sequence_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeout_ns);
 
 struct wb_stage_job_status {
     const char *phase; /* "connecting", "resetting", "unlocking", "moving", "reading", "stopping",
@@ -64,7 +54,7 @@ struct wb_stage_job_status {
 void wb_stage_job_status(const struct wb_stage_job *job, struct wb_stage_job_status *status);
 
 struct wb_stage_job_result {
-    enum wb_stage_job_end end;
+    enum wb_sequence_end end;
     char text[WB_INTERLOCK_TEXT];
     bool standing;   /* false: the stop was not confirmed */
     double position; /* m, machine; NaN unknown */

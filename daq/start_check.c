@@ -42,20 +42,20 @@ bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_
                  "the stage does not tell its position: set $10=1 in its firmware, then "
                  "run 'wirebench stage %s home'",
                  rig_path);
-        return false;
+        break;
     case WB_STAGE_ALARM:
         snprintf(
             text, size,
             "the stage is in alarm (%d): mend the cause, then run 'wirebench stage %s unlock', "
             "or 'home' in its place",
             report->alarm, rig_path);
-        return false;
+        break;
     case WB_STAGE_HOLD:
         snprintf(text, size,
                  "the stage is on hold from before: run 'wirebench stage %s release', or 'unlock' "
                  "if nothing is loaded",
                  rig_path);
-        return false;
+        break;
     case WB_STAGE_RUN:
     case WB_STAGE_JOG:
     case WB_STAGE_HOME:
@@ -63,14 +63,14 @@ bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_
                  "the stage is moving, at somebody else's command: wait until it stands, "
                  "or stop it with 'wirebench stage %s unlock'",
                  rig_path);
-        return false;
+        break;
     default:
         snprintf(text, size,
                  "the stage is not idle (door open, check or sleep mode): close the door, then run "
                  "'wirebench stage %s unlock'",
                  rig_path);
-        return false;
     }
+    return false;
 }
 
 bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_specimen *specimen,
@@ -88,8 +88,10 @@ bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_
         n_missing++;
     }
     if (n_missing == n)
-        snprintf(text, WB_START_CHECK_TEXT, "none of the %d markers is seen on a wire of %g mm", n,
-                 specimen->length / WB_MM);
+        snprintf(text, WB_START_CHECK_TEXT,
+                 "none of the %d markers is seen on a wire of %g mm: do the cameras stream, and is "
+                 "it this specimen?",
+                 n, specimen->length / WB_MM);
     else if (n_missing > 0)
         snprintf(text, WB_START_CHECK_TEXT,
                  "%d of %d markers seen; not seen, counted from one end: %s", n - n_missing, n,

@@ -23,6 +23,7 @@ struct wb_start_check {
     struct wb_average load;            /* N */
 };
 
+/* Counts a frame and the markers it shows. */
 void wb_start_check_frame(struct wb_start_check *check, const struct wb_mocap_frame *frame,
                           const struct wb_specimen *specimen);
 

@@ -25,10 +25,10 @@ enum wb_status wb_stream_open(struct wb_stream **out, const char *address)
     *out = NULL;
     const struct wb_stream_kind *kind = find_kind(address);
     if (!kind)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "address '%s' is not known: expected serial:PORT,BAUD,8n1 or pty:PATH or "
-                       "udp:HOST:PORT or memory:",
-                       address);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "address '%s' is not known: expected serial:PORT,BAUD,8n1 or pty:PATH or udp:HOST:PORT",
+            address);
     struct wb_stream *stream = calloc(1, sizeof *stream);
     char *copy = strdup(address);
     void *state = calloc(1, kind->state_size);

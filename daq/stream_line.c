@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/progress.h"
 
@@ -76,7 +77,9 @@ enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *lin
     *line = (struct wb_stream_line){.baud = 9600, .bits = 8, .parity = 'n', .stop = 1, .flow = 'n'};
     size_t n = strcspn(rest, ",");
     if (n == 0 || n >= sizeof line->path)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s' names no device: expected PATH,BAUD,8n1", rest);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "'%s' names no device: expected PATH,BAUD,8n1 such as /dev/ttyUSB0,9600,8n1",
+                       rest);
     memcpy(line->path, rest, n);
     line->path[n] = '\0';
     const char *at = rest + n;
@@ -131,7 +134,8 @@ enum wb_status wb_stream_lock(int descriptor, const char *path)
     return wb_stream_fail_open(path, errno == EWOULDBLOCK ? EBUSY : errno, "");
 }
 
-bool wb_stream_gone(int descriptor)
+/* After a read of 0 bytes: true when the device hung up or went away. */
+static bool has_gone(int descriptor)
 {
     struct pollfd wait = {.fd = descriptor, .events = POLLIN};
     return poll(&wait, 1, 0) > 0 && (wait.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
@@ -152,4 +156,56 @@ bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns)
         if (ready < 0 && errno != EINTR)
             return false;
     }
+}
+
+int wb_stream_port_descriptors(const void *state, int descriptors[2])
+{
+    const struct wb_stream_port *port = state;
+    descriptors[0] = port->descriptor;
+    return 1;
+}
+
+enum wb_status wb_stream_port_read(void *state, void *buffer, size_t size, size_t *n)
+{
+    const struct wb_stream_port *port = state;
+    ssize_t got;
+    *n = 0;
+    do
+        got = read(port->descriptor, buffer, size);
+    while (got < 0 && errno == EINTR);
+    if (got > 0) {
+        *n = (size_t)got;
+        return WB_OK;
+    }
+    const bool failed = got < 0 && errno != EAGAIN;
+    if (failed && errno != EIO && errno != ENXIO && errno != ENODEV)
+        return wb_fail(WB_ERR_IO, "port '%s' cannot be read: %s", port->path, strerror(errno));
+    if (failed || has_gone(port->descriptor))
+        return wb_fail(WB_ERR_IO, "port '%s' went away: %s", port->path, port->gone);
+    return WB_OK;
+}
+
+enum wb_status wb_stream_port_write(void *state, const void *bytes, size_t n)
+{
+    const struct wb_stream_port *port = state;
+    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
+    size_t done = 0;
+    while (done < n) {
+        ssize_t put = write(port->descriptor, (const char *)bytes + done, n - done);
+        if (put > 0) {
+            done += (size_t)put;
+            continue;
+        }
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put < 0 && errno != EAGAIN)
+            return wb_fail(WB_ERR_IO, "port '%s' cannot be written to: %s", port->path,
+                           strerror(errno));
+        if (!wb_stream_wait_writable(port->descriptor, deadline_ns))
+            return wb_fail(WB_ERR_TIMEOUT,
+                           "port '%s' took only %zu of %zu bytes within 50 ms: is the instrument "
+                           "on, and its flow control as in the rig file?",
+                           port->path, done, n);
+    }
+    return WB_OK;
 }

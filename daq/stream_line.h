@@ -1,9 +1,10 @@
-/* What serial ports and pseudo-terminals share: their addresses, and how a device is opened, locked
- * and waited for. */
+/* What serial ports and pseudo-terminals share: their addresses, and how a device is locked, read,
+ * written and waited for. */
 #ifndef WB_DAQ_STREAM_LINE_H
 #define WB_DAQ_STREAM_LINE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/status.h"
@@ -33,8 +34,17 @@ WB_MUST_CHECK enum wb_status wb_stream_fail_open(const char *path, int error, co
 /* Takes the advisory lock that keeps a second wirebench off the device. */
 WB_MUST_CHECK enum wb_status wb_stream_lock(int descriptor, const char *path);
 
-/* After a read of 0 bytes: true when the device hung up or went away. */
-bool wb_stream_gone(int descriptor);
+/* An open device: the state of both kinds begins with one. */
+struct wb_stream_port {
+    int descriptor; /* non-blocking */
+    char path[256];
+    const char *gone; /* static text: how such a device goes away */
+};
+
+/* `descriptors`, `read` and `write` of both kinds; `state` points to a struct wb_stream_port. */
+int wb_stream_port_descriptors(const void *state, int descriptors[2]);
+WB_MUST_CHECK enum wb_status wb_stream_port_read(void *state, void *buffer, size_t size, size_t *n);
+WB_MUST_CHECK enum wb_status wb_stream_port_write(void *state, const void *bytes, size_t n);
 
 /* Waits until the descriptor takes bytes or `deadline_ns` (host monotonic) passed; false then. */
 bool wb_stream_wait_writable(int descriptor, int64_t deadline_ns);

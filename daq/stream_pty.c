@@ -6,16 +6,10 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "base/progress.h"
 #include "daq/stream_kind.h"
 #include "daq/stream_line.h"
 
 #define WB_LOG_DOMAIN "stream"
-
-struct pty_state {
-    int descriptor;
-    char path[256];
-};
 
 static const struct {
     int baud;
@@ -44,8 +38,9 @@ static enum wb_status apply_line(int descriptor, const struct wb_stream_line *li
     cfmakeraw(&settings);
     speed_t speed = find_speed(line->baud);
     if (speed == 0)
-        return wb_fail(WB_ERR_ARGUMENT, "baud rate %d of '%s' is not a standard one", line->baud,
-                       line->path);
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "baud rate %d of '%s' is not a standard one such as 9600 or 115200",
+                       line->baud, line->path);
     cfsetispeed(&settings, speed);
     cfsetospeed(&settings, speed);
     static const tcflag_t sizes[] = {CS5, CS6, CS7, CS8};
@@ -71,7 +66,7 @@ static enum wb_status apply_line(int descriptor, const struct wb_stream_line *li
 
 static enum wb_status pty_open(void *state, const char *rest)
 {
-    struct pty_state *pty = state;
+    struct wb_stream_port *pty = state;
     struct wb_stream_line line;
     WB_TRY(wb_stream_parse_line(rest, &line));
     int descriptor = open(line.path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -86,70 +81,22 @@ static enum wb_status pty_open(void *state, const char *rest)
     }
     pty->descriptor = descriptor;
     memcpy(pty->path, line.path, sizeof pty->path);
+    pty->gone = "its other side was closed";
     return WB_OK;
 }
 
 static void pty_close(void *state)
 {
-    struct pty_state *pty = state;
+    struct wb_stream_port *pty = state;
     close(pty->descriptor);
-}
-
-static int pty_descriptors(const void *state, int descriptors[2])
-{
-    const struct pty_state *pty = state;
-    descriptors[0] = pty->descriptor;
-    return 1;
-}
-
-static enum wb_status pty_read(void *state, void *buffer, size_t size, size_t *n)
-{
-    struct pty_state *pty = state;
-    *n = 0;
-    for (;;) {
-        ssize_t got = read(pty->descriptor, buffer, size);
-        if (got > 0) {
-            *n = (size_t)got;
-            return WB_OK;
-        }
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0 && errno != EAGAIN && errno != EIO)
-            return wb_fail(WB_ERR_IO, "reading '%s' failed: %s", pty->path, strerror(errno));
-        if ((got < 0 && errno == EIO) || wb_stream_gone(pty->descriptor))
-            return wb_fail(WB_ERR_IO, "'%s' went away: its other side was closed", pty->path);
-        return WB_OK;
-    }
-}
-
-static enum wb_status pty_write(void *state, const void *bytes, size_t n)
-{
-    struct pty_state *pty = state;
-    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
-    size_t done = 0;
-    while (done < n) {
-        ssize_t put = write(pty->descriptor, (const char *)bytes + done, n - done);
-        if (put > 0) {
-            done += (size_t)put;
-            continue;
-        }
-        if (put < 0 && errno == EINTR)
-            continue;
-        if (put < 0 && errno != EAGAIN)
-            return wb_fail(WB_ERR_IO, "writing to '%s' failed: %s", pty->path, strerror(errno));
-        if (!wb_stream_wait_writable(pty->descriptor, deadline_ns))
-            return wb_fail(WB_ERR_TIMEOUT, "'%s' took only %zu of %zu bytes within 50 ms",
-                           pty->path, done, n);
-    }
-    return WB_OK;
 }
 
 const struct wb_stream_kind wb_stream_pty = {
     .scheme = "pty",
-    .state_size = sizeof(struct pty_state),
+    .state_size = sizeof(struct wb_stream_port),
     .open = pty_open,
     .close = pty_close,
-    .descriptors = pty_descriptors,
-    .read = pty_read,
-    .write = pty_write,
+    .descriptors = wb_stream_port_descriptors,
+    .read = wb_stream_port_read,
+    .write = wb_stream_port_write,
 };

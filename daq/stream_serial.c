@@ -10,19 +10,17 @@
 #include <sys/stat.h>
 #include <termios.h>
 
-#include "base/progress.h"
 #include "daq/stream_kind.h"
 #include "daq/stream_line.h"
 
 #define WB_LOG_DOMAIN "stream"
 
 struct serial_state {
+    struct wb_stream_port device; /* comes first; open while `port` is */
     struct sp_port *port;
-    int descriptor;
-    char path[256];
 };
 
-/* "; ports here: /dev/ttyUSB0, /dev/ttyACM0" or "; no serial port is there at all". */
+/* "; ports that exist: /dev/ttyUSB0, /dev/ttyACM0", or that there is none. */
 static void describe_ports(char *text, size_t size)
 {
     struct sp_port **ports = NULL;
@@ -149,11 +147,11 @@ static enum wb_status serial_open(void *state, const char *rest)
         return wb_stream_fail_open(line.path, error ? error : EIO, hint);
     }
     enum wb_status status = WB_OK;
-    if (sp_get_port_handle(serial->port, &serial->descriptor) != SP_OK)
+    if (sp_get_port_handle(serial->port, &serial->device.descriptor) != SP_OK)
         status = wb_fail(WB_ERR_IO, "port '%s' has no descriptor", line.path);
     /* The lock keeps other wirebenches out, TIOCEXCL all other programs but root's. */
     if (status == WB_OK)
-        status = wb_stream_lock(serial->descriptor, line.path);
+        status = wb_stream_lock(serial->device.descriptor, line.path);
     if (status == WB_OK)
         status = apply_line(serial->port, &line);
     if (status != WB_OK) {
@@ -161,67 +159,18 @@ static enum wb_status serial_open(void *state, const char *rest)
         sp_free_port(serial->port);
         return status;
     }
-    tune(serial->descriptor, &line);
-    memcpy(serial->path, line.path, sizeof serial->path);
+    tune(serial->device.descriptor, &line);
+    memcpy(serial->device.path, line.path, sizeof serial->device.path);
+    serial->device.gone = "unplugged or switched off";
     return WB_OK;
 }
 
 static void serial_close(void *state)
 {
     struct serial_state *serial = state;
-    ioctl(serial->descriptor, TIOCNXCL);
+    ioctl(serial->device.descriptor, TIOCNXCL);
     sp_close(serial->port);
     sp_free_port(serial->port);
-}
-
-static int serial_descriptors(const void *state, int descriptors[2])
-{
-    const struct serial_state *serial = state;
-    descriptors[0] = serial->descriptor;
-    return 1;
-}
-
-static enum wb_status serial_read(void *state, void *buffer, size_t size, size_t *n)
-{
-    struct serial_state *serial = state;
-    *n = 0;
-    errno = 0;
-    int got = sp_nonblocking_read(serial->port, buffer, size);
-    if (got > 0) {
-        *n = (size_t)got;
-        return WB_OK;
-    }
-    if (got < 0 && errno == EINTR)
-        return WB_OK;
-    if (got < 0 && errno != EIO && errno != ENXIO && errno != ENODEV)
-        return fail_serial((enum sp_return)got, serial->path, "reading");
-    if (got < 0 || wb_stream_gone(serial->descriptor))
-        return wb_fail(WB_ERR_IO, "port '%s' went away: unplugged or switched off", serial->path);
-    return WB_OK;
-}
-
-static enum wb_status serial_write(void *state, const void *bytes, size_t n)
-{
-    struct serial_state *serial = state;
-    int64_t deadline_ns = wb_progress_now_ns() + WB_STREAM_WRITE_TIMEOUT_NS;
-    size_t done = 0;
-    while (done < n) {
-        errno = 0;
-        int put = sp_nonblocking_write(serial->port, (const char *)bytes + done, n - done);
-        if (put > 0) {
-            done += (size_t)put;
-            continue;
-        }
-        if (put < 0 && errno == EINTR)
-            continue;
-        /* libserialport takes a full buffer for a failure. */
-        if (put < 0 && errno != EAGAIN)
-            return fail_serial((enum sp_return)put, serial->path, "writing");
-        if (!wb_stream_wait_writable(serial->descriptor, deadline_ns))
-            return wb_fail(WB_ERR_TIMEOUT, "port '%s' took only %zu of %zu bytes within 50 ms",
-                           serial->path, done, n);
-    }
-    return WB_OK;
 }
 
 const struct wb_stream_kind wb_stream_serial = {
@@ -229,7 +178,7 @@ const struct wb_stream_kind wb_stream_serial = {
     .state_size = sizeof(struct serial_state),
     .open = serial_open,
     .close = serial_close,
-    .descriptors = serial_descriptors,
-    .read = serial_read,
-    .write = serial_write,
+    .descriptors = wb_stream_port_descriptors,
+    .read = wb_stream_port_read,
+    .write = wb_stream_port_write,
 };

@@ -105,8 +105,9 @@ static enum wb_status resolve_host(const struct udp_address *address, struct soc
     struct addrinfo *found = NULL;
     int code = getaddrinfo(address->host, NULL, &want, &found);
     if (code != 0 || !found)
-        return wb_fail(WB_ERR_NOT_FOUND, "host '%s' is not known: %s", address->host,
-                       gai_strerror(code));
+        return wb_fail(WB_ERR_NOT_FOUND,
+                       "host '%s' is not known: %s: check mocap.address and the network",
+                       address->host, gai_strerror(code));
     memcpy(host, found->ai_addr, sizeof *host);
     host->sin_port = htons((uint16_t)address->port);
     freeaddrinfo(found);
@@ -159,9 +160,10 @@ static enum wb_status join_group(int descriptor, const struct udp_address *addre
         bound.sin_addr = address->group;
     if (setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
         bind(descriptor, (struct sockaddr *)&bound, sizeof bound) != 0)
-        return wb_fail(errno == EADDRINUSE ? WB_ERR_BUSY : WB_ERR_IO,
-                       "port %d of the data group cannot be used: %s", address->group_port,
-                       strerror(errno));
+        return wb_fail(
+            errno == EADDRINUSE ? WB_ERR_BUSY : WB_ERR_IO,
+            "port %d of the data group cannot be used: %s: does another program listen there?",
+            address->group_port, strerror(errno));
     if (!multicast)
         return WB_OK;
     struct ip_mreqn request;
@@ -266,7 +268,8 @@ static bool from_server(struct udp_state *udp, const struct sockaddr_in *from)
     if (!udp->warned_source) {
         char text[INET_ADDRSTRLEN] = "";
         inet_ntop(AF_INET, &from->sin_addr, text, sizeof text);
-        wb_warn("datagrams from %s ignored: expected them from '%s'", text, udp->name);
+        wb_warn("datagrams from %s are ignored: expected them from '%s', as mocap.address has it",
+                text, udp->name);
         udp->warned_source = true;
     }
     return false;

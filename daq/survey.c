@@ -272,7 +272,7 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
         snprintf(text, size, "the database is damaged: not all rows can be read");
         return survey->broken && !survey->cut_short;
     case 2:
-        snprintf(text, size, "no stream is declared");
+        snprintf(text, size, "the recording lists no stream of any instrument");
         return survey->n_streams == 0;
     case 3:
         snprintf(text, size, "%" PRIu64 " chunk%s of no declared stream", survey->undeclared,
@@ -288,7 +288,8 @@ static bool file_problem(const struct wb_survey *survey, int which, char *text, 
                  survey->lost_events, plural(survey->lost_events));
         return survey->lost_events > 0;
     case 6:
-        snprintf(text, size, "lines were refused during the test, noted %" PRIu64 " time%s",
+        snprintf(text, size,
+                 "lines that were not understood came during the test, noted %" PRIu64 " time%s",
                  survey->refused_events, plural(survey->refused_events));
         return survey->refused_events > 0;
     case 7:

@@ -1,4 +1,5 @@
-/* A survey of a whole recording: what it holds, and what is missing or damaged. */
+/* A survey of a whole recording: what it holds, and what is missing or damaged. A stream is what
+ * one instrument sent, a chunk one read or datagram of it. */
 #ifndef WB_DAQ_SURVEY_H
 #define WB_DAQ_SURVEY_H
 

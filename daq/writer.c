@@ -98,14 +98,13 @@ static enum wb_status write_entry(struct wb_recording *recording, const struct e
 static enum wb_status write_loss(struct wb_recording *recording, int stream,
                                  const struct loss *loss)
 {
-    char text[200];
-    snprintf(
-        text, sizeof text,
-        "%s stream %d lost %llu chunks of %llu bytes and %llu clock probes from %.3f s to %.3f "
-        "s of the host's clock: the writer's queue was full",
-        role_of(recording, stream), stream, (unsigned long long)loss->chunks,
-        (unsigned long long)loss->bytes, (unsigned long long)loss->probes,
-        wb_seconds_from_ns(loss->first_ns), wb_seconds_from_ns(loss->last_ns));
+    char text[240];
+    snprintf(text, sizeof text,
+             "the %s stream (number %d) lost %llu chunks of %llu bytes and %llu clock probes from "
+             "%.3f s to %.3f s of the host's clock: the disk was too slow",
+             role_of(recording, stream), stream, (unsigned long long)loss->chunks,
+             (unsigned long long)loss->bytes, (unsigned long long)loss->probes,
+             wb_seconds_from_ns(loss->first_ns), wb_seconds_from_ns(loss->last_ns));
     wb_warn("%s", text);
     return wb_recording_append_event(recording, loss->first_ns, "drop", text);
 }
@@ -118,15 +117,21 @@ static void latch(struct wb_writer *writer, enum wb_status status)
     pthread_mutex_unlock(&writer->lock);
 }
 
+/* Of a chunk, under the lock. */
+static void count_dropped(struct wb_writer *writer, const struct entry *entry)
+{
+    writer->dropped[entry->stream]++;
+    writer->counts.dropped_chunks++;
+    writer->counts.dropped_bytes += entry->n;
+}
+
 /* Counts an entry that could not be written, or was not even tried after an error. */
 static void count_unwritten(struct wb_writer *writer, const struct entry *entry)
 {
     if (entry->kind != ENTRY_CHUNK)
         return;
     pthread_mutex_lock(&writer->lock);
-    writer->dropped[entry->stream]++;
-    writer->counts.dropped_chunks++;
-    writer->counts.dropped_bytes += entry->n;
+    count_dropped(writer, entry);
     pthread_mutex_unlock(&writer->lock);
 }
 
@@ -314,22 +319,20 @@ static void append(struct wb_writer *writer, struct entry *entry)
         pthread_cond_signal(&writer->wake);
 }
 
-static void count_loss(struct wb_writer *writer, int stream, int64_t t_ns, size_t n, bool probe)
+static void count_loss(struct wb_writer *writer, const struct entry *entry)
 {
-    struct loss *loss = &writer->losses[stream];
+    struct loss *loss = &writer->losses[entry->stream];
     if (loss->chunks == 0 && loss->probes == 0)
-        loss->first_ns = t_ns;
-    loss->last_ns = t_ns;
-    if (probe) {
+        loss->first_ns = entry->t_ns;
+    loss->last_ns = entry->t_ns;
+    if (entry->kind == ENTRY_CLOCK) {
         loss->probes++;
         writer->counts.dropped_probes++;
         return;
     }
     loss->chunks++;
-    loss->bytes += n;
-    writer->dropped[stream]++;
-    writer->counts.dropped_chunks++;
-    writer->counts.dropped_bytes += n;
+    loss->bytes += entry->n;
+    count_dropped(writer, entry);
 }
 
 static bool known_stream(const struct wb_writer *writer, int stream)
@@ -340,32 +343,42 @@ static bool known_stream(const struct wb_writer *writer, int stream)
     return false;
 }
 
+/* Takes the entry, or frees it and counts what is lost of its stream. `entry` is NULL when there
+ * was no memory for it; `like` says what it would have been. */
+static bool offer(struct wb_writer *writer, struct entry *entry, const struct entry *like)
+{
+    pthread_mutex_lock(&writer->lock);
+    const bool taken = entry && has_room(writer, like->n);
+    if (taken && like->kind == ENTRY_CHUNK) {
+        writer->counts.chunks++;
+        writer->counts.bytes += like->n;
+    }
+    if (taken)
+        append(writer, entry);
+    else
+        count_loss(writer, like);
+    pthread_mutex_unlock(&writer->lock);
+    if (!taken)
+        free(entry);
+    return taken;
+}
+
 bool wb_writer_push_chunk(struct wb_writer *writer, int stream, int64_t t_ns, const void *bytes,
                           size_t n)
 {
     if (!known_stream(writer, stream))
         return false;
-    int64_t seq = writer->next_seq[stream]++;
+    const struct entry like = {.kind = ENTRY_CHUNK,
+                               .stream = stream,
+                               .seq = writer->next_seq[stream]++,
+                               .t_ns = t_ns,
+                               .n = n};
     struct entry *entry = malloc(sizeof *entry + n);
-    if (entry) {
-        *entry =
-            (struct entry){.kind = ENTRY_CHUNK, .stream = stream, .seq = seq, .t_ns = t_ns, .n = n};
-        if (n)
-            memcpy(entry->bytes, bytes, n);
-    }
-    pthread_mutex_lock(&writer->lock);
-    bool taken = entry && has_room(writer, n);
-    if (taken) {
-        writer->counts.chunks++;
-        writer->counts.bytes += n;
-        append(writer, entry);
-    } else {
-        count_loss(writer, stream, t_ns, n, false);
-    }
-    pthread_mutex_unlock(&writer->lock);
-    if (!taken)
-        free(entry);
-    return taken;
+    if (entry)
+        *entry = like;
+    if (entry && n)
+        memcpy(entry->bytes, bytes, n);
+    return offer(writer, entry, &like);
 }
 
 bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_ns, double t_device,
@@ -373,23 +386,15 @@ bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_n
 {
     if (!known_stream(writer, stream))
         return false;
+    const struct entry like = {.kind = ENTRY_CLOCK,
+                               .stream = stream,
+                               .t_ns = t_host_ns,
+                               .t_device = t_device,
+                               .rtt_ns = rtt_ns};
     struct entry *entry = malloc(sizeof *entry);
     if (entry)
-        *entry = (struct entry){.kind = ENTRY_CLOCK,
-                                .stream = stream,
-                                .t_ns = t_host_ns,
-                                .t_device = t_device,
-                                .rtt_ns = rtt_ns};
-    pthread_mutex_lock(&writer->lock);
-    bool taken = entry && has_room(writer, 0);
-    if (taken)
-        append(writer, entry);
-    else
-        count_loss(writer, stream, t_host_ns, 0, true);
-    pthread_mutex_unlock(&writer->lock);
-    if (!taken)
-        free(entry);
-    return taken;
+        *entry = like;
+    return offer(writer, entry, &like);
 }
 
 /* Two texts in one entry, the second cut to `most`, beyond the limits: there are few of them and

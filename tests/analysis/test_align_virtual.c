@@ -105,9 +105,9 @@ static void take_frame(uint64_t k)
 
 static void take_reading(uint64_t k, double t)
 {
-    static char bytes[WB_SIM_CELL_TX];
+    static char bytes[WB_REPLY_BYTES];
     wb_sim_cell_read(&session.cell, k, t, session.view.tension);
-    const size_t n = wb_sim_cell_take(&session.cell, bytes, sizeof bytes);
+    const size_t n = wb_reply_take(&session.cell.out, bytes, sizeof bytes);
     /* The first bytes after opening may be half a line: the driver drops the first line. */
     chunk(session.load, host(t) + 300000, bytes, n);
     if (t > START_S - TARE_S - 0.01 && t < START_S - 0.01) {

@@ -112,7 +112,7 @@ refused 1 'what wire' "$rig" --specimen "$folder/thick.yaml" --run "$folder/refu
 echo text >"$folder/file"
 refused 1 'file' "$rig" --specimen "$specimen" --run "$folder/file/below"
 sed '/^strand:/,/counterweight_g/d' "$rig" >"$folder/no-strand.yaml"
-refused 1 'needs the strand' "$folder/no-strand.yaml" --specimen "$specimen" \
+refused 1 'needs a strand' "$folder/no-strand.yaml" --specimen "$specimen" \
     --run "$folder/refused"
 
 [ $failures = 0 ]

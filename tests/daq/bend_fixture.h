@@ -73,7 +73,7 @@ static inline bool run(struct wb_bend_test *test,
 {
     const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
     struct wb_bend_test_status status;
-    while (wb_bend_test_step(test, 20 * MS) == WB_BEND_TEST_RUNNING) {
+    while (wb_bend_test_step(test, 20 * MS) == WB_SEQUENCE_RUNNING) {
         wb_bend_test_status(test, &status);
         if (until && until(&status))
             return true;

@@ -18,10 +18,11 @@
 
 #include "base/units.h"
 #include "daq/acquisition.h"
-#include "daq/grbl_private.h"
+#include "daq/grbl.h"
 #include "daq/natnet.h"
 #include "daq/natnet_encode.h"
 #include "tests/check.h"
+#include "tests/daq/grbl_jog.h"
 
 #define FAKE_LOAD_PERIOD_NS (5 * WB_NS_PER_MS)
 #define FAKE_FRAME_PERIOD_NS (8 * WB_NS_PER_MS)
@@ -134,8 +135,8 @@ static inline void fake_report(struct fake_bench *bench)
 
 static inline void fake_obey_line(struct fake_bench *bench, const char *line)
 {
-    struct wb_grbl_jog jog;
-    if (wb_grbl_parse_jog(line, &jog)) {
+    struct grbl_jog jog;
+    if (grbl_jog_parse(line, &jog)) {
         const double target = jog.relative ? bench->position_mm + jog.target_mm : jog.target_mm;
         if (bench->stage_refuses || (bench->has_top && target < 0.0)) {
             fake_say(bench, "error:15\r\n");

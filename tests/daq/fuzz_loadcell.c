@@ -1,41 +1,22 @@
 /* Any bytes from a load cell are readings or refused, and how they are cut into reads does not
  * matter. Input: a byte of settings, then the bytes of the line. */
-#include "tests/daq/fuzz.h"
+#include "tests/daq/fuzz_driver.h"
 
 #include <math.h>
 
 #include "daq/drivers_private.h"
 #include "daq/loadcell_line.h"
 
-struct total {
-    uint64_t n, hash;
-    bool printable;
-};
-
 /* A hash of everything but the time, which the cuts do change. */
 static void take_load(void *context, const struct wb_load_sample *sample)
 {
-    struct total *const total = context;
-    uint64_t bits;
+    const struct fuzz_total *const total = context;
     FUZZ_REQUIRE(sample->index == total->n);
     FUZZ_REQUIRE(sample->valid == (bool)isfinite(sample->force));
     FUZZ_REQUIRE(!(sample->overload && sample->valid));
-    memcpy(&bits, &sample->force, sizeof bits);
-    const unsigned flags =
-        (unsigned)sample->valid | (unsigned)sample->unstable << 1 | (unsigned)sample->overload << 2;
-    total->hash = (total->hash ^ bits ^ flags) * UINT64_C(1099511628211) + 1;
-    total->n++;
-}
-
-static void take_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
-                        const char *text)
-{
-    (void)context;
-    (void)level;
-    (void)t_ns;
-    FUZZ_REQUIRE(kind[0] && text[0]);
-    for (const char *c = text; *c; c++)
-        FUZZ_REQUIRE(*c >= 0x20 && *c < 0x7f);
+    fuzz_count(context, sample->force,
+               (uint64_t)sample->valid | (uint64_t)sample->unstable << 1 |
+                   (uint64_t)sample->overload << 2);
 }
 
 static struct wb_rig rig_of(uint8_t settings)
@@ -61,20 +42,6 @@ static struct wb_rig rig_of(uint8_t settings)
     return rig;
 }
 
-/* Feeds a fresh driver in reads of at most `step` bytes. */
-static struct total run(const struct wb_driver *driver, const struct wb_rig *rig,
-                        const uint8_t *bytes, size_t n, size_t step)
-{
-    struct total total = {0};
-    const struct wb_sink sink = {.context = &total, .load = take_load, .remark = take_remark};
-    void *const state = calloc(1, driver->state_size);
-    FUZZ_REQUIRE(state && driver->init(state, rig) == WB_OK);
-    for (size_t at = 0; at < n; at += step)
-        driver->receive(state, 7, bytes + at, n - at < step ? n - at : step, &sink);
-    free(state);
-    return total;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
 {
     if (n < 1)
@@ -89,13 +56,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
         FUZZ_REQUIRE(isfinite(reading.value));
     if (wb_line_force(&reading, &rig.load_cell, rig.gravity, &force))
         FUZZ_REQUIRE(reading.kind != WB_LINE_VALUE || !isnan(force));
-    for (const struct wb_driver *const *at = wb_drivers; *at; at++) {
-        if ((*at)->role != WB_ROLE_LOAD)
-            continue;
-        const struct total whole = run(*at, &rig, bytes + 1, n - 1, n);
-        const struct total cut = run(*at, &rig, bytes + 1, n - 1, 3);
-        FUZZ_REQUIRE(whole.n == cut.n && whole.hash == cut.hash);
-    }
+    for (const struct wb_driver *const *at = wb_drivers; *at; at++)
+        if ((*at)->role == WB_ROLE_LOAD)
+            fuzz_cuts(*at, &rig, (struct wb_sink){.load = take_load}, bytes + 1, n - 1);
     return 0;
 }
 
@@ -114,14 +77,7 @@ int main(int argc, char **argv)
         "\x30HIGH\nmoving: 3 g\n32767\n3 g ?\n",
         "\x10S ? -  12.3 g\nS ^ 1 g\n+  12.34 GLE\n12.5E-3 kN\n3 \xC2\xB5N\n",
     };
-    const uint8_t *pointers[sizeof seeds / sizeof seeds[0]];
-    size_t sizes[sizeof seeds / sizeof seeds[0]];
-    const size_t n = sizeof seeds / sizeof seeds[0];
-    for (size_t i = 0; i < n; i++) {
-        pointers[i] = (const uint8_t *)seeds[i];
-        sizes[i] = strlen(seeds[i]);
-    }
-    return fuzz_main(argc, argv, pointers, sizes, n, 100000);
+    return fuzz_main_text(argc, argv, seeds, sizeof seeds / sizeof seeds[0], 100000);
 }
 
 #endif

@@ -1,9 +1,8 @@
 /* Any datagram under any version is decoded or refused, within its bytes and our arrays; the client
  * survives any sequence of them. Input: major, minor, then the datagram. */
-#include "tests/daq/fuzz.h"
+#include "tests/daq/fuzz_driver.h"
 
-#include "daq/drivers.h"
-#include "daq/natnet_encode_private.h"
+#include "daq/natnet_encode.h"
 #include "tests/daq/natnet_example.h"
 
 static struct wb_natnet_frame frame;
@@ -60,24 +59,13 @@ static void take_mocap(void *context, const struct wb_mocap_frame *mocap)
     FUZZ_REQUIRE(mocap->n_markers <= WB_MAX_MARKERS);
 }
 
-static void take_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
-                        const char *text)
-{
-    (void)context;
-    (void)level;
-    (void)t_ns;
-    FUZZ_REQUIRE(kind[0] && text[0]);
-    for (const char *c = text; *c; c++)
-        FUZZ_REQUIRE(*c >= 0x20 && *c < 0x7f);
-}
-
 static void run_client(const uint8_t *bytes, size_t n, struct wb_natnet_version version)
 {
     static uint8_t info[512];
     static void *state;
     const struct wb_rig rig = {.mocap = {.address = "udp:10.0.0.2:1510", .frame_rate = 120.0},
                                .time_scale = 1.0};
-    const struct wb_sink sink = {.mocap = take_mocap, .remark = take_remark};
+    const struct wb_sink sink = {.mocap = take_mocap, .remark = fuzz_remark};
     const struct wb_natnet_server server = {
         .name = "Motive",
         .natnet_version = {version.major, version.minor},
@@ -154,11 +142,14 @@ int main(int argc, char **argv)
     n++;
     sizes[n] = 2 + wb_natnet_encode_response_real(put_version(seeds[n], 3, 0), room, 120.0F);
     n++;
-    sizes[n] = 2 + wb_natnet_encode_response_text(put_version(seeds[n], 3, 0), room, "no");
+    sizes[n] =
+        2 + wb_natnet_encode_text(put_version(seeds[n], 3, 0), room, WB_NATNET_RESPONSE, "no");
     n++;
-    sizes[n] = 2 + wb_natnet_encode_message_string(put_version(seeds[n], 3, 0), room, "hello");
+    sizes[n] = 2 + wb_natnet_encode_text(put_version(seeds[n], 3, 0), room, WB_NATNET_MESSAGESTRING,
+                                         "hello");
     n++;
-    sizes[n] = 2 + wb_natnet_encode_unrecognized(put_version(seeds[n], 3, 0), room);
+    sizes[n] = 2 + wb_natnet_encode_empty(put_version(seeds[n], 3, 0), room,
+                                          WB_NATNET_UNRECOGNIZED_REQUEST);
     n++;
     FUZZ_REQUIRE(n == N_SEEDS);
     for (size_t i = 0; i < n; i++)

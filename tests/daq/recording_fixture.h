@@ -158,4 +158,17 @@ static inline bool bench_exists(const char *folder, const char *name)
     return access(path, F_OK) == 0;
 }
 
+/* Opens a recording that holds this many chunks, all as they were made. */
+static inline struct wb_recording *bench_open(const char *path, bool complete, int64_t n_chunks)
+{
+    struct wb_recording *recording = NULL;
+    struct bench_tally tally;
+    assert_int_equal(wb_recording_open(&recording, path), WB_OK);
+    assert_int_equal(wb_recording_is_complete(recording), complete);
+    assert_int_equal(bench_walk(recording, &tally), WB_OK);
+    assert_int_equal(tally.chunks, n_chunks);
+    assert_true(tally.exact);
+    return recording;
+}
+
 #endif

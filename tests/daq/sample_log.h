@@ -17,53 +17,56 @@ struct sample_log {
     int n[3];
 };
 
-#define SAMPLE_LOG_FIELD(log, role, field)                                                         \
-    wb_text_append_bytes(&(log)->bytes[role], &(field), sizeof(field))
+#define SAMPLE_LOG_FIELD(field) wb_text_append_bytes(bytes, &(field), sizeof(field))
+
+/* Counts a sample; returns where its fields go. */
+static inline struct wb_text *sample_log_count(struct sample_log *log, enum wb_role role)
+{
+    log->n[role]++;
+    return &log->bytes[role];
+}
 
 static inline void sample_log_load(void *context, const struct wb_load_sample *sample)
 {
-    struct sample_log *const log = context;
-    log->n[WB_ROLE_LOAD]++;
-    SAMPLE_LOG_FIELD(log, WB_ROLE_LOAD, sample->t_ns);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_LOAD, sample->index);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_LOAD, sample->force);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_LOAD, sample->valid);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_LOAD, sample->unstable);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_LOAD, sample->overload);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_LOAD, sample->unit_changed);
+    struct wb_text *const bytes = sample_log_count(context, WB_ROLE_LOAD);
+    SAMPLE_LOG_FIELD(sample->t_ns);
+    SAMPLE_LOG_FIELD(sample->index);
+    SAMPLE_LOG_FIELD(sample->force);
+    SAMPLE_LOG_FIELD(sample->valid);
+    SAMPLE_LOG_FIELD(sample->unstable);
+    SAMPLE_LOG_FIELD(sample->overload);
+    SAMPLE_LOG_FIELD(sample->unit_changed);
 }
 
 static inline void sample_log_mocap(void *context, const struct wb_mocap_frame *frame)
 {
-    struct sample_log *const log = context;
-    log->n[WB_ROLE_MOCAP]++;
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->t_ns);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->frame_number);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->t_device);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->t_clock);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->camera_mid_exposure);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->camera_data_received);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->transmit);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->params);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, frame->n_markers);
+    struct wb_text *const bytes = sample_log_count(context, WB_ROLE_MOCAP);
+    SAMPLE_LOG_FIELD(frame->t_ns);
+    SAMPLE_LOG_FIELD(frame->frame_number);
+    SAMPLE_LOG_FIELD(frame->t_device);
+    SAMPLE_LOG_FIELD(frame->t_clock);
+    SAMPLE_LOG_FIELD(frame->camera_mid_exposure);
+    SAMPLE_LOG_FIELD(frame->camera_data_received);
+    SAMPLE_LOG_FIELD(frame->transmit);
+    SAMPLE_LOG_FIELD(frame->params);
+    SAMPLE_LOG_FIELD(frame->n_markers);
     for (int i = 0; i < frame->n_markers; i++) {
         const struct wb_marker *const marker = &frame->markers[i];
-        SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, marker->id);
-        SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, marker->position);
-        SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, marker->size);
-        SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, marker->residual);
-        SAMPLE_LOG_FIELD(log, WB_ROLE_MOCAP, marker->params);
+        SAMPLE_LOG_FIELD(marker->id);
+        SAMPLE_LOG_FIELD(marker->position);
+        SAMPLE_LOG_FIELD(marker->size);
+        SAMPLE_LOG_FIELD(marker->residual);
+        SAMPLE_LOG_FIELD(marker->params);
     }
 }
 
 static inline void sample_log_stage(void *context, const struct wb_stage_report *report)
 {
-    struct sample_log *const log = context;
-    log->n[WB_ROLE_STAGE]++;
-    SAMPLE_LOG_FIELD(log, WB_ROLE_STAGE, report->t_ns);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_STAGE, report->state);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_STAGE, report->position);
-    SAMPLE_LOG_FIELD(log, WB_ROLE_STAGE, report->alarm);
+    struct wb_text *const bytes = sample_log_count(context, WB_ROLE_STAGE);
+    SAMPLE_LOG_FIELD(report->t_ns);
+    SAMPLE_LOG_FIELD(report->state);
+    SAMPLE_LOG_FIELD(report->position);
+    SAMPLE_LOG_FIELD(report->alarm);
 }
 
 static inline struct wb_sink sample_log_sink(struct sample_log *log)

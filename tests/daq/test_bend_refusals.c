@@ -12,7 +12,7 @@ static void assert_refused(struct fixture *fixture, const char *words, bool reco
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
+    assert_int_equal(result.end, WB_SEQUENCE_FAILED);
     if (!strstr(result.text, words))
         fail_msg("'%s' does not say '%s'", result.text, words);
     assert_false(result.started);
@@ -66,7 +66,7 @@ static void a_stray_reflection_does_not_hurt(void **state)
     fixture->request.travel = 1.0 * WB_MM;
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
-    assert_int_equal(wb_bend_test_step(test, 0), WB_BEND_TEST_DONE);
+    assert_int_equal(wb_bend_test_step(test, 0), WB_SEQUENCE_DONE);
     assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
 }
 
@@ -111,7 +111,7 @@ static void a_tare_with_the_counterweight_adds_its_weight(void **state)
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_DONE);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
     assert_close(result.tare, 2.8e-3 * WB_STANDARD_GRAVITY, 0.01e-3 * WB_STANDARD_GRAVITY);
     assert_close(result.peak_tension, 6.7e-3 * WB_STANDARD_GRAVITY, 0.05e-3 * WB_STANDARD_GRAVITY);
 }

@@ -87,7 +87,7 @@ static void complete_test_goes_down_and_back_and_records_it(void **state)
     wb_bend_test_mark(test, "look here");
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_DONE);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
     assert_int_equal(result.cycles_done, 2);
     assert_true(result.standing && !result.displaced && result.recorded && result.is_virtual);
     assert_int_equal(result.drops, 0);
@@ -173,7 +173,7 @@ static void reach_the_force_limit(struct fixture *fixture, struct fake_latency *
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_true(result.standing && result.displaced && !result.soft_reset);
     assert_non_null(strstr(result.text, "force limit of 100.0 mN"));
     assert_in_range(result.confirm_latency * 1e6, 0, 500000);
@@ -213,7 +213,7 @@ static void raise_overload_unit_change_and_alarm(struct fixture *fixture,
         assert_false(run(test, NULL));
         *faults[i] = false;
         assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-        assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+        assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
         if (!strstr(result.text, words[i]))
             fail_msg("'%s' does not say '%s'", result.text, words[i]);
         assert_true(result.standing);
@@ -240,7 +240,7 @@ static void silence_each_stream(struct fixture *fixture, struct fake_latency *la
         *(i ? &bench->mocap_silent : &bench->load_silent) = true;
         assert_false(run(test, NULL));
         assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-        assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+        assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
         assert_non_null(strstr(result.text, i ? "motion capture" : "load cell"));
         /* T is 10 s of the rig, 250 ms of the host. */
         note_hold(fixture, latency, (i ? bench->frame_last_ns : bench->load_last_ns) + 250 * MS);
@@ -267,7 +267,7 @@ static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
     usleep(800000);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    if (result.end != WB_BEND_TEST_DONE)
+    if (result.end != WB_SEQUENCE_DONE)
         fail_msg("ended early: %s", result.text);
 }
 
@@ -301,7 +301,7 @@ static void a_stall_within_a_step_is_not_taken_for_silence(void **state)
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     assert_true(sleeper.slept);
-    if (result.end != WB_BEND_TEST_DONE)
+    if (result.end != WB_SEQUENCE_DONE)
         fail_msg("ended early: %s", result.text);
     read_events(fixture);
     assert_null(strstr(fixture->events, "stream_lost"));
@@ -317,7 +317,7 @@ static void a_stage_running_on_is_held_at_the_travel_limit(void **state)
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_non_null(strstr(result.text, "travel limit of 58.00 mm"));
     assert_true(result.standing);
     assert_close(fixture->bench->position_mm, 58.0,
@@ -334,7 +334,7 @@ static void hold_a_deaf_stage(struct fixture *fixture, struct fake_latency *late
     bench->overload = true;
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_true(result.soft_reset && result.standing);
     note_hold(fixture, latency, bench->limit_sent_ns);
     const int64_t reset_ns = bench->reset_ns - bench->hold_ns - 500 * MS;
@@ -360,7 +360,7 @@ static void a_stage_that_obeys_nothing_is_called_moving(void **state)
     fixture->bench->overload = true;
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_false(result.standing);
     read_events(fixture);
     assert_non_null(strstr(fixture->events, "not confirmed"));
@@ -376,7 +376,7 @@ static void press_ctrl_c(struct fixture *fixture, struct fake_latency *latency)
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     wb_interrupt_set(false); /* it would stop the replay below as well */
-    assert_int_equal(result.end, WB_BEND_TEST_INTERRUPTED);
+    assert_int_equal(result.end, WB_SEQUENCE_INTERRUPTED);
     assert_true(result.standing && result.displaced);
     note_hold(fixture, latency, pressed_ns);
     static const char *const expected[] = {"cycle_start: 1", "hold: {\"reason\": \"interrupt\"",
@@ -398,7 +398,7 @@ static void closing_in_mid_test_stops_the_stage_first(void **state)
     struct wb_bend_test_result result;
     open_and_get_down(fixture, &test);
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_INTERRUPTED);
+    assert_int_equal(result.end, WB_SEQUENCE_INTERRUPTED);
     assert_int_equal(fixture->bench->holds, 1);
     assert_true(result.standing);
 }
@@ -413,7 +413,7 @@ static void ctrl_c_before_any_motion_sends_no_hold(void **state)
     wb_interrupt_set(true);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_INTERRUPTED);
+    assert_int_equal(result.end, WB_SEQUENCE_INTERRUPTED);
     assert_true(result.standing && !result.displaced && !result.started);
     assert_int_equal(fixture->bench->holds, 0);
     assert_string_equal(fixture->bench->state, "Idle");
@@ -428,7 +428,7 @@ static void an_unplugged_bench_ends_the_test_and_keeps_the_recording(void **stat
     fake_unplug(fixture->bench);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_LIMIT);
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_non_null(strstr(result.text, "went away"));
     assert_false(result.standing);
     assert_replay_identical(fixture->output, &fixture->log);
@@ -452,7 +452,7 @@ static void a_full_disk_stops_the_stage_and_what_was_written_stays(void **state)
     assert_false(run(test, NULL));
     assert_int_not_equal(wb_bend_test_close(test, &result), WB_OK);
     setrlimit(RLIMIT_FSIZE, &saved);
-    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
+    assert_int_equal(result.end, WB_SEQUENCE_FAILED);
     assert_true(result.started && result.standing);
     assert_int_equal(fixture->bench->holds, 1);
     assert_non_null(strstr(result.text, "cannot be written"));
@@ -469,7 +469,7 @@ static void a_stage_that_refuses_to_move_is_told(void **state)
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    assert_int_equal(result.end, WB_BEND_TEST_FAILED);
+    assert_int_equal(result.end, WB_SEQUENCE_FAILED);
     assert_non_null(strstr(result.text, "error:15"));
     assert_int_equal(fixture->bench->holds, 0); /* it stands, and is not left on hold */
 }
@@ -484,7 +484,7 @@ static void a_lost_answer_of_the_stage_only_delays_the_next_motion(void **state)
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
-    if (result.end != WB_BEND_TEST_DONE)
+    if (result.end != WB_SEQUENCE_DONE)
         fail_msg("ended early: %s", result.text);
     assert_false(fixture->bench->stage_forgets_ok);
     assert_string_equal(fixture->errors, "");

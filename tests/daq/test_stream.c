@@ -93,14 +93,32 @@ static int open_master(char *slave, size_t size)
     return master;
 }
 
+/* A stream on the other side of *master; `settings` follow the path. */
+static struct wb_stream *open_pty(int *master, const char *settings)
+{
+    char slave[64], address[128];
+    struct wb_stream *stream = NULL;
+    *master = open_master(slave, sizeof slave);
+    snprintf(address, sizeof address, "pty:%s%s", slave, settings);
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    return stream;
+}
+
+/* What waits is exactly this. */
+static void assert_reads(struct wb_stream *stream, const char *text)
+{
+    char got[64];
+    size_t n = 1;
+    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
+    assert_int_equal(n, strlen(text));
+    assert_memory_equal(got, text, n);
+}
+
 static void pseudo_terminal_passes_bytes_unchanged(void **state)
 {
     (void)state;
-    char slave[64], address[128];
-    int master = open_master(slave, sizeof slave);
-    snprintf(address, sizeof address, "pty:%s,115200,8n1", slave);
-    struct wb_stream *stream = NULL;
-    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    int master;
+    struct wb_stream *stream = open_pty(&master, ",115200,8n1");
     uint8_t sent[256], got[512];
     for (int i = 0; i < 256; i++)
         sent[i] = (uint8_t)i;
@@ -149,11 +167,9 @@ static void second_opener_of_a_pseudo_terminal_is_told_it_is_busy(void **state)
 static void closed_master_is_a_lost_stream(void **state)
 {
     (void)state;
-    char slave[64], address[128], got[8];
-    int master = open_master(slave, sizeof slave);
-    snprintf(address, sizeof address, "pty:%s", slave);
-    struct wb_stream *stream = NULL;
-    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    char got[8];
+    int master;
+    struct wb_stream *stream = open_pty(&master, "");
     close(master);
     size_t n = 0;
     wait_readable(stream);
@@ -165,11 +181,8 @@ static void closed_master_is_a_lost_stream(void **state)
 static void full_pseudo_terminal_times_out(void **state)
 {
     (void)state;
-    char slave[64], address[128];
-    int master = open_master(slave, sizeof slave);
-    snprintf(address, sizeof address, "pty:%s", slave);
-    struct wb_stream *stream = NULL;
-    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    int master;
+    struct wb_stream *stream = open_pty(&master, "");
     static const uint8_t many[1 << 20];
     assert_int_equal(wb_stream_write(stream, many, sizeof many), WB_ERR_TIMEOUT);
     wb_stream_close(stream);
@@ -207,36 +220,52 @@ static int open_server(int *port)
     return server;
 }
 
+/* A stream to a new server. */
+static struct wb_stream *open_udp(const char *host, int *server)
+{
+    int port;
+    char address[64];
+    struct wb_stream *stream = NULL;
+    *server = open_server(&port);
+    snprintf(address, sizeof address, "udp:%s:%d", host, port);
+    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    return stream;
+}
+
+/* The address of the stream, as the server sees it from a first datagram. */
+static struct sockaddr_in address_of(struct wb_stream *stream, int server)
+{
+    char got[64];
+    struct sockaddr_in client;
+    socklen_t size = sizeof client;
+    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
+    assert_int_equal(recvfrom(server, got, sizeof got, 0, (struct sockaddr *)&client, &size), 4);
+    return client;
+}
+
+static void send_text(int socket, const struct sockaddr_in *to, const char *text)
+{
+    const size_t n = strlen(text);
+    assert_int_equal(sendto(socket, text, n, 0, (const struct sockaddr *)to, sizeof *to), n);
+}
+
 static void datagrams_pass_one_a_read(void **state)
 {
     (void)state;
-    int port;
-    int server = open_server(&port);
-    char address[64], got[64];
-    snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
-    struct wb_stream *stream = NULL;
-    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
-    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
-    struct sockaddr_in client;
-    socklen_t size = sizeof client;
-    assert_int_equal(recvfrom(server, got, sizeof got, 0, (struct sockaddr *)&client, &size), 4);
+    int server;
+    struct wb_stream *stream = open_udp("127.0.0.1", &server);
+    const struct sockaddr_in client = address_of(stream, server);
 
     /* The answers come from another port of the same host, as a NatNet server's frames may. */
     int data_port;
     int data = open_server(&data_port);
-    assert_int_equal(sendto(data, "one", 3, 0, (struct sockaddr *)&client, size), 3);
-    assert_int_equal(sendto(data, "", 0, 0, (struct sockaddr *)&client, size), 0);
-    assert_int_equal(sendto(data, "three", 5, 0, (struct sockaddr *)&client, size), 5);
-    size_t n = 0;
+    send_text(data, &client, "one");
+    send_text(data, &client, "");
+    send_text(data, &client, "three");
     wait_readable(stream);
-    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
-    assert_int_equal(n, 3);
-    assert_memory_equal(got, "one", 3);
-    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
-    assert_int_equal(n, 5);
-    assert_memory_equal(got, "three", 5);
-    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
-    assert_int_equal(n, 0);
+    assert_reads(stream, "one");
+    assert_reads(stream, "three");
+    assert_reads(stream, "");
     wb_stream_close(stream);
     close(data);
     close(server);
@@ -245,12 +274,8 @@ static void datagrams_pass_one_a_read(void **state)
 static void largest_datagram_passes_whole(void **state)
 {
     (void)state;
-    int port;
-    int server = open_server(&port);
-    char address[64];
-    snprintf(address, sizeof address, "udp:localhost:%d", port);
-    struct wb_stream *stream = NULL;
-    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
+    int server;
+    struct wb_stream *stream = open_udp("localhost", &server);
     uint8_t *big = malloc(WB_STREAM_READ_MAX), *got = malloc(WB_STREAM_READ_MAX);
     assert_non_null(big);
     assert_non_null(got);
@@ -296,29 +321,19 @@ static void server_that_is_not_there_is_no_error_of_the_stream(void **state)
 static void datagrams_of_strangers_are_ignored(void **state)
 {
     (void)state;
-    int port;
-    int server = open_server(&port);
-    char address[64], got[64];
-    snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
-    struct wb_stream *stream = NULL;
-    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
-    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
-    struct sockaddr_in client;
-    socklen_t size = sizeof client;
-    assert_int_equal(recvfrom(server, got, sizeof got, 0, (struct sockaddr *)&client, &size), 4);
+    int server;
+    struct wb_stream *stream = open_udp("127.0.0.1", &server);
+    const struct sockaddr_in client = address_of(stream, server);
     /* All of 127.0.0.0/8 is this host. */
     int stranger = socket(AF_INET, SOCK_DGRAM, 0);
     struct sockaddr_in bound = {.sin_family = AF_INET};
     bound.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1);
     assert_int_equal(bind(stranger, (struct sockaddr *)&bound, sizeof bound), 0);
-    assert_int_equal(sendto(stranger, "evil", 4, 0, (struct sockaddr *)&client, size), 4);
-    assert_int_equal(sendto(server, "good", 4, 0, (struct sockaddr *)&client, size), 4);
-    size_t n = 0;
+    send_text(stranger, &client, "evil");
+    send_text(server, &client, "good");
     wait_readable(stream);
-    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
-    assert_int_equal(n, 4);
-    assert_memory_equal(got, "good", 4);
-    assert_message("127.0.0.2 ignored");
+    assert_reads(stream, "good");
+    assert_message("127.0.0.2 are ignored");
     wb_stream_close(stream);
     close(stranger);
     close(server);
@@ -327,18 +342,11 @@ static void datagrams_of_strangers_are_ignored(void **state)
 static void overrun_socket_counts_what_the_kernel_dropped(void **state)
 {
     (void)state;
-    int port;
-    int server = open_server(&port);
-    char address[64];
-    snprintf(address, sizeof address, "udp:127.0.0.1:%d", port);
-    struct wb_stream *stream = NULL;
-    assert_int_equal(wb_stream_open(&stream, address), WB_OK);
-    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
+    int server;
+    struct wb_stream *stream = open_udp("127.0.0.1", &server);
     static uint8_t bytes[60000];
-    struct sockaddr_in client;
-    socklen_t size = sizeof client;
-    assert_int_equal(recvfrom(server, bytes, sizeof bytes, 0, (struct sockaddr *)&client, &size),
-                     4);
+    const struct sockaddr_in client = address_of(stream, server);
+    const socklen_t size = sizeof client;
     /* A small buffer, so that few datagrams fill it. */
     int descriptors[2], small = 1;
     assert_int_equal(wb_stream_descriptors(stream, descriptors), 1);
@@ -369,7 +377,7 @@ static void multicast_data_and_unicast_answers_come_through_one_stream(void **st
     int server = open_server(&port);
     int free_port = open_server(&group_port);
     close(free_port);
-    char address[160], got[64];
+    char address[160];
     snprintf(address, sizeof address, "udp:127.0.0.1:%d,group=239.255.77.99:%d,interface=127.0.0.1",
              port, group_port);
     struct wb_stream *stream = NULL, *other = NULL;
@@ -384,16 +392,10 @@ static void multicast_data_and_unicast_answers_come_through_one_stream(void **st
     assert_int_equal(wb_stream_open(&other, address), WB_OK);
     int descriptors[2];
     assert_int_equal(wb_stream_descriptors(stream, descriptors), 2);
-    assert_int_equal(wb_stream_write(stream, "ping", 4), WB_OK);
-    struct sockaddr_in client;
-    socklen_t size = sizeof client;
-    assert_int_equal(recvfrom(server, got, sizeof got, 0, (struct sockaddr *)&client, &size), 4);
-    assert_int_equal(sendto(server, "info", 4, 0, (struct sockaddr *)&client, size), 4);
-    size_t n = 0;
+    const struct sockaddr_in client = address_of(stream, server);
+    send_text(server, &client, "info");
     wait_readable(stream);
-    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
-    assert_int_equal(n, 4);
-    assert_memory_equal(got, "info", 4);
+    assert_reads(stream, "info");
 
     struct sockaddr_in group = {.sin_family = AF_INET, .sin_port = htons((uint16_t)group_port)};
     inet_pton(AF_INET, "239.255.77.99", &group.sin_addr);
@@ -406,9 +408,7 @@ static void multicast_data_and_unicast_answers_come_through_one_stream(void **st
     struct wb_stream *both[] = {stream, other};
     for (int i = 0; i < 2; i++) {
         wait_readable(both[i]);
-        assert_int_equal(wb_stream_read(both[i], got, sizeof got, &n), WB_OK);
-        assert_int_equal(n, 5);
-        assert_memory_equal(got, "frame", 5);
+        assert_reads(both[i], "frame");
     }
     wb_stream_close(stream);
     wb_stream_close(other);
@@ -429,9 +429,7 @@ static void memory_gives_one_pushed_run_a_read(void **state)
     assert_int_equal(wb_stream_memory_push(stream, "defgh", 5), WB_OK);
     char got[8];
     size_t n = 0;
-    assert_int_equal(wb_stream_read(stream, got, sizeof got, &n), WB_OK);
-    assert_int_equal(n, 3);
-    assert_memory_equal(got, "abc", 3);
+    assert_reads(stream, "abc");
     /* A buffer too small for the run leaves the rest for the next read. */
     assert_int_equal(wb_stream_read(stream, got, 4, &n), WB_OK);
     assert_int_equal(n, 4);

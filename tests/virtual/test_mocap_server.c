@@ -246,7 +246,8 @@ static void requests_are_answered(void **state)
         {"SubscribeToData,LabeledMarkers", WB_NATNET_UNRECOGNIZED_REQUEST, 0.0f, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const size_t n = wb_natnet_encode_request(bytes, sizeof bytes, cases[i].request);
+        const size_t n =
+            wb_natnet_encode_text(bytes, sizeof bytes, WB_NATNET_REQUEST, cases[i].request);
         assert_int_equal(ask(scene, bytes, n, answer, sizeof answer), cases[i].message);
         if (cases[i].message != WB_NATNET_RESPONSE)
             continue;

@@ -83,10 +83,10 @@ static void record(struct fixture *fixture, double travel_mm, struct sample_log 
     request.travel = travel_mm * WB_MM;
     request.sink = sample_log_sink(log);
     assert_int_equal(wb_bend_test_open(&test, &request), WB_OK);
-    while (wb_bend_test_step(test, 20 * WB_NS_PER_MS) == WB_BEND_TEST_RUNNING) {
+    while (wb_bend_test_step(test, 20 * WB_NS_PER_MS) == WB_SEQUENCE_RUNNING) {
     }
     assert_int_equal(wb_bend_test_close(test, result), WB_OK);
-    if (result->end != WB_BEND_TEST_DONE)
+    if (result->end != WB_SEQUENCE_DONE)
         fail_msg("the test ended early: %s", result->text);
 }
 

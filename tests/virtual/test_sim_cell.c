@@ -49,12 +49,12 @@ struct scene {
 
 static void pass_on(struct scene *scene)
 {
-    uint8_t bytes[WB_SIM_CELL_TX];
+    uint8_t bytes[WB_REPLY_BYTES];
     struct wb_outbox outbox;
     wb_outbox_clear(&outbox);
     scene->driver->tick(scene->state, scene->now_ns, &outbox);
     wb_sim_cell_receive(&scene->cell, outbox.bytes, outbox.n_bytes);
-    const size_t n = wb_sim_cell_take(&scene->cell, bytes, sizeof bytes);
+    const size_t n = wb_reply_take(&scene->cell.out, bytes, sizeof bytes);
     if (n > 0)
         scene->driver->receive(scene->state, scene->now_ns, bytes, n, &scene->sink);
 }
@@ -133,8 +133,8 @@ static void zero_drifts_by_two_milligrams_a_minute(void **state)
         while (scene.k < (uint64_t)(minute * 60 * 60 * 80))
             wb_sim_cell_read(&scene.cell, scene.k, wb_sim_cell_time(&scene.cell, scene.k), 0.0),
                 scene.k++;
-        char dropped[WB_SIM_CELL_TX];
-        wb_sim_cell_take(&scene.cell, dropped, sizeof dropped);
+        char dropped[WB_REPLY_BYTES];
+        wb_reply_take(&scene.cell.out, dropped, sizeof dropped);
         for (int i = 0; i < n; i++)
             weigh(&scene, 0.0);
         means[minute] = scene.heard.sum / scene.heard.n;
@@ -343,30 +343,30 @@ static void mtsics_answers_questions(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char text[256];
         wb_sim_cell_receive(&scene.cell, cases[i].question, strlen(cases[i].question));
-        text[wb_sim_cell_take(&scene.cell, text, sizeof text - 1)] = '\0';
+        text[wb_reply_take(&scene.cell.out, text, sizeof text - 1)] = '\0';
         assert_string_equal(text, cases[i].answer);
     }
     /* Not asked for a stream, it sends nothing by itself; asked once, it sends one. */
     char text[256];
     wb_sim_cell_read(&scene.cell, 0, 0.1, 0.05);
-    assert_int_equal(wb_sim_cell_take(&scene.cell, text, sizeof text), 0);
+    assert_int_equal(wb_reply_take(&scene.cell.out, text, sizeof text), 0);
     wb_sim_cell_receive(&scene.cell, "SI\r\n", 4);
-    assert_true(wb_sim_cell_take(&scene.cell, text, sizeof text) > 0);
+    assert_true(wb_reply_take(&scene.cell.out, text, sizeof text) > 0);
     wb_sim_cell_read(&scene.cell, 1, 0.2, 0.05);
-    assert_int_equal(wb_sim_cell_take(&scene.cell, text, sizeof text), 0);
+    assert_int_equal(wb_reply_take(&scene.cell.out, text, sizeof text), 0);
 }
 
 static void an_unread_port_costs_lines_not_memory(void **state)
 {
     (void)state;
     struct scene scene;
-    char text[WB_SIM_CELL_TX + 1];
+    char text[WB_REPLY_BYTES + 1];
     make_scene(&scene);
     assert_int_equal(wb_sim_cell_init(&scene.cell, &scene.setup.truth, &scene.setup.rig), WB_OK);
     for (uint64_t k = 0; k < 5000; k++)
         wb_sim_cell_read(&scene.cell, k, wb_sim_cell_time(&scene.cell, k), 0.0);
-    const size_t n = wb_sim_cell_take(&scene.cell, text, sizeof text);
-    assert_true(n > WB_SIM_CELL_TX - 64 && n <= WB_SIM_CELL_TX);
+    const size_t n = wb_reply_take(&scene.cell.out, text, sizeof text);
+    assert_true(n > WB_REPLY_BYTES - 64 && n <= WB_REPLY_BYTES);
     char flood[1000];
     memset(flood, 'x', sizeof flood);
     wb_sim_cell_receive(&scene.cell, flood, sizeof flood);

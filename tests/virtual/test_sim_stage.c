@@ -26,7 +26,7 @@ static void open_scene(struct scene *scene, const struct wb_sim_stage_settings *
 
 static const char *listen(struct scene *scene)
 {
-    scene->said[wb_sim_stage_take(&scene->stage, scene->said, sizeof scene->said - 1)] = '\0';
+    scene->said[wb_reply_take(&scene->stage.out, scene->said, sizeof scene->said - 1)] = '\0';
     return scene->said;
 }
 
@@ -57,50 +57,57 @@ static void assert_state(struct scene *scene, const char *state)
         fail_msg("report '%s', expected state %s", report, state);
 }
 
+/* Most tests have a plain stage that was just switched on. */
+static int set_up(void **state)
+{
+    static struct scene scene;
+    open_scene(&scene, &plain);
+    *state = &scene;
+    return 0;
+}
+
+#define SCENE_TEST(test) cmocka_unit_test_setup(test, set_up)
+
 static void settings_and_questions_are_answered(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    wb_sim_stage_greet(&scene.stage);
-    assert_string_equal(listen(&scene), "\r\nGrbl 1.1h ['$' for help]\r\n");
-    assert_string_equal(tell(&scene, "\n"), "ok\r\n");
-    assert_non_null(strstr(tell(&scene, "$I\n"), "virtual rig"));
-    assert_non_null(strstr(tell(&scene, "$$\n"), "$130=64.000\r\n"));
-    assert_non_null(strstr(tell(&scene, "$#\n"), "[G54:0.000,0.000,0.000]\r\n"));
-    assert_non_null(strstr(tell(&scene, "$G\n"), "G21 G90"));
-    assert_string_equal(tell(&scene, "$120=100\n"), "ok\r\n");
-    assert_non_null(strstr(tell(&scene, "$$\n"), "$120=100.000\r\n"));
-    assert_string_equal(tell(&scene, "$120=-1\n"), "error:4\r\n");
-    assert_string_equal(tell(&scene, "$999=1\n"), "error:3\r\n");
-    assert_string_equal(tell(&scene, "$QQ\n"), "error:3\r\n");
-    assert_string_equal(tell(&scene, "hello\n"), "error:2\r\n");
-    assert_string_equal(tell(&scene, "G4 P0.01 (sync)\n"), "");
-    wait(&scene, 0.02);
-    assert_string_equal(listen(&scene), "ok\r\n");
+    struct scene *const scene = *state;
+    wb_sim_stage_greet(&scene->stage);
+    assert_string_equal(listen(scene), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_string_equal(tell(scene, "\n"), "ok\r\n");
+    assert_non_null(strstr(tell(scene, "$I\n"), "virtual rig"));
+    assert_non_null(strstr(tell(scene, "$$\n"), "$130=64.000\r\n"));
+    assert_non_null(strstr(tell(scene, "$#\n"), "[G54:0.000,0.000,0.000]\r\n"));
+    assert_non_null(strstr(tell(scene, "$G\n"), "G21 G90"));
+    assert_string_equal(tell(scene, "$120=100\n"), "ok\r\n");
+    assert_non_null(strstr(tell(scene, "$$\n"), "$120=100.000\r\n"));
+    assert_string_equal(tell(scene, "$120=-1\n"), "error:4\r\n");
+    assert_string_equal(tell(scene, "$999=1\n"), "error:3\r\n");
+    assert_string_equal(tell(scene, "$QQ\n"), "error:3\r\n");
+    assert_string_equal(tell(scene, "hello\n"), "error:2\r\n");
+    assert_string_equal(tell(scene, "G4 P0.01 (sync)\n"), "");
+    wait(scene, 0.02);
+    assert_string_equal(listen(scene), "ok\r\n");
 }
 
 static void a_jog_moves_the_clamp_at_the_feed(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    assert_close(travel(&scene), 0.0, 1e-9);
-    assert_string_equal(tell(&scene, "$J=G91 G21 X53.000 F60.000\n"), "ok\r\n");
-    wait(&scene, 10.0);
-    assert_state(&scene, "Jog");
-    assert_close(travel(&scene), (10.0 - 0.01) * WB_MM, 2e-6);
-    wait(&scene, 42.9);
-    assert_state(&scene, "Jog");
-    wait(&scene, 0.2);
-    assert_state(&scene, "Idle");
-    assert_close(travel(&scene), 53.0 * WB_MM, 1e-9);
-    assert_string_equal(tell(&scene, "$J=G91 G21 X-53.000 F6000.000\n"), "ok\r\n");
+    struct scene *const scene = *state;
+    assert_close(travel(scene), 0.0, 1e-9);
+    assert_string_equal(tell(scene, "$J=G91 G21 X53.000 F60.000\n"), "ok\r\n");
+    wait(scene, 10.0);
+    assert_state(scene, "Jog");
+    assert_close(travel(scene), (10.0 - 0.01) * WB_MM, 2e-6);
+    wait(scene, 42.9);
+    assert_state(scene, "Jog");
+    wait(scene, 0.2);
+    assert_state(scene, "Idle");
+    assert_close(travel(scene), 53.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(scene, "$J=G91 G21 X-53.000 F6000.000\n"), "ok\r\n");
     /* Clipped to the axis's 10 mm/s. */
-    wait(&scene, 5.0);
-    assert_state(&scene, "Jog");
-    wait(&scene, 1.0);
-    assert_close(travel(&scene), 0.0, 1e-9);
+    wait(scene, 5.0);
+    assert_state(scene, "Jog");
+    wait(scene, 1.0);
+    assert_close(travel(scene), 0.0, 1e-9);
 }
 
 static void down_can_be_the_negative_direction(void **state)
@@ -119,50 +126,44 @@ static void down_can_be_the_negative_direction(void **state)
 
 static void jogs_beyond_the_travel_are_refused(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    assert_string_equal(tell(&scene, "$J=G91 G21 X62.1 F600\n"), "error:15\r\n");
-    assert_string_equal(tell(&scene, "$J=G91 G21 X-2.1 F600\n"), "error:15\r\n");
-    assert_string_equal(tell(&scene, "$J=G91 G21 X62.0 F600\n"), "ok\r\n");
-    wait(&scene, 20.0);
-    assert_close(travel(&scene), 62.0 * WB_MM, 1e-9);
-    assert_string_equal(tell(&scene, "$J=G91 X1\n"), "error:22\r\n");
-    assert_string_equal(tell(&scene, "$J=G91 F10\n"), "error:26\r\n");
-    assert_string_equal(tell(&scene, "$J=G0 X1 F10\n"), "error:16\r\n");
+    struct scene *const scene = *state;
+    assert_string_equal(tell(scene, "$J=G91 G21 X62.1 F600\n"), "error:15\r\n");
+    assert_string_equal(tell(scene, "$J=G91 G21 X-2.1 F600\n"), "error:15\r\n");
+    assert_string_equal(tell(scene, "$J=G91 G21 X62.0 F600\n"), "ok\r\n");
+    wait(scene, 20.0);
+    assert_close(travel(scene), 62.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(scene, "$J=G91 X1\n"), "error:22\r\n");
+    assert_string_equal(tell(scene, "$J=G91 F10\n"), "error:26\r\n");
+    assert_string_equal(tell(scene, "$J=G0 X1 F10\n"), "error:16\r\n");
 }
 
 static void jogs_in_a_row_run_on_without_a_halt(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    tell(&scene, "$J=G91 G21 X2 F60\n");
-    wait(&scene, 1.5);
-    assert_string_equal(tell(&scene, "$J=G91 G21 X2 F60\n"), "ok\r\n");
-    wait(&scene, 0.5);
-    const double at_two = travel(&scene);
-    wait(&scene, 0.1);
-    assert_close(travel(&scene) - at_two, 0.1 * WB_MM, 2e-6);
-    wait(&scene, 3.0);
-    assert_state(&scene, "Idle");
-    assert_close(travel(&scene), 4.0 * WB_MM, 1e-9);
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X2 F60\n");
+    wait(scene, 1.5);
+    assert_string_equal(tell(scene, "$J=G91 G21 X2 F60\n"), "ok\r\n");
+    wait(scene, 0.5);
+    const double at_two = travel(scene);
+    wait(scene, 0.1);
+    assert_close(travel(scene) - at_two, 0.1 * WB_MM, 2e-6);
+    wait(scene, 3.0);
+    assert_state(scene, "Idle");
+    assert_close(travel(scene), 4.0 * WB_MM, 1e-9);
 }
 
 static void opposite_jogs_wait_for_each_other(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    tell(&scene, "$J=G91 G21 X5 F600\n");
-    assert_string_equal(tell(&scene, "$J=G91 G21 X-4 F600\n"), "ok\r\n");
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X5 F600\n");
+    assert_string_equal(tell(scene, "$J=G91 G21 X-4 F600\n"), "ok\r\n");
     double highest = 0.0;
     for (int i = 0; i < 400; i++) {
-        wait(&scene, 0.01);
-        highest = fmax(highest, travel(&scene));
+        wait(scene, 0.01);
+        highest = fmax(highest, travel(scene));
     }
     assert_close(highest, 5.0 * WB_MM, 20e-6);
-    assert_close(travel(&scene), 1.0 * WB_MM, 1e-9);
+    assert_close(travel(scene), 1.0 * WB_MM, 1e-9);
 }
 
 static void a_hold_cancels_a_jog_and_ends_idle(void **state)
@@ -189,108 +190,94 @@ static void a_hold_cancels_a_jog_and_ends_idle(void **state)
 
 static void a_hold_at_rest_deafens_until_resumed(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    tell(&scene, "!");
-    assert_state(&scene, "Hold:0");
-    assert_string_equal(tell(&scene, "$J=G91 G21 X1 F60\n"), "");
-    wait(&scene, 3.0);
-    assert_close(travel(&scene), 0.0, 1e-9);
+    struct scene *const scene = *state;
+    tell(scene, "!");
+    assert_state(scene, "Hold:0");
+    assert_string_equal(tell(scene, "$J=G91 G21 X1 F60\n"), "");
+    wait(scene, 3.0);
+    assert_close(travel(scene), 0.0, 1e-9);
     /* The line waited in the buffer. */
-    assert_string_equal(tell(&scene, "~"), "ok\r\n");
-    assert_state(&scene, "Jog");
-    wait(&scene, 2.0);
-    assert_close(travel(&scene), 1.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(scene, "~"), "ok\r\n");
+    assert_state(scene, "Jog");
+    wait(scene, 2.0);
+    assert_close(travel(scene), 1.0 * WB_MM, 1e-9);
 }
 
 static void a_program_move_holds_and_goes_on(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    assert_string_equal(tell(&scene, "G91 G1 X10 F600\n"), "ok\r\n");
-    wait(&scene, 0.5);
-    tell(&scene, "!");
-    assert_state(&scene, "Hold:1");
-    wait(&scene, 0.5);
-    assert_state(&scene, "Hold:0");
-    tell(&scene, "~");
-    assert_state(&scene, "Run");
-    wait(&scene, 2.0);
-    assert_state(&scene, "Idle");
-    assert_close(travel(&scene), 10.0 * WB_MM, 1e-9);
+    struct scene *const scene = *state;
+    assert_string_equal(tell(scene, "G91 G1 X10 F600\n"), "ok\r\n");
+    wait(scene, 0.5);
+    tell(scene, "!");
+    assert_state(scene, "Hold:1");
+    wait(scene, 0.5);
+    assert_state(scene, "Hold:0");
+    tell(scene, "~");
+    assert_state(scene, "Run");
+    wait(scene, 2.0);
+    assert_state(scene, "Idle");
+    assert_close(travel(scene), 10.0 * WB_MM, 1e-9);
 }
 
 static void a_reset_in_motion_alarms_and_locks(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    tell(&scene, "$J=G91 G21 X30 F600\n");
-    wait(&scene, 1.0);
-    const double at = travel(&scene);
-    assert_string_equal(tell(&scene, "\x18"), "ALARM:3\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
-                                              "[MSG:'$H'|'$X' to unlock]\r\n");
-    assert_state(&scene, "Alarm");
-    wait(&scene, 1.0);
-    assert_close(travel(&scene), at, 1e-9);
-    assert_string_equal(tell(&scene, "$J=G91 G21 X1 F60\n"), "error:8\r\n");
-    assert_string_equal(tell(&scene, "G91 G1 X1 F60\n"), "error:9\r\n");
-    assert_string_equal(tell(&scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
-    assert_state(&scene, "Idle");
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X30 F600\n");
+    wait(scene, 1.0);
+    const double at = travel(scene);
+    assert_string_equal(tell(scene, "\x18"), "ALARM:3\r\n\r\nGrbl 1.1h ['$' for help]\r\n"
+                                             "[MSG:'$H'|'$X' to unlock]\r\n");
+    assert_state(scene, "Alarm");
+    wait(scene, 1.0);
+    assert_close(travel(scene), at, 1e-9);
+    assert_string_equal(tell(scene, "$J=G91 G21 X1 F60\n"), "error:8\r\n");
+    assert_string_equal(tell(scene, "G91 G1 X1 F60\n"), "error:9\r\n");
+    assert_string_equal(tell(scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+    assert_state(scene, "Idle");
 }
 
 static void a_reset_at_rest_only_greets(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    assert_string_equal(tell(&scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
-    tell(&scene, "!");
-    assert_string_equal(tell(&scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
-    assert_state(&scene, "Idle");
+    struct scene *const scene = *state;
+    assert_string_equal(tell(scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    tell(scene, "!");
+    assert_string_equal(tell(scene, "\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
+    assert_state(scene, "Idle");
 }
 
 static void a_program_move_beyond_the_travel_alarms_until_reset(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    assert_string_equal(tell(&scene, "G91 G1 X100 F600\n"),
+    struct scene *const scene = *state;
+    assert_string_equal(tell(scene, "G91 G1 X100 F600\n"),
                         "ALARM:2\r\n[MSG:Reset to continue]\r\n");
-    assert_string_equal(tell(&scene, "$X\n"), "error:3\r\n");
-    tell(&scene, "\x18");
-    assert_string_equal(tell(&scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
+    assert_string_equal(tell(scene, "$X\n"), "error:3\r\n");
+    tell(scene, "\x18");
+    assert_string_equal(tell(scene, "$X\n"), "[MSG:Caution: Unlocked]\r\nok\r\n");
 }
 
 static void homing_brings_the_clamp_to_the_start(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    tell(&scene, "$J=G91 G21 X20 F600\n");
-    wait(&scene, 3.0);
-    assert_string_equal(tell(&scene, "$H\n"), "");
-    assert_state(&scene, "Home");
-    wait(&scene, 2.0);
-    assert_string_equal(tell(&scene, "$J=G91 G21 X1 F60\n"), "");
-    wait(&scene, 10.0);
-    assert_string_equal(listen(&scene), "ok\r\nok\r\n");
-    wait(&scene, 2.0);
-    assert_close(travel(&scene), 1.0 * WB_MM, 1e-9);
-    assert_string_equal(tell(&scene, "$22=0\n"), "ok\r\n");
-    assert_string_equal(tell(&scene, "$H\n"), "error:5\r\n");
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X20 F600\n");
+    wait(scene, 3.0);
+    assert_string_equal(tell(scene, "$H\n"), "");
+    assert_state(scene, "Home");
+    wait(scene, 2.0);
+    assert_string_equal(tell(scene, "$J=G91 G21 X1 F60\n"), "");
+    wait(scene, 10.0);
+    assert_string_equal(listen(scene), "ok\r\nok\r\n");
+    wait(scene, 2.0);
+    assert_close(travel(scene), 1.0 * WB_MM, 1e-9);
+    assert_string_equal(tell(scene, "$22=0\n"), "ok\r\n");
+    assert_string_equal(tell(scene, "$H\n"), "error:5\r\n");
 }
 
 static void a_reset_while_homing_is_alarm_six(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    tell(&scene, "$H\n");
-    wait(&scene, 0.1);
-    assert_int_equal(strncmp(tell(&scene, "\x18"), "ALARM:6\r\n", 9), 0);
+    struct scene *const scene = *state;
+    tell(scene, "$H\n");
+    wait(scene, 0.1);
+    assert_int_equal(strncmp(tell(scene, "\x18"), "ALARM:6\r\n", 9), 0);
 }
 
 static void lost_steps_stay_until_homed(void **state)
@@ -319,27 +306,25 @@ static void lost_steps_stay_until_homed(void **state)
 
 static void end_stops_stall_the_motor(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    assert_string_equal(tell(&scene, "$20=0\n"), "ok\r\n");
-    assert_string_equal(tell(&scene, "$J=G91 G21 X70 F600\n"), "ok\r\n");
+    struct scene *const scene = *state;
+    assert_string_equal(tell(scene, "$20=0\n"), "ok\r\n");
+    assert_string_equal(tell(scene, "$J=G91 G21 X70 F600\n"), "ok\r\n");
     for (int i = 0; i < 100; i++) {
-        wait(&scene, 0.1);
-        travel(&scene);
+        wait(scene, 0.1);
+        travel(scene);
     }
-    assert_close(travel(&scene), 62.5 * WB_MM, 2e-6);
+    assert_close(travel(scene), 62.5 * WB_MM, 2e-6);
     /* It was told 70 mm: going back by 70 mm is 7.5 mm too far, into the other stop. */
-    tell(&scene, "$J=G91 G21 X-70 F600\n");
+    tell(scene, "$J=G91 G21 X-70 F600\n");
     for (int i = 0; i < 100; i++) {
-        wait(&scene, 0.1);
-        travel(&scene);
+        wait(scene, 0.1);
+        travel(scene);
     }
-    assert_close(travel(&scene), -2.5 * WB_MM, 2e-6);
-    assert_string_equal(tell(&scene, "$H\n"), "");
-    wait(&scene, 20.0);
-    assert_string_equal(listen(&scene), "ok\r\n");
-    assert_close(travel(&scene), 0.0, 2e-6);
+    assert_close(travel(scene), -2.5 * WB_MM, 2e-6);
+    assert_string_equal(tell(scene, "$H\n"), "");
+    wait(scene, 20.0);
+    assert_string_equal(listen(scene), "ok\r\n");
+    assert_close(travel(scene), 0.0, 2e-6);
 }
 
 /* Any bytes at any time: it stays within its stops and goes on answering. */
@@ -369,25 +354,21 @@ static void random_bytes_do_no_harm(void **state)
 
 static void reports_have_the_work_offset_now_and_then(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
+    struct scene *const scene = *state;
     int offsets = 0;
     for (int i = 0; i < 100; i++)
-        offsets += strstr(tell(&scene, "?"), "|WCO:") != NULL;
+        offsets += strstr(tell(scene, "?"), "|WCO:") != NULL;
     assert_int_equal(offsets, 10);
-    assert_string_equal(tell(&scene, "$10=0\n"), "ok\r\n");
-    assert_non_null(strstr(tell(&scene, "?"), "WPos:"));
+    assert_string_equal(tell(scene, "$10=0\n"), "ok\r\n");
+    assert_non_null(strstr(tell(scene, "?"), "WPos:"));
 }
 
 static void a_reset_empties_the_receive_buffer(void **state)
 {
-    (void)state;
-    struct scene scene;
-    open_scene(&scene, &plain);
-    tell(&scene, "$J=G91 G21 X1");
-    tell(&scene, "\x18");
-    assert_string_equal(tell(&scene, "\n"), "ok\r\n");
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X1");
+    tell(scene, "\x18");
+    assert_string_equal(tell(scene, "\n"), "ok\r\n");
 }
 
 static void endless_lines_are_refused(void **state)
@@ -531,25 +512,25 @@ static void the_real_driver_jogs_holds_resets_and_homes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(settings_and_questions_are_answered),
-        cmocka_unit_test(a_jog_moves_the_clamp_at_the_feed),
+        SCENE_TEST(settings_and_questions_are_answered),
+        SCENE_TEST(a_jog_moves_the_clamp_at_the_feed),
         cmocka_unit_test(down_can_be_the_negative_direction),
-        cmocka_unit_test(jogs_beyond_the_travel_are_refused),
-        cmocka_unit_test(jogs_in_a_row_run_on_without_a_halt),
-        cmocka_unit_test(opposite_jogs_wait_for_each_other),
+        SCENE_TEST(jogs_beyond_the_travel_are_refused),
+        SCENE_TEST(jogs_in_a_row_run_on_without_a_halt),
+        SCENE_TEST(opposite_jogs_wait_for_each_other),
         cmocka_unit_test(a_hold_cancels_a_jog_and_ends_idle),
-        cmocka_unit_test(a_hold_at_rest_deafens_until_resumed),
-        cmocka_unit_test(a_program_move_holds_and_goes_on),
-        cmocka_unit_test(a_reset_in_motion_alarms_and_locks),
-        cmocka_unit_test(a_reset_at_rest_only_greets),
-        cmocka_unit_test(a_program_move_beyond_the_travel_alarms_until_reset),
-        cmocka_unit_test(homing_brings_the_clamp_to_the_start),
-        cmocka_unit_test(a_reset_while_homing_is_alarm_six),
+        SCENE_TEST(a_hold_at_rest_deafens_until_resumed),
+        SCENE_TEST(a_program_move_holds_and_goes_on),
+        SCENE_TEST(a_reset_in_motion_alarms_and_locks),
+        SCENE_TEST(a_reset_at_rest_only_greets),
+        SCENE_TEST(a_program_move_beyond_the_travel_alarms_until_reset),
+        SCENE_TEST(homing_brings_the_clamp_to_the_start),
+        SCENE_TEST(a_reset_while_homing_is_alarm_six),
         cmocka_unit_test(lost_steps_stay_until_homed),
-        cmocka_unit_test(end_stops_stall_the_motor),
+        SCENE_TEST(end_stops_stall_the_motor),
         cmocka_unit_test(random_bytes_do_no_harm),
-        cmocka_unit_test(reports_have_the_work_offset_now_and_then),
-        cmocka_unit_test(a_reset_empties_the_receive_buffer),
+        SCENE_TEST(reports_have_the_work_offset_now_and_then),
+        SCENE_TEST(a_reset_empties_the_receive_buffer),
         cmocka_unit_test(endless_lines_are_refused),
         cmocka_unit_test(with_a_time_scale_feeds_are_the_hosts),
         cmocka_unit_test(the_real_driver_jogs_holds_resets_and_homes),
