@@ -323,6 +323,15 @@ bool wb_setting_is_given(const struct wb_setting *row, const void *settings)
     return false;
 }
 
+bool wb_setting_differs(const struct wb_setting *row, const void *settings)
+{
+    if (row->type == WB_SETTING_TEXT || row->type == WB_SETTING_LIST)
+        return wb_setting_is_given(row, settings);
+    if (row->type == WB_SETTING_BOOLEAN)
+        return wb_setting_is_given(row, settings) != (row->fallback != 0.0);
+    return wb_setting_value(row, settings) != row->fallback;
+}
+
 static const char *text_of(const struct wb_setting *row, const void *settings)
 {
     const void *const field = look_at(row, settings);

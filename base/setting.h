@@ -106,6 +106,9 @@ WB_MUST_CHECK enum wb_status wb_setting_check(const struct wb_setting_table *tab
 /* Whether the field of a struct that began as all zero holds anything. */
 bool wb_setting_is_given(const struct wb_setting *row, const void *settings);
 
+/* Whether the field of a filled struct holds something else than the row's default. */
+bool wb_setting_differs(const struct wb_setting *row, const void *settings);
+
 /* The value as its option takes it, numbers to 10 digits; of a list, the first member alone where
  * another one is not in its range. */
 void wb_setting_format(const struct wb_setting *row, const void *settings,

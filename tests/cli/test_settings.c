@@ -9,9 +9,9 @@
 #include "analysis/align.h"
 #include "analysis/calibrate.h"
 #include "analysis/report/campaign.h"
+#include "analysis/solve/solve_settings.h"
 #include "base/file.h"
 #include "base/setting_private.h"
-#include "cli/solve.h"
 #include "daq/bend_test.h"
 #include "fe/model/bundle_override.h"
 #include "tests/cli/tool.h"
@@ -30,10 +30,11 @@ static const struct command {
     {"calibrate", "none", "calibrate", &wb_calibrate_table, 1, WB_CALIBRATE_COMMAND},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
     {"solve cantilever", "--wire ./none --length-mm 1 --deflection-mm 1", "solve",
-     &wb_solve_settings, 1, WB_SOLVE_CANTILEVER},
-    {"solve wire3d", "./none.yaml", "solve", &wb_solve_settings, 1, WB_SOLVE_WIRE3D},
-    {"solve wire1d", "./none.yaml", "solve", &wb_solve_settings, 1, WB_SOLVE_WIRE1D},
-    {"solve bundle", "./none.yaml --vtk none", "solve", &wb_solve_settings, 1, WB_SOLVE_BUNDLE},
+     &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},
+    {"solve wire3d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE3D},
+    {"solve wire1d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE1D},
+    {"solve bundle", "./none.yaml --vtk none", "solve", &wb_solve_settings_table, 1,
+     WB_SOLVE_BUNDLE},
     {"solve bundle", "./none.yaml", "solve", wb_bundle_override_tables, WB_BUNDLE_OVERRIDE_TABLES,
      0},
 };
@@ -155,8 +156,8 @@ static void options_of_other_kinds_are_refused(void **unused)
                  {"wire1d", WB_SOLVE_WIRE1D},
                  {"bundle", WB_SOLVE_BUNDLE}};
     for (size_t k = 0; k < WB_COUNT(kinds); k++)
-        for (size_t i = 0; i < wb_solve_settings.n; i++) {
-            const struct wb_setting *const row = &wb_solve_settings.rows[i];
+        for (size_t i = 0; i < wb_solve_settings_table.n; i++) {
+            const struct wb_setting *const row = &wb_solve_settings_table.rows[i];
             char arguments[128], expected[128];
             if (wb_setting_applies(row, kinds[k].bit))
                 continue;
