@@ -329,6 +329,8 @@ bool wb_setting_differs(const struct wb_setting *row, const void *settings)
         return wb_setting_is_given(row, settings);
     if (row->type == WB_SETTING_BOOLEAN)
         return wb_setting_is_given(row, settings) != (row->fallback != 0.0);
+    if (row->type == WB_SETTING_NUMBER)
+        return *(const double *)look_at(row, settings) != row->fallback * scale_of(row);
     return wb_setting_value(row, settings) != row->fallback;
 }
 

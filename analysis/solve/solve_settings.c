@@ -166,28 +166,44 @@ static void add_word(struct words *words, const char *before, const char *word)
     words->n++;
 }
 
-/* The options of a table. Where its defaults are another's, as the bundle file's, all that is given
- * is an option. */
-static void add_options(struct words *words, const struct wb_setting_table *table, unsigned kind,
-                        const void *settings)
+static void add_option(struct words *words, const struct wb_setting *row, const void *settings)
 {
-    for (size_t i = 0; i < table->n; i++) {
-        const struct wb_setting *const row = &table->rows[i];
-        char value[WB_SETTING_VALUE];
-        if (!wb_setting_applies(row, kind) ||
-            !(table->otherwise ? wb_setting_is_given(row, settings)
-                               : wb_setting_differs(row, settings)))
-            continue;
-        add_word(words, "--", row->option);
-        if (row->type == WB_SETTING_BOOLEAN)
-            continue;
-        /* Texts may be longer than values are: paths. */
-        if (row->type == WB_SETTING_TEXT && row->size == 0) {
-            add_word(words, "", *(const char *const *)((const char *)settings + row->offset));
-            continue;
+    char value[WB_SETTING_VALUE];
+    add_word(words, "--", row->option);
+    if (row->type == WB_SETTING_BOOLEAN)
+        return;
+    /* Texts may be longer than values are: paths. */
+    if (row->type == WB_SETTING_TEXT && row->size == 0) {
+        add_word(words, "", *(const char *const *)((const char *)settings + row->offset));
+        return;
+    }
+    wb_setting_format(row, settings, value);
+    add_word(words, "", value);
+}
+
+/* The tables of the override in the order of their options, and the row each begins with; those
+ * before it come last. */
+static const struct {
+    int table, first;
+} order[] = {{WB_BUNDLE_OVERRIDE_LOADS, 0},
+             {WB_BUNDLE_OVERRIDE_FRICTION, 0},
+             {WB_BUNDLE_OVERRIDE_COHESION, 0},
+             {WB_BUNDLE_OVERRIDE_MESH, 0},
+             {WB_BUNDLE_OVERRIDE_RUN, 1 /* the duration is its last */}};
+_Static_assert(WB_COUNT(order) == WB_BUNDLE_OVERRIDE_TABLES, "each table has its place");
+
+/* What is given, as it replaces what the bundle file says. */
+static void add_override(struct words *words, const struct wb_bundle_override *override)
+{
+    for (size_t k = 0; k < WB_COUNT(order); k++) {
+        const struct wb_setting_table *const table = &wb_bundle_override_tables[order[k].table];
+        const void *const settings = (const char *) override + table->offset;
+        for (size_t i = 0; i < table->n; i++) {
+            const struct wb_setting *const row =
+                &table->rows[((size_t)order[k].first + i) % table->n];
+            if (wb_setting_is_given(row, settings))
+                add_option(words, row, settings);
         }
-        wb_setting_format(row, settings, value);
-        add_word(words, "", value);
     }
 }
 
@@ -213,11 +229,11 @@ char **wb_solve_settings_command(const struct wb_solve_settings *settings)
     add_word(&words, "", wb_solve_settings_kind(settings));
     if (settings->model)
         add_word(&words, "", settings->model);
-    for (int i = 0; settings->kind == WB_SOLVE_BUNDLE && i < WB_BUNDLE_OVERRIDE_TABLES; i++) {
-        const struct wb_setting_table *const table = &wb_bundle_override_tables[i];
-        add_options(&words, table, 0, (const char *)&settings->override + table->offset);
-    }
-    add_options(&words, &wb_solve_settings_table, settings->kind, settings);
+    if (settings->kind == WB_SOLVE_BUNDLE)
+        add_override(&words, &settings->override);
+    for (size_t i = 0; i < WB_COUNT(rows); i++)
+        if (wb_setting_applies(&rows[i], settings->kind) && wb_setting_differs(&rows[i], settings))
+            add_option(&words, &rows[i], settings);
     char **const block = pack(&words);
     wb_text_release(&words.texts);
     return block;

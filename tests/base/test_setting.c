@@ -299,6 +299,19 @@ static void only_what_is_not_zero_is_given(void **unused)
     }
 }
 
+static void only_what_is_not_the_default_differs(void **unused)
+{
+    (void)unused;
+    struct example e = {0};
+    wb_setting_fill(&table, &e);
+    for (size_t i = 0; i < table.n; i++)
+        assert_false(wb_setting_differs(&rows[i], &e));
+    const struct example other = {
+        .length = 0.086, .count = 1, .is_off = true, .name = "a", .path = "b", .has_pair = true};
+    for (size_t i = 0; i < table.n; i++)
+        assert_true(wb_setting_differs(&rows[i], &other));
+}
+
 static void json_holds_what_is_compared(void **unused)
 {
     (void)unused;
@@ -408,6 +421,7 @@ int main(void)
         cmocka_unit_test(lists_are_a_value_or_a_map),
         cmocka_unit_test(filled_structs_are_checked),
         cmocka_unit_test(only_what_is_not_zero_is_given),
+        cmocka_unit_test(only_what_is_not_the_default_differs),
         cmocka_unit_test(json_holds_what_is_compared),
         cmocka_unit_test(every_field_is_part_of_the_identity),
         cmocka_unit_test(values_are_written_as_options_take_them),

@@ -1,5 +1,6 @@
 /* What the tests of many runs share: a folder to work in, messages that were said, and a worker:
- * the test's own binary, called as `worker MODE ... -o FOLDER` in the place of wirebench. */
+ * a function, and the same as the test's own binary, called as `worker MODE ... -o FOLDER` in the
+ * place of wirebench. */
 #ifndef WB_TESTS_ANALYSIS_JOBS_JOBS_FIXTURE_H
 #define WB_TESTS_ANALYSIS_JOBS_JOBS_FIXTURE_H
 

@@ -9,8 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "analysis/solve/solve.h"
 #include "base/file.h"
 #include "base/interrupt_private.h"
+#include "base/units.h"
 #include "tests/analysis/jobs/jobs_fixture.h"
 #include "tests/check.h"
 
@@ -26,21 +28,38 @@ static void expect(const struct wb_jobs_outcome *outcome, int present, int done,
     assert_int_equal(outcome->left, left);
 }
 
+static int solve(void *context, const char *output, int cores)
+{
+    struct wb_solve_settings settings = *(const struct wb_solve_settings *)context;
+    bool complete;
+    settings.output = output;
+    wb_solve_set_threads(cores);
+    return wb_solve_run(&settings, NULL, NULL, &complete) == WB_OK && complete ? 0 : 1;
+}
+
 static void wirebench_itself_makes_datasets(void **unused)
 {
     (void)unused;
-    static const char *const words[] = {
-        "solve",           "cantilever", "--wire",   "type1", "--length-mm", "85",
-        "--deflection-mm", "10",         "--points", "2",     NULL};
-    const char *const binary = getenv("WIREBENCH_BINARY");
-    if (!binary)
-        fail_msg("WIREBENCH_BINARY is not set: run this test through meson");
-    const struct wb_job jobs[] = {{.name = "a", .arguments = words, .output = "data/a b"},
-                                  {.name = "b", .arguments = words, .output = "data/b/"}};
-    const struct wb_jobs_options options = {
-        .where = WB_JOBS_LOCAL, .folder = "logs", .program = binary};
+    struct wb_solve_settings settings = {.kind = WB_SOLVE_CANTILEVER};
+    wb_setting_fill(&wb_solve_settings_table, &settings);
+    settings.wire = "type1";
+    settings.length = 85.0 * WB_MM;
+    settings.deflection = 10.0 * WB_MM;
+    settings.points = 2;
+    char **const words = wb_solve_settings_command(&settings);
+    assert_non_null(words);
+    const struct wb_job a = {.name = "a",
+                             .run = solve,
+                             .context = &settings,
+                             .arguments = (const char *const *)words,
+                             .output = "data/a b"};
+    struct wb_job jobs[] = {a, a};
+    jobs[1].name = "b";
+    jobs[1].output = "data/b/";
+    const struct wb_jobs_options options = {.where = WB_JOBS_LOCAL, .folder = "logs"};
     struct wb_jobs_outcome outcome;
     assert_int_equal(wb_jobs_run(&outcome, jobs, 2, &options), WB_OK);
+    free(words);
     expect(&outcome, 0, 2, 0, 0);
     assert_true(jobs_fixture_is_there("data/a b/force_deflection.csv"));
     assert_true(jobs_fixture_is_there("data/b/dataset.json"));
@@ -286,7 +305,7 @@ static void bad_lists_are_refused(void **unused)
     (void)unused;
     static const char *const words[] = {"worker", "make", "x", NULL}, *const broken[] = {"a\nb",
                                                                                          NULL};
-    const struct wb_job lists[][2] = {
+    struct wb_job lists[][2] = {
         {{.name = "a/b", .arguments = words, .output = "a"}},
         {{.name = "", .arguments = words, .output = "a"}},
         {{.name = "a", .arguments = broken, .output = "a"}},
@@ -295,13 +314,17 @@ static void bad_lists_are_refused(void **unused)
          {.name = "a", .arguments = words, .output = "b"}},
         {{.name = "a", .arguments = words, .output = "x"},
          {.name = "b", .arguments = words, .output = "./x/"}},
+        {{.name = "a", .arguments = words, .output = "x"}},
     };
     static const char *const messages[] = {
         "'a/b' cannot name a run", "'' cannot name a run",   "line break",
-        "no output folder",        "two runs are named 'a'", "'a' and 'b' would both write"};
+        "no output folder",        "two runs are named 'a'", "'a' and 'b' would both write",
+        "no function to run"};
     const struct wb_jobs_options options = {.where = WB_JOBS_LOCAL, .folder = "logs"};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         struct wb_jobs_outcome outcome;
+        if (i + 1 < WB_COUNT(lists))
+            lists[i][0].run = lists[i][1].run = solve;
         jobs_fixture_listen();
         assert_int_equal(wb_jobs_run(&outcome, lists[i], lists[i][1].name ? 2 : 1, &options),
                          WB_ERR_ARGUMENT);
