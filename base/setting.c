@@ -73,6 +73,18 @@ void wb_setting_fill(const struct wb_setting_table *table, void *settings)
         fill(&table->rows[i], field_of(&table->rows[i], settings));
 }
 
+/* "1e-6", as people write it. */
+static const char *format_short(double value, char text[WB_NUMBER_TEXT])
+{
+    snprintf(text, WB_NUMBER_TEXT, "%g", value);
+    char *const exponent = strchr(text, 'e');
+    if (exponent) {
+        const int power = atoi(exponent + 1);
+        snprintf(exponent + 1, (size_t)(text + WB_NUMBER_TEXT - exponent - 1), "%d", power);
+    }
+    return text;
+}
+
 /* --- the command line --- */
 
 /* "a, b or c" */
@@ -91,15 +103,23 @@ static bool is_within(const struct wb_setting *row, double value)
     return !has_range(row) || (value >= row->least && value <= row->largest);
 }
 
+/* False, with the range as --help has it. */
+static bool refuse_number(const struct wb_setting *row, const char *what, const char *argument,
+                          char problem[WB_SETTING_PROBLEM])
+{
+    char range[WB_SETTING_VALUE];
+    wb_setting_range(row, range);
+    snprintf(problem, WB_SETTING_PROBLEM, "expected %s%s%s, not '%s'", what,
+             range[0] ? " from " : "", range, argument);
+    return false;
+}
+
 static bool parse_number(const struct wb_setting *row, const char *argument, double *field,
                          char problem[WB_SETTING_PROBLEM])
 {
     double value = 0.0;
-    if (!wb_number_parse(argument, &value) || !is_within(row, value)) {
-        snprintf(problem, WB_SETTING_PROBLEM, "expected a number from %g to %g, not '%s'",
-                 row->least, row->largest, argument);
-        return false;
-    }
+    if (!wb_number_parse(argument, &value) || !is_within(row, value))
+        return refuse_number(row, "a number", argument, problem);
     *field = value * scale_of(row);
     return true;
 }
@@ -108,11 +128,8 @@ static bool parse_integer(const struct wb_setting *row, const char *argument, in
                           char problem[WB_SETTING_PROBLEM])
 {
     long value = 0;
-    if (!wb_number_parse_integer(argument, &value) || !is_within(row, (double)value)) {
-        snprintf(problem, WB_SETTING_PROBLEM, "expected a whole number from %.0f to %.0f, not '%s'",
-                 row->least, row->largest, argument);
-        return false;
-    }
+    if (!wb_number_parse_integer(argument, &value) || !is_within(row, (double)value))
+        return refuse_number(row, "a whole number", argument, problem);
     *field = (int)value;
     return true;
 }
@@ -120,6 +137,10 @@ static bool parse_integer(const struct wb_setting *row, const char *argument, in
 static bool parse_text(const struct wb_setting *row, const char *argument, void *field,
                        char problem[WB_SETTING_PROBLEM])
 {
+    if (!argument[0]) {
+        snprintf(problem, WB_SETTING_PROBLEM, "expected %s, not ''", row->argument);
+        return false;
+    }
     if (row->size == 0) {
         *(const char **)field = argument;
         return true;
@@ -292,8 +313,10 @@ enum wb_status wb_setting_check_row(const struct wb_setting *row, const void *se
     if (value == row->fallback * scale ||
         (value >= row->least * scale && value <= row->largest * scale))
         return WB_OK;
-    return wb_fail_to(why, WB_ERR_ARGUMENT, "%s: %g is out of range, expected %g to %g", row->name,
-                      value / scale, row->least, row->largest);
+    char text[WB_NUMBER_TEXT], range[WB_SETTING_VALUE];
+    wb_setting_range(row, range);
+    return wb_fail_to(why, WB_ERR_ARGUMENT, "%s: %s is out of range, expected %s", row->name,
+                      format_short(value / scale, text), range);
 }
 
 enum wb_status wb_setting_check(const struct wb_setting_table *table, const void *settings,
@@ -485,18 +508,6 @@ void wb_setting_identify(const struct wb_setting_table *table, const void *setti
 }
 
 /* --- in words --- */
-
-/* "1e-6", as people write it. */
-static const char *format_short(double value, char text[WB_NUMBER_TEXT])
-{
-    snprintf(text, WB_NUMBER_TEXT, "%g", value);
-    char *const exponent = strchr(text, 'e');
-    if (exponent) {
-        const int power = atoi(exponent + 1);
-        snprintf(exponent + 1, (size_t)(text + WB_NUMBER_TEXT - exponent - 1), "%d", power);
-    }
-    return text;
-}
 
 void wb_setting_range(const struct wb_setting *row, char text[WB_SETTING_VALUE])
 {

@@ -20,13 +20,11 @@ struct options {
 static const struct kind {
     const char *arguments, *summary;
 } kinds[WB_SOLVE_KINDS] = {
-    {"cantilever --wire=NAME --length-mm=L --deflection-mm=D",
+    {"--wire=NAME --length-mm=L --deflection-mm=D",
      "Computes a bending test with the 1D beam model of a homogenised wire, described by options."},
-    {"wire3d MODEL.yaml",
-     "Computes a model file (fixtures/models, by name or path) as a 3D solid."},
-    {"wire1d MODEL.yaml",
-     "Computes a model file (fixtures/models, by name or path) as a rod of fibres."},
-    {"bundle BUNDLE.yaml",
+    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a 3D solid."},
+    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a rod of fibres."},
+    {"BUNDLE.yaml",
      "Computes a bundle file (fixtures/bundles, by name or path), wires with contact and tape, in "
      "explicit dynamics."},
 };
@@ -81,6 +79,8 @@ static void check(struct argp_state *state, const struct wb_solve_settings *s)
         argp_error(state, "name the model: cantilever, wire3d, wire1d or bundle");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every is for --vtk");
+    if (s->checkpoint_interval > 0.0 && !s->checkpoint)
+        argp_error(state, "--checkpoint-minutes is for --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
         argp_error(state, "name the model file: %s MODEL.yaml", wb_solve_settings_kind(s));
     if (s->kind == WB_SOLVE_CANTILEVER && (!s->wire || s->length == 0.0 || s->deflection == 0.0))
@@ -109,11 +109,14 @@ static void describe(int only, struct wb_text *arguments, struct wb_text *text)
     for (int i = 0; i < WB_SOLVE_KINDS; i++) {
         if (only >= 0 && only != i)
             continue;
-        wb_text_append(arguments, "%s%s", arguments->length > 0 ? "\n" : "", kinds[i].arguments);
-        if (only >= 0)
+        if (only >= 0) {
+            wb_text_append(arguments, "%s", kinds[i].arguments);
             wb_text_append(text, "%s ", kinds[i].summary);
-        else
-            wb_text_append(text, "%s: %s\n", wb_solve_settings_kinds[i], kinds[i].summary);
+            continue;
+        }
+        wb_text_append(arguments, "%s%s %s", i > 0 ? "\n" : "", wb_solve_settings_kinds[i],
+                       kinds[i].arguments);
+        wb_text_append(text, "%s: %s\n", wb_solve_settings_kinds[i], kinds[i].summary);
     }
     wb_text_append(text, "The curve is printed as CSV or JSON, or written as a dataset.");
     if (only < 0)
@@ -127,6 +130,7 @@ static void describe(int only, struct wb_text *arguments, struct wb_text *text)
 
 static void parse_options(int argc, char **argv, struct options *options)
 {
+    char name[32];
     struct wb_text arguments = {0}, text = {0};
     struct argp argp = {.options = other_options, .parser = parse};
     struct wb_settings_command command = {
@@ -141,6 +145,11 @@ static void parse_options(int argc, char **argv, struct options *options)
     argp.args_doc = wb_text_string(&arguments);
     argp.doc = wb_text_string(&text);
     command.place = kind >= 0 ? 1U << kind : 0;
+    if (kind >= 0) {
+        /* Messages and --help are of "wirebench solve bundle". */
+        snprintf(name, sizeof name, "solve %s", wb_solve_settings_kinds[kind]);
+        argv[0] = name;
+    }
     wb_settings_parse(&command, argc, argv, options);
     options->settings.output = options->common.output;
     options->settings.force = options->common.force;
@@ -209,6 +218,8 @@ int wb_cmd_solve(int argc, char **argv)
     parse_options(argc, argv, &options);
     wb_interrupt_install();
     const enum wb_status status = wb_solve_run(&options.settings, show, &options.common, &complete);
+    if (status == WB_ERR_ARGUMENT)
+        return WB_EXIT_USAGE; /* a mesh that the bundle does not have, say */
     if (status != WB_OK)
         return wb_command_exit(status);
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;

@@ -226,6 +226,10 @@ static enum wb_status draw(const struct wb_info_options *options,
 
 static int tell(const struct wb_info_options *options, const struct wb_bundle_model *model)
 {
+    if (options->mesh && !wb_bundle_model_mesh(model, options->mesh)) {
+        wb_error("%s: there is no mesh '%s'", model->path, options->mesh);
+        return WB_EXIT_USAGE;
+    }
     if (options->figure && draw(options, model) != WB_OK)
         return WB_EXIT_FAILED;
     if (options->common.json)

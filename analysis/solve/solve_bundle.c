@@ -19,6 +19,7 @@ enum {
 };
 
 static const double allowed_imbalance = 0.01;
+static const double usual_interval = 600.0; /* s, between checkpoints */
 
 /* Inputs and results of a run. */
 struct run {
@@ -112,7 +113,8 @@ static enum wb_status compute(void *context)
         .mesh = run->mesh->name,
         .threads = s->threads,
         .checkpoint = s->checkpoint,
-        .checkpoint_interval = s->checkpoint_interval,
+        .checkpoint_interval =
+            s->checkpoint_interval > 0.0 ? s->checkpoint_interval : usual_interval,
         .observer = &observer,
     };
     const enum wb_status status = wb_bundle_run(&run->result, &run->model, &options);

@@ -134,10 +134,10 @@ static const struct wb_setting rows[] = {
      .scale = 60.0,
      .least = 1e-3,
      .largest = 1e5,
-     .fallback = 10.0,
+     .otherwise = "10",
      .option = "checkpoint-minutes",
      .argument = "M",
-     .help = "Time between checkpoints",
+     .help = "With --checkpoint, time between checkpoints",
      .applies = WB_SOLVE_BUNDLE},
 };
 

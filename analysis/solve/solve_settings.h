@@ -44,7 +44,7 @@ struct wb_solve_settings {
     int vtk_every; /* rows; 0: 1 */
     int threads;
     const char *checkpoint;     /* file; NULL: none */
-    double checkpoint_interval; /* s */
+    double checkpoint_interval; /* s; 0: 10 minutes */
 };
 
 extern const struct wb_setting_table wb_solve_settings_table;

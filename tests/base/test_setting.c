@@ -171,8 +171,8 @@ static void wrong_options_are_refused_and_change_nothing(void **unused)
     static const struct {
         const char *name, *argument, *expected;
     } cases[] = {
-        {"length-mm", "0.09", "expected a number from 0.1 to 1e+06, not '0.09'"},
-        {"length-mm", "1000001", "expected a number from 0.1 to 1e+06"},
+        {"length-mm", "0.09", "expected a number from 0.1 to 1e6 mm, not '0.09'"},
+        {"length-mm", "1000001", "expected a number from 0.1 to 1e6 mm"},
         {"length-mm", "5 mm", "not '5 mm'"},
         {"length-mm", "nan", "not 'nan'"},
         {"count", "0", "expected a whole number from 1 to 9, not '0'"},

@@ -33,8 +33,8 @@ static const struct command {
      &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},
     {"solve wire3d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE3D},
     {"solve wire1d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE1D},
-    {"solve bundle", "./none.yaml --vtk none", "solve", &wb_solve_settings_table, 1,
-     WB_SOLVE_BUNDLE},
+    {"solve bundle", "./none.yaml --vtk none --checkpoint none", "solve", &wb_solve_settings_table,
+     1, WB_SOLVE_BUNDLE},
     {"solve bundle", "./none.yaml", "solve", wb_bundle_override_tables, WB_BUNDLE_OVERRIDE_TABLES,
      0},
 };
@@ -321,6 +321,24 @@ static void help_says_range_and_default(void **unused)
     for_each_option(look_at_help);
 }
 
+/* A line of blanks alone looks like the end of the options; argp leaves one after a help that just
+ * fills its line. */
+static void help_has_no_line_of_blanks(void **unused)
+{
+    (void)unused;
+    for (size_t c = 0; c < WB_COUNT(commands); c++) {
+        char arguments[128];
+        snprintf(arguments, sizeof arguments, "%s --help", commands[c].name);
+        run_tool("", arguments);
+        for (const char *line = o.out; *line;) {
+            const size_t length = strcspn(line, "\n");
+            if (length > 0 && strspn(line, " ") == length)
+                fail_msg("'%s' has a line of blanks before '%.60s'", arguments, line + length + 1);
+            line += length + (line[length] == '\n');
+        }
+    }
+}
+
 /* A document, its line ends as blanks; those before paragraphs, items and headings stay. */
 static char *read_document(const char *name)
 {
@@ -435,6 +453,7 @@ int main(void)
         cmocka_unit_test(bundles_have_the_rows_ranges),
         cmocka_unit_test(bundles_without_a_run_have_the_rows_defaults),
         cmocka_unit_test(help_says_range_and_default),
+        cmocka_unit_test(help_has_no_line_of_blanks),
         cmocka_unit_test(the_manual_says_range_and_default),
         cmocka_unit_test(the_formats_say_range_and_default),
     };
