@@ -118,7 +118,8 @@ static bool parse_number(const struct wb_setting *row, const char *argument, dou
                          char problem[WB_SETTING_PROBLEM])
 {
     double value = 0.0;
-    if (!wb_number_parse(argument, &value) || !is_within(row, value))
+    const bool is_zero = row->zero && strcmp(argument, row->zero) == 0;
+    if (!is_zero && (!wb_number_parse(argument, &value) || !is_within(row, value)))
         return refuse_number(row, "a number", argument, problem);
     *field = value * scale_of(row);
     return true;
@@ -169,7 +170,12 @@ static bool parse_choice(const struct wb_setting *row, const char *argument, int
     return false;
 }
 
-/* The first member alone, or all of them with commas between. */
+static char separator_of(const struct wb_setting *row)
+{
+    return row->separator ? row->separator : ',';
+}
+
+/* The first member alone, where that may be, or all of them with separators between. */
 static bool parse_list(const struct wb_setting *row, const char *argument, void *members,
                        char problem[WB_SETTING_PROBLEM])
 {
@@ -178,12 +184,17 @@ static bool parse_list(const struct wb_setting *row, const char *argument, void 
     const int all = (int)row->members->n;
     snprintf(text, sizeof text, "%s", argument);
     for (char *part = text, *next; part; part = next) {
-        next = strchr(part, ',');
+        next = strchr(part, separator_of(row));
         if (next)
             *next++ = '\0';
         if (n < all && !wb_setting_parse(&row->members->rows[n], part, members, problem))
             return false;
         n++;
+    }
+    const bool may_be_alone = strchr(row->argument, '[') != NULL;
+    if (n != all && !may_be_alone) {
+        snprintf(problem, WB_SETTING_PROBLEM, "expected %s, not '%s'", row->argument, argument);
+        return false;
     }
     if (n != 1 && n != all) {
         /* "S or S,K,D" of "S[,K,D]" */
@@ -375,7 +386,8 @@ static void format_list(const struct wb_setting *row, const void *members,
     text[0] = '\0';
     for (size_t i = 0; i < (n < table->n ? 1 : n); i++) {
         const size_t used = strlen(text);
-        snprintf(text + used, WB_SETTING_VALUE - used, "%s%.10g", i > 0 ? "," : "",
+        const char between[] = {separator_of(row), '\0'};
+        snprintf(text + used, WB_SETTING_VALUE - used, "%s%.10g", i > 0 ? between : "",
                  wb_setting_value(&table->rows[i], members));
     }
 }
@@ -518,9 +530,9 @@ void wb_setting_range(const struct wb_setting *row, char text[WB_SETTING_VALUE])
     else if (row->type == WB_SETTING_LIST)
         wb_setting_range(&row->members->rows[0], text);
     else if (has_range(row))
-        snprintf(text, WB_SETTING_VALUE, "%s to %s%s%s", format_short(row->least, least),
+        snprintf(text, WB_SETTING_VALUE, "%s to %s%s%s%s%s", format_short(row->least, least),
                  format_short(row->largest, largest), row->unit ? " " : "",
-                 row->unit ? row->unit : "");
+                 row->unit ? row->unit : "", row->zero ? " or " : "", row->zero ? row->zero : "");
 }
 
 void wb_setting_default(const struct wb_setting *row, const char *otherwise,

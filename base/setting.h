@@ -31,7 +31,8 @@ enum wb_setting_type {
     WB_SETTING_BOOLEAN, /* bool; its option takes no argument and sets what the default is not */
     WB_SETTING_TEXT,    /* char[size]; of size 0 a const char *, which is borrowed */
     WB_SETTING_CHOICE,  /* int: an index of `choices` */
-    WB_SETTING_LIST     /* numbers, each a member with a row of its own: "0.4,0.1,2" */
+    WB_SETTING_LIST /* numbers, each a member with a row of its own: "0.4,0.1,2"; the first alone
+                       serves where `argument` says so: "S[,K,D]" */
 };
 
 struct wb_setting_table;
@@ -54,7 +55,9 @@ struct wb_setting {
     const char *argument; /* "H"; NULL: of a boolean */
     const char *help;     /* without an end: range and default follow */
     unsigned applies;     /* bits of the owner: where it may be given; 0: wherever its table may */
+    const char *zero;     /* of a number: the word that stands for 0, "max"; NULL: none */
     /* Of a list. */
+    char separator;                         /* between members; 0: ',' */
     const struct wb_setting_table *members; /* their fields lie in the struct at `offset` */
     size_t given;                           /* offset of a bool that is set when it was given */
     /* Completes the struct of the members after the first `n` of them were given, and judges it:

@@ -50,16 +50,6 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
         exit(WB_EXIT_USAGE);
 }
 
-double wb_command_number(struct argp_state *state, const char *option, const char *text,
-                         double minimum, double maximum)
-{
-    double value = 0.0;
-    if (!wb_number_parse(text, &value) || value < minimum || value > maximum)
-        argp_error(state, "%s: expected a number from %g to %g, not '%s'", option, minimum, maximum,
-                   text);
-    return value;
-}
-
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum)
 {

@@ -30,10 +30,8 @@ extern const struct argp_option wb_command_help_options[];
  * Exits with WB_EXIT_USAGE on wrong usage, as argp does. */
 void wb_command_parse(const struct argp *argp, int argc, char **argv, void *input);
 
-/* For use inside an argp parser: reads the argument of an option as a number within
- * [minimum, maximum], or a whole number, or stops with a usage error that names the option. */
-double wb_command_number(struct argp_state *state, const char *option, const char *text,
-                         double minimum, double maximum);
+/* For use inside an argp parser: reads the argument of an option as a whole number within
+ * [minimum, maximum], or stops with a usage error that names the option. */
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum);
 

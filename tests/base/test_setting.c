@@ -195,6 +195,45 @@ static void wrong_options_are_refused_and_change_nothing(void **unused)
     }
 }
 
+/* "0.8@1.2", where the first alone is not enough. */
+static void lists_may_have_another_separator_and_need_all_members(void **unused)
+{
+    (void)unused;
+    const struct wb_setting row = {.name = "pair",
+                                   .type = WB_SETTING_LIST,
+                                   .offset = offsetof(struct example, pair),
+                                   .argument = "F@S",
+                                   .separator = '@',
+                                   .members = &pair_table,
+                                   .given = offsetof(struct example, has_pair)};
+    struct example e = {0};
+    char text[WB_SETTING_VALUE];
+    assert_true(wb_setting_parse(&row, "0.8@1.2", &e, problem));
+    assert_true(e.has_pair);
+    assert_close(e.pair.first, 0.8e-3, 1e-18);
+    assert_close(e.pair.second, 1.2, 0.0);
+    wb_setting_format(&row, &e, text);
+    assert_string_equal(text, "0.8@1.2");
+    static const char *const wrong[] = {"0.8", "0.8,1.2", "0.8@1.2@1", "@1.2", "0.8@"};
+    for (size_t i = 0; i < WB_COUNT(wrong); i++)
+        if (wb_setting_parse(&row, wrong[i], &e, problem))
+            fail_msg("'%s' was taken", wrong[i]);
+    assert_false(wb_setting_parse(&row, "0.8", &e, problem));
+    assert_string_equal(problem, "expected F@S, not '0.8'");
+}
+
+static void a_word_may_stand_for_0(void **unused)
+{
+    (void)unused;
+    struct wb_setting row = rows[0];
+    struct example e = {.length = 1.0};
+    row.zero = "none";
+    assert_true(wb_setting_parse(&row, "none", &e, problem));
+    assert_close(e.length, 0.0, 0.0);
+    assert_false(wb_setting_parse(&row, "0", &e, problem));
+    assert_string_equal(problem, "expected a number from 0.1 to 1e6 mm or none, not '0'");
+}
+
 static enum wb_status read_text(struct example *example, const char *text, unsigned place)
 {
     struct wb_config_key keys[WB_COUNT(rows)];
@@ -417,6 +456,8 @@ int main(void)
         cmocka_unit_test(defaults_are_filled_in),
         cmocka_unit_test(options_are_read),
         cmocka_unit_test(wrong_options_are_refused_and_change_nothing),
+        cmocka_unit_test(lists_may_have_another_separator_and_need_all_members),
+        cmocka_unit_test(a_word_may_stand_for_0),
         cmocka_unit_test(files_are_read_by_place),
         cmocka_unit_test(lists_are_a_value_or_a_map),
         cmocka_unit_test(filled_structs_are_checked),

@@ -12,6 +12,7 @@
 #include "analysis/solve/solve_settings.h"
 #include "base/file.h"
 #include "base/setting_private.h"
+#include "cli/bench_options.h"
 #include "daq/bend_test.h"
 #include "fe/model/bundle_override.h"
 #include "tests/cli/tool.h"
@@ -26,6 +27,9 @@ static const struct command {
     unsigned place;
 } commands[] = {
     {"record", "none.yaml --specimen none.yaml -o none.wbr", "record", &wb_bend_test_table, 1, 0},
+    {"stage", "none.yaml home", "stage", &wb_bench_options_stage, 1, 0},
+    {"rig", "none.yaml --specimen none.yaml --run none", "rig", &wb_bench_options_rig, 1, 0},
+    {"replay", "none.wbr", "replay", &wb_bench_options_replay, 1, 0},
     {"align", "none.wbr -o none", "align", &wb_align_table, 1, 0},
     {"calibrate", "none", "calibrate", &wb_calibrate_table, 1, WB_CALIBRATE_COMMAND},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
@@ -96,14 +100,29 @@ static void try_option(const struct command *command, const struct wb_setting *r
         fail_msg("'%s': exit code %d, message '%s'", arguments, code, o.err);
 }
 
+/* The other members of a list that takes none alone. */
+static void add_members(const struct wb_setting *row, char text[64])
+{
+    if (row->type != WB_SETTING_LIST || strchr(row->argument, '['))
+        return;
+    for (size_t i = 1; i < row->members->n; i++) {
+        const size_t used = strlen(text);
+        snprintf(text + used, 64 - used, "%c%g", row->separator, row->members->rows[i].least);
+    }
+}
+
 static void try_options(const struct command *command, const struct wb_setting *row)
 {
     struct value values[VALUES];
     const struct wb_setting *const number = number_row(row);
     if (number) {
         choose_values(number, values);
-        for (int i = 0; i < VALUES; i++)
+        for (int i = 0; i < VALUES; i++) {
+            add_members(row, values[i].text);
             try_option(command, row, values[i].text, values[i].is_good);
+        }
+        if (row->zero)
+            try_option(command, row, row->zero, true);
         try_option(command, row, "1,5", false);
         try_option(command, row, "1 mm", false);
     }
