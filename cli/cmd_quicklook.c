@@ -15,14 +15,9 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    return wb_command_parse_common(key, argument, state, state->input);
-}
-
 static const struct argp argp = {
     .options = option_table,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr",
     .doc = "Aligns one recording (.wbr or .wbr.zst) and writes its force-deflection curve and "
            "shapes as figures (SVG, PNG, PDF) and CSV, with a summary that is also printed.\v"
@@ -61,7 +56,7 @@ static int deliver(const struct wb_dataset *dataset, const struct wb_command_com
 
 int wb_cmd_quicklook(int argc, char **argv)
 {
-    struct wb_command_common options = {.noun = "recording", .destination = "figures go"};
+    struct wb_command_common options = {.noun = "recording", .destination = "figures go: -o DIR"};
     struct wb_align_settings settings;
     struct wb_dataset dataset;
     wb_command_parse(&argp, argc, argv, &options);

@@ -1,7 +1,6 @@
 /* wirebench record: the paper's test, recorded. */
 #include <inttypes.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -102,15 +101,6 @@ static const struct argp argp = {
         "Exit codes: 0 complete; 1 failed before the first cycle, or nothing was recorded; 2 wrong "
         "usage; 3 stopped early or data lost, what was recorded is usable.",
 };
-
-static const struct wb_settings_source source = {
-    .tables = &wb_bend_test_table,
-    .n_tables = 1,
-    .offset = offsetof(struct options, request),
-};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
 
 /* The fields of the live line, as text. */
 struct fields {
@@ -270,7 +260,7 @@ int wb_cmd_record(int argc, char **argv)
     struct wb_bend_test_result result;
     char specimen[WB_PATH];
     wb_bend_test_default_request(&options.request);
-    wb_settings_parse(&command, argc, argv, &options);
+    wb_settings_parse_table(&argp, &wb_bend_test_table, &options.request, 1, argc, argv, &options);
     options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
     wb_interrupt_install();
     wb_interrupt_guard();

@@ -19,26 +19,15 @@ static const struct argp_option other_options[] = {
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct wb_replay_options *const o = state->input;
-    return wb_command_parse_common(key, argument, state, &o->common);
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr",
     .doc = "Plays a recording (.wbr or .wbr.zst): the recorded bytes go through the same decoders "
            "as on the bench, with a live line of force, travel and markers on the terminal; at the "
            "end it prints what was decoded.\v"
            "Ctrl-C ends it. Exit code 3: interrupted, or parts are missing or damaged.",
 };
-
-static const struct wb_settings_source source = {.tables = &wb_bench_options_replay, .n_tables = 1};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
 
 /* The latest sample of each channel, for the live line. */
 struct player {
@@ -165,7 +154,7 @@ int wb_cmd_replay(int argc, char **argv)
     struct player player = {.started = false};
     struct wb_replay_counts counts = {0};
     wb_setting_fill(&wb_bench_options_replay, &options);
-    wb_settings_parse(&command, argc, argv, &options);
+    wb_settings_parse_table(&argp, &wb_bench_options_replay, &options, 1, argc, argv, &options);
     wb_interrupt_install();
     if (wb_recording_open(&recording, options.common.input) != WB_OK)
         return WB_EXIT_FAILED;

@@ -47,15 +47,10 @@ static const struct argp argp = {
            "not used. The same seed and specimen give the same wire and the same noise.",
 };
 
-static const struct wb_settings_source source = {.tables = &wb_bench_options_rig, .n_tables = 1};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
-
 static void parse_options(int argc, char **argv, struct wb_rig_options *options)
 {
     wb_setting_fill(&wb_bench_options_rig, options);
-    wb_settings_parse(&command, argc, argv, options);
+    wb_settings_parse_table(&argp, &wb_bench_options_rig, options, 1, argc, argv, options);
     options->bench.seed = (uint64_t)options->seed;
     options->bench.natnet = (struct wb_natnet_version){(uint8_t)options->version.major,
                                                        (uint8_t)options->version.minor};

@@ -101,11 +101,6 @@ static const struct argp argp = {
         "by a limit or Ctrl-C, or not seen slack.",
 };
 
-static const struct wb_settings_source source = {.tables = &wb_bench_options_stage, .n_tables = 1};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
-
 /* --- jobs --- */
 
 static void show_job(const struct wb_stage_job *job)
@@ -339,7 +334,7 @@ int wb_cmd_stage(int argc, char **argv)
     }
     argc = shield_number(argc, argv, shielded);
     wb_setting_fill(&wb_bench_options_stage, &options);
-    wb_settings_parse(&command, argc, shielded, &options);
+    wb_settings_parse_table(&argp, &wb_bench_options_stage, &options, 1, argc, shielded, &options);
     wb_interrupt_install();
     wb_acquisition_raise_priority();
     if (wb_rig_read(options.rig_path, &rig) != WB_OK)

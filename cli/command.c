@@ -60,6 +60,35 @@ int wb_command_integer(struct argp_state *state, const char *option, const char 
     return (int)value;
 }
 
+static void take_argument(struct argp_state *state, const char *argument,
+                          struct wb_command_common *common)
+{
+    if (common->least == 0 && common->input)
+        argp_error(state, "one %s at a time, not also '%s'", common->noun, argument);
+    if (!common->input)
+        common->input = argument;
+    if (common->least == 0)
+        return;
+    const size_t n = (size_t)common->n + 1;
+    const char **const inputs = realloc(common->inputs, n * sizeof *inputs);
+    if (!inputs) {
+        argp_failure(state, WB_EXIT_FAILED, 0, "out of memory");
+        return;
+    }
+    inputs[common->n++] = argument;
+    common->inputs = inputs;
+}
+
+static void check(struct argp_state *state, const struct wb_command_common *common)
+{
+    if (common->noun && common->least == 0 && !common->input)
+        argp_error(state, "name a %s", common->noun);
+    if (common->n < common->least)
+        argp_error(state, "name %s", common->noun);
+    if (common->destination && !common->output)
+        argp_error(state, "say where the %s", common->destination);
+}
+
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
                                 struct wb_command_common *common)
 {
@@ -76,19 +105,26 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
     case ARGP_KEY_ARG:
         if (!common->noun)
             return ARGP_ERR_UNKNOWN;
-        if (common->input)
-            argp_error(state, "one %s at a time, not also '%s'", common->noun, argument);
-        common->input = argument;
+        take_argument(state, argument, common);
         return 0;
     case ARGP_KEY_END:
-        if (common->noun && !common->input)
-            argp_error(state, "name a %s", common->noun);
-        if (common->destination && !common->output)
-            argp_error(state, "say where the %s: -o DIR", common->destination);
+        check(state, common);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
+}
+
+error_t wb_command_parse_only_common(int key, char *argument, struct argp_state *state)
+{
+    return wb_command_parse_common(key, argument, state, state->input);
+}
+
+void wb_command_release(struct wb_command_common *common)
+{
+    free(common->inputs);
+    common->inputs = NULL;
+    common->n = 0;
 }
 
 const char *wb_command_find(const char *name, char path[WB_PATH])

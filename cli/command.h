@@ -35,12 +35,17 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum);
 
-/* What most commands take: one argument, an output, --force and --json. */
+/* What most commands take: an argument or several, an output, --force and --json. */
 struct wb_command_common {
-    const char *noun;        /* of the argument, for messages: "recording"; NULL: the command looks
-                                at its arguments itself */
-    const char *destination; /* what goes to -o, for messages: "figures go"; NULL: there is no -o */
-    const char *input;       /* the argument */
+    const char *noun;        /* of the argument, for messages: "recording"; of several all that is
+                                named: "at least one dataset"; NULL: the command looks at its
+                                arguments itself */
+    const char *destination; /* what goes where by -o, for messages: "figures go: -o DIR"; NULL: -o
+                                is not needed, or there is none */
+    int least;               /* of several arguments; 0: one alone is taken */
+    const char *input;       /* the argument, or the first */
+    const char **inputs;     /* (n) of several; texts are borrowed, see wb_command_release() */
+    int n;
     const char *output;
     bool force, json;
 };
@@ -55,6 +60,12 @@ enum {
  * sees at the end that argument and output were given. */
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
                                 struct wb_command_common *common);
+
+/* The parser of a command that has no other options but rows of settings; its input begins with a
+ * struct wb_command_common. */
+error_t wb_command_parse_only_common(int key, char *argument, struct argp_state *state);
+
+void wb_command_release(struct wb_command_common *common); /* the list of arguments */
 
 /* The file of that name, or where there is none the shipped one ("fixtures/rigs/paper.yaml" works
  * from any folder once installed). `path` holds the answer where it is needed; returns it or

@@ -9,18 +9,6 @@
 
 #define WB_LOG_DOMAIN "datasets"
 
-enum wb_status wb_datasets_add(struct wb_datasets *datasets, const char *name)
-{
-    const size_t n = (size_t)datasets->n + 1;
-    const char **const names = realloc(datasets->names, n * sizeof *names);
-    if (!names)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu names", n);
-    names[datasets->n] = name;
-    datasets->names = names;
-    datasets->n++;
-    return WB_OK;
-}
-
 static bool ends_in(const char *name, const char *ending)
 {
     const size_t n = strlen(name), m = strlen(ending);
@@ -88,17 +76,17 @@ static enum wb_status check_name(const char *name)
     return WB_OK;
 }
 
-enum wb_status wb_datasets_read(struct wb_datasets *datasets)
+enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const *names, int n)
 {
-    const size_t n = (size_t)datasets->n;
-    datasets->items = calloc(n, sizeof *datasets->items);
-    datasets->pointers = calloc(n, sizeof(struct wb_dataset *));
+    datasets->n = n;
+    datasets->items = calloc((size_t)n, sizeof *datasets->items);
+    datasets->pointers = calloc((size_t)n, sizeof(struct wb_dataset *));
     if (!datasets->items || !datasets->pointers)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu datasets", n);
-    for (int i = 0; i < datasets->n; i++)
-        WB_TRY(check_name(datasets->names[i]));
-    for (int i = 0; i < datasets->n; i++) {
-        WB_TRY(wb_dataset_read(&datasets->items[i], datasets->names[i], NULL));
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", n);
+    for (int i = 0; i < n; i++)
+        WB_TRY(check_name(names[i]));
+    for (int i = 0; i < n; i++) {
+        WB_TRY(wb_dataset_read(&datasets->items[i], names[i], NULL));
         datasets->pointers[i] = &datasets->items[i];
     }
     return WB_OK;
@@ -110,6 +98,5 @@ void wb_datasets_release(struct wb_datasets *datasets)
         wb_dataset_release(&datasets->items[i]);
     free(datasets->items);
     free(datasets->pointers);
-    free(datasets->names);
     memset(datasets, 0, sizeof *datasets);
 }
