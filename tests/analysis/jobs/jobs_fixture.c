@@ -204,3 +204,29 @@ struct wb_jobs_outcome jobs_fixture_run(const struct jobs_fixture_run *runs, int
     assert_int_equal(wb_jobs_run(&outcome, jobs, n, &with_folder), expected);
     return outcome;
 }
+
+void jobs_fixture_expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
+                         int left)
+{
+    if (outcome->present != present || outcome->done != done || outcome->failed != failed ||
+        outcome->left != left)
+        fail_msg("%d present, %d done, %d failed, %d left; said: %s", outcome->present,
+                 outcome->done, outcome->failed, outcome->left, jobs_fixture_said);
+}
+
+void jobs_fixture_replace(const struct wb_jobs_options *options)
+{
+    struct jobs_fixture_run run = {.name = "a", .words = {"make", "old"}};
+    jobs_fixture_run(&run, 1, options, WB_OK);
+    run.replace = true;
+    run.words[0] = "fail";
+    struct wb_jobs_outcome outcome = jobs_fixture_run(&run, 1, options, WB_OK);
+    jobs_fixture_expect(&outcome, 0, 0, 1, 0);
+    assert_string_equal(jobs_fixture_text("a/dataset.json"), "old");
+    run.words[0] = "make";
+    run.words[1] = "new";
+    outcome = jobs_fixture_run(&run, 1, options, WB_OK);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 0);
+    assert_string_equal(jobs_fixture_text("a/dataset.json"), "new");
+    assert_false(jobs_fixture_is_there("a.outdated"));
+}

@@ -34,6 +34,13 @@ struct wb_jobs_outcome jobs_fixture_run(const struct jobs_fixture_run *runs, int
                                         const struct wb_jobs_options *options,
                                         enum wb_status expected);
 
+/* What became of the runs. */
+void jobs_fixture_expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
+                         int left);
+
+/* An outdated output stays when the run that replaces it fails, and goes when it is made. */
+void jobs_fixture_replace(const struct wb_jobs_options *options);
+
 /* The text of a file, "" when there is none; whether something is there; how often `part` is in
  * `text`. */
 const char *jobs_fixture_text(const char *path);
