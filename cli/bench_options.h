@@ -18,6 +18,7 @@ struct wb_stage_options {
 };
 
 struct wb_rig_options {
+    struct wb_command_common common;
     struct wb_bench_settings bench;
     const char *run; /* folder of the rig file */
     int seed;

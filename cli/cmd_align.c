@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "analysis/align.h"
-#include "analysis/quicklook.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/datasets.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "align"
@@ -93,24 +93,17 @@ static int print_json(const struct result *results, size_t n)
 {
     struct wb_json *const root = wb_json_create();
     struct wb_json *const list = wb_json_set_array(root, "datasets");
-    for (size_t i = 0; i < n; i++) {
-        struct wb_json *const entry = wb_json_append_object(list);
-        wb_json_set_text(entry, "folder", results[i].folder);
-        wb_quicklook_describe(&results[i].dataset, entry);
-    }
+    for (size_t i = 0; i < n; i++)
+        wb_datasets_describe(wb_json_append_object(list), &results[i].dataset, results[i].folder);
     return wb_command_print_json(root);
 }
 
 static int print_text(const struct result *results, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        struct wb_text text = {0};
-        const enum wb_status status = wb_quicklook_summary(&results[i].dataset, &text);
-        if (status == WB_OK)
-            printf("%s%s\nwritten to %s\n", i > 0 ? "\n" : "", wb_text_string(&text),
-                   results[i].folder);
-        wb_text_release(&text);
-        if (status != WB_OK)
+        if (i > 0)
+            putchar('\n');
+        if (wb_datasets_print(&results[i].dataset, results[i].folder) != WB_OK)
             return WB_EXIT_FAILED;
     }
     return WB_EXIT_OK;

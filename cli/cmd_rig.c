@@ -16,23 +16,11 @@ static const struct argp_option other_options[] = {{0}};
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct wb_rig_options *const options = state->input;
-    switch (key) {
-    case ARGP_KEY_ARG:
-        if (options->bench.rig)
-            argp_error(state, "one rig file is expected, '%s' is one too many", argument);
-        options->bench.rig = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (!options->bench.rig)
-            argp_error(state, "no rig file given");
-        if (!options->bench.specimen)
-            argp_error(state, "no --specimen given");
-        if (!options->run)
-            argp_error(state, "no folder for the rig file given (--run DIR)");
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
+    if (key == ARGP_KEY_END && !options->bench.specimen)
+        argp_error(state, "no --specimen given");
+    if (key == ARGP_KEY_END && !options->run)
+        argp_error(state, "no folder for the rig file given (--run DIR)");
+    return wb_command_parse_common(key, argument, state, &options->common);
 }
 
 static const struct argp argp = {
@@ -84,13 +72,13 @@ static bool is_same_file(const char *path, const struct stat *before)
 
 int wb_cmd_rig(int argc, char **argv)
 {
-    struct wb_rig_options options = {0};
+    struct wb_rig_options options = {.common = {.noun = "rig file"}};
     struct wb_bench *bench;
     char path[WB_PATH], rig[WB_PATH], specimen[WB_PATH];
     struct wb_file_lock lock;
     static const volatile bool never = false;
     parse_options(argc, argv, &options);
-    options.bench.rig = wb_command_find(options.bench.rig, rig);
+    options.bench.rig = wb_command_find(options.common.input, rig);
     options.bench.specimen = wb_command_find(options.bench.specimen, specimen);
     wb_interrupt_install();
     wb_acquisition_raise_priority();

@@ -1,4 +1,5 @@
-/* Dataset folders named on the command line, read together. */
+/* Datasets of the command line: folders that it names, read together, and what is said of a dataset
+ * that was written. */
 #ifndef WB_CLI_DATASETS_H
 #define WB_CLI_DATASETS_H
 
@@ -16,5 +17,11 @@ WB_MUST_CHECK enum wb_status wb_datasets_read(struct wb_datasets *datasets,
                                               const char *const *names, int n);
 
 void wb_datasets_release(struct wb_datasets *datasets); /* accepts a zeroed one */
+
+/* Prints a dataset's summary and its folder; the same as members of an object. */
+WB_MUST_CHECK enum wb_status wb_datasets_print(const struct wb_dataset *dataset,
+                                               const char *folder);
+void wb_datasets_describe(struct wb_json *object, const struct wb_dataset *dataset,
+                          const char *folder);
 
 #endif

@@ -102,10 +102,11 @@ static enum wb_status write_dataset(const struct wb_solve *solve)
 static enum wb_status deliver(const struct wb_solve *solve, wb_solve_show *show, void *context)
 {
     const struct wb_solve_settings *const s = solve->settings;
+    const char *const rows = solve->n_rows == 1 ? "row" : "rows";
 
     if (solve->kept) {
-        wb_warn("stopped after %d rows; the same command goes on from there ('%s')", solve->n_rows,
-                s->checkpoint);
+        wb_warn("stopped after %d %s; the same command goes on from there ('%s')", solve->n_rows,
+                rows, s->checkpoint);
         return WB_OK;
     }
     if (s->output && solve->n_rows > 0)
@@ -118,7 +119,7 @@ static enum wb_status deliver(const struct wb_solve *solve, wb_solve_show *show,
     if (!solve->converged)
         solve->kind->tell_lost(solve);
     if (solve->stopped)
-        wb_warn("stopped after %d rows", solve->n_rows);
+        wb_warn("stopped after %d %s", solve->n_rows, rows);
     if (solve->kind->warn)
         solve->kind->warn(solve);
     return WB_OK;

@@ -95,10 +95,10 @@ code=$?
 [ ! -e "$folder/one/deep/rig.yaml" ] || fail "the file outlived its rig"
 [ "$(grep -c error: "$folder/one.log")" = 0 ] || fail "complained: $(cat "$folder/one.log")"
 
-refused 2 'no rig file' --specimen "$specimen" --run "$folder/refused"
+refused 2 'name a rig file' --specimen "$specimen" --run "$folder/refused"
 refused 2 'no --specimen' "$rig" --run "$folder/refused"
 refused 2 'no folder' "$rig" --specimen "$specimen"
-refused 2 'too many' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
+refused 2 'one rig file at a time' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
 refused 2 'seed' "$rig" --specimen "$specimen" --run "$folder/refused" --seed x
 refused 2 'expected M.N, not' "$rig" --specimen "$specimen" --run "$folder/refused" \
     --natnet-version 3
