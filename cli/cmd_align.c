@@ -51,9 +51,8 @@ static void base_name(char name[WB_PATH], const char *path)
     snprintf(name, WB_PATH, "%s", wb_file_name(path));
     static const char *const endings[] = {".zst", ".wbr"};
     for (size_t i = 0; i < 2; i++) {
-        const size_t n = strlen(name), m = strlen(endings[i]);
-        if (n > m && strcmp(name + n - m, endings[i]) == 0)
-            name[n - m] = '\0';
+        if (wb_command_ends_in(name, endings[i]))
+            name[strlen(name) - strlen(endings[i])] = '\0';
     }
 }
 

@@ -2,7 +2,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/interrupt.h"
 #include "base/units.h"
@@ -34,12 +33,6 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
-static bool is_recording_name(const char *path)
-{
-    const size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".wbr") == 0;
-}
-
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
@@ -57,7 +50,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_END:
         if (!request->specimen_path)
             argp_error(state, "no --specimen given");
-        if (options->common.output && !is_recording_name(options->common.output))
+        if (options->common.output && !wb_command_ends_in(options->common.output, ".wbr"))
             argp_error(state,
                        "a recording is written as NAME.wbr, not '%s'; compress it afterwards "
                        "with zstd",

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/number.h"
 
@@ -132,6 +133,12 @@ const char *wb_command_find(const char *name, char path[WB_PATH])
     if (wb_file_exists(name) || wb_file_find_data(path, name) != WB_OK)
         return name;
     return path;
+}
+
+bool wb_command_ends_in(const char *name, const char *ending)
+{
+    const size_t n = strlen(name), m = strlen(ending);
+    return n > m && strcmp(name + n - m, ending) == 0;
 }
 
 int wb_command_exit(enum wb_status status)

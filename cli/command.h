@@ -72,6 +72,9 @@ void wb_command_release(struct wb_command_common *common); /* the list of argume
  * `name`, which may then not exist. */
 const char *wb_command_find(const char *name, char path[WB_PATH]);
 
+/* Whether a file's name has this ending, and something before it. */
+bool wb_command_ends_in(const char *name, const char *ending);
+
 /* The exit code of a failed library call: WB_EXIT_FAILED (its message was logged). */
 int wb_command_exit(enum wb_status status);
 

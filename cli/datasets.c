@@ -7,14 +7,9 @@
 
 #include "analysis/quicklook.h"
 #include "base/file.h"
+#include "cli/command.h"
 
 #define WB_LOG_DOMAIN "datasets"
-
-static bool ends_in(const char *name, const char *ending)
-{
-    const size_t n = strlen(name), m = strlen(ending);
-    return n > m && strcmp(name + n - m, ending) == 0;
-}
 
 static bool is_dataset(const char *folder)
 {
@@ -63,7 +58,7 @@ static int list_datasets(const char *folder, char *text, size_t size)
 static enum wb_status check_name(const char *name)
 {
     char held[1024];
-    if (ends_in(name, ".wbr") || ends_in(name, ".wbr.zst"))
+    if (wb_command_ends_in(name, ".wbr") || wb_command_ends_in(name, ".wbr.zst"))
         return wb_fail(WB_ERR_FORMAT,
                        "'%s' is a recording: run `wirebench align` first, which makes a dataset of "
                        "it",

@@ -117,16 +117,9 @@ static void describe(char *how, size_t size, int status, double seconds)
         snprintf(how, size, "exit code %d after %s", WEXITSTATUS(status), time);
 }
 
-static bool made_dataset(const struct wb_jobs_plan_item *item)
-{
-    char partial[WB_PATH], path[WB_PATH];
-    return wb_jobs_plan_partial(item, partial) == WB_OK &&
-           wb_file_join(path, partial, "dataset.json") == WB_OK && wb_file_exists(path);
-}
-
 static bool is_success(const struct wb_jobs_plan_item *item, int status)
 {
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0 && made_dataset(item);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 && wb_jobs_plan_is_partial_whole(item);
 }
 
 static void settle(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, int status)

@@ -239,6 +239,12 @@ enum wb_status wb_jobs_plan_partial(const struct wb_jobs_plan_item *item, char p
     return with_ending(path, item->output, ".partial");
 }
 
+bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item)
+{
+    char path[WB_PATH];
+    return wb_jobs_plan_partial(item, path) == WB_OK && holds_dataset(path);
+}
+
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *walk)
 {
     (void)info;
@@ -257,11 +263,10 @@ static void remove_folder(const char *path)
 bool wb_jobs_plan_clean(const struct wb_jobs_plan_item *item, bool keep_usable)
 {
     char path[WB_PATH];
-    if (wb_jobs_plan_partial(item, path) != WB_OK)
-        return false;
-    if (keep_usable && holds_dataset(path))
+    if (keep_usable && wb_jobs_plan_is_partial_whole(item))
         return true;
-    remove_folder(path);
+    if (wb_jobs_plan_partial(item, path) == WB_OK)
+        remove_folder(path);
     return false;
 }
 
