@@ -145,7 +145,7 @@ static void defaults_are_filled_in(void **unused)
 static void options_are_read(void **unused)
 {
     (void)unused;
-    struct example e;
+    struct example e = {0}; /* a default of a list is not filled in */
     wb_setting_fill(&table, &e);
     assert_true(parse(&e, "length-mm", "0.1"));
     assert_close(e.length, 1e-4, 0.0);
