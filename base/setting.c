@@ -73,6 +73,18 @@ void wb_setting_fill(const struct wb_setting_table *table, void *settings)
         fill(&table->rows[i], field_of(&table->rows[i], settings));
 }
 
+/* "1e-6", as people write it. */
+static const char *format_short(double value, char text[WB_NUMBER_TEXT])
+{
+    snprintf(text, WB_NUMBER_TEXT, "%g", value);
+    char *const exponent = strchr(text, 'e');
+    if (exponent) {
+        const int power = atoi(exponent + 1);
+        snprintf(exponent + 1, (size_t)(text + WB_NUMBER_TEXT - exponent - 1), "%d", power);
+    }
+    return text;
+}
+
 /* --- the command line --- */
 
 /* "a, b or c" */
@@ -91,15 +103,24 @@ static bool is_within(const struct wb_setting *row, double value)
     return !has_range(row) || (value >= row->least && value <= row->largest);
 }
 
+/* False, with the range as --help has it. */
+static bool refuse_number(const struct wb_setting *row, const char *what, const char *argument,
+                          char problem[WB_SETTING_PROBLEM])
+{
+    char range[WB_SETTING_VALUE];
+    wb_setting_range(row, range);
+    snprintf(problem, WB_SETTING_PROBLEM, "expected %s%s%s, not '%s'", what,
+             range[0] ? " from " : "", range, argument);
+    return false;
+}
+
 static bool parse_number(const struct wb_setting *row, const char *argument, double *field,
                          char problem[WB_SETTING_PROBLEM])
 {
     double value = 0.0;
-    if (!wb_number_parse(argument, &value) || !is_within(row, value)) {
-        snprintf(problem, WB_SETTING_PROBLEM, "expected a number from %g to %g, not '%s'",
-                 row->least, row->largest, argument);
-        return false;
-    }
+    const bool is_zero = row->zero && strcmp(argument, row->zero) == 0;
+    if (!is_zero && (!wb_number_parse(argument, &value) || !is_within(row, value)))
+        return refuse_number(row, "a number", argument, problem);
     *field = value * scale_of(row);
     return true;
 }
@@ -108,11 +129,8 @@ static bool parse_integer(const struct wb_setting *row, const char *argument, in
                           char problem[WB_SETTING_PROBLEM])
 {
     long value = 0;
-    if (!wb_number_parse_integer(argument, &value) || !is_within(row, (double)value)) {
-        snprintf(problem, WB_SETTING_PROBLEM, "expected a whole number from %.0f to %.0f, not '%s'",
-                 row->least, row->largest, argument);
-        return false;
-    }
+    if (!wb_number_parse_integer(argument, &value) || !is_within(row, (double)value))
+        return refuse_number(row, "a whole number", argument, problem);
     *field = (int)value;
     return true;
 }
@@ -120,6 +138,10 @@ static bool parse_integer(const struct wb_setting *row, const char *argument, in
 static bool parse_text(const struct wb_setting *row, const char *argument, void *field,
                        char problem[WB_SETTING_PROBLEM])
 {
+    if (!argument[0]) {
+        snprintf(problem, WB_SETTING_PROBLEM, "expected %s, not ''", row->argument);
+        return false;
+    }
     if (row->size == 0) {
         *(const char **)field = argument;
         return true;
@@ -148,7 +170,12 @@ static bool parse_choice(const struct wb_setting *row, const char *argument, int
     return false;
 }
 
-/* The first member alone, or all of them with commas between. */
+static char separator_of(const struct wb_setting *row)
+{
+    return row->separator ? row->separator : ',';
+}
+
+/* The first member alone, where that may be, or all of them with separators between. */
 static bool parse_list(const struct wb_setting *row, const char *argument, void *members,
                        char problem[WB_SETTING_PROBLEM])
 {
@@ -157,12 +184,17 @@ static bool parse_list(const struct wb_setting *row, const char *argument, void 
     const int all = (int)row->members->n;
     snprintf(text, sizeof text, "%s", argument);
     for (char *part = text, *next; part; part = next) {
-        next = strchr(part, ',');
+        next = strchr(part, separator_of(row));
         if (next)
             *next++ = '\0';
         if (n < all && !wb_setting_parse(&row->members->rows[n], part, members, problem))
             return false;
         n++;
+    }
+    const bool may_be_alone = strchr(row->argument, '[') != NULL;
+    if (n != all && !may_be_alone) {
+        snprintf(problem, WB_SETTING_PROBLEM, "expected %s, not '%s'", row->argument, argument);
+        return false;
     }
     if (n != 1 && n != all) {
         /* "S or S,K,D" of "S[,K,D]" */
@@ -292,8 +324,10 @@ enum wb_status wb_setting_check_row(const struct wb_setting *row, const void *se
     if (value == row->fallback * scale ||
         (value >= row->least * scale && value <= row->largest * scale))
         return WB_OK;
-    return wb_fail_to(why, WB_ERR_ARGUMENT, "%s: %g is out of range, expected %g to %g", row->name,
-                      value / scale, row->least, row->largest);
+    char text[WB_NUMBER_TEXT], range[WB_SETTING_VALUE];
+    wb_setting_range(row, range);
+    return wb_fail_to(why, WB_ERR_ARGUMENT, "%s: %s is out of range, expected %s", row->name,
+                      format_short(value / scale, text), range);
 }
 
 enum wb_status wb_setting_check(const struct wb_setting_table *table, const void *settings,
@@ -323,6 +357,17 @@ bool wb_setting_is_given(const struct wb_setting *row, const void *settings)
     return false;
 }
 
+bool wb_setting_differs(const struct wb_setting *row, const void *settings)
+{
+    if (row->type == WB_SETTING_TEXT || row->type == WB_SETTING_LIST)
+        return wb_setting_is_given(row, settings);
+    if (row->type == WB_SETTING_BOOLEAN)
+        return wb_setting_is_given(row, settings) != (row->fallback != 0.0);
+    if (row->type == WB_SETTING_NUMBER)
+        return *(const double *)look_at(row, settings) != row->fallback * scale_of(row);
+    return wb_setting_value(row, settings) != row->fallback;
+}
+
 static const char *text_of(const struct wb_setting *row, const void *settings)
 {
     const void *const field = look_at(row, settings);
@@ -341,7 +386,8 @@ static void format_list(const struct wb_setting *row, const void *members,
     text[0] = '\0';
     for (size_t i = 0; i < (n < table->n ? 1 : n); i++) {
         const size_t used = strlen(text);
-        snprintf(text + used, WB_SETTING_VALUE - used, "%s%.10g", i > 0 ? "," : "",
+        const char between[] = {separator_of(row), '\0'};
+        snprintf(text + used, WB_SETTING_VALUE - used, "%s%.10g", i > 0 ? between : "",
                  wb_setting_value(&table->rows[i], members));
     }
 }
@@ -475,18 +521,6 @@ void wb_setting_identify(const struct wb_setting_table *table, const void *setti
 
 /* --- in words --- */
 
-/* "1e-6", as people write it. */
-static const char *format_short(double value, char text[WB_NUMBER_TEXT])
-{
-    snprintf(text, WB_NUMBER_TEXT, "%g", value);
-    char *const exponent = strchr(text, 'e');
-    if (exponent) {
-        const int power = atoi(exponent + 1);
-        snprintf(exponent + 1, (size_t)(text + WB_NUMBER_TEXT - exponent - 1), "%d", power);
-    }
-    return text;
-}
-
 void wb_setting_range(const struct wb_setting *row, char text[WB_SETTING_VALUE])
 {
     char least[WB_NUMBER_TEXT], largest[WB_NUMBER_TEXT];
@@ -496,9 +530,9 @@ void wb_setting_range(const struct wb_setting *row, char text[WB_SETTING_VALUE])
     else if (row->type == WB_SETTING_LIST)
         wb_setting_range(&row->members->rows[0], text);
     else if (has_range(row))
-        snprintf(text, WB_SETTING_VALUE, "%s to %s%s%s", format_short(row->least, least),
+        snprintf(text, WB_SETTING_VALUE, "%s to %s%s%s%s%s", format_short(row->least, least),
                  format_short(row->largest, largest), row->unit ? " " : "",
-                 row->unit ? row->unit : "");
+                 row->unit ? row->unit : "", row->zero ? " or " : "", row->zero ? row->zero : "");
 }
 
 void wb_setting_default(const struct wb_setting *row, const char *otherwise,

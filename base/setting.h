@@ -31,7 +31,8 @@ enum wb_setting_type {
     WB_SETTING_BOOLEAN, /* bool; its option takes no argument and sets what the default is not */
     WB_SETTING_TEXT,    /* char[size]; of size 0 a const char *, which is borrowed */
     WB_SETTING_CHOICE,  /* int: an index of `choices` */
-    WB_SETTING_LIST     /* numbers, each a member with a row of its own: "0.4,0.1,2" */
+    WB_SETTING_LIST /* numbers, each a member with a row of its own: "0.4,0.1,2"; the first alone
+                       serves where `argument` says so: "S[,K,D]" */
 };
 
 struct wb_setting_table;
@@ -54,7 +55,9 @@ struct wb_setting {
     const char *argument; /* "H"; NULL: of a boolean */
     const char *help;     /* without an end: range and default follow */
     unsigned applies;     /* bits of the owner: where it may be given; 0: wherever its table may */
+    const char *zero;     /* of a number: the word that stands for 0, "max"; NULL: none */
     /* Of a list. */
+    char separator;                         /* between members; 0: ',' */
     const struct wb_setting_table *members; /* their fields lie in the struct at `offset` */
     size_t given;                           /* offset of a bool that is set when it was given */
     /* Completes the struct of the members after the first `n` of them were given, and judges it:
@@ -105,6 +108,9 @@ WB_MUST_CHECK enum wb_status wb_setting_check(const struct wb_setting_table *tab
 
 /* Whether the field of a struct that began as all zero holds anything. */
 bool wb_setting_is_given(const struct wb_setting *row, const void *settings);
+
+/* Whether the field of a filled struct holds something else than the row's default. */
+bool wb_setting_differs(const struct wb_setting *row, const void *settings);
 
 /* The value as its option takes it, numbers to 10 digits; of a list, the first member alone where
  * another one is not in its range. */

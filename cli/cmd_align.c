@@ -1,23 +1,20 @@
 /* wirebench align: recordings to datasets. */
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/align.h"
-#include "analysis/quicklook.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "cli/command.h"
+#include "cli/datasets.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "align"
 
 struct options {
     struct wb_command_common common;
-    const char **recordings; /* (n) borrowed texts, owned array */
-    size_t n;
     struct wb_align_settings settings;
 };
 
@@ -29,39 +26,9 @@ static const struct argp_option other_options[] = {
     {0},
 };
 
-static void add_recording(struct options *o, const char *path)
-{
-    const char **const recordings = realloc(o->recordings, (o->n + 1) * sizeof(char *));
-    if (!recordings) {
-        wb_error("out of memory");
-        exit(WB_EXIT_FAILED);
-    }
-    o->recordings = recordings;
-    o->recordings[o->n++] = path;
-}
-
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-
-    switch (key) {
-    case ARGP_KEY_ARG:
-        add_recording(o, argument);
-        return 0;
-    case ARGP_KEY_END:
-        if (o->n == 0)
-            argp_error(state, "name at least one recording");
-        if (!o->common.output)
-            argp_error(state, "say where the dataset goes: -o DATASET");
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state, &o->common);
-    }
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr...",
     .doc = "Turns recordings (.wbr or .wbr.zst) into datasets: clocks mapped, markers identified, "
            "tare, drift, filter delay and marker offset corrected, the clamp at the origin, cycles "
@@ -71,15 +38,6 @@ static const struct argp argp = {
            "being its file name without ending. Exit code 3: a dataset is usable but incomplete "
            "(gaps, damaged or lost data, a test that was cut short).",
 };
-
-static const struct wb_settings_source source = {
-    .tables = &wb_align_table,
-    .n_tables = 1,
-    .offset = offsetof(struct options, settings),
-};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
 
 /* One recording's dataset and the folder it is written to. */
 struct result {
@@ -93,22 +51,21 @@ static void base_name(char name[WB_PATH], const char *path)
     snprintf(name, WB_PATH, "%s", wb_file_name(path));
     static const char *const endings[] = {".zst", ".wbr"};
     for (size_t i = 0; i < 2; i++) {
-        const size_t n = strlen(name), m = strlen(endings[i]);
-        if (n > m && strcmp(name + n - m, endings[i]) == 0)
-            name[n - m] = '\0';
+        if (wb_command_ends_in(name, endings[i]))
+            name[strlen(name) - strlen(endings[i])] = '\0';
     }
 }
 
 static enum wb_status choose_folder(const struct options *o, struct result *results, size_t i)
 {
     char name[WB_PATH];
-    if (o->n == 1) {
+    if (o->common.n == 1) {
         if (strlen(o->common.output) >= WB_PATH)
             return wb_fail(WB_ERR_ARGUMENT, "the output path is too long");
         strcpy(results[i].folder, o->common.output);
         return WB_OK;
     }
-    base_name(name, o->recordings[i]);
+    base_name(name, o->common.inputs[i]);
     WB_TRY(wb_file_join(results[i].folder, o->common.output, name));
     for (size_t k = 0; k < i; k++) {
         if (strcmp(results[k].folder, results[i].folder) == 0)
@@ -120,11 +77,11 @@ static enum wb_status choose_folder(const struct options *o, struct result *resu
 
 static enum wb_status run(const struct options *o, struct result *results, size_t *n_done)
 {
-    for (size_t i = 0; i < o->n; i++)
+    for (size_t i = 0; i < (size_t)o->common.n; i++)
         WB_TRY(choose_folder(o, results, i));
-    for (size_t i = 0; i < o->n && !wb_interrupted(); i++) {
+    for (size_t i = 0; i < (size_t)o->common.n && !wb_interrupted(); i++) {
         struct result *const result = &results[i];
-        WB_TRY(wb_align_run(&result->dataset, o->recordings[i], &o->settings));
+        WB_TRY(wb_align_run(&result->dataset, o->common.inputs[i], &o->settings));
         *n_done = i + 1;
         WB_TRY(wb_dataset_write(&result->dataset, result->folder, o->common.force));
     }
@@ -135,24 +92,17 @@ static int print_json(const struct result *results, size_t n)
 {
     struct wb_json *const root = wb_json_create();
     struct wb_json *const list = wb_json_set_array(root, "datasets");
-    for (size_t i = 0; i < n; i++) {
-        struct wb_json *const entry = wb_json_append_object(list);
-        wb_json_set_text(entry, "folder", results[i].folder);
-        wb_quicklook_describe(&results[i].dataset, entry);
-    }
+    for (size_t i = 0; i < n; i++)
+        wb_datasets_describe(wb_json_append_object(list), &results[i].dataset, results[i].folder);
     return wb_command_print_json(root);
 }
 
 static int print_text(const struct result *results, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        struct wb_text text = {0};
-        const enum wb_status status = wb_quicklook_summary(&results[i].dataset, &text);
-        if (status == WB_OK)
-            printf("%s%s\nwritten to %s\n", i > 0 ? "\n" : "", wb_text_string(&text),
-                   results[i].folder);
-        wb_text_release(&text);
-        if (status != WB_OK)
+        if (i > 0)
+            putchar('\n');
+        if (wb_datasets_print(&results[i].dataset, results[i].folder) != WB_OK)
             return WB_EXIT_FAILED;
     }
     return WB_EXIT_OK;
@@ -160,14 +110,17 @@ static int print_text(const struct result *results, size_t n)
 
 int wb_cmd_align(int argc, char **argv)
 {
-    struct options options = {0};
+    struct options options = {.common = {.noun = "at least one recording",
+                                         .least = 1,
+                                         .destination = "dataset goes: -o DATASET"}};
     wb_align_default_settings(&options.settings);
-    wb_settings_parse(&command, argc, argv, &options);
+    wb_settings_parse_table(&argp, &wb_align_table, &options.settings, 1, argc, argv, &options);
+    const size_t n = (size_t)options.common.n;
     wb_interrupt_install();
 
     size_t n_done = 0;
     int code = WB_EXIT_FAILED;
-    struct result *const results = calloc(options.n, sizeof *results);
+    struct result *const results = calloc(n, sizeof *results);
     if (!results)
         wb_error("out of memory");
     else
@@ -179,9 +132,9 @@ int wb_cmd_align(int argc, char **argv)
             code = WB_EXIT_INCOMPLETE;
         wb_dataset_release(&results[i].dataset);
     }
-    if (code == WB_EXIT_OK && n_done < options.n)
+    if (code == WB_EXIT_OK && n_done < n)
         code = WB_EXIT_INCOMPLETE;
     free(results);
-    free(options.recordings);
+    wb_command_release(&options.common);
     return code;
 }

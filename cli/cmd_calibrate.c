@@ -1,6 +1,5 @@
 /* wirebench calibrate: datasets to properties. */
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -29,27 +28,9 @@ static const struct argp_option other_options[] = {
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-
-    switch (key) {
-    case ARGP_KEY_ARG:
-        if (wb_datasets_add(&o->datasets, argument) != WB_OK)
-            exit(WB_EXIT_FAILED);
-        return 0;
-    case ARGP_KEY_END:
-        if (o->datasets.n == 0)
-            argp_error(state, "name at least one dataset");
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state, &o->common);
-    }
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "DATASET...",
     .doc = "Calibrates the 1D elastoplastic beam on the averaged first loading of datasets of one "
            "wire and length: E by eq. 10, the yield stress by eq. 11, K and n by Nelder-Mead with "
@@ -58,15 +39,6 @@ static const struct argp argp = {
            "deflection of tests with a follower force. Exit code 3: the iterations ran out or it "
            "was stopped; the best so far is written.",
 };
-
-static const struct wb_settings_source source = {
-    .tables = &wb_calibrate_table,
-    .n_tables = 1,
-    .offset = offsetof(struct options, settings),
-};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = WB_CALIBRATE_COMMAND};
 
 static bool report_progress(void *context, int evaluation, double error, double size)
 {
@@ -225,7 +197,7 @@ static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *r
     struct wb_progress progress;
     if (o->common.output && !o->common.force && wb_file_exists(o->common.output))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
-    WB_TRY(wb_datasets_read(&o->datasets));
+    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs, o->common.n));
     o->settings.progress = report_progress;
     o->settings.progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "beam runs", 0.0);
@@ -238,9 +210,8 @@ static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *r
 static int deliver(const struct options *o, const struct wb_calibrate_result *result)
 {
     if (o->common.output) {
-        const enum wb_status status =
-            wb_properties_write(o->common.output, result, &o->settings, o->datasets.names,
-                                o->datasets.n, o->common.force);
+        const enum wb_status status = wb_properties_write(
+            o->common.output, result, &o->settings, o->common.inputs, o->common.n, o->common.force);
         if (status != WB_OK)
             return wb_command_exit(status);
     }
@@ -259,15 +230,17 @@ static int deliver(const struct options *o, const struct wb_calibrate_result *re
 
 int wb_cmd_calibrate(int argc, char **argv)
 {
-    struct options options = {0};
+    struct options options = {.common = {.noun = "at least one dataset", .least = 1}};
     struct wb_calibrate_result result = {0};
     wb_calibrate_default_settings(&options.settings);
-    wb_settings_parse(&command, argc, argv, &options);
+    wb_settings_parse_table(&argp, &wb_calibrate_table, &options.settings, WB_CALIBRATE_COMMAND,
+                            argc, argv, &options);
     wb_interrupt_install();
 
     const enum wb_status status = calibrate(&options, &result);
     const int code = status == WB_OK ? deliver(&options, &result) : wb_command_exit(status);
     wb_calibrate_result_release(&result);
     wb_datasets_release(&options.datasets);
+    wb_command_release(&options.common);
     return code;
 }

@@ -17,14 +17,9 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    return wb_command_parse_common(key, argument, state, state->input);
-}
-
 static const struct argp argp = {
     .options = option_table,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr -o DIR",
     .doc = "Decodes a recording (.wbr or .wbr.zst) and writes load.csv, mocap.csv, stage.csv, "
            "events.csv and clock.csv.\v"
@@ -70,7 +65,7 @@ static int print(const struct wb_command_common *options, const struct wb_export
 
 int wb_cmd_export(int argc, char **argv)
 {
-    struct wb_command_common options = {.noun = "recording", .destination = "files go"};
+    struct wb_command_common options = {.noun = "recording", .destination = "files go: -o DIR"};
     struct wb_recording *recording = NULL;
     struct wb_export_counts counts = {0};
     wb_command_parse(&argp, argc, argv, &options);

@@ -38,6 +38,8 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         options->figure = argument;
         return 0;
     case KEY_MESH:
+        if (!argument[0])
+            argp_error(state, "--mesh: expected NAME, not ''");
         options->mesh = argument;
         return 0;
     case ARGP_KEY_END:

@@ -1,10 +1,8 @@
 /* wirebench quicklook: one recording's curve, without a campaign. */
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "analysis/align.h"
 #include "analysis/quicklook.h"
 #include "cli/command.h"
+#include "cli/datasets.h"
 
 #define WB_LOG_DOMAIN "quicklook"
 
@@ -15,14 +13,9 @@ static const struct argp_option option_table[] = {
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    return wb_command_parse_common(key, argument, state, state->input);
-}
-
 static const struct argp argp = {
     .options = option_table,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr",
     .doc = "Aligns one recording (.wbr or .wbr.zst) and writes its force-deflection curve and "
            "shapes as figures (SVG, PNG, PDF) and CSV, with a summary that is also printed.\v"
@@ -30,38 +23,24 @@ static const struct argp argp = {
            "short).",
 };
 
-static int print_text(const struct wb_dataset *dataset, const char *output)
-{
-    struct wb_text text = {0};
-    const enum wb_status status = wb_quicklook_summary(dataset, &text);
-    if (status == WB_OK)
-        printf("%s\nwritten to %s\n", wb_text_string(&text), output);
-    wb_text_release(&text);
-    return wb_command_exit(status);
-}
-
-static int print_json(const struct wb_dataset *dataset, const char *output)
-{
-    struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "folder", output);
-    wb_quicklook_describe(dataset, root);
-    return wb_command_print_json(root);
-}
-
 static int deliver(const struct wb_dataset *dataset, const struct wb_command_common *options)
 {
     if (wb_quicklook_write(dataset, options->output, options->force) != WB_OK)
         return WB_EXIT_FAILED;
-    const int code =
-        options->json ? print_json(dataset, options->output) : print_text(dataset, options->output);
-    if (code != WB_EXIT_OK)
-        return code;
+    if (options->json) {
+        struct wb_json *const root = wb_json_create();
+        wb_datasets_describe(root, dataset, options->output);
+        if (wb_command_print_json(root) != WB_EXIT_OK)
+            return WB_EXIT_FAILED;
+    } else if (wb_datasets_print(dataset, options->output) != WB_OK) {
+        return WB_EXIT_FAILED;
+    }
     return wb_dataset_is_complete(dataset) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
 int wb_cmd_quicklook(int argc, char **argv)
 {
-    struct wb_command_common options = {.noun = "recording", .destination = "figures go"};
+    struct wb_command_common options = {.noun = "recording", .destination = "figures go: -o DIR"};
     struct wb_align_settings settings;
     struct wb_dataset dataset;
     wb_command_parse(&argp, argc, argv, &options);

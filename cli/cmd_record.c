@@ -1,9 +1,7 @@
 /* wirebench record: the paper's test, recorded. */
 #include <inttypes.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/interrupt.h"
 #include "base/units.h"
@@ -16,15 +14,14 @@
 #define WB_LOG_DOMAIN "record"
 
 struct options {
+    struct wb_command_common common;
     struct wb_bend_test_request request;
-    bool json;
 };
 
 enum {
-    OPTION_SPECIMEN = 256,
+    OPTION_SPECIMEN = WB_KEY_OWN,
     OPTION_OPERATOR,
-    OPTION_NOTES,
-    OPTION_JSON
+    OPTION_NOTES
 };
 
 static const struct argp_option argp_options[] = {
@@ -32,15 +29,9 @@ static const struct argp_option argp_options[] = {
     {"output", 'o', "REC.wbr", 0, "The recording to write; it must not exist", 0},
     {"operator", OPTION_OPERATOR, "NAME", 0, "Who runs the test, for the recording", 0},
     {"notes", OPTION_NOTES, "TEXT", 0, "Anything worth knowing later, for the recording", 0},
-    {"json", OPTION_JSON, NULL, 0, "Print the outcome as JSON", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
     {0},
 };
-
-static bool is_recording_name(const char *path)
-{
-    const size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".wbr") == 0;
-}
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
@@ -50,39 +41,25 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case OPTION_SPECIMEN:
         request->specimen_path = argument;
         return 0;
-    case 'o':
-        request->output_path = argument;
-        return 0;
     case OPTION_OPERATOR:
         request->operator_name = argument;
         return 0;
     case OPTION_NOTES:
         request->notes = argument;
         return 0;
-    case OPTION_JSON:
-        options->json = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (request->rig_path)
-            argp_error(state, "one rig file is expected, '%s' is one too many", argument);
-        request->rig_path = argument;
-        return 0;
     case ARGP_KEY_END:
-        if (!request->rig_path)
-            argp_error(state, "no rig file given");
         if (!request->specimen_path)
             argp_error(state, "no --specimen given");
-        if (!request->output_path)
-            argp_error(state, "no recording to write given (-o REC.wbr)");
-        if (!is_recording_name(request->output_path))
+        if (options->common.output && !wb_command_ends_in(options->common.output, ".wbr"))
             argp_error(state,
                        "a recording is written as NAME.wbr, not '%s'; compress it afterwards "
                        "with zstd",
-                       request->output_path);
-        return 0;
+                       options->common.output);
+        break;
     default:
-        return ARGP_ERR_UNKNOWN;
+        break;
     }
+    return wb_command_parse_common(key, argument, state, &options->common);
 }
 
 static const struct argp argp = {
@@ -102,15 +79,6 @@ static const struct argp argp = {
         "Exit codes: 0 complete; 1 failed before the first cycle, or nothing was recorded; 2 wrong "
         "usage; 3 stopped early or data lost, what was recorded is usable.",
 };
-
-static const struct wb_settings_source source = {
-    .tables = &wb_bend_test_table,
-    .n_tables = 1,
-    .offset = offsetof(struct options, request),
-};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
 
 /* The fields of the live line, as text. */
 struct fields {
@@ -265,12 +233,15 @@ static int exit_code(const struct wb_bend_test_result *result, enum wb_status st
 
 int wb_cmd_record(int argc, char **argv)
 {
-    struct options options = {.json = false};
+    struct options options = {
+        .common = {.noun = "rig file", .destination = "recording goes: -o REC.wbr"}};
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     char specimen[WB_PATH];
     wb_bend_test_default_request(&options.request);
-    wb_settings_parse(&command, argc, argv, &options);
+    wb_settings_parse_table(&argp, &wb_bend_test_table, &options.request, 1, argc, argv, &options);
+    options.request.rig_path = options.common.input;
+    options.request.output_path = options.common.output;
     options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
     wb_interrupt_install();
     wb_interrupt_guard();
@@ -288,9 +259,9 @@ int wb_cmd_record(int argc, char **argv)
     if (!result.recorded)
         wb_info("nothing was recorded: '%s' was not kept", options.request.output_path);
     const int code = exit_code(&result, status);
-    if (options.json && print_json(&result, options.request.output_path) != WB_EXIT_OK)
+    if (options.common.json && print_json(&result, options.request.output_path) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
-    if (!options.json && result.recorded)
+    if (!options.common.json && result.recorded)
         print_summary(&result, options.request.output_path);
     return code;
 }

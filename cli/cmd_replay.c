@@ -1,48 +1,27 @@
 /* wirebench replay: the bench from a recording. */
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
-#include "cli/command.h"
+#include "cli/bench_options.h"
 #include "cli/live_line.h"
+#include "cli/settings.h"
 #include "daq/acquisition.h"
 #include "daq/replay.h"
 #include "daq/survey.h"
 
 #define WB_LOG_DOMAIN "replay"
 
-struct options {
-    struct wb_command_common common;
-    double rate; /* 0: as fast as it can */
-};
-
-enum {
-    KEY_RATE = WB_KEY_OWN
-};
-
-static const struct argp_option option_table[] = {
-    {"rate", KEY_RATE, "1|N|max", 0, "Speed: 1 (default) as recorded, N times, or max", 0},
+static const struct argp_option other_options[] = {
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object at the end", 0},
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-    if (key != KEY_RATE)
-        return wb_command_parse_common(key, argument, state, &o->common);
-    o->rate = strcmp(argument, "max") == 0
-                  ? 0.0
-                  : wb_command_number(state, "--rate", argument, 1e-3, 1e6);
-    return 0;
-}
-
 static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
+    .options = other_options,
+    .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr",
     .doc = "Plays a recording (.wbr or .wbr.zst): the recorded bytes go through the same decoders "
            "as on the bench, with a live line of force, travel and markers on the terminal; at the "
@@ -121,7 +100,7 @@ static void take_remark(void *context, enum wb_log_level level, int64_t t_ns, co
            player->started ? wb_survey_seconds(player->first_ns, t_ns) : 0.0, kind, text);
 }
 
-static int print(const struct options *options, const struct player *player,
+static int print(const struct wb_replay_options *options, const struct player *player,
                  const struct wb_replay_counts *counts, double wall_s)
 {
     double duration_s = wb_survey_seconds(player->first_ns, player->last_ns);
@@ -148,7 +127,7 @@ static int print(const struct options *options, const struct player *player,
     return wb_command_print_json(root);
 }
 
-static enum wb_status play(struct wb_recording *recording, const struct options *options,
+static enum wb_status play(struct wb_recording *recording, const struct wb_replay_options *options,
                            struct player *player, struct wb_replay_counts *counts)
 {
     struct wb_rig rig;
@@ -170,11 +149,12 @@ static enum wb_status play(struct wb_recording *recording, const struct options 
 
 int wb_cmd_replay(int argc, char **argv)
 {
-    struct options options = {.common = {.noun = "recording"}, .rate = 1.0};
+    struct wb_replay_options options = {.common = {.noun = "recording"}};
     struct wb_recording *recording = NULL;
     struct player player = {.started = false};
     struct wb_replay_counts counts = {0};
-    wb_command_parse(&argp, argc, argv, &options);
+    wb_setting_fill(&wb_bench_options_replay, &options);
+    wb_settings_parse_table(&argp, &wb_bench_options_replay, &options, 1, argc, argv, &options);
     wb_interrupt_install();
     if (wb_recording_open(&recording, options.common.input) != WB_OK)
         return WB_EXIT_FAILED;

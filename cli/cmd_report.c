@@ -94,7 +94,8 @@ static int deliver(const struct options *o, enum wb_report_end end)
 int wb_cmd_report(int argc, char **argv)
 {
     char buffer[WB_PATH];
-    struct options options = {.common = {.noun = "campaign file", .destination = "report goes"}};
+    struct options options = {
+        .common = {.noun = "campaign file", .destination = "report goes: -o DIR"}};
     enum wb_report_end end = WB_REPORT_NOTHING;
     wb_command_parse(&argp, argc, argv, &options);
     const struct wb_report_order order = {

@@ -3,39 +3,39 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/solve/solve.h"
 #include "base/interrupt.h"
+#include "base/number.h"
 #include "base/text.h"
+#include "base/units.h"
+#include "cli/command.h"
 #include "cli/settings.h"
-#include "cli/solve.h"
 
-struct kind {
-    const char *name;
-    int (*run)(const struct wb_solve_options *options);
-    const char *arguments, *summary;
+struct options {
+    struct wb_command_common common;
+    struct wb_solve_settings settings; /* of kind 0: none was named */
 };
 
-/* In the order of the kinds' bits. */
-static const struct kind kinds[] = {
-    {"cantilever", wb_solve_cantilever, "cantilever --wire=NAME --length-mm=L --deflection-mm=D",
+/* What --help says of the kinds, in the order of their bits. */
+static const struct kind {
+    const char *arguments, *summary;
+} kinds[WB_SOLVE_KINDS] = {
+    {"--wire=NAME --length-mm=L --deflection-mm=D",
      "Computes a bending test with the 1D beam model of a homogenised wire, described by options."},
-    {"wire3d", wb_solve_wire, "wire3d MODEL.yaml",
-     "Computes a model file (fixtures/models, by name or path) as a 3D solid."},
-    {"wire1d", wb_solve_wire, "wire1d MODEL.yaml",
-     "Computes a model file (fixtures/models, by name or path) as a rod of fibres."},
-    {"bundle", wb_solve_bundle, "bundle BUNDLE.yaml",
+    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a 3D solid."},
+    {"MODEL.yaml", "Computes a model file (fixtures/models, by name or path) as a rod of fibres."},
+    {"BUNDLE.yaml",
      "Computes a bundle file (fixtures/bundles, by name or path), wires with contact and tape, in "
      "explicit dynamics."},
 };
 
-enum {
-    KINDS = sizeof kinds / sizeof kinds[0]
-};
-
 static const struct wb_settings_source sources[] = {
-    {.tables = &wb_solve_settings, .n_tables = 1},
+    {.tables = &wb_solve_settings_table,
+     .n_tables = 1,
+     .offset = offsetof(struct options, settings)},
     {.tables = wb_bundle_override_tables,
      .n_tables = WB_BUNDLE_OVERRIDE_TABLES,
-     .offset = offsetof(struct wb_solve_options, override),
+     .offset = offsetof(struct options, settings.override),
      .applies = WB_SOLVE_BUNDLE},
 };
 
@@ -46,75 +46,80 @@ static const struct argp_option other_options[] = {
     {0},
 };
 
-static const struct kind *find_kind(const char *name)
+/* The kind's index; -1: there is none of that name. */
+static int find_kind(const char *name)
 {
-    for (int i = 0; i < KINDS; i++)
-        if (strcmp(kinds[i].name, name) == 0)
-            return &kinds[i];
-    return NULL;
+    for (int i = 0; name && i < WB_SOLVE_KINDS; i++)
+        if (strcmp(wb_solve_settings_kinds[i], name) == 0)
+            return i;
+    return -1;
 }
 
 static void take_argument(struct argp_state *state, const char *argument,
-                          struct wb_solve_options *o)
+                          struct wb_solve_settings *s)
 {
-    const bool takes_model = o->kind != 0 && o->kind != WB_SOLVE_CANTILEVER;
-    if (takes_model && !o->model) {
-        o->model = argument;
+    const bool takes_model = s->kind != 0 && s->kind != WB_SOLVE_CANTILEVER;
+    if (takes_model && !s->model) {
+        s->model = argument;
         return;
     }
-    if (o->kind != 0)
+    if (s->kind != 0)
         argp_error(state, "one model at a time, not '%s' too", argument);
-    const struct kind *const kind = find_kind(argument);
-    if (!kind) {
+    const int kind = find_kind(argument);
+    if (kind < 0) {
         argp_error(state, "no model '%s'; there are cantilever, wire3d, wire1d, bundle", argument);
         return;
     }
-    o->kind = 1U << (kind - kinds);
-    o->kind_name = kind->name;
+    s->kind = 1U << kind;
 }
 
-static void check(struct argp_state *state, const struct wb_solve_options *o)
+static void check(struct argp_state *state, const struct wb_solve_settings *s)
 {
-    if (o->kind == 0)
+    if (s->kind == 0)
         argp_error(state, "name the model: cantilever, wire3d, wire1d or bundle");
-    if (o->vtk_every > 0 && !o->vtk)
+    if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every is for --vtk");
-    if (o->kind != WB_SOLVE_CANTILEVER && !o->model)
-        argp_error(state, "name the model file: %s MODEL.yaml", o->kind_name);
-    if (o->kind == WB_SOLVE_CANTILEVER && (!o->wire || o->length == 0.0 || o->deflection == 0.0))
+    if (s->checkpoint_interval > 0.0 && !s->checkpoint)
+        argp_error(state, "--checkpoint-minutes is for --checkpoint");
+    if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
+        argp_error(state, "name the model file: %s MODEL.yaml", wb_solve_settings_kind(s));
+    if (s->kind == WB_SOLVE_CANTILEVER && (!s->wire || s->length == 0.0 || s->deflection == 0.0))
         argp_error(state, "--wire, --length-mm and --deflection-mm are needed");
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    struct wb_solve_options *o = state->input;
+    struct options *const o = state->input;
 
     switch (key) {
     case ARGP_KEY_ARG:
-        take_argument(state, argument, o);
+        take_argument(state, argument, &o->settings);
         return 0;
     case ARGP_KEY_END:
-        check(state, o);
+        check(state, &o->settings);
         return 0;
     default:
         return wb_command_parse_common(key, argument, state, &o->common);
     }
 }
 
-/* What --help says before and after the options. */
-static void describe(const struct kind *kind, struct wb_text *arguments, struct wb_text *text)
+/* What --help says before and after the options; `only` a kind of that index, or all: -1. */
+static void describe(int only, struct wb_text *arguments, struct wb_text *text)
 {
-    for (int i = 0; i < KINDS; i++) {
-        if (kind && kind != &kinds[i])
+    for (int i = 0; i < WB_SOLVE_KINDS; i++) {
+        if (only >= 0 && only != i)
             continue;
-        wb_text_append(arguments, "%s%s", arguments->length > 0 ? "\n" : "", kinds[i].arguments);
-        if (kind)
+        if (only >= 0) {
+            wb_text_append(arguments, "%s", kinds[i].arguments);
             wb_text_append(text, "%s ", kinds[i].summary);
-        else
-            wb_text_append(text, "%s: %s\n", kinds[i].name, kinds[i].summary);
+            continue;
+        }
+        wb_text_append(arguments, "%s%s %s", i > 0 ? "\n" : "", wb_solve_settings_kinds[i],
+                       kinds[i].arguments);
+        wb_text_append(text, "%s: %s\n", wb_solve_settings_kinds[i], kinds[i].summary);
     }
     wb_text_append(text, "The curve is printed as CSV or JSON, or written as a dataset.");
-    if (!kind)
+    if (only < 0)
         wb_text_append(
             text,
             " Each kind has options of its own, which for example `wirebench solve bundle --help` "
@@ -123,36 +128,99 @@ static void describe(const struct kind *kind, struct wb_text *arguments, struct 
                          "converge, or by Ctrl-C; what was computed is there.");
 }
 
-static void parse_options(int argc, char **argv, struct wb_solve_options *options)
+static void parse_options(int argc, char **argv, struct options *options)
 {
-    const char *names[KINDS + 1] = {NULL};
+    char name[32];
     struct wb_text arguments = {0}, text = {0};
     struct argp argp = {.options = other_options, .parser = parse};
     struct wb_settings_command command = {
         .argp = &argp,
         .sources = sources,
         .n_sources = WB_COUNT(sources),
-        .places = names,
+        .places = wb_solve_settings_kinds,
     };
-    for (int i = 0; i < KINDS; i++)
-        names[i] = kinds[i].name;
     /* Options may stand before the kind that they are of. */
-    const char *const first = wb_settings_first_argument(&command, argc, argv);
-    const struct kind *const kind = first ? find_kind(first) : NULL;
+    const int kind = find_kind(wb_settings_first_argument(&command, argc, argv));
     describe(kind, &arguments, &text);
     argp.args_doc = wb_text_string(&arguments);
     argp.doc = wb_text_string(&text);
-    command.place = kind ? 1U << (kind - kinds) : 0;
+    command.place = kind >= 0 ? 1U << kind : 0;
+    if (kind >= 0) {
+        /* Messages and --help are of "wirebench solve bundle". */
+        snprintf(name, sizeof name, "solve %s", wb_solve_settings_kinds[kind]);
+        argv[0] = name;
+    }
     wb_settings_parse(&command, argc, argv, options);
+    options->settings.output = options->common.output;
+    options->settings.force = options->common.force;
     wb_text_release(&arguments);
     wb_text_release(&text);
 }
 
+/* --- the curve --- */
+
+static void print_csv(const struct wb_solve *solve)
+{
+    puts("cycle,phase,deflection_mm,tension_N,force_N,tip_x_mm,tip_angle_rad");
+    for (int i = 0; i < wb_solve_count(solve); i++) {
+        struct wb_solve_row row;
+        wb_solve_row(solve, i, &row);
+        const double column[] = {row.deflection / WB_MM, row.tension, row.force, row.tip_x / WB_MM,
+                                 row.tip_angle};
+        printf("%d,%s", row.cycle, wb_trial_phase_name(row.phase));
+        for (size_t k = 0; k < WB_COUNT(column); k++) {
+            char text[WB_NUMBER_TEXT];
+            printf(",%s", wb_number_format(column[k], text));
+        }
+        putchar('\n');
+    }
+}
+
+static int print_json(const struct wb_solve *solve)
+{
+    struct wb_json *const root = wb_json_create();
+    struct wb_json *const points = wb_json_set_array(root, "points");
+    for (int i = 0; i < wb_solve_count(solve); i++) {
+        struct wb_json *const object = wb_json_append_object(points);
+        struct wb_solve_row row;
+        wb_solve_row(solve, i, &row);
+        wb_json_set_integer(object, "cycle", row.cycle);
+        wb_json_set_text(object, "phase", wb_trial_phase_name(row.phase));
+        wb_json_set_number(object, "deflection_mm", row.deflection / WB_MM);
+        wb_json_set_number(object, "tension_N", row.tension);
+        wb_json_set_number(object, "force_N", row.force);
+        wb_json_set_number(object, "tip_x_mm", row.tip_x / WB_MM);
+        wb_json_set_number(object, "tip_angle_rad", row.tip_angle);
+        if (row.is_spatial)
+            wb_json_set_number(object, "tip_z_mm", row.tip_z / WB_MM);
+        if (row.step)
+            wb_json_set_text(object, "step", row.step);
+    }
+    wb_solve_describe(solve, root);
+    return wb_command_print_json(root);
+}
+
+static enum wb_status show(void *context, const struct wb_solve *solve)
+{
+    const struct wb_command_common *const common = context;
+    if (common->json)
+        return print_json(solve) == WB_EXIT_OK ? WB_OK : WB_ERR_MEMORY;
+    if (!common->output)
+        print_csv(solve);
+    return WB_OK;
+}
+
 int wb_cmd_solve(int argc, char **argv)
 {
-    struct wb_solve_options options = {0};
-    wb_setting_fill(&wb_solve_settings, &options);
+    struct options options = {0};
+    bool complete;
+    wb_setting_fill(&wb_solve_settings_table, &options.settings);
     parse_options(argc, argv, &options);
     wb_interrupt_install();
-    return find_kind(options.kind_name)->run(&options);
+    const enum wb_status status = wb_solve_run(&options.settings, show, &options.common, &complete);
+    if (status == WB_ERR_ARGUMENT)
+        return WB_EXIT_USAGE; /* a mesh that the bundle does not have, say */
+    if (status != WB_OK)
+        return wb_command_exit(status);
+    return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

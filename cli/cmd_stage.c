@@ -10,42 +10,18 @@
 #include "base/interrupt.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "cli/command.h"
+#include "cli/bench_options.h"
 #include "cli/live_line.h"
+#include "cli/settings.h"
 #include "daq/acquisition.h"
 #include "daq/check_log.h"
 #include "daq/mass_check.h"
 #include "daq/rig.h"
-#include "daq/stage_job.h"
 
 #define WB_LOG_DOMAIN "stage"
 
-struct options {
-    const char *rig_path, *action, *value;
-    struct wb_stage_job_request job;
-    double seconds;   /* of a check */
-    double tolerance; /* fraction; NaN: the rig's */
-    bool json;
-};
-
-enum {
-    OPTION_SPEED = 256,
-    OPTION_WITHOUT_LOAD_CELL,
-    OPTION_SECONDS,
-    OPTION_TOLERANCE,
-    OPTION_JSON
-};
-
-static const struct argp_option argp_options[] = {
-    {"speed-mm-s", OPTION_SPEED, "V", 0,
-     "Speed of jog and release (default: the rig's; of release half of it)", 0},
-    {"without-load-cell", OPTION_WITHOUT_LOAD_CELL, NULL, 0,
-     "Home or jog blindly, with the load cell not connected", 0},
-    {"seconds", OPTION_SECONDS, "T", 0,
-     "How long check averages without and with the mass (default 5)", 0},
-    {"tolerance-percent", OPTION_TOLERANCE, "P", 0,
-     "Largest deviation of check (default: the rig's check_tolerance_percent)", 0},
-    {"json", OPTION_JSON, NULL, 0, "Print the outcome as JSON", 0},
+static const struct argp_option other_options[] = {
+    {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
     {0},
 };
 
@@ -63,7 +39,7 @@ static int find_action(const char *name)
     return -1;
 }
 
-static void check_words(const struct options *options, struct argp_state *state)
+static void check_words(const struct wb_stage_options *options, struct argp_state *state)
 {
     if (!options->rig_path)
         argp_error(state, "no rig file given");
@@ -82,24 +58,8 @@ static void check_words(const struct options *options, struct argp_state *state)
 
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
-    struct options *const options = state->input;
+    struct wb_stage_options *const options = state->input;
     switch (key) {
-    case OPTION_SPEED:
-        options->job.speed = wb_command_number(state, "--speed-mm-s", argument, 1e-3, 1e3) * WB_MM;
-        return 0;
-    case OPTION_WITHOUT_LOAD_CELL:
-        options->job.without_load_cell = true;
-        return 0;
-    case OPTION_SECONDS:
-        options->seconds = wb_command_number(state, "--seconds", argument, 0.2, 3600.0);
-        return 0;
-    case OPTION_TOLERANCE:
-        options->tolerance =
-            wb_command_number(state, "--tolerance-percent", argument, 1e-3, 100.0) * WB_PERCENT;
-        return 0;
-    case OPTION_JSON:
-        options->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         if (!options->rig_path)
             options->rig_path = argument;
@@ -114,12 +74,12 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         check_words(options, state);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_common(key, argument, state, &options->common);
     }
 }
 
 static const struct argp argp = {
-    .options = argp_options,
+    .options = other_options,
     .parser = parse,
     .args_doc = "RIG.yaml home\nRIG.yaml jog MM\nRIG.yaml unlock\nRIG.yaml release [MM]\n"
                 "RIG.yaml check [MASS_G]",
@@ -192,7 +152,7 @@ static void tell_job(const struct wb_rig *rig, const struct wb_stage_job_result 
                  "the bench");
 }
 
-static int run_job(const struct options *options, const struct wb_rig *rig)
+static int run_job(const struct wb_stage_options *options, const struct wb_rig *rig)
 {
     struct wb_stage_job *job;
     struct wb_stage_job_result result;
@@ -206,8 +166,8 @@ static int run_job(const struct options *options, const struct wb_rig *rig)
     }
     wb_stage_job_close(job, &result);
     wb_live_line_close();
-    tell_job(rig, &result, options->json);
-    if (options->json && print_job_json(rig, &result) != WB_EXIT_OK)
+    tell_job(rig, &result, options->common.json);
+    if (options->common.json && print_job_json(rig, &result) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     if (result.end == WB_SEQUENCE_DONE)
         return WB_EXIT_OK;
@@ -258,13 +218,13 @@ static bool measure(struct wb_mass_check *check, double known)
     return phase == WB_MASS_CHECK_DONE;
 }
 
-static int print_check(const struct options *options, const struct wb_rig *rig, double known,
-                       double tolerance, const struct wb_mass_check_result *result)
+static int print_check(const struct wb_stage_options *options, const struct wb_rig *rig,
+                       double known, double tolerance, const struct wb_mass_check_result *result)
 {
     const struct wb_rig_load_cell *const cell = &rig->load_cell;
     const char *const serial = cell->serial_number[0] ? cell->serial_number : "not given";
     const char *const date = cell->calibration_date[0] ? cell->calibration_date : "not given";
-    if (options->json) {
+    if (options->common.json) {
         struct wb_json *const root = wb_json_create();
         wb_json_set_boolean(root, "virtual_rig", rig->is_virtual);
         wb_json_set_text(root, "serial_number", serial);
@@ -291,8 +251,8 @@ static int print_check(const struct options *options, const struct wb_rig *rig, 
 
 /* Adds the outcome to the log beside the rig file; a log that cannot be written is told, and does
  * not change the outcome. */
-static void log_check(const struct options *options, const struct wb_rig *rig, double known,
-                      double tolerance, const struct wb_mass_check_result *result)
+static void log_check(const struct wb_stage_options *options, const struct wb_rig *rig,
+                      double known, double tolerance, const struct wb_mass_check_result *result)
 {
     struct wb_check_log_entry entry = {
         .known = known, .read = result->mass, .tolerance = tolerance, .passed = result->passed};
@@ -307,7 +267,7 @@ static void log_check(const struct options *options, const struct wb_rig *rig, d
         wb_info("added to '%s'", path);
 }
 
-static int run_check(const struct options *options, const struct wb_rig *rig)
+static int run_check(const struct wb_stage_options *options, const struct wb_rig *rig)
 {
     const struct wb_rig_load_cell *const cell = &rig->load_cell;
     double known = cell->check_mass;
@@ -327,8 +287,7 @@ static int run_check(const struct options *options, const struct wb_rig *rig)
                  cell->overload / rig->gravity / WB_G);
         return WB_EXIT_USAGE;
     }
-    const double tolerance =
-        isfinite(options->tolerance) ? options->tolerance : cell->check_tolerance;
+    const double tolerance = options->tolerance > 0.0 ? options->tolerance : cell->check_tolerance;
     struct wb_mass_check *check;
     struct wb_mass_check_result result;
     if (wb_mass_check_open(&check, rig, options->seconds) != WB_OK)
@@ -366,7 +325,7 @@ static int shield_number(int argc, char **argv, char **shielded)
 
 int wb_cmd_stage(int argc, char **argv)
 {
-    struct options options = {.seconds = 5.0, .tolerance = (double)NAN};
+    struct wb_stage_options options = {0};
     struct wb_rig rig;
     char *shielded[64];
     if (argc > 60) {
@@ -374,7 +333,8 @@ int wb_cmd_stage(int argc, char **argv)
         return WB_EXIT_USAGE;
     }
     argc = shield_number(argc, argv, shielded);
-    wb_command_parse(&argp, argc, shielded, &options);
+    wb_setting_fill(&wb_bench_options_stage, &options);
+    wb_settings_parse_table(&argp, &wb_bench_options_stage, &options, 1, argc, shielded, &options);
     wb_interrupt_install();
     wb_acquisition_raise_priority();
     if (wb_rig_read(options.rig_path, &rig) != WB_OK)

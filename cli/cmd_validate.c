@@ -1,6 +1,5 @@
 /* wirebench validate: properties against datasets they were not calibrated on. */
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -16,7 +15,6 @@
 
 struct options {
     struct wb_command_common common;
-    const char *properties;
     struct wb_datasets datasets;
     struct wb_calibrate_settings settings;
 };
@@ -28,29 +26,9 @@ static const struct argp_option other_options[] = {
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-
-    switch (key) {
-    case ARGP_KEY_ARG:
-        if (state->arg_num == 0)
-            o->properties = argument;
-        else if (wb_datasets_add(&o->datasets, argument) != WB_OK)
-            exit(WB_EXIT_FAILED);
-        return 0;
-    case ARGP_KEY_END:
-        if (!o->properties || o->datasets.n == 0)
-            argp_error(state, "name the properties and at least one dataset");
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state, &o->common);
-    }
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "PROPERTIES.yaml DATASET...",
     .doc = "Predicts the first loading of tests with calibrated properties and prints the errors "
            "of eqs. 18 and 19, beside those of a linear elastic prediction, and the distance of "
@@ -59,15 +37,6 @@ static const struct argp argp = {
            "deflection of tests with a follower force. Exit code 3: a prediction was cut short "
            "because the beam did not converge.",
 };
-
-static const struct wb_settings_source source = {
-    .tables = &wb_calibrate_table,
-    .n_tables = 1,
-    .offset = offsetof(struct options, settings),
-};
-
-static const struct wb_settings_command command = {
-    .argp = &argp, .sources = &source, .n_sources = 1, .place = WB_CALIBRATE_VALIDATE};
 
 /* The datasets in groups of one wire, length and loading, with the result of each group. */
 struct groups {
@@ -98,7 +67,7 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
 static enum wb_status run_groups(struct options *o, const struct wb_properties *properties,
                                  struct groups *groups)
 {
-    WB_TRY(wb_datasets_read(&o->datasets));
+    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs + 1, o->common.n - 1));
     const size_t n = (size_t)o->datasets.n;
     groups->of = calloc(n, sizeof *groups->of);
     groups->results = calloc(n, sizeof *groups->results);
@@ -145,7 +114,7 @@ static int print_json(const struct options *o, const struct wb_properties *prope
                       const struct groups *groups)
 {
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "properties", o->properties);
+    wb_json_set_text(root, "properties", o->common.input);
     wb_json_set_text(root, "wire", properties->wire);
     struct wb_json *const array = wb_json_set_array(root, "groups");
     for (int i = 0; i < groups->n; i++) {
@@ -225,18 +194,20 @@ static int deliver(const struct options *o, const struct wb_properties *properti
 
 int wb_cmd_validate(int argc, char **argv)
 {
-    struct options options = {0};
+    struct options options = {
+        .common = {.noun = "the properties and at least one dataset", .least = 2}};
     struct wb_properties properties;
     struct groups groups = {0};
     wb_calibrate_default_settings(&options.settings);
-    wb_settings_parse(&command, argc, argv, &options);
+    wb_settings_parse_table(&argp, &wb_calibrate_table, &options.settings, WB_CALIBRATE_VALIDATE,
+                            argc, argv, &options);
 
     enum wb_status status =
-        wb_file_is_folder(options.properties)
+        wb_file_is_folder(options.common.input)
             ? wb_fail(WB_ERR_ARGUMENT,
                       "'%s' is a folder: the properties file comes first, then the datasets",
-                      options.properties)
-            : wb_properties_read(options.properties, &properties);
+                      options.common.input)
+            : wb_properties_read(options.common.input, &properties);
     if (status == WB_OK)
         status = run_groups(&options, &properties, &groups);
     const int code =
@@ -246,5 +217,6 @@ int wb_cmd_validate(int argc, char **argv)
     free(groups.results);
     free(groups.of);
     wb_datasets_release(&options.datasets);
+    wb_command_release(&options.common);
     return code;
 }

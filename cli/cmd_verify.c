@@ -8,40 +8,14 @@
 
 #define WB_LOG_DOMAIN "verify"
 
-#define MAX_RECORDINGS 1024
-
-struct options {
-    struct wb_command_common common;
-    const char *paths[MAX_RECORDINGS];
-    int n;
-};
-
 static const struct argp_option option_table[] = {
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-    switch (key) {
-    case ARGP_KEY_ARG:
-        if (o->n == MAX_RECORDINGS)
-            argp_error(state, "at most %d recordings at a time", MAX_RECORDINGS);
-        o->paths[o->n++] = argument;
-        return 0;
-    case ARGP_KEY_END:
-        if (o->n == 0)
-            argp_error(state, "name the recordings");
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state, &o->common);
-    }
-}
-
 static const struct argp argp = {
     .options = option_table,
-    .parser = parse,
+    .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr...",
     .doc = "Checks recordings (.wbr or .wbr.zst): the CRC-32 of every chunk, gaps in the sequence "
            "numbers, drops noted while recording, silent or missing streams, and whether the file "
@@ -116,26 +90,27 @@ static enum wb_status look(const char *path, struct wb_survey *survey, char sha2
 
 int wb_cmd_verify(int argc, char **argv)
 {
-    struct options options = {.n = 0};
+    struct wb_command_common options = {.noun = "the recordings", .least = 1};
     wb_command_parse(&argp, argc, argv, &options);
-    struct wb_json *root = options.common.json ? wb_json_create() : NULL;
+    struct wb_json *root = options.json ? wb_json_create() : NULL;
     struct wb_json *array = root ? wb_json_set_array(root, "recordings") : NULL;
     int code = WB_EXIT_OK;
     for (int i = 0; i < options.n; i++) {
         struct wb_survey survey;
         char sha256[65] = "";
-        if (look(options.paths[i], &survey, sha256) != WB_OK) {
+        if (look(options.inputs[i], &survey, sha256) != WB_OK) {
             code = WB_EXIT_FAILED;
             continue;
         }
         if (code == WB_EXIT_OK && !wb_survey_is_whole(&survey))
             code = WB_EXIT_INCOMPLETE;
-        if (options.common.json)
-            add_json(array, options.paths[i], sha256, &survey);
+        if (options.json)
+            add_json(array, options.inputs[i], sha256, &survey);
         else
-            print_text(options.paths[i], sha256, &survey);
+            print_text(options.inputs[i], sha256, &survey);
     }
-    if (options.common.json && wb_command_print_json(root) != WB_EXIT_OK)
+    wb_command_release(&options);
+    if (options.json && wb_command_print_json(root) != WB_EXIT_OK)
         return WB_EXIT_FAILED;
     return code;
 }

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/number.h"
 
@@ -50,16 +51,6 @@ void wb_command_parse(const struct argp *argp, int argc, char **argv, void *inpu
         exit(WB_EXIT_USAGE);
 }
 
-double wb_command_number(struct argp_state *state, const char *option, const char *text,
-                         double minimum, double maximum)
-{
-    double value = 0.0;
-    if (!wb_number_parse(text, &value) || value < minimum || value > maximum)
-        argp_error(state, "%s: expected a number from %g to %g, not '%s'", option, minimum, maximum,
-                   text);
-    return value;
-}
-
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum)
 {
@@ -68,6 +59,35 @@ int wb_command_integer(struct argp_state *state, const char *option, const char 
         argp_error(state, "%s: expected a whole number from %d to %d, not '%s'", option, minimum,
                    maximum, text);
     return (int)value;
+}
+
+static void take_argument(struct argp_state *state, const char *argument,
+                          struct wb_command_common *common)
+{
+    if (common->least == 0 && common->input)
+        argp_error(state, "one %s at a time, not also '%s'", common->noun, argument);
+    if (!common->input)
+        common->input = argument;
+    if (common->least == 0)
+        return;
+    const size_t n = (size_t)common->n + 1;
+    const char **const inputs = realloc(common->inputs, n * sizeof *inputs);
+    if (!inputs) {
+        argp_failure(state, WB_EXIT_FAILED, 0, "out of memory");
+        return;
+    }
+    inputs[common->n++] = argument;
+    common->inputs = inputs;
+}
+
+static void check(struct argp_state *state, const struct wb_command_common *common)
+{
+    if (common->noun && common->least == 0 && !common->input)
+        argp_error(state, "name a %s", common->noun);
+    if (common->n < common->least)
+        argp_error(state, "name %s", common->noun);
+    if (common->destination && !common->output)
+        argp_error(state, "say where the %s", common->destination);
 }
 
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
@@ -86,19 +106,26 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
     case ARGP_KEY_ARG:
         if (!common->noun)
             return ARGP_ERR_UNKNOWN;
-        if (common->input)
-            argp_error(state, "one %s at a time, not also '%s'", common->noun, argument);
-        common->input = argument;
+        take_argument(state, argument, common);
         return 0;
     case ARGP_KEY_END:
-        if (common->noun && !common->input)
-            argp_error(state, "name a %s", common->noun);
-        if (common->destination && !common->output)
-            argp_error(state, "say where the %s: -o DIR", common->destination);
+        check(state, common);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
+}
+
+error_t wb_command_parse_only_common(int key, char *argument, struct argp_state *state)
+{
+    return wb_command_parse_common(key, argument, state, state->input);
+}
+
+void wb_command_release(struct wb_command_common *common)
+{
+    free(common->inputs);
+    common->inputs = NULL;
+    common->n = 0;
 }
 
 const char *wb_command_find(const char *name, char path[WB_PATH])
@@ -106,6 +133,12 @@ const char *wb_command_find(const char *name, char path[WB_PATH])
     if (wb_file_exists(name) || wb_file_find_data(path, name) != WB_OK)
         return name;
     return path;
+}
+
+bool wb_command_ends_in(const char *name, const char *ending)
+{
+    const size_t n = strlen(name), m = strlen(ending);
+    return n > m && strcmp(name + n - m, ending) == 0;
 }
 
 int wb_command_exit(enum wb_status status)

@@ -30,19 +30,22 @@ extern const struct argp_option wb_command_help_options[];
  * Exits with WB_EXIT_USAGE on wrong usage, as argp does. */
 void wb_command_parse(const struct argp *argp, int argc, char **argv, void *input);
 
-/* For use inside an argp parser: reads the argument of an option as a number within
- * [minimum, maximum], or a whole number, or stops with a usage error that names the option. */
-double wb_command_number(struct argp_state *state, const char *option, const char *text,
-                         double minimum, double maximum);
+/* For use inside an argp parser: reads the argument of an option as a whole number within
+ * [minimum, maximum], or stops with a usage error that names the option. */
 int wb_command_integer(struct argp_state *state, const char *option, const char *text, int minimum,
                        int maximum);
 
-/* What most commands take: one argument, an output, --force and --json. */
+/* What most commands take: an argument or several, an output, --force and --json. */
 struct wb_command_common {
-    const char *noun;        /* of the argument, for messages: "recording"; NULL: the command looks
-                                at its arguments itself */
-    const char *destination; /* what goes to -o, for messages: "figures go"; NULL: there is no -o */
-    const char *input;       /* the argument */
+    const char *noun;        /* of the argument, for messages: "recording"; of several all that is
+                                named: "at least one dataset"; NULL: the command looks at its
+                                arguments itself */
+    const char *destination; /* what goes where by -o, for messages: "figures go: -o DIR"; NULL: -o
+                                is not needed, or there is none */
+    int least;               /* of several arguments; 0: one alone is taken */
+    const char *input;       /* the argument, or the first */
+    const char **inputs;     /* (n) of several; texts are borrowed, see wb_command_release() */
+    int n;
     const char *output;
     bool force, json;
 };
@@ -58,10 +61,19 @@ enum {
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
                                 struct wb_command_common *common);
 
+/* The parser of a command that has no other options but rows of settings; its input begins with a
+ * struct wb_command_common. */
+error_t wb_command_parse_only_common(int key, char *argument, struct argp_state *state);
+
+void wb_command_release(struct wb_command_common *common); /* the list of arguments */
+
 /* The file of that name, or where there is none the shipped one ("fixtures/rigs/paper.yaml" works
  * from any folder once installed). `path` holds the answer where it is needed; returns it or
  * `name`, which may then not exist. */
 const char *wb_command_find(const char *name, char path[WB_PATH]);
+
+/* Whether a file's name has this ending, and something before it. */
+bool wb_command_ends_in(const char *name, const char *ending);
 
 /* The exit code of a failed library call: WB_EXIT_FAILED (its message was logged). */
 int wb_command_exit(enum wb_status status);

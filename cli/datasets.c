@@ -5,27 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/quicklook.h"
 #include "base/file.h"
+#include "cli/command.h"
 
 #define WB_LOG_DOMAIN "datasets"
-
-enum wb_status wb_datasets_add(struct wb_datasets *datasets, const char *name)
-{
-    const size_t n = (size_t)datasets->n + 1;
-    const char **const names = realloc(datasets->names, n * sizeof *names);
-    if (!names)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu names", n);
-    names[datasets->n] = name;
-    datasets->names = names;
-    datasets->n++;
-    return WB_OK;
-}
-
-static bool ends_in(const char *name, const char *ending)
-{
-    const size_t n = strlen(name), m = strlen(ending);
-    return n > m && strcmp(name + n - m, ending) == 0;
-}
 
 static bool is_dataset(const char *folder)
 {
@@ -74,7 +58,7 @@ static int list_datasets(const char *folder, char *text, size_t size)
 static enum wb_status check_name(const char *name)
 {
     char held[1024];
-    if (ends_in(name, ".wbr") || ends_in(name, ".wbr.zst"))
+    if (wb_command_ends_in(name, ".wbr") || wb_command_ends_in(name, ".wbr.zst"))
         return wb_fail(WB_ERR_FORMAT,
                        "'%s' is a recording: run `wirebench align` first, which makes a dataset of "
                        "it",
@@ -88,17 +72,17 @@ static enum wb_status check_name(const char *name)
     return WB_OK;
 }
 
-enum wb_status wb_datasets_read(struct wb_datasets *datasets)
+enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const *names, int n)
 {
-    const size_t n = (size_t)datasets->n;
-    datasets->items = calloc(n, sizeof *datasets->items);
-    datasets->pointers = calloc(n, sizeof(struct wb_dataset *));
+    datasets->n = n;
+    datasets->items = calloc((size_t)n, sizeof *datasets->items);
+    datasets->pointers = calloc((size_t)n, sizeof(struct wb_dataset *));
     if (!datasets->items || !datasets->pointers)
-        return wb_fail(WB_ERR_MEMORY, "no memory for %zu datasets", n);
-    for (int i = 0; i < datasets->n; i++)
-        WB_TRY(check_name(datasets->names[i]));
-    for (int i = 0; i < datasets->n; i++) {
-        WB_TRY(wb_dataset_read(&datasets->items[i], datasets->names[i], NULL));
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", n);
+    for (int i = 0; i < n; i++)
+        WB_TRY(check_name(names[i]));
+    for (int i = 0; i < n; i++) {
+        WB_TRY(wb_dataset_read(&datasets->items[i], names[i], NULL));
         datasets->pointers[i] = &datasets->items[i];
     }
     return WB_OK;
@@ -110,6 +94,22 @@ void wb_datasets_release(struct wb_datasets *datasets)
         wb_dataset_release(&datasets->items[i]);
     free(datasets->items);
     free(datasets->pointers);
-    free(datasets->names);
     memset(datasets, 0, sizeof *datasets);
+}
+
+enum wb_status wb_datasets_print(const struct wb_dataset *dataset, const char *folder)
+{
+    struct wb_text text = {0};
+    const enum wb_status status = wb_quicklook_summary(dataset, &text);
+    if (status == WB_OK)
+        printf("%s\nwritten to %s\n", wb_text_string(&text), folder);
+    wb_text_release(&text);
+    return status;
+}
+
+void wb_datasets_describe(struct wb_json *object, const struct wb_dataset *dataset,
+                          const char *folder)
+{
+    wb_json_set_text(object, "folder", folder);
+    wb_quicklook_describe(dataset, object);
 }

@@ -1,4 +1,5 @@
-/* Dataset folders named on the command line, read together. */
+/* Datasets of the command line: folders that it names, read together, and what is said of a dataset
+ * that was written. */
 #ifndef WB_CLI_DATASETS_H
 #define WB_CLI_DATASETS_H
 
@@ -7,17 +8,20 @@
 
 struct wb_datasets {
     int n;
-    const char **names;                 /* (n) as given; borrowed texts, owned array */
     struct wb_dataset *items;           /* (n), owned */
     const struct wb_dataset **pointers; /* (n) to the items, as the library wants them; owned */
 };
 
-/* Remembers one more name. */
-WB_MUST_CHECK enum wb_status wb_datasets_add(struct wb_datasets *datasets, const char *name);
-
-/* Reads all of them. */
-WB_MUST_CHECK enum wb_status wb_datasets_read(struct wb_datasets *datasets);
+/* Reads those of the names (n). */
+WB_MUST_CHECK enum wb_status wb_datasets_read(struct wb_datasets *datasets,
+                                              const char *const *names, int n);
 
 void wb_datasets_release(struct wb_datasets *datasets); /* accepts a zeroed one */
+
+/* Prints a dataset's summary and its folder; the same as members of an object. */
+WB_MUST_CHECK enum wb_status wb_datasets_print(const struct wb_dataset *dataset,
+                                               const char *folder);
+void wb_datasets_describe(struct wb_json *object, const struct wb_dataset *dataset,
+                          const char *folder);
 
 #endif

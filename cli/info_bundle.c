@@ -17,20 +17,15 @@ enum {
 
 static const double pixels_of_a_point = 3.0;
 
-static bool ends_in(const char *name, const char *ending)
-{
-    const size_t n = strlen(name), k = strlen(ending);
-    return n >= k && strcmp(name + n - k, ending) == 0;
-}
-
 bool wb_info_is_bundle(const char *name)
 {
-    return ends_in(name, ".yaml") || ends_in(name, ".yml");
+    return wb_command_ends_in(name, ".yaml") || wb_command_ends_in(name, ".yml");
 }
 
 bool wb_info_is_figure(const char *name)
 {
-    return ends_in(name, ".svg") || ends_in(name, ".png") || ends_in(name, ".pdf");
+    return wb_command_ends_in(name, ".svg") || wb_command_ends_in(name, ".png") ||
+           wb_command_ends_in(name, ".pdf");
 }
 
 static const char *length_source(const struct wb_bundle_model *model)
@@ -204,9 +199,9 @@ static int print_json(const struct wb_bundle_model *model, const char *figure)
 
 static enum wb_status write_figure(const struct wb_figure *figure, const char *path)
 {
-    if (ends_in(path, ".svg"))
+    if (wb_command_ends_in(path, ".svg"))
         return wb_figure_write_svg(figure, path);
-    if (ends_in(path, ".pdf"))
+    if (wb_command_ends_in(path, ".pdf"))
         return wb_figure_write_pdf(figure, NULL, path);
     return wb_figure_write_png(figure, pixels_of_a_point, path);
 }
@@ -226,6 +221,10 @@ static enum wb_status draw(const struct wb_info_options *options,
 
 static int tell(const struct wb_info_options *options, const struct wb_bundle_model *model)
 {
+    if (options->mesh && !wb_bundle_model_mesh(model, options->mesh)) {
+        wb_error("%s: there is no mesh '%s'", model->path, options->mesh);
+        return WB_EXIT_USAGE;
+    }
     if (options->figure && draw(options, model) != WB_OK)
         return WB_EXIT_FAILED;
     if (options->common.json)

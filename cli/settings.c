@@ -166,6 +166,16 @@ void wb_settings_parse(const struct wb_settings_command *command, int argc, char
     end(&line);
 }
 
+void wb_settings_parse_table(const struct argp *argp, const struct wb_setting_table *table,
+                             void *settings, unsigned place, int argc, char **argv, void *input)
+{
+    const struct wb_settings_source source = {
+        .tables = table, .n_tables = 1, .offset = (size_t)((char *)settings - (char *)input)};
+    const struct wb_settings_command command = {
+        .argp = argp, .sources = &source, .n_sources = 1, .place = place};
+    wb_settings_parse(&command, argc, argv, input);
+}
+
 static error_t keep_first(int key, char *argument, struct argp_state *state)
 {
     struct line *const line = state->input;

@@ -34,6 +34,11 @@ struct wb_settings_command {
 void wb_settings_parse(const struct wb_settings_command *command, int argc, char **argv,
                        void *input);
 
+/* The same of a command with one table and one place, 1 where the rows name none; `settings` are
+ * the table's, within the input. */
+void wb_settings_parse_table(const struct argp *argp, const struct wb_setting_table *table,
+                             void *settings, unsigned place, int argc, char **argv, void *input);
+
 /* The first argument that is neither an option nor an option's value, whatever place the options
  * are of; NULL when there is none. */
 const char *wb_settings_first_argument(const struct wb_settings_command *command, int argc,

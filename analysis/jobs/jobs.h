@@ -1,9 +1,15 @@
-/* Many runs of this program at once: on this machine's cores, or as a Slurm job array.
+/* Many runs at once: on this machine's cores, or as a Slurm job array.
  *
- * A job is one command line of wirebench that makes one output folder, as `solve` does with -o. The
- * job gets `-o OUTPUT.partial` after its own arguments, and the folder takes its final name when
- * the job ended well (exit code 0): an output that exists is complete, and a job whose output
- * exists is not run again. So the same call resumes what was interrupted and repeats what failed.
+ * A job makes one output folder, as `solve` does with -o: by a function that a worker process of
+ * this machine calls, or by the command line of wirebench that does the same, which a task of Slurm
+ * executes. It makes OUTPUT.partial, and the folder takes its final name when the job ended well
+ * (exit code 0): an output that exists is complete, and a job whose output exists is not run again.
+ * So the same call resumes what was interrupted and repeats what failed.
+ *
+ * A worker process is a fork of this one. It ends without what this process does at its end, and a
+ * crash in it is its own; so that no lock is held in it by a thread that it does not have,
+ * wb_jobs_run() is called while this process has no threads but those of the linear algebra, whose
+ * library sees to its own.
  *
  * Typical use:
  *
@@ -18,9 +24,13 @@
 #include "base/status.h"
 
 struct wb_job {
-    const char *name;             /* unique; of letters, digits, '.', '_', '-': it names the log */
-    const char *const *arguments; /* of wirebench, NULL-terminated, without the program and
-                                     without `-o OUTPUT`, which is added */
+    const char *name; /* unique; of letters, digits, '.', '_', '-': it names the log */
+    /* Makes the folder `output` on as many cores and returns an exit code; WB_JOBS_LOCAL only. Its
+     * messages and what it prints go to the log. */
+    int (*run)(void *context, const char *output, int cores);
+    void *context;
+    const char *const *arguments; /* of wirebench, for the same: NULL-terminated, without the
+                                     program and without `-o OUTPUT`, which is added */
     const char *output;           /* folder that the job makes; its parent is made if need be */
     double cost;  /* expected duration in any unit: the longest go first; 0: not known */
     bool replace; /* an output that exists is outdated: make it again, and put the new one in
@@ -39,7 +49,7 @@ struct wb_jobs_options {
     enum wb_jobs_where where;
     const char *folder;    /* for logs and lists; made if need be. Given by the caller */
     const char *title;     /* of the Slurm job; NULL: "wirebench" */
-    const char *program;   /* NULL: this very binary */
+    const char *program;   /* of Slurm's tasks; NULL: this very binary */
     int workers;           /* jobs at once on this machine (0: cores / cores_per_job), or array
                               tasks at once in Slurm (0: no limit of ours) */
     int cores_per_job;     /* threads that a job may use; 0: 1 */

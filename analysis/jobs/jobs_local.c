@@ -23,15 +23,6 @@ enum {
     PATIENCE_MS = 10 * 1000 /* for a child to end after SIGTERM */
 };
 
-extern char **environ;
-
-/* What every child gets; made before any fork(), after which memory must not be taken. */
-struct setting {
-    const char *program;
-    char **environment; /* owned array; the texts are the process's or below */
-    char threads[2][48];
-};
-
 /* Runs at once: as asked for, else cores that this process may use over cores of a run. */
 static int count_workers(const struct wb_jobs_plan *plan)
 {
@@ -45,64 +36,20 @@ static int count_workers(const struct wb_jobs_plan *plan)
 
 /* --- one child --- */
 
-static bool is_thread_count(const char *variable)
-{
-    return strncmp(variable, "OMP_NUM_THREADS=", 16) == 0 ||
-           strncmp(variable, "OPENBLAS_NUM_THREADS=", 21) == 0;
-}
-
-/* The environment, with the threads of a run: several runs that each took all cores would only be
- * in each other's way. */
-static enum wb_status init_setting(struct setting *setting, const struct wb_jobs_plan *plan)
-{
-    size_t n = 0, kept = 0;
-    while (environ[n])
-        n++;
-    /* Also when the file of this binary was replaced meanwhile. */
-    setting->program = plan->options->program ? plan->options->program : "/proc/self/exe";
-    setting->environment = calloc(n + 3, sizeof(char *));
-    if (!setting->environment)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
-    for (size_t i = 0; i < n; i++)
-        if (!is_thread_count(environ[i]))
-            setting->environment[kept++] = environ[i];
-    snprintf(setting->threads[0], sizeof setting->threads[0], "OMP_NUM_THREADS=%d",
-             plan->cores_per_job);
-    snprintf(setting->threads[1], sizeof setting->threads[1], "OPENBLAS_NUM_THREADS=%d",
-             plan->cores_per_job);
-    setting->environment[kept++] = setting->threads[0];
-    setting->environment[kept] = setting->threads[1];
-    return WB_OK;
-}
-
-/* wirebench ARGUMENTS -o PARTIAL; the array is the caller's. */
-static const char **command_line(const struct wb_jobs_plan_item *item, const char *partial)
-{
-    size_t n = 0, k = 0;
-    while (item->job->arguments[n])
-        n++;
-    const char **const words = calloc(n + 4, sizeof *words);
-    if (!words)
-        return NULL;
-    words[k++] = "wirebench";
-    for (size_t i = 0; i < n; i++)
-        words[k++] = item->job->arguments[i];
-    words[k++] = "-o";
-    words[k] = partial;
-    return words;
-}
-
-/* Opens the log; its first line is the command. */
-static int open_log(const struct wb_jobs_plan_item *item, const char *const *words)
+/* Opens the log; its first line is the command that makes the same. */
+static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
 {
     struct wb_text line = {0};
     const int log = open(item->log, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
     if (log < 0)
         return -1;
-    for (const char *const *word = words; *word; word++) {
-        wb_text_append(&line, word == words ? "" : " ");
+    wb_text_append(&line, "wirebench");
+    for (const char *const *word = item->job->arguments; *word; word++) {
+        wb_text_append(&line, " ");
         wb_jobs_plan_quote(&line, *word);
     }
+    wb_text_append(&line, " -o ");
+    wb_jobs_plan_quote(&line, partial);
     wb_text_append(&line, "\n");
     const ssize_t written = write(log, wb_text_string(&line), line.length);
     const bool whole = !line.failed && written == (ssize_t)line.length;
@@ -113,40 +60,39 @@ static int open_log(const struct wb_jobs_plan_item *item, const char *const *wor
     return -1;
 }
 
-/* In the child. Nothing here takes memory. */
-__attribute__((noreturn)) static void become(const struct setting *setting, pid_t parent, int log,
-                                             const char *const *words)
+/* In the child. */
+__attribute__((noreturn)) static void become(const struct wb_job *job, const char *partial,
+                                             int cores, pid_t parent, int log)
 {
-    static const char lost[] = "cannot start wirebench\n";
+    static const char lost[] = "cannot start the run\n";
     /* A group of its own: Ctrl-C reaches this program first, which ends its children in order. */
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int nothing = open("/dev/null", O_RDONLY);
-    if (getppid() == parent && nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
-        dup2(log, STDOUT_FILENO) >= 0 && dup2(log, STDERR_FILENO) >= 0)
-        execve(setting->program, (char *const *)words, setting->environment);
-    if (write(log, lost, sizeof lost - 1) < 0)
-        _exit(126);
-    _exit(127);
+    if (getppid() != parent || nothing < 0 || dup2(nothing, STDIN_FILENO) < 0 ||
+        dup2(log, STDOUT_FILENO) < 0 || dup2(log, STDERR_FILENO) < 0)
+        _exit(write(log, lost, sizeof lost - 1) < 0 ? 126 : 127);
+    /* The parent's files, its lock among them, are not the child's to keep open. */
+    close_range(STDERR_FILENO + 1, ~0U, 0);
+    wb_log_set_sink(NULL, NULL);
+    const int code = job->run(job->context, partial, cores);
+    fflush(stdout);
+    _exit(code);
 }
 
-static enum wb_status start_child(struct wb_jobs_plan_item *item, const struct setting *setting,
-                                  const char *partial)
+static enum wb_status start_child(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
 {
-    const char **const words = command_line(item, partial);
-    if (!words)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
-    const int log = open_log(item, words);
-    if (log < 0) {
-        free(words);
+    char partial[WB_PATH];
+    WB_TRY(wb_jobs_plan_partial(item, partial));
+    const int log = open_log(item, partial);
+    if (log < 0)
         return wb_fail(WB_ERR_IO, "cannot write '%s': %s", item->log, strerror(errno));
-    }
+    fflush(NULL); /* what is not written yet would be written by both */
     const pid_t parent = getpid(), child = fork();
     if (child == 0)
-        become(setting, parent, log, words);
+        become(item->job, partial, plan->cores_per_job, parent, log);
     const int error = errno;
     close(log);
-    free(words);
     if (child < 0)
         return wb_fail(WB_ERR_IO, "cannot start a process: %s", strerror(error));
     setpgid(child, child); /* either of the two is first */
@@ -154,15 +100,6 @@ static enum wb_status start_child(struct wb_jobs_plan_item *item, const struct s
     item->state = WB_JOBS_PLAN_RUNNING;
     item->started_ns = wb_progress_now_ns();
     return WB_OK;
-}
-
-static void start(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item,
-                  const struct setting *setting)
-{
-    char partial[WB_PATH];
-    if (wb_jobs_plan_partial(item, partial) != WB_OK ||
-        start_child(item, setting, partial) != WB_OK)
-        wb_jobs_plan_fail(plan, item, "it could not be started", NULL);
 }
 
 /* --- the end of a child --- */
@@ -180,16 +117,9 @@ static void describe(char *how, size_t size, int status, double seconds)
         snprintf(how, size, "exit code %d after %s", WEXITSTATUS(status), time);
 }
 
-static bool made_dataset(const struct wb_jobs_plan_item *item)
-{
-    char partial[WB_PATH], path[WB_PATH];
-    return wb_jobs_plan_partial(item, partial) == WB_OK &&
-           wb_file_join(path, partial, "dataset.json") == WB_OK && wb_file_exists(path);
-}
-
 static bool is_success(const struct wb_jobs_plan_item *item, int status)
 {
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0 && made_dataset(item);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 && wb_jobs_plan_is_partial_whole(item);
 }
 
 static void settle(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, int status)
@@ -283,7 +213,7 @@ static struct wb_jobs_plan_item *next(struct wb_jobs_plan *plan)
     return NULL;
 }
 
-static void run_all(struct wb_jobs_plan *plan, const struct setting *setting)
+static void run_all(struct wb_jobs_plan *plan)
 {
     const int workers = count_workers(plan);
     int64_t drawn_ns = 0;
@@ -291,7 +221,8 @@ static void run_all(struct wb_jobs_plan *plan, const struct setting *setting)
         int running = look(plan);
         struct wb_jobs_plan_item *item;
         while (!wb_interrupted() && running < workers && (item = next(plan))) {
-            start(plan, item, setting);
+            if (start_child(plan, item) != WB_OK)
+                wb_jobs_plan_fail(plan, item, "it could not be started", NULL);
             running += item->state == WB_JOBS_PLAN_RUNNING;
         }
         if (running == 0 || wb_interrupted())
@@ -306,13 +237,10 @@ static void run_all(struct wb_jobs_plan *plan, const struct setting *setting)
 
 enum wb_status wb_jobs_local_run(struct wb_jobs_plan *plan)
 {
-    struct setting setting;
-    WB_TRY(init_setting(&setting, plan));
     signal(SIGCHLD,
            SIG_DFL); /* ignored, as some callers leave it, it would hide how children end */
-    run_all(plan, &setting);
+    run_all(plan);
     if (wb_interrupted())
         end_all(plan);
-    free(setting.environment);
     return WB_OK;
 }

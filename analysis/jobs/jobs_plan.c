@@ -30,7 +30,7 @@ static bool is_name(const char *name)
     return n > 0 && n <= 200 && name[0] != '.' && name[0] != '-' && strspn(name, allowed) == n;
 }
 
-static enum wb_status check_job(const struct wb_job *job)
+static enum wb_status check_job(const struct wb_job *job, enum wb_jobs_where where)
 {
     if (!job->name || !is_name(job->name))
         return wb_fail(WB_ERR_ARGUMENT,
@@ -38,6 +38,8 @@ static enum wb_status check_job(const struct wb_job *job)
                        job->name ? job->name : "");
     if (!job->output || !job->output[0] || !job->arguments || !job->arguments[0])
         return wb_fail(WB_ERR_ARGUMENT, "'%s' has no command or no output folder", job->name);
+    if (where == WB_JOBS_LOCAL && !job->run)
+        return wb_fail(WB_ERR_ARGUMENT, "'%s' has no function to run", job->name);
     bool has_newline = strchr(job->output, '\n') != NULL;
     for (const char *const *argument = job->arguments; *argument; argument++)
         has_newline = has_newline || strchr(*argument, '\n');
@@ -142,7 +144,7 @@ static enum wb_status fill(struct wb_jobs_plan *plan, const struct wb_job *jobs)
     WB_TRY(resolve(plan->folder, plan->directory, plan->options->folder));
     WB_TRY(wb_file_make_folder(plan->folder));
     for (int i = 0; i < plan->n; i++) {
-        WB_TRY(check_job(&jobs[i]));
+        WB_TRY(check_job(&jobs[i], plan->options->where));
         plan->items[i].job = &jobs[i];
     }
     qsort(plan->items, (size_t)plan->n, sizeof plan->items[0], by_cost);
@@ -237,6 +239,12 @@ enum wb_status wb_jobs_plan_partial(const struct wb_jobs_plan_item *item, char p
     return with_ending(path, item->output, ".partial");
 }
 
+bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item)
+{
+    char path[WB_PATH];
+    return wb_jobs_plan_partial(item, path) == WB_OK && holds_dataset(path);
+}
+
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *walk)
 {
     (void)info;
@@ -255,11 +263,10 @@ static void remove_folder(const char *path)
 bool wb_jobs_plan_clean(const struct wb_jobs_plan_item *item, bool keep_usable)
 {
     char path[WB_PATH];
-    if (wb_jobs_plan_partial(item, path) != WB_OK)
-        return false;
-    if (keep_usable && holds_dataset(path))
+    if (keep_usable && wb_jobs_plan_is_partial_whole(item))
         return true;
-    remove_folder(path);
+    if (wb_jobs_plan_partial(item, path) == WB_OK)
+        remove_folder(path);
     return false;
 }
 

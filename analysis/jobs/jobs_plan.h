@@ -66,6 +66,9 @@ bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item
 WB_MUST_CHECK enum wb_status wb_jobs_plan_partial(const struct wb_jobs_plan_item *item,
                                                   char path[WB_PATH]);
 
+/* Whether that holds a dataset. */
+bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item);
+
 /* Removes what unfinished runs left. Keeps a curve that was cut short (it has a dataset.json) where
  * `keep_usable` is set; true when there is one. */
 bool wb_jobs_plan_clean(const struct wb_jobs_plan_item *item, bool keep_usable);

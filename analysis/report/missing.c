@@ -6,25 +6,23 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "analysis/solve/solve.h"
 #include "base/hash.h"
 
 #define WB_LOG_DOMAIN "report"
 
-enum {
-    MORE_ARGUMENTS = 4 /* --threads N --checkpoint FILE */
-};
-
-/* A job with what its arguments point to. */
+/* A job's settings, and what they point to. */
 struct one {
-    const char *arguments[WB_SIMULATION_ARGUMENTS + MORE_ARGUMENTS];
+    struct wb_solve_settings settings;
     char checkpoint[WB_PATH];
+    char **command; /* owned */
 };
 
 struct all {
     int n;
     struct wb_job *jobs; /* (n) */
     struct one *texts;   /* (n) */
-    char threads[16];    /* of a run; "": one */
+    int cores;           /* of a run */
     char folder[WB_PATH];
     char program[WB_SHA256_TEXT];
 };
@@ -44,7 +42,7 @@ static enum wb_status name_checkpoint(const struct all *all,
 {
     char hash[WB_SHA256_TEXT], name[200];
     struct wb_text text = {0};
-    wb_text_append(&text, "%s %s %s %s", all->program, all->threads, entry->resumable,
+    wb_text_append(&text, "%s %d %s %s", all->program, all->cores, entry->resumable,
                    entry->wanted->command);
     wb_hash_bytes(wb_text_string(&text), text.length, hash);
     wb_text_release(&text);
@@ -52,24 +50,37 @@ static enum wb_status name_checkpoint(const struct all *all,
     return wb_file_join(path, all->folder, name);
 }
 
+/* Called in a process of its own, on this machine. */
+static int run_one(void *context, const char *output, int cores)
+{
+    const struct one *const one = context;
+    struct wb_solve_settings settings = one->settings;
+    bool complete;
+    settings.output = output;
+    wb_solve_set_threads(cores);
+    if (wb_solve_run(&settings, NULL, NULL, &complete) != WB_OK)
+        return 1;
+    return complete ? 0 : 3; /* as `wirebench solve` does */
+}
+
 static enum wb_status add_job(struct all *all, const struct wb_simulation_entry *entry)
 {
     struct one *const one = &all->texts[all->n];
-    int n = 0;
-    for (; entry->wanted->arguments[n]; n++)
-        one->arguments[n] = entry->wanted->arguments[n];
-    if (entry->resumable && all->threads[0]) {
-        one->arguments[n++] = "--threads";
-        one->arguments[n++] = all->threads;
-    }
+    one->settings = entry->wanted->settings;
     if (entry->resumable) {
+        if (all->cores > 1)
+            one->settings.threads = all->cores;
         WB_TRY(name_checkpoint(all, entry, one->checkpoint));
-        one->arguments[n++] = "--checkpoint";
-        one->arguments[n++] = one->checkpoint;
+        one->settings.checkpoint = one->checkpoint;
     }
+    one->command = wb_solve_settings_command(&one->settings);
+    if (!one->command)
+        return wb_fail(WB_ERR_MEMORY, "out of memory");
     all->jobs[all->n++] = (struct wb_job){
         .name = entry->wanted->log,
-        .arguments = one->arguments,
+        .run = run_one,
+        .context = one,
+        .arguments = (const char *const *)one->command,
         .output = entry->wanted->path,
         .cost = entry->cost,
         .replace = entry->result->state == WB_SIMULATION_STALE,
@@ -103,9 +114,7 @@ enum wb_status wb_missing_make(struct wb_missing_outcome *outcome, wb_simulation
 {
     struct wb_jobs_options own = *options;
     struct wb_jobs_outcome of_jobs = {0};
-    struct all all = {.n = 0};
-    if (options->cores_per_job > 1)
-        snprintf(all.threads, sizeof all.threads, "%d", options->cores_per_job);
+    struct all all = {.n = 0, .cores = options->cores_per_job > 1 ? options->cores_per_job : 1};
     enum wb_status status = name_folder(all.folder, folder);
     if (status == WB_OK)
         status = add_jobs(&all, list, results);
@@ -113,6 +122,8 @@ enum wb_status wb_missing_make(struct wb_missing_outcome *outcome, wb_simulation
     if (status == WB_OK && all.n > 0)
         status = wb_jobs_run(&of_jobs, all.jobs, all.n, &own);
     *outcome = (struct wb_missing_outcome){.n = all.n, .interrupted = of_jobs.interrupted};
+    for (int i = 0; i < all.n; i++)
+        free(all.texts[i].command);
     free(all.jobs);
     free(all.texts);
     return status;

@@ -49,31 +49,38 @@ static void show(struct wb_simulation *simulation, const char *text)
              used ? " " : "", quote, text, quote);
 }
 
-enum wb_status wb_simulation_argue(struct wb_simulation *simulation, const char *argument,
-                                   const char *shown)
+static enum wb_status show_command(struct wb_simulation *simulation, const char *shown)
 {
-    int n = 0;
-    while (n < WB_SIMULATION_ARGUMENTS - 1 && simulation->arguments[n])
-        n++;
-    simulation->arguments[n] = n < WB_SIMULATION_ARGUMENTS - 1 ? strdup(argument) : NULL;
-    if (!simulation->arguments[n])
-        return wb_fail(WB_ERR_MEMORY, "no room for the arguments of %s", simulation->name);
-    if (n == 0)
-        show(simulation, "wirebench");
-    show(simulation, shown ? shown : argument);
+    struct wb_solve_settings settings = simulation->settings;
+    if (settings.model)
+        settings.model = shown;
+    char **const words = wb_solve_settings_command(&settings);
+    if (!words)
+        return wb_fail(WB_ERR_MEMORY, "no room for the command of %s", simulation->name);
+    show(simulation, "wirebench");
+    for (char **word = words; *word; word++)
+        show(simulation, *word);
+    show(simulation, "-o");
+    show(simulation, simulation->name);
+    free(words);
     return WB_OK;
 }
 
-void wb_simulation_end(struct wb_simulation *simulation)
+enum wb_status wb_simulation_set(struct wb_simulation *simulation,
+                                 const struct wb_solve_settings *settings, const char *shown)
 {
-    show(simulation, "-o");
-    show(simulation, simulation->name);
+    simulation->settings = *settings;
+    if (settings->model) {
+        simulation->settings.model = strdup(settings->model);
+        if (!simulation->settings.model)
+            return wb_fail(WB_ERR_MEMORY, "no room for the settings of %s", simulation->name);
+    }
+    return show_command(simulation, shown);
 }
 
 void wb_simulation_release(struct wb_simulation *simulation)
 {
-    for (int i = 0; i < WB_SIMULATION_ARGUMENTS; i++)
-        free((char *)simulation->arguments[i]);
+    free((char *)simulation->settings.model);
 }
 
 /* --- what is there --- */

@@ -11,6 +11,7 @@
 
 #include "analysis/dataset.h"
 #include "analysis/report/campaign.h"
+#include "analysis/solve/solve_settings.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
@@ -18,19 +19,14 @@
 #include "base/status.h"
 #include "base/text.h"
 
-enum {
-    WB_SIMULATION_ARGUMENTS = 28
-};
-
 /* What a campaign wants. */
 struct wb_simulation {
     bool wanted;
-    char name[256];     /* for readers: no path of this machine */
-    char path[WB_PATH]; /* of its folder, which may not be there */
-    char log[128];      /* a name for a log */
-    /* Of wirebench, NULL-terminated, without the program and without -o; owned. */
-    const char *arguments[WB_SIMULATION_ARGUMENTS];
-    char command[1200]; /* the whole of it for readers, without paths of this machine */
+    char name[256];                    /* for readers: no path of this machine */
+    char path[WB_PATH];                /* of its folder, which may not be there */
+    char log[128];                     /* a name for a log */
+    struct wb_solve_settings settings; /* with which it is computed; the model's path is owned */
+    char command[1200]; /* that computes it, for readers: without paths of this machine */
 };
 
 /* Path and name of a dataset. A name lies among the campaign's simulations, by default the shipped
@@ -39,10 +35,11 @@ WB_MUST_CHECK enum wb_status wb_simulation_find(struct wb_simulation *simulation
                                                 const struct wb_campaign *campaign,
                                                 const char *given);
 
-/* Then its command, argument by argument, each shown as `shown` (NULL: as it is), and the end. */
-WB_MUST_CHECK enum wb_status wb_simulation_argue(struct wb_simulation *simulation,
-                                                 const char *argument, const char *shown);
-void wb_simulation_end(struct wb_simulation *simulation);
+/* Then the settings with which it is computed, and its command, which shows the model, where there
+ * is one, as `shown`. A wire's name is borrowed. */
+WB_MUST_CHECK enum wb_status wb_simulation_set(struct wb_simulation *simulation,
+                                               const struct wb_solve_settings *settings,
+                                               const char *shown);
 
 void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
 

@@ -45,8 +45,8 @@ const struct wb_setting wb_bundle_model_run_settings[WB_BUNDLE_MODEL_RUN_SETTING
                                   .otherwise = "chosen",
                                   .option = "duration-s",
                                   .argument = "T",
-                                  .help = "Duration of a loading; given neither here nor in the "
-                                          "file, it is chosen so that kinetic energy stays small"},
+                                  .help = "Duration of a loading; where the file has none, it is "
+                                          "chosen so that kinetic energy stays small"},
     [WB_BUNDLE_MODEL_MASS_SCALING] = {.name = "mass_scaling",
                                       .title = "mass scaling",
                                       .type = WB_SETTING_NUMBER,
@@ -153,7 +153,8 @@ const struct wb_setting wb_bundle_model_friction_setting[1] = {
      .required = true,
      .option = "friction",
      .argument = "S[,K,D]",
-     .help = "Friction: constant, or static and kinetic with the decay between them in s/mm",
+     .help = "Constant friction, or static and kinetic with the decay between them in s/mm; "
+             "coefficients",
      .members = &friction_table,
      .given = offsetof(struct wb_bundle_interface, has_friction),
      .complete = complete_friction},

@@ -13,7 +13,7 @@ static const struct wb_setting load_rows[] = {
      .type = WB_SETTING_BOOLEAN,
      .offset = offsetof(struct wb_bundle_override, dead_force),
      .option = "dead-force",
-     .help = "Raise the tip by a vertical force, not by a strand"},
+     .help = "Raise the tip by a vertical force in place of a strand"},
     {.name = "no_weight",
      .type = WB_SETTING_BOOLEAN,
      .offset = offsetof(struct wb_bundle_override, no_weight),
@@ -66,7 +66,7 @@ static enum wb_status override_run(const struct wb_bundle_run *given, struct wb_
     struct wb_bundle_run *const run = &model->run;
 
     if (given->mesh[0] && !wb_bundle_model_mesh(model, given->mesh))
-        return wb_fail(WB_ERR_NOT_FOUND, "%s: there is no mesh '%s'", model->path, given->mesh);
+        return wb_fail(WB_ERR_ARGUMENT, "%s: there is no mesh '%s'", model->path, given->mesh);
     if (given->mesh[0])
         snprintf(run->mesh, sizeof run->mesh, "%s", given->mesh);
     if (given->duration > 0.0)

@@ -34,9 +34,8 @@ extern const struct wb_setting_table wb_bundle_override_tables[WB_BUNDLE_OVERRID
 /* Whether it changes anything. */
 bool wb_bundle_override_is_empty(const struct wb_bundle_override *override);
 
-/* Changes the model; it is as it was on failure. WB_ERR_NOT_FOUND when it has no such mesh,
- * WB_ERR_ARGUMENT for values out of range, also for a stiffness with which the interface's damage
- * would not soften. */
+/* Changes the model; it is as it was on failure. WB_ERR_ARGUMENT when it has no such mesh, and for
+ * values out of range, also for a stiffness with which the interface's damage would not soften. */
 WB_MUST_CHECK enum wb_status wb_bundle_override_apply(const struct wb_bundle_override *override,
                                                       struct wb_bundle_model *model);
 

@@ -145,7 +145,7 @@ static void defaults_are_filled_in(void **unused)
 static void options_are_read(void **unused)
 {
     (void)unused;
-    struct example e;
+    struct example e = {0}; /* a default of a list is not filled in */
     wb_setting_fill(&table, &e);
     assert_true(parse(&e, "length-mm", "0.1"));
     assert_close(e.length, 1e-4, 0.0);
@@ -171,8 +171,8 @@ static void wrong_options_are_refused_and_change_nothing(void **unused)
     static const struct {
         const char *name, *argument, *expected;
     } cases[] = {
-        {"length-mm", "0.09", "expected a number from 0.1 to 1e+06, not '0.09'"},
-        {"length-mm", "1000001", "expected a number from 0.1 to 1e+06"},
+        {"length-mm", "0.09", "expected a number from 0.1 to 1e6 mm, not '0.09'"},
+        {"length-mm", "1000001", "expected a number from 0.1 to 1e6 mm"},
         {"length-mm", "5 mm", "not '5 mm'"},
         {"length-mm", "nan", "not 'nan'"},
         {"count", "0", "expected a whole number from 1 to 9, not '0'"},
@@ -193,6 +193,45 @@ static void wrong_options_are_refused_and_change_nothing(void **unused)
         e.pair = before.pair; /* no one's until has_pair is set */
         assert_memory_equal(&e, &before, sizeof e);
     }
+}
+
+/* "0.8@1.2", where the first alone is not enough. */
+static void lists_may_have_another_separator_and_need_all_members(void **unused)
+{
+    (void)unused;
+    const struct wb_setting row = {.name = "pair",
+                                   .type = WB_SETTING_LIST,
+                                   .offset = offsetof(struct example, pair),
+                                   .argument = "F@S",
+                                   .separator = '@',
+                                   .members = &pair_table,
+                                   .given = offsetof(struct example, has_pair)};
+    struct example e = {0};
+    char text[WB_SETTING_VALUE];
+    assert_true(wb_setting_parse(&row, "0.8@1.2", &e, problem));
+    assert_true(e.has_pair);
+    assert_close(e.pair.first, 0.8e-3, 1e-18);
+    assert_close(e.pair.second, 1.2, 0.0);
+    wb_setting_format(&row, &e, text);
+    assert_string_equal(text, "0.8@1.2");
+    static const char *const wrong[] = {"0.8", "0.8,1.2", "0.8@1.2@1", "@1.2", "0.8@"};
+    for (size_t i = 0; i < WB_COUNT(wrong); i++)
+        if (wb_setting_parse(&row, wrong[i], &e, problem))
+            fail_msg("'%s' was taken", wrong[i]);
+    assert_false(wb_setting_parse(&row, "0.8", &e, problem));
+    assert_string_equal(problem, "expected F@S, not '0.8'");
+}
+
+static void a_word_may_stand_for_0(void **unused)
+{
+    (void)unused;
+    struct wb_setting row = rows[0];
+    struct example e = {.length = 1.0};
+    row.zero = "none";
+    assert_true(wb_setting_parse(&row, "none", &e, problem));
+    assert_close(e.length, 0.0, 0.0);
+    assert_false(wb_setting_parse(&row, "0", &e, problem));
+    assert_string_equal(problem, "expected a number from 0.1 to 1e6 mm or none, not '0'");
 }
 
 static enum wb_status read_text(struct example *example, const char *text, unsigned place)
@@ -297,6 +336,19 @@ static void only_what_is_not_zero_is_given(void **unused)
         assert_false(wb_setting_is_given(&rows[i], &zero));
         assert_true(wb_setting_is_given(&rows[i], &full));
     }
+}
+
+static void only_what_is_not_the_default_differs(void **unused)
+{
+    (void)unused;
+    struct example e = {0};
+    wb_setting_fill(&table, &e);
+    for (size_t i = 0; i < table.n; i++)
+        assert_false(wb_setting_differs(&rows[i], &e));
+    const struct example other = {
+        .length = 0.086, .count = 1, .is_off = true, .name = "a", .path = "b", .has_pair = true};
+    for (size_t i = 0; i < table.n; i++)
+        assert_true(wb_setting_differs(&rows[i], &other));
 }
 
 static void json_holds_what_is_compared(void **unused)
@@ -404,10 +456,13 @@ int main(void)
         cmocka_unit_test(defaults_are_filled_in),
         cmocka_unit_test(options_are_read),
         cmocka_unit_test(wrong_options_are_refused_and_change_nothing),
+        cmocka_unit_test(lists_may_have_another_separator_and_need_all_members),
+        cmocka_unit_test(a_word_may_stand_for_0),
         cmocka_unit_test(files_are_read_by_place),
         cmocka_unit_test(lists_are_a_value_or_a_map),
         cmocka_unit_test(filled_structs_are_checked),
         cmocka_unit_test(only_what_is_not_zero_is_given),
+        cmocka_unit_test(only_what_is_not_the_default_differs),
         cmocka_unit_test(json_holds_what_is_compared),
         cmocka_unit_test(every_field_is_part_of_the_identity),
         cmocka_unit_test(values_are_written_as_options_take_them),

@@ -77,6 +77,13 @@ wait_for_start() { # NAME: until the recording of that name runs
     fail "$1: did not start"
 }
 
+begin() { # NAME: a recording from the rig of that name, once it runs; its process in $recorder
+    "$wirebench" record "$folder/$1/rig.yaml" --specimen "$specimen" -o "$folder/$1.wbr" \
+        >"$folder/$1.out" 2>"$folder/$1.err" </dev/null &
+    recorder=$!
+    wait_for_start "$1"
+}
+
 whole_test() {
     start_rig whole
     record whole --travel-mm 10 --cycles 2 --operator 'A. Tester' --notes 'a note'
@@ -89,10 +96,7 @@ whole_test() {
 
 ctrl_c() {
     start_rig ctrlc
-    "$wirebench" record "$folder/ctrlc/rig.yaml" --specimen "$specimen" -o "$folder/ctrlc.wbr" \
-        >"$folder/ctrlc.out" 2>"$folder/ctrlc.err" </dev/null &
-    local recorder=$!
-    wait_for_start ctrlc
+    begin ctrlc
     sleep 1.2
     kill -INT $recorder
     wait $recorder
@@ -119,10 +123,7 @@ ctrl_c() {
 ctrl_c_too_early() {
     start_rig early
     sed -i 's|udp:127.0.0.1:[0-9]*|udp:127.0.0.1:9|' "$folder/early/rig.yaml"
-    "$wirebench" record "$folder/early/rig.yaml" --specimen "$specimen" -o "$folder/early.wbr" \
-        >"$folder/early.out" 2>"$folder/early.err" </dev/null &
-    local recorder=$!
-    wait_for_start early
+    begin early
     sleep 0.5
     kill -INT $recorder
     wait $recorder
@@ -143,10 +144,7 @@ force_limit() {
 
 rig_killed() {
     start_rig killed
-    "$wirebench" record "$folder/killed/rig.yaml" --specimen "$specimen" -o "$folder/killed.wbr" \
-        >"$folder/killed.out" 2>"$folder/killed.err" </dev/null &
-    local recorder=$!
-    wait_for_start killed
+    begin killed
     sleep 1
     kill -KILL "$rig"
     wait "$rig" 2>/dev/null
@@ -224,10 +222,7 @@ hung_reader() {
 # Ctrl-Z must not halt what watches a moving stage; Ctrl-\ is a Ctrl-C.
 keys_of_the_terminal() {
     start_rig keys
-    "$wirebench" record "$folder/keys/rig.yaml" --specimen "$specimen" -o "$folder/keys.wbr" \
-        >"$folder/keys.out" 2>"$folder/keys.err" </dev/null &
-    local recorder=$!
-    wait_for_start keys
+    begin keys
     sleep 0.8
     kill -TSTP $recorder
     kill -TTOU $recorder

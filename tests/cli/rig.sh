@@ -95,12 +95,12 @@ code=$?
 [ ! -e "$folder/one/deep/rig.yaml" ] || fail "the file outlived its rig"
 [ "$(grep -c error: "$folder/one.log")" = 0 ] || fail "complained: $(cat "$folder/one.log")"
 
-refused 2 'no rig file' --specimen "$specimen" --run "$folder/refused"
+refused 2 'name a rig file' --specimen "$specimen" --run "$folder/refused"
 refused 2 'no --specimen' "$rig" --run "$folder/refused"
 refused 2 'no folder' "$rig" --specimen "$specimen"
-refused 2 'too many' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
+refused 2 'one rig file at a time' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
 refused 2 'seed' "$rig" --specimen "$specimen" --run "$folder/refused" --seed x
-refused 2 'version such as 3.0' "$rig" --specimen "$specimen" --run "$folder/refused" \
+refused 2 'expected M.N, not' "$rig" --specimen "$specimen" --run "$folder/refused" \
     --natnet-version 3
 refused 2 'MM@MM' "$rig" --specimen "$specimen" --run "$folder/refused" --lost-steps 3
 refused 2 'time-scale' "$rig" --specimen "$specimen" --run "$folder/refused" --time-scale 0

@@ -108,7 +108,8 @@ static void wrong_usage_and_files_are_refused(void **state)
     expect("info a.wbr --figure b.svg", 2, "'a.wbr' is none");
     expect("info", 2, "name a recording or bundle file");
     expect("info none.yaml", 1, "none.yaml");
-    expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh none", 1, "no mesh none");
+    expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh none", 2, "no mesh 'none'");
+    expect("info fixtures/bundles/12-type3.yaml --figure b.svg --mesh ''", 2, "--mesh: ");
     assert_false(wb_file_exists(path_of("b.svg")));
     expect("info fixtures/wires/type1.yaml", 1, "type1.yaml:3: conductor_diameter_mm");
     expect("info fixtures/bundles/12-type3.yaml --figure none/b.svg", 1, "none/b.svg");

@@ -9,9 +9,10 @@
 #include "analysis/align.h"
 #include "analysis/calibrate.h"
 #include "analysis/report/campaign.h"
+#include "analysis/solve/solve_settings.h"
 #include "base/file.h"
 #include "base/setting_private.h"
-#include "cli/solve.h"
+#include "cli/bench_options.h"
 #include "daq/bend_test.h"
 #include "fe/model/bundle_override.h"
 #include "tests/cli/tool.h"
@@ -26,14 +27,18 @@ static const struct command {
     unsigned place;
 } commands[] = {
     {"record", "none.yaml --specimen none.yaml -o none.wbr", "record", &wb_bend_test_table, 1, 0},
+    {"stage", "none.yaml home", "stage", &wb_bench_options_stage, 1, 0},
+    {"rig", "none.yaml --specimen none.yaml --run none", "rig", &wb_bench_options_rig, 1, 0},
+    {"replay", "none.wbr", "replay", &wb_bench_options_replay, 1, 0},
     {"align", "none.wbr -o none", "align", &wb_align_table, 1, 0},
     {"calibrate", "none", "calibrate", &wb_calibrate_table, 1, WB_CALIBRATE_COMMAND},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
     {"solve cantilever", "--wire ./none --length-mm 1 --deflection-mm 1", "solve",
-     &wb_solve_settings, 1, WB_SOLVE_CANTILEVER},
-    {"solve wire3d", "./none.yaml", "solve", &wb_solve_settings, 1, WB_SOLVE_WIRE3D},
-    {"solve wire1d", "./none.yaml", "solve", &wb_solve_settings, 1, WB_SOLVE_WIRE1D},
-    {"solve bundle", "./none.yaml --vtk none", "solve", &wb_solve_settings, 1, WB_SOLVE_BUNDLE},
+     &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},
+    {"solve wire3d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE3D},
+    {"solve wire1d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE1D},
+    {"solve bundle", "./none.yaml --vtk none --checkpoint none", "solve", &wb_solve_settings_table,
+     1, WB_SOLVE_BUNDLE},
     {"solve bundle", "./none.yaml", "solve", wb_bundle_override_tables, WB_BUNDLE_OVERRIDE_TABLES,
      0},
 };
@@ -95,14 +100,29 @@ static void try_option(const struct command *command, const struct wb_setting *r
         fail_msg("'%s': exit code %d, message '%s'", arguments, code, o.err);
 }
 
+/* The other members of a list that takes none alone. */
+static void add_members(const struct wb_setting *row, char text[64])
+{
+    if (row->type != WB_SETTING_LIST || strchr(row->argument, '['))
+        return;
+    for (size_t i = 1; i < row->members->n; i++) {
+        const size_t used = strlen(text);
+        snprintf(text + used, 64 - used, "%c%g", row->separator, row->members->rows[i].least);
+    }
+}
+
 static void try_options(const struct command *command, const struct wb_setting *row)
 {
     struct value values[VALUES];
     const struct wb_setting *const number = number_row(row);
     if (number) {
         choose_values(number, values);
-        for (int i = 0; i < VALUES; i++)
+        for (int i = 0; i < VALUES; i++) {
+            add_members(row, values[i].text);
             try_option(command, row, values[i].text, values[i].is_good);
+        }
+        if (row->zero)
+            try_option(command, row, row->zero, true);
         try_option(command, row, "1,5", false);
         try_option(command, row, "1 mm", false);
     }
@@ -155,8 +175,8 @@ static void options_of_other_kinds_are_refused(void **unused)
                  {"wire1d", WB_SOLVE_WIRE1D},
                  {"bundle", WB_SOLVE_BUNDLE}};
     for (size_t k = 0; k < WB_COUNT(kinds); k++)
-        for (size_t i = 0; i < wb_solve_settings.n; i++) {
-            const struct wb_setting *const row = &wb_solve_settings.rows[i];
+        for (size_t i = 0; i < wb_solve_settings_table.n; i++) {
+            const struct wb_setting *const row = &wb_solve_settings_table.rows[i];
             char arguments[128], expected[128];
             if (wb_setting_applies(row, kinds[k].bit))
                 continue;
@@ -320,6 +340,24 @@ static void help_says_range_and_default(void **unused)
     for_each_option(look_at_help);
 }
 
+/* A line of blanks alone looks like the end of the options; argp leaves one after a help that just
+ * fills its line. */
+static void help_has_no_line_of_blanks(void **unused)
+{
+    (void)unused;
+    for (size_t c = 0; c < WB_COUNT(commands); c++) {
+        char arguments[128];
+        snprintf(arguments, sizeof arguments, "%s --help", commands[c].name);
+        run_tool("", arguments);
+        for (const char *line = o.out; *line;) {
+            const size_t length = strcspn(line, "\n");
+            if (length > 0 && strspn(line, " ") == length)
+                fail_msg("'%s' has a line of blanks before '%.60s'", arguments, line + length + 1);
+            line += length + (line[length] == '\n');
+        }
+    }
+}
+
 /* A document, its line ends as blanks; those before paragraphs, items and headings stay. */
 static char *read_document(const char *name)
 {
@@ -434,6 +472,7 @@ int main(void)
         cmocka_unit_test(bundles_have_the_rows_ranges),
         cmocka_unit_test(bundles_without_a_run_have_the_rows_defaults),
         cmocka_unit_test(help_says_range_and_default),
+        cmocka_unit_test(help_has_no_line_of_blanks),
         cmocka_unit_test(the_manual_says_range_and_default),
         cmocka_unit_test(the_formats_say_range_and_default),
     };

@@ -137,10 +137,7 @@ static void curve_cut_short_exits_with_3(void **unused)
 static void bad_input_gives_one_message_and_its_exit_code(void **unused)
 {
     (void)unused;
-    static const struct {
-        const char *arguments, *expected;
-        int code;
-    } cases[] = {
+    static const struct refused cases[] = {
         {"solve", "name the model", 2},
         {"solve beam --wire type1 --length-mm 85 --deflection-mm 5", "no model 'beam'", 2},
         {"solve cantilever --wire type1 --length-mm 85", "--deflection-mm", 2},
@@ -156,12 +153,7 @@ static void bad_input_gives_one_message_and_its_exit_code(void **unused)
         {"solve cantilever --wire type1 --length-mm 85 --deflection-mm 5 -o /proc/none", "/proc",
          1},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        tool(cases[i].arguments);
-        if (o.code != cases[i].code || !strstr(o.err, cases[i].expected))
-            fail_msg("'%s': exit code %d, message '%s'", cases[i].arguments, o.code, o.err);
-        assert_string_equal(o.out, "");
-    }
+    expect_refused(cases, sizeof cases / sizeof cases[0]);
 }
 
 int main(void)

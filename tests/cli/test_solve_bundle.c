@@ -238,8 +238,13 @@ static void options_of_others_are_refused(void **unused)
     (void)unused;
     assert_int_not_equal(solve("--points 5"), 0);
     assert_non_null(strstr(o.err, "--points"));
-    assert_int_not_equal(solve("--mesh none"), 0);
+    assert_int_equal(solve("--mesh none"), 2);
     assert_non_null(strstr(o.err, "there is no mesh 'none'"));
+    assert_int_equal(solve("--mesh ''"), 2);
+    assert_non_null(strstr(o.err, "--mesh: expected NAME, not ''"));
+    assert_int_equal(solve("--checkpoint-minutes 10"), 2);
+    assert_non_null(strstr(o.err, "--checkpoint-minutes is for --checkpoint"));
+    assert_non_null(strstr(o.err, "Try `wirebench solve bundle --help'"));
     assert_int_not_equal(solve("--mass-scaling 0.5"), 0);
     assert_int_not_equal(solve("--cohesive-stiffness 0"), 0);
     assert_int_not_equal(solve("--friction 0.3,0.2"), 0);

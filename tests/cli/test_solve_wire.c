@@ -290,10 +290,7 @@ static void interrupt_keeps_the_completed_rows(void **unused)
 static void bad_input_gives_one_message_and_its_exit_code(void **unused)
 {
     (void)unused;
-    static const struct {
-        const char *arguments, *expected;
-        int code;
-    } cases[] = {
+    static const struct refused cases[] = {
         {"solve wire3d", "name the model file: wire3d MODEL.yaml", 2},
         {"solve wire1d", "name the model file: wire1d MODEL.yaml", 2},
         {"solve wire2d kept.yaml", "no model 'wire2d'", 2},
@@ -313,13 +310,8 @@ static void bad_input_gives_one_message_and_its_exit_code(void **unused)
     write_model("bad.yaml", "name: bad\ntitle: a test\nwire: type9\nlength_mm: 20\nlaw: elastic\n"
                             "gravity: [0, 0, 0]\nhistory:\n  - name: a\n    unload: true\n");
     write_model("worse.yaml", HEAD("worse", "elastic") "history:\n\n  - name: a\n    rows: 3\n");
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        tool(cases[i].arguments);
-        if (o.code != cases[i].code || !strstr(o.err, cases[i].expected))
-            fail_msg("'%s': exit code %d, message '%s'", cases[i].arguments, o.code, o.err);
-        assert_string_equal(o.out, "");
-        assert_false(wb_file_exists(path_of("bad")));
-    }
+    expect_refused(cases, sizeof cases / sizeof cases[0]);
+    assert_false(wb_file_exists(path_of("bad")));
 }
 
 int main(void)

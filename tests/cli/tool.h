@@ -57,6 +57,20 @@ static inline void expect(const char *arguments, int code, const char *part_of_e
         fail_msg("%s: exit %d, %s", arguments, o.code, o.err);
 }
 
+/* Bad input: one message, nothing printed. */
+struct refused {
+    const char *arguments, *expected;
+    int code;
+};
+
+static inline void expect_refused(const struct refused *cases, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        expect(cases[i].arguments, cases[i].code, cases[i].expected);
+        assert_string_equal(o.out, "");
+    }
+}
+
 /* A number that the object must have. */
 static inline double number(const struct wb_json *object, const char *key)
 {

@@ -6,8 +6,6 @@
 
 #include "analysis/report/campaign.h"
 #include "base/config.h"
-#include "base/number.h"
-#include "base/units.h"
 
 #define WB_LOG_DOMAIN "campaign"
 
@@ -29,31 +27,17 @@ const char *wb_bundles_loading(const struct wb_bundles_run *run)
 
 /* --- rods --- */
 
-static enum wb_status argue_rod(const struct wb_bundles_run *run, struct wb_simulation *rod)
+static enum wb_status set_rod(const struct wb_bundles_run *run, struct wb_simulation *rod)
 {
     const struct wb_bundle_model *const model = run->model;
-    const struct wb_wire *const beam = wb_bundles_published(run);
-    const char *fixed[] = {"solve", "cantilever", "--wire", beam->name};
-    for (size_t i = 0; i < WB_COUNT(fixed); i++)
-        WB_TRY(wb_simulation_argue(rod, fixed[i], NULL));
-    const struct {
-        const char *option;
-        double value;
-    } lengths[] = {{"--length-mm", model->length},
-                   {"--deflection-mm", model->run.deflection},
-                   {"--strand-mm", model->loads.strand_length}};
-    for (size_t i = 0; i < WB_COUNT(lengths); i++) {
-        char text[WB_NUMBER_TEXT];
-        snprintf(text, sizeof text, "%.10g", lengths[i].value / WB_MM);
-        if (lengths[i].value == 0.0)
-            continue;
-        WB_TRY(wb_simulation_argue(rod, lengths[i].option, NULL));
-        WB_TRY(wb_simulation_argue(rod, text, NULL));
-    }
-    if (model->loads.weight)
-        WB_TRY(wb_simulation_argue(rod, "--weight", NULL));
-    wb_simulation_end(rod);
-    return WB_OK;
+    struct wb_solve_settings settings = {.kind = WB_SOLVE_CANTILEVER};
+    wb_setting_fill(&wb_solve_settings_table, &settings);
+    settings.wire = wb_bundles_published(run)->name;
+    settings.length = model->length;
+    settings.deflection = model->run.deflection;
+    settings.strand = model->loads.strand_length;
+    settings.weight = model->loads.weight;
+    return wb_simulation_set(rod, &settings, NULL);
 }
 
 /* --- groups --- */
@@ -101,7 +85,7 @@ static enum wb_status read_bundle(struct wb_bundles *all, const struct wb_config
         return wb_config_refuse(node, "rod", "the published beam '%s' is not in fixtures/wires",
                                 beam->name);
     WB_TRY(wb_simulation_find(&bundle->rod, &all->head, rod));
-    return argue_rod(run, &bundle->rod);
+    return set_rod(run, &bundle->rod);
 }
 
 static enum wb_status read_figures(const struct wb_config_node *node,

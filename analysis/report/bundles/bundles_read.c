@@ -91,43 +91,6 @@ static enum wb_status apply(struct settings *s, const struct wb_config_node *nod
     return WB_OK;
 }
 
-/* --- its command --- */
-
-/* A setting as its option, if it was given. */
-static enum wb_status argue_setting(struct wb_simulation *dataset, const struct wb_setting *row,
-                                    const void *settings)
-{
-    char option[64], value[WB_SETTING_VALUE];
-    if (!wb_setting_is_given(row, settings))
-        return WB_OK;
-    snprintf(option, sizeof option, "--%s", row->option);
-    wb_setting_format(row, settings, value);
-    WB_TRY(wb_simulation_argue(dataset, option, NULL));
-    return wb_simulation_argue(dataset, value, NULL);
-}
-
-static enum wb_status argue(struct wb_bundles_run *run, const struct wb_bundle_override *o,
-                            const char *path)
-{
-    const struct wb_setting *const run_rows = wb_bundle_model_run_settings;
-    struct wb_simulation *const d = &run->dataset;
-    WB_TRY(wb_simulation_argue(d, "solve", NULL));
-    WB_TRY(wb_simulation_argue(d, "bundle", NULL));
-    WB_TRY(wb_simulation_argue(d, path, run->model_name));
-    if (o->dead_force)
-        WB_TRY(wb_simulation_argue(d, "--dead-force", NULL));
-    if (o->no_weight)
-        WB_TRY(wb_simulation_argue(d, "--no-weight", NULL));
-    WB_TRY(argue_setting(d, wb_bundle_model_friction_setting, &o->interface));
-    WB_TRY(argue_setting(d, wb_bundle_model_cohesion_setting, &o->interface));
-    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_MESH], &o->run));
-    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_MASS_SCALING], &o->run));
-    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_SELECTIVE], &o->run));
-    WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_DURATION], &o->run));
-    wb_simulation_end(d);
-    return WB_OK;
-}
-
 /* --- runs --- */
 
 static void set_label(struct wb_bundles_run *run)
@@ -161,7 +124,11 @@ static enum wb_status read_run(const struct wb_bundles *all, const struct wb_con
     WB_TRY(apply(s, node, run));
     set_label(run);
     WB_TRY(wb_simulation_find(&run->dataset, &all->head, run->name));
-    return argue(run, &s->override, path);
+    struct wb_solve_settings solve = {.kind = WB_SOLVE_BUNDLE};
+    wb_setting_fill(&wb_solve_settings_table, &solve);
+    solve.model = path;
+    solve.override = s->override;
+    return wb_simulation_set(&run->dataset, &solve, run->model_name);
 }
 
 enum wb_status wb_bundles_run_read(struct wb_bundles *all, const struct wb_config_node *list,

@@ -43,11 +43,11 @@ static enum wb_status want(const struct wb_wires *comparison, const char *given,
 {
     struct wb_simulation *const dataset = &item->datasets[solver];
     WB_TRY(wb_simulation_find(dataset, &comparison->head, given));
-    WB_TRY(wb_simulation_argue(dataset, "solve", NULL));
-    WB_TRY(wb_simulation_argue(dataset, wb_wires_command(solver), NULL));
-    WB_TRY(wb_simulation_argue(dataset, path, item->model_name));
-    wb_simulation_end(dataset);
-    return WB_OK;
+    struct wb_solve_settings settings = {.kind = solver == WB_WIRES_SOLID ? WB_SOLVE_WIRE3D
+                                                                          : WB_SOLVE_WIRE1D};
+    wb_setting_fill(&wb_solve_settings_table, &settings);
+    settings.model = path;
+    return wb_simulation_set(dataset, &settings, item->model_name);
 }
 
 static enum wb_status read_case(const struct wb_wires *comparison,

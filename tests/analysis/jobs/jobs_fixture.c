@@ -52,17 +52,15 @@ static int hang(const char *folder, const char *note)
     return 97;
 }
 
-int jobs_fixture_worker(int argc, char **argv)
+/* `words` are the mode and up to three more, NULL-terminated. */
+static int work(const char *const *words, const char *folder, const char *threads)
 {
-    const char *const mode = argv[2], *const word = argc > 5 ? argv[3] : "";
-    const char *const folder = argv[argc - 1];
-    if (argc < 5 || strcmp(argv[argc - 2], "-o") != 0)
-        return 96;
+    const char *const mode = words[0], *const word = words[1] ? words[1] : "";
     if (strcmp(mode, "make") == 0)
         return make(folder, word);
     if (strcmp(mode, "note") == 0) { /* FILE TEXT */
-        append(word, argv[4]);
-        return make(folder, argv[4]);
+        append(word, words[2]);
+        return make(folder, words[2]);
     }
     if (strcmp(mode, "slow") == 0) { /* FILE */
         append(word, "+");
@@ -73,7 +71,7 @@ int jobs_fixture_worker(int argc, char **argv)
     if (strcmp(mode, "hang") == 0) /* FILE */
         return hang(folder, word);
     if (strcmp(mode, "threads") == 0)
-        return make(folder, getenv("OMP_NUM_THREADS"));
+        return make(folder, threads);
     if (strcmp(mode, "nothing") == 0)
         return 0;
     if (strcmp(mode, "crash") == 0)
@@ -86,6 +84,25 @@ int jobs_fixture_worker(int argc, char **argv)
         fprintf(stderr, "line %d of what went wrong\n", i);
     mkdir(folder, 0777);
     return 1;
+}
+
+int jobs_fixture_worker(int argc, char **argv)
+{
+    const char *words[5] = {NULL};
+    if (argc < 5 || argc > 9 || strcmp(argv[argc - 2], "-o") != 0)
+        return 96;
+    for (int i = 2; i < argc - 2; i++)
+        words[i - 2] = argv[i];
+    return work(words, argv[argc - 1], getenv("OMP_NUM_THREADS"));
+}
+
+/* The same as a function; its context are the words, "worker" first. */
+static int run(void *context, const char *output, int cores)
+{
+    const char *const *const words = context;
+    char threads[16];
+    snprintf(threads, sizeof threads, "%d", cores);
+    return work(words + 1, output, threads);
 }
 
 /* --- folder, messages, files --- */
@@ -174,6 +191,8 @@ struct wb_jobs_outcome jobs_fixture_run(const struct jobs_fixture_run *runs, int
         for (int k = 0; k < 5; k++)
             words[i][k + 1] = runs[i].words[k];
         jobs[i] = (struct wb_job){.name = runs[i].name,
+                                  .run = run,
+                                  .context = words[i],
                                   .arguments = words[i],
                                   .output = runs[i].name,
                                   .cost = runs[i].cost,
@@ -184,4 +203,30 @@ struct wb_jobs_outcome jobs_fixture_run(const struct jobs_fixture_run *runs, int
     jobs_fixture_listen();
     assert_int_equal(wb_jobs_run(&outcome, jobs, n, &with_folder), expected);
     return outcome;
+}
+
+void jobs_fixture_expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
+                         int left)
+{
+    if (outcome->present != present || outcome->done != done || outcome->failed != failed ||
+        outcome->left != left)
+        fail_msg("%d present, %d done, %d failed, %d left; said: %s", outcome->present,
+                 outcome->done, outcome->failed, outcome->left, jobs_fixture_said);
+}
+
+void jobs_fixture_replace(const struct wb_jobs_options *options)
+{
+    struct jobs_fixture_run run = {.name = "a", .words = {"make", "old"}};
+    jobs_fixture_run(&run, 1, options, WB_OK);
+    run.replace = true;
+    run.words[0] = "fail";
+    struct wb_jobs_outcome outcome = jobs_fixture_run(&run, 1, options, WB_OK);
+    jobs_fixture_expect(&outcome, 0, 0, 1, 0);
+    assert_string_equal(jobs_fixture_text("a/dataset.json"), "old");
+    run.words[0] = "make";
+    run.words[1] = "new";
+    outcome = jobs_fixture_run(&run, 1, options, WB_OK);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 0);
+    assert_string_equal(jobs_fixture_text("a/dataset.json"), "new");
+    assert_false(jobs_fixture_is_there("a.outdated"));
 }

@@ -1,5 +1,6 @@
 /* What the tests of many runs share: a folder to work in, messages that were said, and a worker:
- * the test's own binary, called as `worker MODE ... -o FOLDER` in the place of wirebench. */
+ * a function, and the same as the test's own binary, called as `worker MODE ... -o FOLDER` in the
+ * place of wirebench. */
 #ifndef WB_TESTS_ANALYSIS_JOBS_JOBS_FIXTURE_H
 #define WB_TESTS_ANALYSIS_JOBS_JOBS_FIXTURE_H
 
@@ -32,6 +33,13 @@ struct jobs_fixture_run {
 struct wb_jobs_outcome jobs_fixture_run(const struct jobs_fixture_run *runs, int n,
                                         const struct wb_jobs_options *options,
                                         enum wb_status expected);
+
+/* What became of the runs. */
+void jobs_fixture_expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
+                         int left);
+
+/* An outdated output stays when the run that replaces it fails, and goes when it is made. */
+void jobs_fixture_replace(const struct wb_jobs_options *options);
 
 /* The text of a file, "" when there is none; whether something is there; how often `part` is in
  * `text`. */

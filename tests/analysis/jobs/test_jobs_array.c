@@ -99,15 +99,6 @@ static int remove_slurm(void **state)
     return jobs_fixture_remove_folder(state);
 }
 
-static void expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
-                   int left)
-{
-    if (outcome->present != present || outcome->done != done || outcome->failed != failed ||
-        outcome->left != left)
-        fail_msg("%d present, %d done, %d failed, %d left; said: %s", outcome->present,
-                 outcome->done, outcome->failed, outcome->left, jobs_fixture_said);
-}
-
 static const struct jobs_fixture_run five[] = {
     {.name = "a", .words = {"make", "1"}},
     {.name = "b", .words = {"fail"}},
@@ -120,7 +111,7 @@ static void only_what_is_missing_is_submitted(void **unused)
     (void)unused;
     struct jobs_fixture_run runs[5];
     struct wb_jobs_outcome outcome = jobs_fixture_run(five, 5, &slurm, WB_OK);
-    expect(&outcome, 0, 3, 2, 0);
+    jobs_fixture_expect(&outcome, 0, 3, 2, 0);
     assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=1-5\n"));
     assert_string_equal(jobs_fixture_text("c/dataset.json"), "it's \"so\" $HOME");
     assert_string_equal(jobs_fixture_text("d/dataset.json"), "3");
@@ -138,10 +129,10 @@ static void only_what_is_missing_is_submitted(void **unused)
     rmdir("a");
     jobs_fixture_write("fake/sbatch.said", "");
     outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
-    expect(&outcome, 2, 3, 0, 0);
+    jobs_fixture_expect(&outcome, 2, 3, 0, 0);
     assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=1-2,5\n"));
     outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
-    expect(&outcome, 5, 0, 0, 0);
+    jobs_fixture_expect(&outcome, 5, 0, 0, 0);
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
 }
 
@@ -162,7 +153,7 @@ static void options_are_passed_on(void **unused)
                                             .n_extra = 2,
                                             .folder = "100 %"};
     const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 1, &options, WB_OK);
-    expect(&outcome, 0, 1, 0, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 0);
     char expected[4096];
     snprintf(expected, sizeof expected,
              "--parsable\n--array=1%%7\n--job-name=my bundles\n--chdir=%s\n"
@@ -179,7 +170,7 @@ static void dry_run_writes_and_submits_nothing(void **unused)
     struct wb_jobs_options options = slurm;
     options.dry_run = true;
     const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 3, &options, WB_OK);
-    expect(&outcome, 0, 0, 0, 3);
+    jobs_fixture_expect(&outcome, 0, 0, 0, 3);
     assert_false(jobs_fixture_is_there("fake/sbatch.said"));
     assert_non_null(strstr(jobs_fixture_said, "3 runs not submitted; to do that:\n    sbatch "));
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("logs/slurm-1/jobs.txt"), "\n"), 3);
@@ -203,7 +194,7 @@ static void large_lists_become_several_arrays(void **unused)
         runs[i] = (struct jobs_fixture_run){.name = names[i], .words = {"make", names[i]}};
     jobs_fixture_write("fake/largest", "3");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 5, &slurm, WB_OK);
-    expect(&outcome, 0, 5, 0, 0);
+    jobs_fixture_expect(&outcome, 0, 5, 0, 0);
     assert_string_equal(jobs_fixture_text("e/dataset.json"), "e");
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array=1-2\n"), 2);
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.said"), "--array=1\n"), 1);
@@ -214,19 +205,7 @@ static void large_lists_become_several_arrays(void **unused)
 static void outdated_output_is_replaced_by_a_task(void **unused)
 {
     (void)unused;
-    struct jobs_fixture_run run = {.name = "a", .words = {"make", "old"}};
-    jobs_fixture_run(&run, 1, &slurm, WB_OK);
-    run.replace = true;
-    run.words[0] = "fail";
-    struct wb_jobs_outcome outcome = jobs_fixture_run(&run, 1, &slurm, WB_OK);
-    expect(&outcome, 0, 0, 1, 0);
-    assert_string_equal(jobs_fixture_text("a/dataset.json"), "old");
-    run.words[0] = "make";
-    run.words[1] = "new";
-    outcome = jobs_fixture_run(&run, 1, &slurm, WB_OK);
-    expect(&outcome, 0, 1, 0, 0);
-    assert_string_equal(jobs_fixture_text("a/dataset.json"), "new");
-    assert_false(jobs_fixture_is_there("a.outdated"));
+    jobs_fixture_replace(&slurm);
 }
 
 static void without_slurm_the_message_says_what_to_do(void **unused)
@@ -255,7 +234,7 @@ static void silent_queue_is_waited_for(void **unused)
     (void)unused;
     jobs_fixture_write("fake/mute", "1\n2\n3\n");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(&five[1], 1, &slurm, WB_OK);
-    expect(&outcome, 0, 0, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 0, 1, 0);
     assert_int_equal(jobs_fixture_count(jobs_fixture_said, "Slurm does not answer, still waiting"),
                      1);
     assert_int_equal(jobs_fixture_count(jobs_fixture_said, "Slurm answers again"), 1);
@@ -302,7 +281,7 @@ static void next_call_waits_for_what_an_interrupted_one_submitted(void **unused)
     struct jobs_fixture_run runs[3];
     memcpy(runs, five, sizeof runs);
     struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 2, &local, WB_OK);
-    expect(&outcome, 1, 0, 0, 1);
+    jobs_fixture_expect(&outcome, 1, 0, 0, 1);
     assert_non_null(strstr(jobs_fixture_said, "1 run is still with Slurm from an earlier call"));
 
     /* The one that ended badly is submitted again, the other one ends in the queue. */
@@ -312,7 +291,7 @@ static void next_call_waits_for_what_an_interrupted_one_submitted(void **unused)
              "fake/queue.12) &");
     assert_int_equal(system(queue), 0);
     outcome = jobs_fixture_run(runs, 3, &slurm, WB_OK);
-    expect(&outcome, 1, 2, 0, 0);
+    jobs_fixture_expect(&outcome, 1, 2, 0, 0);
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
     assert_non_null(strstr(jobs_fixture_text("fake/sbatch.said"), "--array=3\n"));
     assert_false(jobs_fixture_is_there("logs/slurm.json"));
@@ -327,7 +306,7 @@ static void forgotten_tasks_are_judged_by_their_outputs(void **unused)
     assert_int_equal(system("(sleep 0.4; mkdir a; echo x >a/dataset.json; rm fake/queue.12) &"), 0);
     jobs_fixture_write("fake/accounting", "CANCELLED by 1000\n");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 2, &slurm, WB_OK);
-    expect(&outcome, 0, 1, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 1, 0);
     assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is CANCELLED"));
 }
 
@@ -339,7 +318,7 @@ static void number_of_somebody_elses_job_is_not_ours(void **unused)
     unlink("fake/hold");
     jobs_fixture_write("fake/queue.12", "12_1|RUNNING|None|/home/other/array.sh\n");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 1, &slurm, WB_OK);
-    expect(&outcome, 0, 1, 0, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 0);
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("fake/sbatch.count"), "\n"), 2);
 }
 
@@ -355,7 +334,7 @@ static void arrays_of_two_clusters_may_have_one_number(void **unused)
                             "sed -i s/PENDING/COMPLETED/ fake/queue.12east) &"),
                      0);
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 4, &slurm, WB_OK);
-    expect(&outcome, 0, 3, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 3, 1, 0);
     assert_true(jobs_fixture_is_there("fake/queue.12east"));
     assert_true(jobs_fixture_is_there("fake/queue.12west"));
     assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task 12_2 is FAILED"));
@@ -375,7 +354,7 @@ static void how_an_earlier_task_ended_is_not_told_of_the_next(void **unused)
     jobs_fixture_write("fake/forget", "");
     jobs_fixture_write("fake/accounting", "OUT_OF_MEMORY\n");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(&five[1], 1, &slurm, WB_OK);
-    expect(&outcome, 0, 0, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 0, 1, 0);
     assert_non_null(strstr(jobs_fixture_said, "Slurm's task 13_1 is OUT_OF_MEMORY"));
 }
 
@@ -389,7 +368,7 @@ static void reason_that_may_last_for_ever_is_told_once(void **unused)
                             "sed -i s/PENDING/CANCELLED/ fake/queue.12) &"),
                      0);
     const struct wb_jobs_outcome outcome = jobs_fixture_run(five, 1, &slurm, WB_OK);
-    expect(&outcome, 0, 0, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 0, 1, 0);
     assert_int_equal(
         jobs_fixture_count(jobs_fixture_said, "tasks wait in Slurm's queue: PartitionTimeLimit"),
         1);

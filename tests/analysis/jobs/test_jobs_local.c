@@ -9,39 +9,49 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "analysis/solve/solve.h"
 #include "base/file.h"
 #include "base/interrupt_private.h"
+#include "base/units.h"
 #include "tests/analysis/jobs/jobs_fixture.h"
 #include "tests/check.h"
 
 static const struct wb_jobs_options local = {.where = WB_JOBS_LOCAL, .workers = 3};
 static const struct wb_jobs_options one_by_one = {.where = WB_JOBS_LOCAL, .workers = 1};
 
-static void expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
-                   int left)
+static int solve(void *context, const char *output, int cores)
 {
-    assert_int_equal(outcome->present, present);
-    assert_int_equal(outcome->done, done);
-    assert_int_equal(outcome->failed, failed);
-    assert_int_equal(outcome->left, left);
+    struct wb_solve_settings settings = *(const struct wb_solve_settings *)context;
+    bool complete;
+    settings.output = output;
+    wb_solve_set_threads(cores);
+    return wb_solve_run(&settings, NULL, NULL, &complete) == WB_OK && complete ? 0 : 1;
 }
 
 static void wirebench_itself_makes_datasets(void **unused)
 {
     (void)unused;
-    static const char *const words[] = {
-        "solve",           "cantilever", "--wire",   "type1", "--length-mm", "85",
-        "--deflection-mm", "10",         "--points", "2",     NULL};
-    const char *const binary = getenv("WIREBENCH_BINARY");
-    if (!binary)
-        fail_msg("WIREBENCH_BINARY is not set: run this test through meson");
-    const struct wb_job jobs[] = {{.name = "a", .arguments = words, .output = "data/a b"},
-                                  {.name = "b", .arguments = words, .output = "data/b/"}};
-    const struct wb_jobs_options options = {
-        .where = WB_JOBS_LOCAL, .folder = "logs", .program = binary};
+    struct wb_solve_settings settings = {.kind = WB_SOLVE_CANTILEVER};
+    wb_setting_fill(&wb_solve_settings_table, &settings);
+    settings.wire = "type1";
+    settings.length = 85.0 * WB_MM;
+    settings.deflection = 10.0 * WB_MM;
+    settings.points = 2;
+    char **const words = wb_solve_settings_command(&settings);
+    assert_non_null(words);
+    const struct wb_job a = {.name = "a",
+                             .run = solve,
+                             .context = &settings,
+                             .arguments = (const char *const *)words,
+                             .output = "data/a b"};
+    struct wb_job jobs[] = {a, a};
+    jobs[1].name = "b";
+    jobs[1].output = "data/b/";
+    const struct wb_jobs_options options = {.where = WB_JOBS_LOCAL, .folder = "logs"};
     struct wb_jobs_outcome outcome;
     assert_int_equal(wb_jobs_run(&outcome, jobs, 2, &options), WB_OK);
-    expect(&outcome, 0, 2, 0, 0);
+    free(words);
+    jobs_fixture_expect(&outcome, 0, 2, 0, 0);
     assert_true(jobs_fixture_is_there("data/a b/force_deflection.csv"));
     assert_true(jobs_fixture_is_there("data/b/dataset.json"));
     assert_false(jobs_fixture_is_there("data/b.partial"));
@@ -59,13 +69,13 @@ static void what_is_there_is_not_run_again(void **unused)
     struct jobs_fixture_run first[] = {{.name = "a", .words = {"note", "nowhere/notes", "a"}},
                                        {.name = "b", .words = {"note", "notes", "b"}}};
     struct wb_jobs_outcome outcome = jobs_fixture_run(first, 2, &local, WB_OK);
-    expect(&outcome, 0, 1, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 1, 0);
     first[0].words[1] = "notes";
     outcome = jobs_fixture_run(first, 2, &local, WB_OK);
-    expect(&outcome, 1, 1, 0, 0);
+    jobs_fixture_expect(&outcome, 1, 1, 0, 0);
     assert_string_equal(jobs_fixture_text("notes"), "ba");
     outcome = jobs_fixture_run(first, 2, &local, WB_OK);
-    expect(&outcome, 2, 0, 0, 0);
+    jobs_fixture_expect(&outcome, 2, 0, 0, 0);
     assert_string_equal(jobs_fixture_text("notes"), "ba");
 }
 
@@ -77,7 +87,7 @@ static void failure_is_named_with_the_end_of_its_log_and_stops_nobody(void **unu
                                             {.name = "dead", .words = {"crash"}},
                                             {.name = "good", .words = {"make", "x"}}};
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 4, &one_by_one, WB_OK);
-    expect(&outcome, 0, 1, 3, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 3, 0);
     assert_false(outcome.interrupted);
     assert_non_null(strstr(jobs_fixture_said, "run 'bad' failed: exit code 1 after "));
     assert_non_null(strstr(jobs_fixture_said, "/logs/bad.log'\n    line 5 of what went wrong\n"));
@@ -95,7 +105,7 @@ static void curve_cut_short_is_no_output_but_kept_aside(void **unused)
     (void)unused;
     struct jobs_fixture_run run = {.name = "a", .words = {"short"}};
     struct wb_jobs_outcome outcome = jobs_fixture_run(&run, 1, &local, WB_OK);
-    expect(&outcome, 0, 0, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 0, 1, 0);
     assert_non_null(strstr(jobs_fixture_said, "exit code 3"));
     assert_non_null(strstr(jobs_fixture_said, "/a.partial'"));
     assert_string_equal(jobs_fixture_text("a.partial/dataset.json"), "cut short");
@@ -104,7 +114,7 @@ static void curve_cut_short_is_no_output_but_kept_aside(void **unused)
     run.words[0] = "make";
     run.words[1] = "whole";
     outcome = jobs_fixture_run(&run, 1, &local, WB_OK);
-    expect(&outcome, 0, 1, 0, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 0);
     assert_string_equal(jobs_fixture_text("a/dataset.json"), "whole");
     assert_false(jobs_fixture_is_there("a.partial"));
 }
@@ -117,7 +127,7 @@ static void as_many_run_at_once_as_asked_for(void **unused)
     for (int i = 0; i < 7; i++)
         runs[i] = (struct jobs_fixture_run){.name = names[i], .words = {"slow", "peak"}};
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 7, &local, WB_OK);
-    expect(&outcome, 0, 7, 0, 0);
+    jobs_fixture_expect(&outcome, 0, 7, 0, 0);
     int now = 0, most = 0;
     for (const char *c = jobs_fixture_text("peak"); *c; c++) {
         now += *c == '+' ? 1 : -1;
@@ -156,19 +166,7 @@ static void threads_of_a_run_are_limited(void **unused)
 static void outdated_output_stays_until_the_new_one_is_whole(void **unused)
 {
     (void)unused;
-    struct jobs_fixture_run run = {.name = "a", .words = {"make", "old"}};
-    jobs_fixture_run(&run, 1, &local, WB_OK);
-    run.replace = true;
-    run.words[0] = "fail";
-    struct wb_jobs_outcome outcome = jobs_fixture_run(&run, 1, &local, WB_OK);
-    expect(&outcome, 0, 0, 1, 0);
-    assert_string_equal(jobs_fixture_text("a/dataset.json"), "old");
-    run.words[0] = "make";
-    run.words[1] = "new";
-    outcome = jobs_fixture_run(&run, 1, &local, WB_OK);
-    expect(&outcome, 0, 1, 0, 0);
-    assert_string_equal(jobs_fixture_text("a/dataset.json"), "new");
-    assert_false(jobs_fixture_is_there("a.outdated"));
+    jobs_fixture_replace(&local);
 }
 
 static void folder_that_is_no_dataset_is_left_alone(void **unused)
@@ -180,7 +178,7 @@ static void folder_that_is_no_dataset_is_left_alone(void **unused)
     assert_int_equal(mkdir("empty", 0777), 0);
     jobs_fixture_write("a/letters", "dear");
     const struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 2, &local, WB_OK);
-    expect(&outcome, 0, 1, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 1, 0);
     assert_non_null(strstr(jobs_fixture_said, "/a' is there and holds no dataset.json"));
     assert_string_equal(jobs_fixture_text("a/letters"), "dear");
     assert_true(jobs_fixture_is_there("empty/dataset.json"));
@@ -230,7 +228,7 @@ static void interrupt_ends_the_children_and_leaves_nothing_half_written(void **u
     struct wb_jobs_outcome outcome = jobs_fixture_run(runs, 5, &local, WB_OK);
     waitpid(helper, NULL, 0);
     wb_interrupt_set(false);
-    expect(&outcome, 0, 1, 0, 4);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 4);
     assert_true(outcome.interrupted);
     assert_string_equal(jobs_fixture_said, "");
     assert_int_equal(jobs_fixture_count(jobs_fixture_text("pids"), "\n"), 3);
@@ -239,7 +237,7 @@ static void interrupt_ends_the_children_and_leaves_nothing_half_written(void **u
     assert_true(jobs_fixture_is_there("a/dataset.json"));
     /* Again, from there on. */
     outcome = jobs_fixture_run(&runs[4], 1, &local, WB_OK);
-    expect(&outcome, 0, 1, 0, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 0);
 }
 
 static void children_do_not_outlive_a_killed_parent(void **unused)
@@ -262,7 +260,7 @@ static void children_do_not_outlive_a_killed_parent(void **unused)
     /* What was left lying and the lock are in nobody's way. */
     const struct jobs_fixture_run again[] = {{.name = "a", .words = {"make", "x"}}};
     const struct wb_jobs_outcome outcome = jobs_fixture_run(again, 1, &local, WB_OK);
-    expect(&outcome, 0, 1, 0, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 0, 0);
     assert_false(jobs_fixture_is_there("a.partial"));
     assert_false(jobs_fixture_is_there("a/force_deflection.csv"));
 }
@@ -286,7 +284,7 @@ static void bad_lists_are_refused(void **unused)
     (void)unused;
     static const char *const words[] = {"worker", "make", "x", NULL}, *const broken[] = {"a\nb",
                                                                                          NULL};
-    const struct wb_job lists[][2] = {
+    struct wb_job lists[][2] = {
         {{.name = "a/b", .arguments = words, .output = "a"}},
         {{.name = "", .arguments = words, .output = "a"}},
         {{.name = "a", .arguments = broken, .output = "a"}},
@@ -295,13 +293,17 @@ static void bad_lists_are_refused(void **unused)
          {.name = "a", .arguments = words, .output = "b"}},
         {{.name = "a", .arguments = words, .output = "x"},
          {.name = "b", .arguments = words, .output = "./x/"}},
+        {{.name = "a", .arguments = words, .output = "x"}},
     };
     static const char *const messages[] = {
         "'a/b' cannot name a run", "'' cannot name a run",   "line break",
-        "no output folder",        "two runs are named 'a'", "'a' and 'b' would both write"};
+        "no output folder",        "two runs are named 'a'", "'a' and 'b' would both write",
+        "no function to run"};
     const struct wb_jobs_options options = {.where = WB_JOBS_LOCAL, .folder = "logs"};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         struct wb_jobs_outcome outcome;
+        if (i + 1 < WB_COUNT(lists))
+            lists[i][0].run = lists[i][1].run = solve;
         jobs_fixture_listen();
         assert_int_equal(wb_jobs_run(&outcome, lists[i], lists[i][1].name ? 2 : 1, &options),
                          WB_ERR_ARGUMENT);

@@ -267,15 +267,6 @@ static struct wb_jobs_options options(void)
                                     .poll_interval = 0.5};
 }
 
-static void expect(const struct wb_jobs_outcome *outcome, int present, int done, int failed,
-                   int left)
-{
-    if (outcome->present != present || outcome->done != done || outcome->failed != failed ||
-        outcome->left != left)
-        fail_msg("%d present, %d done, %d failed, %d left; said: %s", outcome->present,
-                 outcome->done, outcome->failed, outcome->left, jobs_fixture_said);
-}
-
 /* Rows of a dataset's curve. */
 static int rows_of(const char *folder)
 {
@@ -312,7 +303,7 @@ static void array_makes_datasets(void **unused)
                                   {.name = "d", .arguments = other_words, .output = "data/d"}};
     const struct wb_jobs_options o = options();
     const struct wb_jobs_outcome outcome = run(jobs, 4, &o);
-    expect(&outcome, 0, 3, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 3, 1, 0);
     assert_int_equal(rows_of("data/a b's"), 5);
     assert_int_equal(rows_of("data/b"), 7);
     assert_int_equal(rows_of("data/d"), 7);
@@ -353,7 +344,7 @@ static void killed_task_is_named_and_made_by_the_next_call(void **unused)
     const pid_t helper = when_task_2_runs("scancel ${id}_2");
     struct wb_jobs_outcome outcome = run(jobs, 3, &o);
     waitpid(helper, NULL, 0);
-    expect(&outcome, 0, 2, 1, 0);
+    jobs_fixture_expect(&outcome, 0, 2, 1, 0);
     assert_non_null(strstr(jobs_fixture_said, "run 'b' failed: Slurm's task "));
     assert_non_null(strstr(jobs_fixture_said, "_2 is CANCELLED"));
     assert_non_null(strstr(jobs_fixture_said, "CANCELLED AT ")); /* Slurm's own words */
@@ -362,11 +353,11 @@ static void killed_task_is_named_and_made_by_the_next_call(void **unused)
 
     jobs[1].arguments = quick_words;
     outcome = run(jobs, 3, &o);
-    expect(&outcome, 2, 1, 0, 0);
+    jobs_fixture_expect(&outcome, 2, 1, 0, 0);
     assert_int_equal(rows_of("b"), 5);
     assert_false(jobs_fixture_is_there("b.partial"));
     outcome = run(jobs, 3, &o);
-    expect(&outcome, 3, 0, 0, 0);
+    jobs_fixture_expect(&outcome, 3, 0, 0, 0);
     assert_false(jobs_fixture_is_there("logs/slurm-3"));
 }
 
@@ -384,7 +375,7 @@ static void interrupted_call_leaves_the_array_to_the_next(void **unused)
     pid_t helper = when_task_2_runs(what);
     struct wb_jobs_outcome outcome = run(jobs, 3, &o);
     waitpid(helper, NULL, 0);
-    expect(&outcome, 0, 0, 0, 3);
+    jobs_fixture_expect(&outcome, 0, 0, 0, 3);
     assert_true(outcome.interrupted);
     assert_non_null(strstr(jobs_fixture_said, "stopped waiting; Slurm goes on with 3 of the runs"));
     wb_interrupt_set(false);
@@ -392,7 +383,7 @@ static void interrupted_call_leaves_the_array_to_the_next(void **unused)
     helper = when_task_2_runs("sleep 1; scancel ${id}_1 ${id}_2");
     outcome = run(jobs, 3, &o);
     waitpid(helper, NULL, 0);
-    expect(&outcome, 0, 1, 2, 0);
+    jobs_fixture_expect(&outcome, 0, 1, 2, 0);
     assert_non_null(strstr(jobs_fixture_said, "3 runs are still with Slurm from an earlier call"));
     assert_int_equal(rows_of("c"), 7);
     assert_true(jobs_fixture_is_there("logs/slurm-1"));

@@ -100,7 +100,7 @@ static void what_is_out_of_range_is_refused_and_changes_nothing(void **unused)
         assert_memory_equal(&model, &before, sizeof model);
     }
     const struct wb_bundle_override other = {.dead_force = true, .run = {.mesh = "none"}};
-    assert_int_equal(wb_bundle_override_apply(&other, &model), WB_ERR_NOT_FOUND);
+    assert_int_equal(wb_bundle_override_apply(&other, &model), WB_ERR_ARGUMENT);
     assert_memory_equal(&model, &before, sizeof model);
 }
 

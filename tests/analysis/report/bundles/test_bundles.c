@@ -5,6 +5,7 @@
 #include "tests/messages.h"
 #include "tests/own_folder.h"
 
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -142,7 +143,9 @@ static void commands_make_the_datasets(void **state)
                         "wirebench solve cantilever --wire bundle-12 --length-mm 114 "
                         "--deflection-mm 53 -o sim/twelve-1d");
     /* What is run names files that are there, and no output. */
-    const char *const *const arguments = campaign.runs[1].dataset.arguments;
+    const struct wb_solve_settings *const settings = &campaign.runs[1].dataset.settings;
+    char **const arguments = wb_solve_settings_command(settings);
+    assert_non_null(arguments);
     assert_string_equal(arguments[0], "solve");
     assert_string_equal(arguments[1], "bundle");
     assert_true(wb_file_exists(arguments[2]));
@@ -150,6 +153,10 @@ static void commands_make_the_datasets(void **state)
     assert_string_equal(arguments[5], "--friction");
     assert_string_equal(arguments[6], "0.4");
     assert_null(arguments[7]);
+    free(arguments);
+    assert_int_equal(settings->kind, WB_SOLVE_BUNDLE);
+    assert_string_equal(settings->model, campaign.runs[1].model->path);
+    assert_null(settings->output);
     wb_bundles_release(&campaign);
 }
 

@@ -1,14 +1,13 @@
-/* What `wirebench solve bundle` keeps of the bundle's states while it runs: VTK files, and the
- * surface at the largest deflection.
- */
-#ifndef WB_CLI_BUNDLE_STATES_H
-#define WB_CLI_BUNDLE_STATES_H
+/* What is kept of a bundle's states while it is computed: VTK files, and the surface at the largest
+ * deflection. */
+#ifndef WB_ANALYSIS_SOLVE_BUNDLE_STATES_H
+#define WB_ANALYSIS_SOLVE_BUNDLE_STATES_H
 
 #include <stdbool.h>
 
+#include "analysis/solve/solve_time.h"
 #include "analysis/surface.h"
 #include "base/status.h"
-#include "cli/solve.h"
 #include "fe/bundle/bundle_run.h"
 #include "fe/output/bundle_fields.h"
 #include "fe/output/bundle_vtk.h"
@@ -17,7 +16,7 @@ struct wb_bundle_states {
     bool wants_surface, wants_vtk; /* set by the caller */
     int every;                     /* rows between VTK files; from 1 */
     int turn;                      /* rows from turn to turn of the loading, which have files too */
-    struct wb_vtk_file_series series; /* initialised by the caller */
+    struct wb_vtk_file_series *series; /* the caller's */
     /* The members below are filled in by wb_bundle_states_take(). */
     int attempt;
     bool has_fields;

@@ -1,4 +1,4 @@
-#include "cli/bundle_states.h"
+#include "analysis/solve/bundle_states.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -15,7 +15,7 @@ static enum wb_status begin_anew(struct wb_bundle_states *states, int attempt)
     states->attempt = attempt;
     states->deflection = 0.0;
     wb_surface_release(&states->surface);
-    return states->wants_vtk ? wb_vtk_file_series_restart(&states->series) : WB_OK;
+    return states->wants_vtk ? wb_vtk_file_series_restart(states->series) : WB_OK;
 }
 
 static enum wb_status take_fields(struct wb_bundle_states *states, const struct wb_bundle *bundle)
@@ -52,7 +52,7 @@ static enum wb_status take(struct wb_bundle_states *states, int number,
     WB_TRY(take_fields(states, bundle));
     if (surface)
         WB_TRY(take_surface(states, row->deflection));
-    return vtk ? wb_bundle_vtk_add(&states->series, row->time, row->deflection, &states->fields)
+    return vtk ? wb_bundle_vtk_add(states->series, row->time, row->deflection, &states->fields)
                : WB_OK;
 }
 
@@ -61,16 +61,14 @@ enum wb_status wb_bundle_states_take(struct wb_bundle_states *states,
                                      const struct wb_bundle_row *row,
                                      const struct wb_bundle *bundle)
 {
-    const struct wb_solve_time start = wb_solve_now();
+    const struct wb_solve_time start = wb_solve_time_now();
     enum wb_status status = WB_OK;
 
     if (result->attempts != states->attempt)
         status = begin_anew(states, result->attempts);
     if (status == WB_OK)
         status = take(states, result->n_rows, row, bundle);
-    const struct wb_solve_time end = wb_solve_now();
-    states->spent.wall += end.wall - start.wall;
-    states->spent.cpu += end.cpu - start.cpu;
+    wb_solve_time_add(&states->spent, &start);
     return status;
 }
 
@@ -147,8 +145,8 @@ static void find_purpose(struct purpose *purpose, const struct wb_bundle_states 
     purpose->wants_surface = states->wants_surface;
     purpose->wants_vtk = states->wants_vtk;
     purpose->every = states->wants_vtk ? states->every : 0;
-    if (states->wants_vtk && !realpath(states->series.folder, purpose->folder))
-        snprintf(purpose->folder, sizeof purpose->folder, "%s", states->series.folder);
+    if (states->wants_vtk && !realpath(states->series->folder, purpose->folder))
+        snprintf(purpose->folder, sizeof purpose->folder, "%s", states->series->folder);
 }
 
 static void visit_purpose(const struct wb_bundle_states *states, struct wb_checkpoint *checkpoint)
@@ -191,13 +189,12 @@ void wb_bundle_states_visit(struct wb_bundle_states *states, struct wb_checkpoin
     visit_surface(&states->surface, checkpoint);
     wb_checkpoint_leave(checkpoint);
     wb_checkpoint_enter(checkpoint, "series");
-    visit_series(&states->series, checkpoint);
+    visit_series(states->series, checkpoint);
     wb_checkpoint_leave(checkpoint);
 }
 
 void wb_bundle_states_release(struct wb_bundle_states *states)
 {
-    wb_vtk_file_series_release(&states->series);
     if (states->has_fields)
         wb_bundle_fields_release(&states->fields);
     wb_surface_release(&states->surface);

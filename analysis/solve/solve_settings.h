@@ -1,0 +1,59 @@
+/* What a simulated test is asked for: the options of `wirebench solve`, and what a campaign asks
+ * for. */
+#ifndef WB_ANALYSIS_SOLVE_SOLVE_SETTINGS_H
+#define WB_ANALYSIS_SOLVE_SOLVE_SETTINGS_H
+
+#include <stdbool.h>
+
+#include "base/setting.h"
+#include "fe/model/bundle_override.h"
+
+/* Kinds, as bits of the settings that apply to them. */
+enum {
+    WB_SOLVE_CANTILEVER = 1,
+    WB_SOLVE_WIRE3D = 2,
+    WB_SOLVE_WIRE1D = 4,
+    WB_SOLVE_BUNDLE = 8,
+    WB_SOLVE_KINDS = 4 /* how many */
+};
+
+/* Their names by bit, NULL-terminated: "cantilever", "wire3d", "wire1d", "bundle". */
+extern const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1];
+
+enum {
+    WB_SOLVE_ELASTOPLASTIC,
+    WB_SOLVE_ELASTIC
+};
+
+/* Rows: wb_solve_settings_table, and those of the override. Texts are borrowed. */
+struct wb_solve_settings {
+    unsigned kind;      /* its bit */
+    const char *output; /* folder of the dataset; NULL: none is written */
+    bool force;         /* overwrite it, and VTK files */
+    /* Of the cantilever. */
+    const char *wire;                  /* name or file */
+    double length, deflection, strand; /* m; strand 0: a vertical force */
+    int law;                           /* WB_SOLVE_ELASTOPLASTIC or WB_SOLVE_ELASTIC */
+    int cycles, points;
+    bool weight;
+    /* Of the wires, and of bundles. */
+    const char *model; /* name or file */
+    const char *vtk;   /* folder; NULL: none; not of wire1d */
+    /* Of bundles. */
+    struct wb_bundle_override override;
+    int vtk_every; /* rows; 0: 1 */
+    int threads;
+    const char *checkpoint;     /* file; NULL: none */
+    double checkpoint_interval; /* s; 0: 10 minutes */
+};
+
+extern const struct wb_setting_table wb_solve_settings_table;
+
+const char *wb_solve_settings_kind(const struct wb_solve_settings *settings); /* its name */
+
+/* The words of the command that asks for the same, without program and output: "solve", "bundle",
+ * the model, then the options of what is not as the rows have it. NULL-terminated, and one block
+ * for free(); NULL when out of memory. */
+char **wb_solve_settings_command(const struct wb_solve_settings *settings);
+
+#endif

@@ -1,0 +1,39 @@
+/* Options of the commands that work with the bench, its recordings or its stand-in, as rows. */
+#ifndef WB_CLI_BENCH_OPTIONS_H
+#define WB_CLI_BENCH_OPTIONS_H
+
+#include <stdbool.h>
+
+#include "base/setting.h"
+#include "cli/command.h"
+#include "daq/stage_job.h"
+#include "fixtures/virtual/bench.h"
+
+struct wb_stage_options {
+    struct wb_command_common common;
+    const char *rig_path, *action, *value;
+    struct wb_stage_job_request job;
+    double seconds;   /* of a check */
+    double tolerance; /* fraction; 0: the rig's */
+};
+
+struct wb_rig_options {
+    struct wb_command_common common;
+    struct wb_bench_settings bench;
+    const char *run; /* folder of the rig file */
+    int seed;
+    bool has_version, has_lost_steps;
+    struct {
+        int major, minor;
+    } version; /* of the motion capture's protocol, if has_version */
+};
+
+struct wb_replay_options {
+    struct wb_command_common common;
+    double rate; /* 0: as fast as it can */
+};
+
+extern const struct wb_setting_table wb_bench_options_stage, wb_bench_options_rig,
+    wb_bench_options_replay;
+
+#endif
