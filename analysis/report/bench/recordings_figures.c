@@ -188,16 +188,21 @@ most_cycles(const struct wb_recordings_results_wire *wire, int *most)
     return best;
 }
 
-static enum wb_status draw_cycles(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_cycles(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
     int most;
     const struct wb_recordings_results_test *const best = most_cycles(wire, &most);
     if (!best)
         return WB_OK;
-    WB_TRY(start(figure, results, wire, "cycles", WB_PDF_HALF_WIDTH, 200.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, wire, "cycles", WB_PDF_HALF_WIDTH, 200.0));
+    const struct wb_recordings_results_test *const test = most_cycles(wire, &most);
+    wb_text_append(&item->caption,
+                   "Cycles of sample %d, %g mm, %s; stretches with a slack strand left out.",
+                   test->dataset.info.sample, test->dataset.info.length / WB_MM,
+                   wb_recordings_figures_measured(results));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, 0.0);
     for (int cycle = 1; cycle <= most; cycle++) {
         char label[40];
@@ -212,29 +217,25 @@ static enum wb_status draw_cycles(struct wb_figure **figure, const void *context
     return WB_OK;
 }
 
-static void tell_cycles(struct wb_text *text, const void *context, int index)
+static enum wb_status draw_samples(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    int most;
-    const struct wb_recordings_results_test *const test = most_cycles(wire, &most);
-    wb_text_append(text, "Cycles of sample %d, %g mm, %s; stretches with a slack strand left out.",
-                   test->dataset.info.sample, test->dataset.info.length / WB_MM,
-                   wb_recordings_figures_measured(results));
-}
-
-static enum wb_status draw_samples(struct wb_figure **figure, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_colour colour = wb_palette_wire(item->index);
     if (wire->calibration_state != WB_RECORDINGS_DONE)
         return WB_OK;
     static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
-    WB_TRY(start(figure, results, wire, "samples", WB_PDF_HALF_WIDTH, 200.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, wire, "samples", WB_PDF_HALF_WIDTH, 200.0));
+    wb_text_append(&item->caption,
+                   "First loading of %d %s, %g mm, %s, with mean and range; "
+                   "<i>F</i><sub>max</sub> = %.1f mN.",
+                   wire->fit.curve.n_samples,
+                   wb_pages_plural(wire->fit.curve.n_samples, "sample", "samples"),
+                   results->campaign->calibration_length / WB_MM,
+                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, wire->fit.curve.max_force);
-    state_max_force(*figure, results, wire->fit.curve.max_force);
+    state_max_force(item->figure, results, wire->fit.curve.max_force);
     char label[64];
     snprintf(label, sizeof label, "range of %d", wire->fit.curve.n_samples);
     WB_TRY(wb_figures_add_range(panel, label, &wire->fit.curve, colour));
@@ -254,19 +255,6 @@ static enum wb_status draw_samples(struct wb_figure **figure, const void *contex
     return WB_OK;
 }
 
-static void tell_samples(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    wb_text_append(text,
-                   "First loading of %d %s, %g mm, %s, with mean and range; "
-                   "<i>F</i><sub>max</sub> = %.1f mN.",
-                   wire->fit.curve.n_samples,
-                   wb_pages_plural(wire->fit.curve.n_samples, "sample", "samples"),
-                   results->campaign->calibration_length / WB_MM,
-                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
-}
-
 /* --- the paper's Fig. 10 --- */
 
 /* The first recording that has shapes; NULL without any. */
@@ -280,18 +268,24 @@ first_with_shapes(const struct wb_recordings_results_tests *tests)
     return NULL;
 }
 
-static enum wb_status draw_shapes(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_shapes(struct wb_figures_item *item)
 {
     static const enum wb_figure_marker markers[] = {
         WB_MARKER_CIRCLE, WB_MARKER_SQUARE, WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND, WB_MARKER_RING};
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
     const struct wb_recordings_results_test *const test =
         first_with_shapes(&wire->calibration_tests);
     if (!test)
         return WB_OK;
-    WB_TRY(start(figure, results, wire, "shapes", WB_PDF_WIDTH, 300.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, wire, "shapes", WB_PDF_WIDTH, 300.0));
+    const struct wb_test_info *const info =
+        &first_with_shapes(&wire->calibration_tests)->dataset.info;
+    wb_text_append(&item->caption,
+                   "Shapes of sample %d, %g mm, on its first loading, %s: the markers, moved onto "
+                   "the wire's axis, in the clamp's frame.",
+                   info->sample, info->length / WB_MM, wb_recordings_figures_measured(results));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
     double end, last_shown = (double)NAN;
@@ -312,18 +306,6 @@ static enum wb_status draw_shapes(struct wb_figure **figure, const void *context
         wb_figure_add_line(panel, label, (size_t)frame.n, frame.x, frame.y, &style);
     }
     return WB_OK;
-}
-
-static void tell_shapes(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_test_info *const info =
-        &first_with_shapes(&wire->calibration_tests)->dataset.info;
-    wb_text_append(text,
-                   "Shapes of sample %d, %g mm, on its first loading, %s: the markers, moved onto "
-                   "the wire's axis, in the clamp's frame.",
-                   info->sample, info->length / WB_MM, wb_recordings_figures_measured(results));
 }
 
 /* --- the bench --- */
@@ -394,10 +376,9 @@ static void add_bench(struct wb_panel *panel, const struct wb_recordings_results
     }
 }
 
-static enum wb_status draw_bench(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_bench(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    (void)index;
+    const struct wb_recordings_results *const results = item->results;
     const struct wb_recordings_results_test *const test = any_test(results);
     if (!test)
         return WB_OK;
@@ -406,8 +387,13 @@ static enum wb_status draw_bench(struct wb_figure **figure, const void *context,
     find_frame(&test->dataset, wb_recordings_figures_turn(&test->dataset, &end), &frame);
     if (frame.n < 2)
         return WB_OK;
-    WB_TRY(start(figure, results, NULL, "bench", WB_PDF_WIDTH, 190.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, NULL, "bench", WB_PDF_WIDTH, 190.0));
+    wb_text_append(&item->caption,
+                   "The test, drawn to scale but for the strand: the clamp moves down, the strand "
+                   "holds the wire's tip, the load cell above stands still. Markers as %s at the "
+                   "largest deflection.",
+                   wb_recordings_figures_measured(item->results));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_hide_axes(panel);
     wb_figure_set_equal_aspect(panel);
     const double length = test->dataset.info.length / WB_MM;
@@ -424,16 +410,6 @@ static enum wb_status draw_bench(struct wb_figure **figure, const void *context,
     wb_figure_add_text(panel, 0.4 * length, 0.45 * frame.y[frame.n - 1], 1, text);
     add_bench(panel, test, frame.x[frame.n - 1], frame.y[frame.n - 1]);
     return WB_OK;
-}
-
-static void tell_bench(struct wb_text *text, const void *context, int index)
-{
-    (void)index;
-    wb_text_append(text,
-                   "The test, drawn to scale but for the strand: the clamp moves down, the strand "
-                   "holds the wire's tip, the load cell above stands still. Markers as %s at the "
-                   "largest deflection.",
-                   wb_recordings_figures_measured(context));
 }
 
 /* --- beside the calibrated beam --- */
@@ -489,18 +465,24 @@ static enum wb_status add_measured(struct wb_panel *panel, const struct wb_curve
 static const struct wb_figure_style computed_style = {
     .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
 
-static enum wb_status draw_calibration(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_calibration(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_colour colour = wb_palette_wire(item->index);
     if (wire->calibration_state != WB_RECORDINGS_DONE)
         return WB_OK;
     const struct wb_validate_result *const fit = &wire->fit;
-    WB_TRY(start(figure, results, wire, "calibration", WB_PDF_WIDTH, 208.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, wire, "calibration", WB_PDF_WIDTH, 208.0));
+    wb_text_append(&item->caption,
+                   "Calibration at %g mm: mean of the samples, %s, and the calibrated beam. Inset: "
+                   "markers of one sample and computed shape at half and at full deflection. "
+                   "<i>F</i><sub>max</sub> = %.1f mN.",
+                   results->campaign->calibration_length / WB_MM,
+                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, fit->curve.max_force);
-    state_max_force(*figure, results, fit->curve.max_force);
+    state_max_force(item->figure, results, fit->curve.max_force);
     /* Room above for the inset. */
     wb_figure_set_y_range(panel, (double)NAN, 1.25 * fit->curve.max_force / WB_MN);
     WB_TRY(add_measured(panel, &fit->curve, colour));
@@ -509,30 +491,25 @@ static enum wb_status draw_calibration(struct wb_figure **figure, const void *co
     return add_shapes(wb_figure_add_inset(panel), wire, &wire->calibration_tests, fit, colour);
 }
 
-static void tell_calibration(struct wb_text *text, const void *context, int index)
+static enum wb_status draw_validation(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    wb_text_append(text,
-                   "Calibration at %g mm: mean of the samples, %s, and the calibrated beam. Inset: "
-                   "markers of one sample and computed shape at half and at full deflection. "
-                   "<i>F</i><sub>max</sub> = %.1f mN.",
-                   results->campaign->calibration_length / WB_MM,
-                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
-}
-
-static enum wb_status draw_validation(struct wb_figure **figure, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_colour colour = wb_palette_wire(item->index);
     if (wire->validation_state != WB_RECORDINGS_DONE)
         return WB_OK;
     const struct wb_validate_result *const validation = &wire->validation;
-    WB_TRY(start(figure, results, wire, "validation", WB_PDF_WIDTH, 208.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, wire, "validation", WB_PDF_WIDTH, 208.0));
+    wb_text_append(
+        &item->caption,
+        "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and "
+        "for contrast the same beam without yielding, which leaves the frame. Inset as "
+        "before. <i>F</i><sub>max</sub> = %.1f mN.",
+        results->campaign->validation_length / WB_MM, wb_recordings_figures_measured(results),
+        results->campaign->calibration_length / WB_MM, wire->validation.curve.max_force / WB_MN);
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, validation->curve.max_force);
-    state_max_force(*figure, results, validation->curve.max_force);
+    state_max_force(item->figure, results, validation->curve.max_force);
     /* The elastic curve goes far beyond; it may leave the frame. */
     wb_figure_set_y_range(panel, (double)NAN, 1.45 * validation->curve.max_force / WB_MN);
     WB_TRY(add_measured(panel, &validation->curve, colour));
@@ -546,19 +523,6 @@ static enum wb_status draw_validation(struct wb_figure **figure, const void *con
                       colour);
 }
 
-static void tell_validation(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    wb_text_append(
-        text,
-        "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and "
-        "for contrast the same beam without yielding, which leaves the frame. Inset as "
-        "before. <i>F</i><sub>max</sub> = %.1f mN.",
-        results->campaign->validation_length / WB_MM, wb_recordings_figures_measured(results),
-        results->campaign->calibration_length / WB_MM, wire->validation.curve.max_force / WB_MN);
-}
-
 static enum wb_status add_error(struct wb_panel *panel, const char *what, double length,
                                 const struct wb_validate_result *result,
                                 const struct wb_figure_style *style)
@@ -570,16 +534,21 @@ static enum wb_status add_error(struct wb_panel *panel, const char *what, double
                                 style);
 }
 
-static enum wb_status draw_error(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_error(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_colour colour = wb_palette_wire(item->index);
     if (wire->calibration_state != WB_RECORDINGS_DONE)
         return WB_OK;
     const struct wb_recordings *const campaign = results->campaign;
-    WB_TRY(start(figure, results, wire, "error", WB_PDF_WIDTH, 155.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, wire, "error", WB_PDF_WIDTH, 155.0));
+    wb_text_append(
+        &item->caption,
+        "Error of the computed force against the mean force, %s (eq. 18), as part of each "
+        "curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19).",
+        wb_recordings_figures_measured(item->results));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
     const struct wb_figure_style calibration = {
         .colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED};
@@ -589,16 +558,6 @@ static enum wb_status draw_error(struct wb_figure **figure, const void *context,
         WB_TRY(add_error(panel, "validation", campaign->validation_length, &wire->validation,
                          &validation));
     return WB_OK;
-}
-
-static void tell_error(struct wb_text *text, const void *context, int index)
-{
-    (void)index;
-    wb_text_append(
-        text,
-        "Error of the computed force against the mean force, %s (eq. 18), as part of each "
-        "curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19).",
-        wb_recordings_figures_measured(context));
 }
 
 /* --- the search --- */
@@ -646,22 +605,18 @@ static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibra
     return WB_OK;
 }
 
-static enum wb_status draw_optimiser(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_optimiser(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_colour colour = wb_palette_wire(item->index);
     if (wire->calibration_state != WB_RECORDINGS_DONE || wire->calibration.n_path < 1)
         return WB_OK;
-    WB_TRY(start(figure, results, wire, "optimiser", WB_PDF_WIDTH, 170.0));
-    return add_path(*figure, &wire->calibration, colour);
-}
-
-static void tell_optimiser(struct wb_text *text, const void *context, int index)
-{
-    (void)context, (void)index;
-    wb_text_append(text, "Left: error of the best corner of the simplex after each iteration. "
-                         "Right: its path from the first guess to the calibrated values.");
+    WB_TRY(start(&item->figure, results, wire, "optimiser", WB_PDF_WIDTH, 170.0));
+    wb_text_append(&item->caption,
+                   "Left: error of the best corner of the simplex after each iteration. "
+                   "Right: its path from the first guess to the calibrated values.");
+    return add_path(item->figure, &wire->calibration, colour);
 }
 
 /* --- all wires in one --- */
@@ -696,18 +651,18 @@ static enum wb_status add_overview(struct wb_panel *panel,
     return wb_figures_add_curve(panel, label, curve, result->elastoplastic.force, WB_MN, &line);
 }
 
-static enum wb_status draw_all(struct wb_figure **figure,
-                               const struct wb_recordings_results *results, bool validation)
+static enum wb_status draw_all(struct wb_figures_item *item, bool validation)
 {
+    const struct wb_recordings_results *const results = item->results;
     int n = 0;
     for (int i = 0; i < results->n_wires; i++)
         n += validation ? results->wires[i].validation_state == WB_RECORDINGS_DONE
                         : results->wires[i].calibration_state == WB_RECORDINGS_DONE;
     if (n == 0)
         return WB_OK;
-    WB_TRY(start(figure, results, NULL, validation ? "validation" : "calibration", WB_PDF_WIDTH,
-                 205.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, results, NULL, validation ? "validation" : "calibration",
+                 WB_PDF_WIDTH, 205.0));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, 0.0);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
@@ -719,45 +674,32 @@ static enum wb_status draw_all(struct wb_figure **figure,
     return WB_OK;
 }
 
-static enum wb_status draw_calibrations(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_calibrations(struct wb_figures_item *item)
 {
-    (void)index;
-    return draw_all(figure, context, false);
-}
-
-static void tell_calibrations(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    (void)index;
-    wb_text_append(text,
+    const struct wb_recordings_results *const results = item->results;
+    wb_text_append(&item->caption,
                    "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
                    "against them. Bands: range of the samples.",
                    results->campaign->calibration_length / WB_MM,
                    wb_recordings_figures_measured(results));
+    return draw_all(item, false);
 }
 
-static enum wb_status draw_validations(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_validations(struct wb_figures_item *item)
 {
-    (void)index;
-    return draw_all(figure, context, true);
-}
-
-static void tell_validations(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    (void)index;
-    wb_text_append(text,
+    const struct wb_recordings_results *const results = item->results;
+    wb_text_append(&item->caption,
                    "The same wires at %g mm, %s, and the prediction of the beams calibrated at %g "
                    "mm.",
                    results->campaign->validation_length / WB_MM,
                    wb_recordings_figures_measured(results),
                    results->campaign->calibration_length / WB_MM);
+    return draw_all(item, true);
 }
 
-static enum wb_status draw_errors(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_errors(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    (void)index;
+    const struct wb_recordings_results *const results = item->results;
     static const enum wb_figure_dash dashes[] = {WB_DASH_SOLID, WB_DASH_DASHED, WB_DASH_MIXED,
                                                  WB_DASH_DOTTED};
     struct wb_panel *panel = NULL;
@@ -765,9 +707,9 @@ static enum wb_status draw_errors(struct wb_figure **figure, const void *context
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
         if (wire->validation_state != WB_RECORDINGS_DONE)
             continue;
-        if (!*figure) {
-            WB_TRY(start(figure, results, NULL, "errors", WB_PDF_WIDTH, 165.0));
-            panel = wb_figure_add_panel(*figure);
+        if (!item->figure) {
+            WB_TRY(start(&item->figure, results, NULL, "errors", WB_PDF_WIDTH, 165.0));
+            panel = wb_figure_add_panel(item->figure);
             wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)",
                                "Error / <i>F</i><sub>max</sub>");
         }
@@ -780,32 +722,26 @@ static enum wb_status draw_errors(struct wb_figure **figure, const void *context
         WB_TRY(wb_figures_add_curve(panel, label, &wire->validation.curve,
                                     wire->validation.elastoplastic.error, 1.0, &style));
     }
-    return WB_OK;
-}
-
-static void tell_errors(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    (void)index;
-    wb_text_append(text,
+    wb_text_append(&item->caption,
                    "Error of the prediction at %g mm (eq. 18): distance of mean force, %s, and "
                    "computed force over the largest mean force of the wire.",
                    results->campaign->validation_length / WB_MM,
                    wb_recordings_figures_measured(results));
+    return WB_OK;
 }
 
 /* --- the table --- */
 
 const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
-    {"bench", NULL, draw_bench, tell_bench, false},
-    {"overview", NULL, draw_calibrations, tell_calibrations, false},
-    {"overview", NULL, draw_validations, tell_validations, false},
-    {"overview", NULL, draw_errors, tell_errors, false},
-    {"measured", count_wires, draw_cycles, tell_cycles, true},
-    {"measured", count_wires, draw_samples, tell_samples, true},
-    {"measured", count_wires, draw_shapes, tell_shapes, false},
-    {"compared", count_wires, draw_calibration, tell_calibration, false},
-    {"compared", count_wires, draw_validation, tell_validation, false},
-    {"compared", count_wires, draw_error, tell_error, false},
-    {"search", count_wires, draw_optimiser, tell_optimiser, false},
+    {"bench", NULL, draw_bench, false},
+    {"overview", NULL, draw_calibrations, false},
+    {"overview", NULL, draw_validations, false},
+    {"overview", NULL, draw_errors, false},
+    {"measured", count_wires, draw_cycles, true},
+    {"measured", count_wires, draw_samples, true},
+    {"measured", count_wires, draw_shapes, false},
+    {"compared", count_wires, draw_calibration, false},
+    {"compared", count_wires, draw_validation, false},
+    {"compared", count_wires, draw_error, false},
+    {"search", count_wires, draw_optimiser, false},
 };
