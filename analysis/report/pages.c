@@ -90,6 +90,13 @@ void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals)
         wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");
 }
 
+void wb_pages_cell_judged(struct wb_pages_row *row, double value, int decimals, double limit)
+{
+    wb_pages_cell_number(row, value, decimals);
+    if (limit > 0.0 && isfinite(value) && row->n > 0)
+        row->tones[row->n - 1] = value <= limit ? WB_TONE_GOOD : WB_TONE_WARNING;
+}
+
 void wb_pages_put_row(struct wb_document *document, struct wb_document_table *table,
                       bool begins_group, struct wb_pages_row *row)
 {
@@ -100,6 +107,31 @@ void wb_pages_put_row(struct wb_document *document, struct wb_document_table *ta
     for (int i = 0; i < row->n; i++)
         wb_document_tone_cell(table, i, row->tones[i]);
     row->n = 0;
+}
+
+void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
+                       enum wb_document_tone tone, struct wb_text *text)
+{
+    const char *const markup = wb_text_string(text);
+    if (kind == WB_BLOCK_NOTICE)
+        wb_document_notice(document, tone, markup);
+    else if (kind == WB_BLOCK_ITEM)
+        wb_document_item(document, tone, markup);
+    else
+        wb_document_paragraph(document, markup);
+    document->failed |= text->failed;
+    wb_text_release(text);
+}
+
+void wb_pages_item(struct wb_document *document, enum wb_document_tone tone, const char *markup,
+                   const char *plain, const char *more_markup, const char *more_plain)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "%s", markup);
+    wb_text_append_escaped(&text, plain);
+    wb_text_append(&text, "%s", more_markup);
+    wb_text_append_escaped(&text, more_plain);
+    wb_pages_put_text(document, WB_BLOCK_ITEM, tone, &text);
 }
 
 void wb_pages_start_simulations(struct wb_document *document, const char *title,

@@ -26,12 +26,21 @@ void wb_pages_cell(struct wb_pages_row *row, enum wb_document_tone tone, const c
 void wb_pages_cell_plain(struct wb_pages_row *row, enum wb_document_tone tone, const char *text);
 /* A number with `decimals`, or an en dash when it is not finite. */
 void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals);
+/* The same with a tone: whether it keeps a limit; 0: there is none. */
+void wb_pages_cell_judged(struct wb_pages_row *row, double value, int decimals, double limit);
 /* Adds the row to the table and clears it. */
 void wb_pages_put_row(struct wb_document *document, struct wb_document_table *table,
                       bool begins_group, struct wb_pages_row *row);
 
 /* Escapes into a buffer, cut where it ends (never within an entity). Returns the buffer. */
 char *wb_pages_escape(char *buffer, size_t size, const char *raw);
+
+/* Adds a text of markup as a block of that kind and releases it. */
+void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
+                       enum wb_document_tone tone, struct wb_text *text);
+/* Adds an item of two plain texts, each behind markup: "<b>", name, "</b>: ", problem. */
+void wb_pages_item(struct wb_document *document, enum wb_document_tone tone, const char *markup,
+                   const char *plain, const char *more_markup, const char *more_plain);
 
 /* Starts the document of a report of simulations. */
 void wb_pages_start_simulations(struct wb_document *document, const char *title,

@@ -12,13 +12,6 @@ static const char shipped[] = "simulations";
 
 /* --- what a campaign wants --- */
 
-const char *wb_simulation_as_shown(const char *given)
-{
-    if (given[0] == '/' || strstr(given, ".."))
-        given = wb_file_name(given);
-    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
-}
-
 enum wb_status wb_simulation_find(struct wb_simulation *simulation,
                                   const struct wb_campaign *campaign, const char *given)
 {
@@ -26,11 +19,10 @@ enum wb_status wb_simulation_find(struct wb_simulation *simulation,
     simulation->wanted = true;
     snprintf(simulation->log, sizeof simulation->log, "%.120s", wb_file_name(given));
     if (strchr(given, '/')) {
-        snprintf(simulation->name, sizeof simulation->name, "%.250s",
-                 wb_simulation_as_shown(given));
+        snprintf(simulation->name, sizeof simulation->name, "%.250s", wb_campaign_as_shown(given));
         return wb_file_join(simulation->path, campaign->folder, given);
     }
-    const char *const shown = wb_simulation_as_shown(campaign->simulations);
+    const char *const shown = wb_campaign_as_shown(campaign->simulations);
     const bool has_name = shown[0] && strcmp(shown, ".") != 0;
     snprintf(simulation->name, sizeof simulation->name, "%.120s/%.120s", has_name ? shown : shipped,
              given);

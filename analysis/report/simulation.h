@@ -46,10 +46,6 @@ void wb_simulation_end(struct wb_simulation *simulation);
 
 void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
 
-/* A path from the campaign file as a command in that file's folder has it: as it is given, or its
- * last part where it says where on this machine it is. */
-const char *wb_simulation_as_shown(const char *given);
-
 /* --- what is there --- */
 
 enum wb_simulation_state {

@@ -1,4 +1,4 @@
-#include "analysis/report/bundles/bundles_figures.h"
+#include "analysis/report/bundles/bundles_kind.h"
 
 #include <math.h>
 #include <stdio.h>

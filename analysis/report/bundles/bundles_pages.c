@@ -1,6 +1,6 @@
 /* The report of bundles, in order: summary, bundles, studies, groups, 1D properties, cost, runs,
  * provenance. */
-#include "analysis/report/bundles/bundles_pages.h"
+#include "analysis/report/bundles/bundles_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -505,9 +505,10 @@ static void put_provenance(struct wb_document *document, const struct wb_bundles
 
 /* --- all of it --- */
 
-void wb_bundles_pages_build(struct wb_document *document, const struct wb_bundles_results *results,
+void wb_bundles_pages_build(struct wb_document *document, const void *context,
                             const struct wb_figures *figures)
 {
+    const struct wb_bundles_results *const results = context;
     wb_pages_start_simulations(document, results->campaign->head.title, &results->outcome);
     put_summary(document, results);
     put_sections(document, results, figures);

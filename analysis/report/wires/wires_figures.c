@@ -1,4 +1,4 @@
-#include "analysis/report/wires/wires_figures.h"
+#include "analysis/report/wires/wires_kind.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "analysis/report/wires/wires_json.h"
+#include "analysis/report/wires/wires_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -173,19 +173,15 @@ static void put_cases(struct wb_json *root, const struct wb_wires_results *resul
     }
 }
 
-struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
-                                    const char *const *files, int n_files)
+struct wb_json *wb_wires_json_build(const void *context)
 {
+    const struct wb_wires_results *const results = context;
     const struct wb_wires *const comparison = results->comparison;
     const struct wb_wires_run *const elastic =
         wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
     const struct wb_wires_run *const plastic =
         wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    struct wb_json *const root = wb_json_create();
-    wb_numbers_put_title(root, comparison->head.title, "simulation");
-    wb_numbers_put_program(root);
-    wb_numbers_put_campaign(root, &comparison->head);
-    wb_numbers_put_outcome(root, &results->outcome);
+    struct wb_json *const root = wb_numbers_create(&comparison->head, &results->outcome);
     wb_json_set_number(root, "jacket_modulus_per_percent_of_core_MPa",
                        wb_wires_split(comparison->cases[WB_WIRES_ELASTOPLASTIC].model, 0.01) /
                            WB_MPA);
@@ -196,6 +192,5 @@ struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
     put_rod(root, "printed_rod", &results->printed, plastic);
     if (results->printed.done)
         wb_json_set_number(root, "printed_collapse_force_N", results->collapse_force);
-    wb_numbers_put_files(root, files, n_files);
     return root;
 }

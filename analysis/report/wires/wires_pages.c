@@ -1,13 +1,12 @@
 /* The report of wires, in order: summary, linear elastic, elastoplastic, residual stresses, cost,
  * provenance. */
-#include "analysis/report/wires/wires_pages.h"
+#include "analysis/report/wires/wires_kind.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "analysis/report/pages.h"
-#include "analysis/report/wires/wires_figures.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -825,9 +824,10 @@ static void put_provenance(struct wb_document *document, const struct wb_wires_r
 
 /* --- all of it --- */
 
-void wb_wires_pages_build(struct wb_document *document, const struct wb_wires_results *results,
+void wb_wires_pages_build(struct wb_document *document, const void *context,
                           const struct wb_figures *figures)
 {
+    const struct wb_wires_results *const results = context;
     wb_pages_start_simulations(document, results->comparison->head.title, &results->outcome);
     put_summary(document, results);
     put_elastic(document, results, figures);

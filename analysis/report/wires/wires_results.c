@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "analysis/report/reasons.h"
-#include "analysis/report/wires/wires_results_private.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 
@@ -72,8 +71,8 @@ static struct wb_wires_wire wire_of(const struct wb_wires *comparison, int index
                      .youngs_modulus = wb_wire_model_youngs_modulus(model),
                      .poissons_ratio = wb_wire_model_poissons_ratio(model)},
         .force = model->step[model->n_steps - 1].loads.follower[1],
-        .n_elements = comparison->fit.n_elements,
-        .n_fibres = comparison->fit.n_fibres,
+        .n_elements = comparison->head.fit.n_elements,
+        .n_fibres = comparison->head.fit.n_fibres,
     };
 }
 
@@ -98,7 +97,7 @@ static enum wb_status calibrate(struct wb_wires_results *results, const struct w
 {
     const struct wb_wires *const comparison = results->comparison;
     struct wb_wires_wire wire = wire_of(comparison, WB_WIRES_ELASTOPLASTIC);
-    struct wb_calibrate_settings settings = comparison->fit;
+    struct wb_calibrate_settings settings = comparison->head.fit;
     const struct wb_dataset *const dataset = &run->simulation.dataset;
     settings.progress = wb_campaign_go_on;
     if (comparison->mixture)
@@ -245,34 +244,41 @@ bool wb_wires_results_list(const void *context, int index, struct wb_simulation_
     return true;
 }
 
-void wb_wires_results_load(struct wb_wires_results *results, const struct wb_wires *comparison)
+enum wb_status wb_wires_results_load(void *context, const void *campaign)
 {
+    struct wb_wires_results *const results = context;
+    const struct wb_wires *const comparison = campaign;
     results->comparison = comparison;
+    results->outcome.n_steps = 2;
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
             wb_wires_run_load(&results->runs[i][k], &comparison->cases[i], (enum wb_wires_solver)k);
     }
+    return WB_OK;
 }
 
-enum wb_status wb_wires_results_compute(struct wb_wires_results *results,
-                                        wb_kind_progress *progress, void *context)
+enum wb_status wb_wires_results_compute(void *of, int n_threads, wb_kind_progress *progress,
+                                        void *context)
 {
+    struct wb_wires_results *const results = of;
+    (void)n_threads;
     const struct wb_wires_wire elastic = wire_of(results->comparison, WB_WIRES_ELASTIC);
     wb_wires_rod_exact(&results->exact, &elastic);
     find_stresses(results);
     WB_TRY(compute_printed(results));
     if (progress)
-        progress(context, 1, WB_WIRES_COMPUTE_STEPS, "computed the printed properties");
+        progress(context, 1, "computed the printed properties");
     fit(results);
     if (progress)
-        progress(context, 2, WB_WIRES_COMPUTE_STEPS, "fitted the rod");
+        progress(context, 2, "fitted the rod");
     results->outcome.interrupted = wb_interrupted();
     judge(results);
     return WB_OK;
 }
 
-void wb_wires_results_release(struct wb_wires_results *results)
+void wb_wires_results_release(void *context)
 {
+    struct wb_wires_results *const results = context;
     for (int i = 0; i < WB_WIRES_CASES; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
             wb_wires_run_release(&results->runs[i][k]);

@@ -53,16 +53,10 @@ struct wb_wires_results {
 /* Every case's solid, then its rod; of struct wb_wires_results. */
 wb_simulation_list wb_wires_results_list;
 
-enum {
-    WB_WIRES_COMPUTE_STEPS = 2 /* of wb_wires_results_compute() */
-};
-
-/* Reads and checks the datasets into zeroed results. Nothing fails. */
-void wb_wires_results_load(struct wb_wires_results *results, const struct wb_wires *comparison);
-/* Then computes what stands beside them; WB_OK also when datasets are missing. */
-WB_MUST_CHECK enum wb_status wb_wires_results_compute(struct wb_wires_results *results,
-                                                      wb_kind_progress *progress, void *context);
-void wb_wires_results_release(struct wb_wires_results *results); /* accepts a zeroed one */
+/* Reads and checks the datasets; then computes what stands beside them. */
+wb_kind_load wb_wires_results_load;
+wb_kind_compute wb_wires_results_compute;
+wb_kind_release wb_wires_results_release;
 
 /* A run that is usable, else NULL. */
 const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *results, int index,
@@ -78,6 +72,9 @@ enum {
  */
 int wb_wires_results_judge(const struct wb_wires_results *results,
                            struct wb_verdict verdicts[WB_WIRES_VERDICTS]);
+
+/* Distance of a usable run's tip from the exact elastic one, over that one's displacement. */
+double wb_wires_tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run);
 
 /* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_wires_cost(const struct wb_wires_results *results, int index);

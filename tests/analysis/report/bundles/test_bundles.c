@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "analysis/report/bundles/bundles_kind.h"
-#include "analysis/report/report_private.h"
 #include "analysis/simulated.h"
 #include "base/file.h"
 #include "base/json.h"
@@ -59,7 +58,7 @@ static bool says(const char *name, const char *part)
 static enum wb_status read_campaign(const char *text)
 {
     write_text("c.yaml", text);
-    return wb_bundles_read(&campaign, in_folder("c.yaml"));
+    return wb_kind_read(&wb_bundles_kind, &campaign, in_folder("c.yaml"));
 }
 
 /* --- campaigns --- */
@@ -158,7 +157,7 @@ static void the_shipped_campaign_can_be_read(void **state)
     (void)state;
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/bundles.yaml"), WB_OK);
-    assert_int_equal(wb_bundles_read(&campaign, path), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_bundles_kind, &campaign, path), WB_OK);
     assert_string_equal(campaign.head.name, "fixtures/campaigns/bundles.yaml");
     /* Then those with the tape on a circle. */
     assert_int_equal(campaign.n_bundles, 10);
@@ -256,8 +255,8 @@ static void make_rod(int index, double cpu)
 static void compute(void)
 {
     memset(&results, 0, sizeof results);
-    wb_bundles_results_load(&results, &campaign);
-    wb_bundles_results_compute(&results, NULL, NULL);
+    assert_int_equal(wb_bundles_results_load(&results, &campaign), WB_OK);
+    assert_int_equal(wb_bundles_results_compute(&results, 0, NULL, NULL), WB_OK);
 }
 
 static void release(void)
@@ -279,9 +278,9 @@ static const struct wb_bundles_results *whole_report(void)
     make_rod(0, 0.1);
     make_rod(1, 0.1);
     wb_bundles_release(&campaign);
-    assert_int_equal(wb_bundles_read(&whole_campaign, in_folder("c.yaml")), WB_OK);
-    wb_bundles_results_load(&whole_results, &whole_campaign);
-    wb_bundles_results_compute(&whole_results, NULL, NULL);
+    assert_int_equal(wb_kind_read(&wb_bundles_kind, &whole_campaign, in_folder("c.yaml")), WB_OK);
+    assert_int_equal(wb_bundles_results_load(&whole_results, &whole_campaign), WB_OK);
+    assert_int_equal(wb_bundles_results_compute(&whole_results, 0, NULL, NULL), WB_OK);
     return &whole_results;
 }
 
@@ -548,7 +547,7 @@ static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
         assert_int_equal(
-            wb_report_write(&wb_bundles_kind, whole_report(), in_folder("report"), false), WB_OK);
+            wb_kind_write(&wb_bundles_kind, whole_report(), in_folder("report"), false), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -617,7 +616,7 @@ static void the_same_datasets_give_the_same_bytes(void **state)
     (void)state;
     char command[3 * WB_PATH];
     write_report();
-    assert_int_equal(wb_report_write(&wb_bundles_kind, whole_report(), in_folder("again"), true),
+    assert_int_equal(wb_kind_write(&wb_bundles_kind, whole_report(), in_folder("again"), true),
                      WB_OK);
     snprintf(command, sizeof command, "diff -r '%s' '%s' >/dev/null", in_folder("report"),
              in_folder("again"));
@@ -633,7 +632,7 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     assert_int_equal(read_campaign(text), WB_OK);
     compute();
     assert_int_equal(results.outcome.n_usable, 1); /* the beam that is named by its path */
-    assert_int_equal(wb_report_write(&wb_bundles_kind, &results, in_folder("none"), true), WB_OK);
+    assert_int_equal(wb_kind_write(&wb_bundles_kind, &results, in_folder("none"), true), WB_OK);
     release();
     assert_true(says("none/report.html", "6 of 7 datasets are missing"));
     assert_true(says("none/report.html", "-o xyz/twelve"));

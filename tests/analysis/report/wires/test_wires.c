@@ -7,9 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/report/report_private.h"
 #include "analysis/report/wires/wires_kind.h"
-#include "analysis/report/wires/wires_results_private.h"
 #include "base/file.h"
 #include "base/json.h"
 
@@ -75,7 +73,7 @@ static struct wb_wires_results results;
 static enum wb_status read_campaign(const char *text)
 {
     write_text("c.yaml", text);
-    return wb_wires_read(&comparison, in_folder("c.yaml"));
+    return wb_kind_read(&wb_wires_kind, &comparison, in_folder("c.yaml"));
 }
 
 static void a_campaign_names_models_and_their_datasets(void **state)
@@ -109,7 +107,7 @@ static void the_shipped_campaign_can_be_read(void **state)
     (void)state;
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/section2.yaml"), WB_OK);
-    assert_int_equal(wb_wires_read(&comparison, path), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_wires_kind, &comparison, path), WB_OK);
     assert_string_equal(comparison.head.name, "fixtures/campaigns/section2.yaml");
     assert_int_equal(comparison.n_cases, 5);
     wb_wires_release(&comparison);
@@ -208,8 +206,8 @@ static void compute(const char *text)
 {
     assert_int_equal(read_campaign(text), WB_OK);
     memset(&results, 0, sizeof results);
-    wb_wires_results_load(&results, &comparison);
-    assert_int_equal(wb_wires_results_compute(&results, NULL, NULL), WB_OK);
+    assert_int_equal(wb_wires_results_load(&results, &comparison), WB_OK);
+    assert_int_equal(wb_wires_results_compute(&results, 0, NULL, NULL), WB_OK);
 }
 
 static void release(void)
@@ -231,8 +229,8 @@ static const struct wb_wires_results *whole_campaign(void)
         }
     }
     whole_comparison = comparison;
-    wb_wires_results_load(&whole_results, &whole_comparison);
-    assert_int_equal(wb_wires_results_compute(&whole_results, NULL, NULL), WB_OK);
+    assert_int_equal(wb_wires_results_load(&whole_results, &whole_comparison), WB_OK);
+    assert_int_equal(wb_wires_results_compute(&whole_results, 0, NULL, NULL), WB_OK);
     return &whole_results;
 }
 
@@ -495,7 +493,7 @@ static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
         assert_int_equal(
-            wb_report_write(&wb_wires_kind, whole_campaign(), in_folder("report"), false), WB_OK);
+            wb_kind_write(&wb_wires_kind, whole_campaign(), in_folder("report"), false), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -555,7 +553,7 @@ static void the_same_datasets_give_the_same_bytes(void **state)
     (void)state;
     char command[3 * WB_PATH];
     write_report();
-    assert_int_equal(wb_report_write(&wb_wires_kind, whole_campaign(), in_folder("again"), true),
+    assert_int_equal(wb_kind_write(&wb_wires_kind, whole_campaign(), in_folder("again"), true),
                      WB_OK);
     snprintf(command, sizeof command, "diff -r '%s' '%s' >/dev/null", in_folder("report"),
              in_folder("again"));
@@ -572,9 +570,9 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     memcpy(strstr(text, "own\nelastic"), "xyz", 3);
     assert_int_equal(read_campaign(text), WB_OK);
     memset(&results, 0, sizeof results);
-    wb_wires_results_load(&results, &comparison);
-    assert_int_equal(wb_wires_results_compute(&results, NULL, NULL), WB_OK);
-    assert_int_equal(wb_report_write(&wb_wires_kind, &results, in_folder("none"), true), WB_OK);
+    assert_int_equal(wb_wires_results_load(&results, &comparison), WB_OK);
+    assert_int_equal(wb_wires_results_compute(&results, 0, NULL, NULL), WB_OK);
+    assert_int_equal(wb_kind_write(&wb_wires_kind, &results, in_folder("none"), true), WB_OK);
     release();
     assert_true(says("none/report.html", "<b>Incomplete.</b> 4 of 4 datasets are missing"));
     assert_true(says("none/report.html", "wirebench solve wire3d plastic.yaml -o "
