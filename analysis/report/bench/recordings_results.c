@@ -113,11 +113,9 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
     const struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
     wb_reasons_listen(&reasons);
     const enum wb_status status = align(test, job->wire, campaign->length[job->purpose]);
-    wb_reasons_end();
+    wb_reasons_end(&reasons, status);
     test->usable = status == WB_OK;
-    if (test->usable)
-        wb_text_release(&test->problem);
-    else if (test->problem.length == 0)
+    if (!test->usable && test->problem.length == 0)
         wb_text_append(&test->problem, "%s", wb_status_text(status));
 }
 
@@ -158,7 +156,9 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
         free(datasets);
         return WB_RECORDINGS_MISSING;
     }
+    const struct wb_reasons reasons = {&step->problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
+    wb_reasons_listen(&reasons);
     enum wb_status status = calibrates ? calibrate(campaign, wire, datasets, n, &why) : WB_OK;
     if (status == WB_OK) {
         status = wb_validate_run(&step->result, &wire->properties, datasets, n, &campaign->head.fit,
@@ -166,10 +166,10 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
         if (status != WB_OK && calibrates)
             wb_calibrate_result_release(&wire->calibration);
     }
+    wb_reasons_end(&reasons, status);
     free(datasets);
     if (status == WB_OK)
         return WB_RECORDINGS_DONE;
-    const struct wb_reasons reasons = {&step->problem, NULL, NULL};
     wb_reasons_fail(&reasons, status, &why);
     return WB_RECORDINGS_FAILED;
 }
