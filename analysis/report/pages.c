@@ -155,7 +155,7 @@ static void put_missing_dataset(struct wb_document *document,
              "<b>%s</b>: %s. To make it:", wb_pages_escape(name, sizeof name, entry->wanted->name),
              wb_pages_escape(problem, sizeof problem, wb_text_string(&entry->result->problem)));
     wb_document_item(document, WB_TONE_WARNING, text);
-    wb_document_code(document, entry->wanted->command);
+    wb_document_code(document, wb_text_string(&entry->wanted->command));
 }
 
 void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,

@@ -27,10 +27,10 @@ struct wb_simulation {
     bool wanted;
     char name[256];     /* for readers: no path of this machine */
     char path[WB_PATH]; /* of its folder, which may not be there */
-    char log[128];      /* a name for a log */
+    char log[128];      /* a name for a log and a checkpoint, of this dataset alone */
     /* Of wirebench, NULL-terminated, without the program and without -o; owned. */
     const char *arguments[WB_SIMULATION_ARGUMENTS];
-    char command[1200]; /* the whole of it for readers, without paths of this machine */
+    struct wb_text command; /* the whole of it for readers, without paths of this machine */
 };
 
 /* Path and name of a dataset. A name lies among the campaign's simulations, by default the shipped
@@ -42,7 +42,7 @@ WB_MUST_CHECK enum wb_status wb_simulation_find(struct wb_simulation *simulation
 /* Then its command, argument by argument, each shown as `shown` (NULL: as it is), and the end. */
 WB_MUST_CHECK enum wb_status wb_simulation_argue(struct wb_simulation *simulation,
                                                  const char *argument, const char *shown);
-void wb_simulation_end(struct wb_simulation *simulation);
+WB_MUST_CHECK enum wb_status wb_simulation_end(struct wb_simulation *simulation);
 
 void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
 

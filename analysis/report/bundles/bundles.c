@@ -52,8 +52,7 @@ static enum wb_status argue_rod(const struct wb_bundles_run *run, struct wb_simu
     }
     if (model->loads.weight)
         WB_TRY(wb_simulation_argue(rod, "--weight", NULL));
-    wb_simulation_end(rod);
-    return WB_OK;
+    return wb_simulation_end(rod);
 }
 
 /* --- groups --- */

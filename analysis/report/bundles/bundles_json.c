@@ -16,7 +16,7 @@ static void put_state(struct wb_json *entry, const struct wb_simulation *wanted,
     static const char *const states[] = {"not wanted", "missing", "outdated", "refused", "used"};
     wb_json_set_text(entry, "dataset", wanted->name);
     wb_json_set_text(entry, "state", states[result->simulation.state]);
-    wb_json_set_text(entry, "command", wanted->command);
+    wb_json_set_text(entry, "command", wb_text_string(&wanted->command));
     if (result->simulation.state != WB_SIMULATION_USABLE) {
         wb_json_set_text(entry, "problem", wb_text_string(&result->simulation.problem));
         return;

@@ -117,8 +117,7 @@ static enum wb_status argue(struct wb_bundles_run *run, const struct wb_bundle_o
     WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_MASS_SCALING], &o->run));
     WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_SELECTIVE], &o->run));
     WB_TRY(argue_setting(d, &run_rows[WB_BUNDLE_MODEL_DURATION], &o->run));
-    wb_simulation_end(d);
-    return WB_OK;
+    return wb_simulation_end(d);
 }
 
 /* --- runs --- */

@@ -40,8 +40,7 @@ static enum wb_status want(const struct wb_wires *comparison, const char *given,
     WB_TRY(wb_simulation_argue(dataset, "solve", NULL));
     WB_TRY(wb_simulation_argue(dataset, wb_wires_command(solver), NULL));
     WB_TRY(wb_simulation_argue(dataset, path, item->model_name));
-    wb_simulation_end(dataset);
-    return WB_OK;
+    return wb_simulation_end(dataset);
 }
 
 static enum wb_status read_case(const struct wb_wires *comparison,

@@ -72,7 +72,7 @@ static void put_run(struct wb_json *object, const struct wb_wires_results *resul
     wb_json_set_text(entry, "state", states[run->simulation.state]);
     if (run->simulation.state != WB_SIMULATION_USABLE) {
         wb_json_set_text(entry, "problem", wb_text_string(&run->simulation.problem));
-        wb_json_set_text(entry, "command", item->datasets[solver].command);
+        wb_json_set_text(entry, "command", wb_text_string(&item->datasets[solver].command));
     }
     wb_json_set_number(entry, "elements", run->elements);
     wb_json_set_number(entry, "degrees_of_freedom", run->unknowns);

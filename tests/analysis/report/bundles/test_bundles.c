@@ -131,13 +131,13 @@ static void commands_make_the_datasets(void **state)
 {
     (void)state;
     assert_int_equal(read_campaign(whole), WB_OK);
-    assert_string_equal(campaign.runs[2].dataset.command,
+    assert_string_equal(wb_text_string(&campaign.runs[2].dataset.command),
                         "wirebench solve bundle fixtures/bundles/7-type3.yaml --dead-force "
                         "--no-weight --friction 0.5,0.2,3 --cohesive-stiffness 300 --mesh paper "
                         "--mass-scaling 9 --selective 50 --duration-s 2.5 -o sim/stiff");
-    assert_string_equal(campaign.runs[3].dataset.command,
+    assert_string_equal(wb_text_string(&campaign.runs[3].dataset.command),
                         "wirebench solve bundle fixtures/bundles/7-type3.yaml -o sim/hung");
-    assert_string_equal(campaign.bundles[1].rod.command,
+    assert_string_equal(wb_text_string(&campaign.bundles[1].rod.command),
                         "wirebench solve cantilever --wire bundle-12 --length-mm 114 "
                         "--deflection-mm 53 -o sim/twelve-1d");
     /* What is run names files that are there, and no output. */

@@ -413,8 +413,9 @@ static void a_missing_dataset_is_told_with_the_command_that_makes_it(void **stat
     assert_false(results.outcome.is_complete);
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTOPLASTIC][WB_WIRES_SOLID];
     assert_int_equal(run->simulation.state, WB_SIMULATION_MISSING);
-    assert_string_equal(results.comparison->cases[WB_WIRES_ELASTOPLASTIC].datasets[0].command,
-                        "wirebench solve wire3d plastic.yaml -o own/follower-8awg-3d");
+    assert_string_equal(
+        wb_text_string(&results.comparison->cases[WB_WIRES_ELASTOPLASTIC].datasets[0].command),
+        "wirebench solve wire3d plastic.yaml -o own/follower-8awg-3d");
     assert_int_equal(results.fit_state, WB_SIMULATION_MISSING);
     release();
 }
