@@ -30,17 +30,20 @@ static enum wb_status make_missing(struct making *making, bool *ends)
 {
     const struct wb_kind *const kind = making->kind;
     const struct wb_report_order *const order = making->order;
-    struct wb_missing_outcome outcome;
-    if (!kind->datasets) {
+    const struct wb_kind_outcome *const known = making->results;
+    struct wb_missing_outcome outcome = {.n = 0};
+    if (kind->datasets)
+        WB_TRY(
+            wb_missing_make(&outcome, kind->datasets, making->results, order->folder, order->jobs));
+    else if (known->n_missing > 0)
         wb_warn("%s cannot be computed: nothing is made of what is missing", kind->data);
-        return WB_OK;
-    }
-    WB_TRY(wb_missing_make(&outcome, kind->datasets, making->results, order->folder, order->jobs));
-    *ends = outcome.n > 0 && (order->jobs->dry_run || outcome.interrupted);
-    if (*ends && outcome.interrupted)
+    *ends = order->jobs->dry_run || outcome.interrupted;
+    if (outcome.interrupted)
         return refuse_interrupted(making);
     making->end = WB_REPORT_NOTHING;
-    if (*ends)
+    if (*ends && outcome.n == 0)
+        wb_warn("there are no runs to list, and a dry run writes no report");
+    if (*ends || !kind->datasets)
         return WB_OK;
     if (outcome.n > 0) {
         kind->release(making->results);
