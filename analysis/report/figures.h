@@ -7,6 +7,9 @@
  *     };
  *     WB_TRY(wb_figures_create(&figures, rows, WB_COUNT(rows), results));
  *     ... wb_figures_put(&figures, document, "overview", 0);
+ *
+ * The tables of the reports are wb_recordings_figures (bench/recordings_figures.h),
+ * wb_wires_figures (wires/wires_kind.h) and wb_bundles_figures (bundles/bundles_kind.h).
  */
 #ifndef WB_ANALYSIS_REPORT_FIGURES_H
 #define WB_ANALYSIS_REPORT_FIGURES_H
