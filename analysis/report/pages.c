@@ -90,11 +90,12 @@ void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals)
         wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");
 }
 
-void wb_pages_cell_judged(struct wb_pages_row *row, double value, int decimals, double limit)
+void wb_pages_cell_judged(struct wb_pages_row *row, double value, int decimals, bool is_limited,
+                          bool is_kept)
 {
     wb_pages_cell_number(row, value, decimals);
-    if (limit > 0.0 && isfinite(value) && row->n > 0)
-        row->tones[row->n - 1] = value <= limit ? WB_TONE_GOOD : WB_TONE_WARNING;
+    if (is_limited && isfinite(value) && row->n > 0)
+        row->tones[row->n - 1] = is_kept ? WB_TONE_GOOD : WB_TONE_WARNING;
 }
 
 void wb_pages_put_row(struct wb_document *document, struct wb_document_table *table,
@@ -121,6 +122,17 @@ void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
         wb_document_paragraph(document, markup);
     document->failed |= text->failed;
     wb_text_release(text);
+}
+
+struct wb_document_table *wb_pages_start_table(struct wb_document *document,
+                                               struct wb_text *caption, int n_columns,
+                                               const struct wb_document_column *columns)
+{
+    struct wb_document_table *const table =
+        wb_document_table(document, wb_text_string(caption), n_columns, columns);
+    document->failed |= caption->failed;
+    wb_text_release(caption);
+    return table;
 }
 
 void wb_pages_item(struct wb_document *document, enum wb_document_tone tone, const char *markup,

@@ -26,8 +26,9 @@ void wb_pages_cell(struct wb_pages_row *row, enum wb_document_tone tone, const c
 void wb_pages_cell_plain(struct wb_pages_row *row, enum wb_document_tone tone, const char *text);
 /* A number with `decimals`, or an en dash when it is not finite. */
 void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals);
-/* The same with a tone: whether it keeps a limit; 0: there is none. */
-void wb_pages_cell_judged(struct wb_pages_row *row, double value, int decimals, double limit);
+/* The same with a tone, where there is a limit: whether it is kept. */
+void wb_pages_cell_judged(struct wb_pages_row *row, double value, int decimals, bool is_limited,
+                          bool is_kept);
 /* Adds the row to the table and clears it. */
 void wb_pages_put_row(struct wb_document *document, struct wb_document_table *table,
                       bool begins_group, struct wb_pages_row *row);
@@ -41,6 +42,11 @@ void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
 /* Adds an item of two plain texts, each behind markup: "<b>", name, "</b>: ", problem. */
 void wb_pages_item(struct wb_document *document, enum wb_document_tone tone, const char *markup,
                    const char *plain, const char *more_markup, const char *more_plain);
+
+/* Starts a table whose caption is a text of markup, which is released. */
+struct wb_document_table *wb_pages_start_table(struct wb_document *document,
+                                               struct wb_text *caption, int n_columns,
+                                               const struct wb_document_column *columns);
 
 /* Starts the document of a report of simulations. */
 void wb_pages_start_simulations(struct wb_document *document, const char *title,

@@ -213,13 +213,14 @@ static void put_rms(struct wb_pages_row *row, const struct wb_recordings_results
                     enum wb_recordings_purpose purpose)
 {
     const enum wb_recordings_results_state state = wire->steps[purpose].state;
+    const double limit = results->campaign->limit[purpose];
+    const double rms = wb_recordings_results_rms(wire, purpose);
     if (state == WB_RECORDINGS_NOT_WANTED)
         wb_pages_cell_number(row, (double)NAN, 0);
     else if (state != WB_RECORDINGS_DONE)
         wb_pages_cell(row, WB_TONE_WARNING, "missing");
     else
-        wb_pages_cell_judged(row, wb_recordings_results_rms(wire, purpose), 4,
-                             results->campaign->limit[purpose]);
+        wb_pages_cell_judged(row, rms, 4, limit > 0.0, rms <= limit);
 }
 
 static void put_merits(struct wb_document *document, const struct wb_recordings_results *results)
@@ -934,10 +935,7 @@ static void put_recordings(struct wb_document *document,
     wb_text_append(&caption, "All checksums are those of the uncompressed recordings.%s",
                    results->any_virtual ? " Seed: of the virtual rig." : "");
     append_revisions(&caption, results);
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 4, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 4, columns);
     const struct wb_recordings_results_test *test;
     const struct wb_recordings_results_wire *wire, *wire_before = NULL;
     enum wb_recordings_purpose purpose, before = WB_RECORDINGS_CALIBRATION;

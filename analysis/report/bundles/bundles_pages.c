@@ -14,15 +14,11 @@
 
 static void put_unfitted(struct wb_document *document, const struct wb_bundles_results *results)
 {
-    char text[1700], name[600], problem[900];
     for (int i = 0; i < results->campaign->n_bundles; i++) {
         const struct wb_bundles_fit *const fit = &results->fits[i];
-        if (fit->state != WB_SIMULATION_REFUSED)
-            continue;
-        snprintf(text, sizeof text, "<b>%s</b>, no fitted beam: %s",
-                 wb_pages_escape(name, sizeof name, results->campaign->bundles[i].label),
-                 wb_pages_escape(problem, sizeof problem, wb_text_string(&fit->problem)));
-        wb_document_item(document, WB_TONE_WARNING, text);
+        if (fit->state == WB_SIMULATION_REFUSED)
+            wb_pages_item(document, WB_TONE_WARNING, "<b>", results->campaign->bundles[i].label,
+                          "</b>, no fitted beam: ", wb_text_string(&fit->problem));
     }
 }
 
@@ -76,10 +72,7 @@ static void put_facts(struct wb_document *document, const struct wb_bundles_resu
         wb_text_append(&caption, " The paper's own 3D curves lie %g to %g from its tests.",
                        campaign->printed_rms[0], campaign->printed_rms[1]);
     wb_document_heading(document, 2, "facts", "What came out");
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 7, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 7, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
         put_fact(document, table, results, i);
 }
@@ -411,11 +404,7 @@ static void put_cost_of(struct wb_document *document, struct wb_document_table *
     wb_pages_cell_number(&row, run ? run->numbers.ns : none, 1);
     wb_pages_cell_number(&row, run ? run->simulation.cpu_s : none, 1);
     wb_pages_cell_number(&row, rod_cpu, 3);
-    if (limit > 0.0 && isfinite(cost))
-        wb_pages_cell(&row, cost <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.3f",
-                      cost / WB_PERCENT);
-    else
-        wb_pages_cell_number(&row, cost / WB_PERCENT, 3);
+    wb_pages_cell_judged(&row, cost / WB_PERCENT, 3, limit > 0.0, cost <= limit);
     wb_pages_put_row(document, table, false, &row);
 }
 
@@ -439,10 +428,7 @@ static void put_cost(struct wb_document *document, const struct wb_bundles_resul
         wb_text_append(&caption, " The paper: 1D costs below %g %% of 3D.",
                        campaign->printed_cost / WB_PERCENT);
     wb_document_heading(document, 1, "cost", "Cost");
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 8, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
         put_cost_of(document, table, results, i);
 }
@@ -468,8 +454,7 @@ static void put_all_runs(struct wb_document *document, const struct wb_bundles_r
         wb_text_append(&note, "Strains went beyond what the elements' logarithm is made for in ");
         wb_text_append_escaped(&note, wb_text_string(&text));
         wb_text_append(&note, ".");
-        wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&note));
-        wb_text_release(&note);
+        wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &note);
     }
     wb_text_release(&text);
 }

@@ -131,11 +131,9 @@ static struct wb_panel *add_distance_panel(struct wb_figure *figure, const char 
 static enum wb_status draw_elastic_shapes(struct wb_figures_item *item)
 {
     const struct wb_wires_results *const results = item->results;
-    const struct wb_wires_run *const bonded =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const contact =
-        wb_wires_usable(results, WB_WIRES_CONTACT, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod = wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_ROD);
+    const struct wb_wires_run *const bonded = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const contact = wb_wires_solid_run(results, WB_WIRES_CONTACT);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTIC);
     if (!bonded && !contact && !rod)
         return WB_OK;
     WB_TRY(wb_figures_start_simulation(&item->figure, "shapes-elastic", 150.0));
@@ -159,12 +157,9 @@ static enum wb_status draw_elastic_shapes(struct wb_figures_item *item)
 static enum wb_status draw_shapes(struct wb_figures_item *item)
 {
     const struct wb_wires_results *const results = item->results;
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
-    const struct wb_wires_run *const elastic =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const elastic = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
     const bool fitted = results->fit_state == WB_SIMULATION_USABLE;
     if (!solid && !rod)
         return WB_OK;
@@ -224,10 +219,8 @@ static void add_rod_rows(struct wb_panel *panels[2], const char *label,
 static enum wb_status draw_loading(struct wb_figures_item *item)
 {
     const struct wb_wires_results *const results = item->results;
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTOPLASTIC);
     if (!solid && !rod)
         return WB_OK;
     WB_TRY(wb_figures_start_simulation(&item->figure, "loading", 200.0));
@@ -492,7 +485,7 @@ static enum wb_status draw_stress(struct wb_figure **figure, const struct wb_wir
                                   int index)
 {
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const run = wb_wires_usable(results, index, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
     const struct wb_field *const along =
         run ? wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN) : NULL;
     const struct wb_field *const across =
@@ -672,7 +665,7 @@ static void find_loaded(struct loaded *loaded, const struct wb_wires_results *re
     *loaded = (struct loaded){.n = 0};
     for (int i = 0; i <= comparison->n_residual && loaded->n < 3; i++) {
         const int index = WB_WIRES_ELASTOPLASTIC + i;
-        const struct wb_wires_run *const run = wb_wires_usable(results, index, WB_WIRES_SOLID);
+        const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
         const struct wb_field *const field =
             run ? wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN) : NULL;
         if (!field)

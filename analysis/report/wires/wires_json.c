@@ -36,7 +36,7 @@ static void put_fields(struct wb_json *entry, const struct wb_fields *fields)
 static void put_usable(struct wb_json *entry, const struct wb_wires_results *results,
                        const struct wb_wires_run *run, int index)
 {
-    const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, index);
     wb_json_set_text(entry, "sha256", run->simulation.sha256);
     wb_json_set_number(entry, "follower_force_N", run->force);
     wb_numbers_put_list(entry, "tip_mm", run->tip, 3, WB_MM);
@@ -122,8 +122,7 @@ static void put_material(struct wb_json *object, const char *key,
 
 static void put_fit(struct wb_json *root, const struct wb_wires_results *results)
 {
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     struct wb_json *const entry = wb_json_set_object(root, "fit");
     if (results->comparison->has_printed_wire)
         put_material(entry, "printed", &results->comparison->printed_wire.material);
@@ -177,10 +176,8 @@ struct wb_json *wb_wires_json_build(const void *context)
 {
     const struct wb_wires_results *const results = context;
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const elastic =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const plastic =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const elastic = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const plastic = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     struct wb_json *const root = wb_numbers_create(&comparison->head, &results->outcome);
     wb_json_set_number(root, "jacket_modulus_per_percent_of_core_MPa",
                        wb_wires_split(comparison->cases[WB_WIRES_ELASTOPLASTIC].model, 0.01) /

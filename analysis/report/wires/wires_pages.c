@@ -14,12 +14,9 @@
 
 static void put_unfitted(struct wb_document *document, const struct wb_wires_results *results)
 {
-    char text[1700], problem[900];
-    if (results->fit_state == WB_SIMULATION_USABLE)
-        return;
-    snprintf(text, sizeof text, "<b>No fitted rod</b>: %s",
-             wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
-    wb_document_item(document, WB_TONE_WARNING, text);
+    if (results->fit_state != WB_SIMULATION_USABLE)
+        wb_pages_item(document, WB_TONE_WARNING,
+                      "<b>No fitted rod</b>: ", wb_text_string(&results->fit_problem), "", "");
 }
 
 static void put_limits(struct wb_document *document, const struct wb_wires_results *results)
@@ -58,7 +55,7 @@ static double angle_of(const struct wb_wires_run *run)
 
 static double largest_stress(const struct wb_wires_results *results, int index)
 {
-    const struct wb_wires_run *const run = wb_wires_usable(results, index, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
     const struct wb_field *const field =
         run ? wb_fields_find(&run->fields, results->comparison->loaded_state, (double)NAN) : NULL;
     return wb_wires_find_peak(field, 0).stress / WB_MPA;
@@ -138,13 +135,6 @@ static void put_summary(struct wb_document *document, const struct wb_wires_resu
     put_unfitted(document, results);
     put_limits(document, results);
     put_facts(document, results);
-}
-
-static void put_paragraph(struct wb_document *document, struct wb_text *text)
-{
-    wb_document_paragraph(document, wb_text_string(text));
-    document->failed |= text->failed;
-    wb_text_release(text);
 }
 
 /* --- tips --- */
@@ -245,11 +235,7 @@ static void put_stresses(struct wb_document *document, const struct wb_wires_res
         wb_pages_cell_number(&row, stress->x / WB_MM, 2);
         wb_pages_cell_number(&row, stress->core.stress / WB_MPA, 1);
         wb_pages_cell_number(&row, stress->beam / WB_MPA, 1);
-        if (limit > 0.0)
-            wb_pages_cell(&row, fabs(ratio - 1.0) <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.4f",
-                          ratio);
-        else
-            wb_pages_cell_number(&row, ratio, 4);
+        wb_pages_cell_judged(&row, ratio, 4, limit > 0.0, fabs(ratio - 1.0) <= limit);
         wb_pages_cell_number(&row, stress->curvature * WB_MM, 6);
         wb_pages_cell_number(&row, stress->jacket.stress / WB_MPA, 2);
         wb_pages_put_row(document, table, false, &row);
@@ -284,17 +270,15 @@ static void put_largest(struct wb_document *document, const struct wb_wires_resu
         wb_text_append(&text,
                        " Its Young's modulus of copper is lost, and the core's was chosen so "
                        "that beam theory gives that stress.");
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 static void put_elastic(struct wb_document *document, const struct wb_wires_results *results,
                         const struct wb_figures *figures)
 {
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const contact =
-        wb_wires_usable(results, WB_WIRES_CONTACT, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod = wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_ROD);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const contact = wb_wires_solid_run(results, WB_WIRES_CONTACT);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTIC);
     const struct wb_wire_model *const model = results->comparison->cases[WB_WIRES_ELASTIC].model;
     wb_document_heading(document, 1, "elastic", "Linear elastic: solid and rod");
     wb_figures_put(figures, document, "elastic", 0);
@@ -325,7 +309,7 @@ static void put_elastic(struct wb_document *document, const struct wb_wires_resu
                        wb_wires_distance(solid, contact) / WB_MM);
     if (contact && isfinite(contact->slip))
         wb_text_append(&text, " Core and jacket slip by %.4f mm at most.", contact->slip / WB_MM);
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 /* --- elastoplastic --- */
@@ -384,9 +368,7 @@ static void put_curl(struct wb_document *document, const struct wb_wires_results
                        results->collapse_force);
         append_misprint(&text, results, solid->tip_angle / WB_DEGREE > 90.0);
     }
-    wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
-    document->failed |= text.failed;
-    wb_text_release(&text);
+    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
 }
 
 static void put_property(struct wb_document *document, struct wb_document_table *table,
@@ -422,12 +404,9 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
     const struct wb_wires *const comparison = results->comparison;
     char source[400], caption[900];
     wb_document_heading(document, 2, "fit", "Properties of the rod, fitted to the solid");
-    if (results->fit_state != WB_SIMULATION_USABLE) {
-        char problem[900], item[1000];
-        snprintf(item, sizeof item, "<b>No fit</b>: %s",
-                 wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
-        wb_document_item(document, WB_TONE_WARNING, item);
-    }
+    if (results->fit_state != WB_SIMULATION_USABLE)
+        wb_pages_item(document, WB_TONE_WARNING,
+                      "<b>No fit</b>: ", wb_text_string(&results->fit_problem), "", "");
     snprintf(
         caption, sizeof caption,
         "%s, <i>\xcf\x83</i><sub>Y</sub> of eq. 11, <i>K</i> and <i>n</i> by the search of "
@@ -459,7 +438,7 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
     const int n = wb_calibrate_remarks(&results->fit, remarks);
     for (int i = 0; i < n; i++)
         wb_text_append(&text, " Remark: %s.", remarks[i]);
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 static void put_split(struct wb_document *document, const struct wb_wires_results *results)
@@ -479,16 +458,14 @@ static void put_split(struct wb_document *document, const struct wb_wires_result
         wb_wire_model_youngs_modulus(model) / (1e3 * WB_MPA),
         jacket->material.youngs_modulus / WB_MPA, core->material.youngs_modulus / (1e3 * WB_MPA),
         wb_wires_split(model, 0.01) / WB_MPA, most / (1e3 * WB_MPA));
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 static void put_elastoplastic(struct wb_document *document, const struct wb_wires_results *results,
                               const struct wb_figures *figures)
 {
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTOPLASTIC);
     wb_document_heading(document, 1, "elastoplastic", "Elastoplastic: solid and rod");
     if (solid)
         put_curl(document, results, solid);
@@ -543,9 +520,7 @@ static void put_preloads(struct wb_document *document, const struct wb_wires *co
             append_step(&text, &item->model->step[k].loads);
         }
         wb_text_append(&text, ".");
-        wb_document_item(document, WB_TONE_PLAIN, wb_text_string(&text));
-        document->failed |= text.failed;
-        wb_text_release(&text);
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
     }
 }
 
@@ -618,13 +593,11 @@ static void put_residual_stresses(struct wb_document *document,
 static void put_finding(struct wb_document *document, const struct wb_wires_results *results)
 {
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const without =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const without = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     double moved = (double)NAN, stress = (double)NAN;
     char text[500];
     for (int i = 0; i < comparison->n_residual; i++) {
-        const struct wb_wires_run *const run =
-            wb_wires_usable(results, WB_WIRES_RESIDUAL + i, WB_WIRES_SOLID);
+        const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_RESIDUAL + i);
         if (!run || !without)
             continue;
         moved = fmax(moved, wb_wires_effect(run, without));
@@ -669,12 +642,12 @@ static void put_residual(struct wb_document *document, const struct wb_wires_res
     for (int i = 0; i <= comparison->n_residual; i++) {
         const int index = WB_WIRES_ELASTOPLASTIC + i;
         const char *const name = i == 0 ? "None" : comparison->cases[index].label;
-        const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
+        const struct wb_wires_run *const solid = wb_wires_solid_run(results, index);
         char label[100];
         snprintf(label, sizeof label, "%s, 3D", name);
         put_tip_of(document, table, label, solid, solid);
         snprintf(label, sizeof label, "%s, 1D fibres", name);
-        put_tip_of(document, table, label, wb_wires_usable(results, index, WB_WIRES_ROD), solid);
+        put_tip_of(document, table, label, wb_wires_rod_run(results, index), solid);
     }
 }
 
@@ -732,10 +705,7 @@ static void put_cost(struct wb_document *document, const struct wb_wires_results
         wb_text_append(&caption,
                        " The paper: the elastic rod costs below %g %% of the bonded solid.",
                        comparison->printed_cost / WB_PERCENT);
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 9, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 9, columns);
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
             if (results->runs[i][k].simulation.state != WB_SIMULATION_NOT_WANTED)
@@ -787,13 +757,9 @@ static void put_materials(struct wb_document *document, const struct wb_wires *c
         9, columns);
     for (int i = 0; i < model->n_parts; i++)
         put_material(document, table, &model->part[i]);
-    for (int i = 0; i < model->n_parts; i++) {
-        char name[300], source[1200], item[1600];
-        snprintf(item, sizeof item, "<b>%s</b>: %s",
-                 wb_pages_escape(name, sizeof name, model->part[i].material_name),
-                 wb_pages_escape(source, sizeof source, model->part[i].source));
-        wb_document_item(document, WB_TONE_PLAIN, item);
-    }
+    for (int i = 0; i < model->n_parts; i++)
+        wb_pages_item(document, WB_TONE_PLAIN, "<b>", model->part[i].material_name,
+                      "</b>: ", model->part[i].source);
 }
 
 static void put_models(struct wb_document *document, const struct wb_wires *comparison)

@@ -18,6 +18,16 @@ const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *result
     return run->simulation.state == WB_SIMULATION_USABLE ? run : NULL;
 }
 
+const struct wb_wires_run *wb_wires_solid_run(const struct wb_wires_results *results, int index)
+{
+    return wb_wires_usable(results, index, WB_WIRES_SOLID);
+}
+
+const struct wb_wires_run *wb_wires_rod_run(const struct wb_wires_results *results, int index)
+{
+    return wb_wires_usable(results, index, WB_WIRES_ROD);
+}
+
 /* --- stresses --- */
 
 struct wb_wires_peak wb_wires_find_peak(const struct wb_field *field, int part)
@@ -40,8 +50,7 @@ struct wb_wires_peak wb_wires_find_peak(const struct wb_field *field, int part)
 static void find_stresses(struct wb_wires_results *results)
 {
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const run =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
     const struct wb_wire_model_part *const core =
         &comparison->cases[WB_WIRES_ELASTIC].model->part[0];
     for (int i = 0; run && i < run->fields.n; i++) {
@@ -112,8 +121,7 @@ static enum wb_status calibrate(struct wb_wires_results *results, const struct w
 
 static void fit(struct wb_wires_results *results)
 {
-    const struct wb_wires_run *const run =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     results->fit_state = WB_SIMULATION_MISSING;
     if (!run) {
         wb_text_append(&results->fit_problem, "the solid's dataset that it builds on is missing");
@@ -141,8 +149,8 @@ double wb_wires_split(const struct wb_wire_model *model, double change)
 
 double wb_wires_cost(const struct wb_wires_results *results, int index)
 {
-    const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod = wb_wires_usable(results, index, WB_WIRES_ROD);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, index);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, index);
     return solid && rod ? rod->simulation.cpu_s / solid->simulation.cpu_s : (double)NAN;
 }
 

@@ -58,9 +58,11 @@ wb_kind_load wb_wires_results_load;
 wb_kind_compute wb_wires_results_compute;
 wb_kind_release wb_wires_results_release;
 
-/* A run that is usable, else NULL. */
+/* A run that is usable, else NULL; of a case its solid, and its rod. */
 const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *results, int index,
                                            enum wb_wires_solver solver);
+const struct wb_wires_run *wb_wires_solid_run(const struct wb_wires_results *results, int index);
+const struct wb_wires_run *wb_wires_rod_run(const struct wb_wires_results *results, int index);
 
 enum {
     WB_WIRES_VERDICTS = 4
