@@ -9,41 +9,10 @@
 #include "analysis/align.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"
-#include "base/file.h"
 #include "base/interrupt_private.h"
 #include "base/json.h"
+#include "tests/analysis/report/report_folder.h"
 #include "tests/analysis/synthetic.h"
-#include "tests/own_folder.h"
-
-static const char *in_folder(const char *name)
-{
-    static char paths[4][WB_PATH];
-    static int next;
-    char *const path = paths[next++ % 4];
-    assert_int_equal(wb_file_join(path, folder, name), WB_OK);
-    return path;
-}
-
-static void write_text(const char *name, const char *text)
-{
-    assert_int_equal(wb_file_write(in_folder(name), text, strlen(text)), WB_OK);
-}
-
-static char *read_text(const char *name, size_t *size)
-{
-    char *bytes;
-    assert_int_equal(wb_file_read(in_folder(name), &bytes, size), WB_OK);
-    return bytes;
-}
-
-static bool says(const char *name, const char *part)
-{
-    size_t size;
-    char *const bytes = read_text(name, &size);
-    const bool found = memmem(bytes, size, part, strlen(part)) != NULL;
-    free(bytes);
-    return found;
-}
 
 /* --- a good campaign, of the beam's own curves --- */
 
