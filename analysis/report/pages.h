@@ -1,4 +1,4 @@
-/* What pages of all reports share: rows of tables, escaped text, properties of a wire, the chapter
+/* What pages of all reports share: cells of tables, escaped text, properties of a wire, the chapter
  * on where everything comes from.
  */
 #ifndef WB_ANALYSIS_REPORT_PAGES_H
@@ -11,28 +11,17 @@
 #include "analysis/report/verdict.h"
 #include "fe/material/material.h"
 
-#define WB_PAGES_CELL 360
-
-/* One row of a table while it is written: cells by printf, in order. */
-struct wb_pages_row {
-    char cells[WB_DOCUMENT_COLUMNS][WB_PAGES_CELL];
-    enum wb_document_tone tones[WB_DOCUMENT_COLUMNS];
-    int n;
-};
-
-/* Adds a cell of markup; `wb_pages_cell_plain` escapes what comes from files. */
-void wb_pages_cell(struct wb_pages_row *row, enum wb_document_tone tone, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-void wb_pages_cell_plain(struct wb_pages_row *row, enum wb_document_tone tone, const char *text);
+/* Adds a cell of markup to the row that was begun; `wb_pages_cell_plain` escapes what comes from
+ * files. */
+void wb_pages_cell(struct wb_document_table *table, enum wb_document_tone tone, const char *format,
+                   ...) __attribute__((format(printf, 3, 4)));
+void wb_pages_cell_plain(struct wb_document_table *table, enum wb_document_tone tone,
+                         const char *text);
 /* A number with `decimals`, or an en dash when it is not finite. */
-void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals);
+void wb_pages_cell_number(struct wb_document_table *table, double value, int decimals);
 /* The same with a tone, where there is a limit: whether it is kept. */
-void wb_pages_cell_judged(struct wb_pages_row *row, double value, int decimals, bool is_limited,
-                          bool is_kept);
-/* Adds the row to the table and clears it. */
-void wb_pages_put_row(struct wb_document *document, struct wb_document_table *table,
-                      bool begins_group, struct wb_pages_row *row);
-
+void wb_pages_cell_judged(struct wb_document_table *table, double value, int decimals,
+                          bool is_limited, bool is_kept);
 /* Escapes into a buffer, cut where it ends (never within an entity). Returns the buffer. */
 char *wb_pages_escape(char *buffer, size_t size, const char *raw);
 

@@ -141,7 +141,7 @@ static void put_missing(struct wb_document *document, const struct wb_recordings
     }
 }
 
-static void put_property(struct wb_document *document, struct wb_document_table *table,
+static void put_property(struct wb_document_table *table,
                          const struct wb_recordings_results_wire *wire, int i)
 {
     const struct wb_pages_property *const property = &wb_pages_properties[i];
@@ -155,18 +155,17 @@ static void put_property(struct wb_document *document, struct wb_document_table 
     const double reference = wanted->has_reference
                                  ? wb_pages_value(&wanted->reference, i) / property->factor
                                  : (double)NAN;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, i == 0 ? wanted->label : "");
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
-    wb_pages_cell_number(&row, value, property->decimals);
+    wb_document_row(table, i == 0);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, i == 0 ? wanted->label : "");
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", property->unit);
+    wb_pages_cell_number(table, value, property->decimals);
     if (i == 2 && isfinite(deviation))
-        wb_pages_cell(&row, WB_TONE_PLAIN, "\xc3\x97/\xc3\xb7 %.3g", deviation);
+        wb_pages_cell(table, WB_TONE_PLAIN, "\xc3\x97/\xc3\xb7 %.3g", deviation);
     else
-        wb_pages_cell_number(&row, deviation, property->decimals);
-    wb_pages_cell_number(&row, reference, property->decimals);
-    wb_pages_cell_number(&row, value / reference, 2);
-    wb_pages_put_row(document, table, i == 0, &row);
+        wb_pages_cell_number(table, deviation, property->decimals);
+    wb_pages_cell_number(table, reference, property->decimals);
+    wb_pages_cell_number(table, value / reference, 2);
 }
 
 static void put_properties(struct wb_document *document,
@@ -204,11 +203,11 @@ static void put_properties(struct wb_document *document,
     struct wb_document_table *const table = wb_document_table(document, caption, 7, columns);
     for (int i = 0; i < results->n_wires; i++) {
         for (int k = 0; k < 4; k++)
-            put_property(document, table, &results->wires[i], k);
+            put_property(table, &results->wires[i], k);
     }
 }
 
-static void put_rms(struct wb_pages_row *row, const struct wb_recordings_results *results,
+static void put_rms(struct wb_document_table *table, const struct wb_recordings_results *results,
                     const struct wb_recordings_results_wire *wire,
                     enum wb_recordings_purpose purpose)
 {
@@ -216,11 +215,11 @@ static void put_rms(struct wb_pages_row *row, const struct wb_recordings_results
     const double limit = results->campaign->limit[purpose];
     const double rms = wb_recordings_results_rms(wire, purpose);
     if (state == WB_RECORDINGS_NOT_WANTED)
-        wb_pages_cell_number(row, (double)NAN, 0);
+        wb_pages_cell_number(table, (double)NAN, 0);
     else if (state != WB_RECORDINGS_DONE)
-        wb_pages_cell(row, WB_TONE_WARNING, "missing");
+        wb_pages_cell(table, WB_TONE_WARNING, "missing");
     else
-        wb_pages_cell_judged(row, rms, 4, limit > 0.0, rms <= limit);
+        wb_pages_cell_judged(table, rms, 4, limit > 0.0, rms <= limit);
 }
 
 static void put_merits(struct wb_document *document, const struct wb_recordings_results *results)
@@ -262,19 +261,18 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
         const struct wb_validate_result *const v =
             wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
         const double none = (double)NAN, share = wb_recordings_results_validation_share(wire);
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, wire->wanted->label);
-        put_rms(&row, results, wire, WB_RECORDINGS_CALIBRATION);
-        put_rms(&row, results, wire, WB_RECORDINGS_VALIDATION);
-        wb_pages_cell_number(&row, v ? v->elastoplastic.max_error : none, 4);
-        wb_pages_cell_number(&row, v ? v->elastic.rms : none, 4);
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+        put_rms(table, results, wire, WB_RECORDINGS_CALIBRATION);
+        put_rms(table, results, wire, WB_RECORDINGS_VALIDATION);
+        wb_pages_cell_number(table, v ? v->elastoplastic.max_error : none, 4);
+        wb_pages_cell_number(table, v ? v->elastic.rms : none, 4);
         if (isfinite(share))
-            wb_pages_cell(&row, WB_TONE_PLAIN, "%.0f %%", 100.0 * share);
+            wb_pages_cell(table, WB_TONE_PLAIN, "%.0f %%", 100.0 * share);
         else
-            wb_pages_cell_number(&row, none, 0);
-        wb_pages_cell_number(&row, v ? v->shape_rms / WB_MM : none, 2);
-        wb_pages_cell_number(&row, v ? v->curve.max_force / WB_MN : none, 1);
-        wb_pages_put_row(document, table, false, &row);
+            wb_pages_cell_number(table, none, 0);
+        wb_pages_cell_number(table, v ? v->shape_rms / WB_MM : none, 2);
+        wb_pages_cell_number(table, v ? v->curve.max_force / WB_MN : none, 1);
     }
 }
 
@@ -416,15 +414,14 @@ static void put_wires(struct wb_document *document, const struct wb_recordings_r
     struct wb_document_table *const table = wb_document_table(document, NULL, 6, columns);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_wire *const wire = &results->wires[i].wanted->product;
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, results->wires[i].wanted->label);
-        wb_pages_cell_number(&row, wire->conductor_diameter / WB_MM, 2);
-        wb_pages_cell_number(&row, wire->outer_diameter / WB_MM, 2);
-        wb_pages_cell_number(&row, wire->density / WB_G_PER_CM3, 2);
-        wb_pages_cell_number(&row, wb_wire_mass_per_length(wire) / WB_G, 3);
-        wb_pages_cell_number(&row,
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, results->wires[i].wanted->label);
+        wb_pages_cell_number(table, wire->conductor_diameter / WB_MM, 2);
+        wb_pages_cell_number(table, wire->outer_diameter / WB_MM, 2);
+        wb_pages_cell_number(table, wire->density / WB_G_PER_CM3, 2);
+        wb_pages_cell_number(table, wb_wire_mass_per_length(wire) / WB_G, 3);
+        wb_pages_cell_number(table,
                              wire->has_properties ? wire->material.poissons_ratio : (double)NAN, 2);
-        wb_pages_put_row(document, table, false, &row);
     }
 }
 
@@ -442,27 +439,26 @@ static double largest_force(const struct wb_dataset *dataset, int *cycles)
     return force;
 }
 
-static void put_specimen(struct wb_document *document, struct wb_document_table *table,
+static void put_specimen(struct wb_document_table *table,
                          const struct wb_recordings_results_test *test, const char *label)
 {
     const struct wb_dataset *const dataset = &test->dataset;
     double seen = (double)NAN, t;
     int cycles;
     const double force = largest_force(dataset, &cycles);
-    struct wb_pages_row row = {.n = 0};
     wb_json_get_number(wb_json_get(wb_json_get(dataset->document, "checks"), "markers"),
                        "seen_percent", &seen);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, label);
-    wb_pages_cell_number(&row, dataset->info.length / WB_MM, 0);
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%d", dataset->info.sample);
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%d", cycles);
-    wb_pages_cell_number(&row, wb_dataset_bow(&dataset->info) / WB_MM, 2);
-    wb_pages_cell_number(&row, wb_recordings_figures_turn(dataset, &t) / WB_MM, 1);
-    wb_pages_cell_number(&row, force / WB_MN, 1);
-    wb_pages_cell_number(&row, seen, 1);
-    wb_pages_cell_plain(&row, test->operator_name[0] ? WB_TONE_PLAIN : WB_TONE_QUIET,
+    wb_document_row(table, label[0] != '\0');
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, label);
+    wb_pages_cell_number(table, dataset->info.length / WB_MM, 0);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%d", dataset->info.sample);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%d", cycles);
+    wb_pages_cell_number(table, wb_dataset_bow(&dataset->info) / WB_MM, 2);
+    wb_pages_cell_number(table, wb_recordings_figures_turn(dataset, &t) / WB_MM, 1);
+    wb_pages_cell_number(table, force / WB_MN, 1);
+    wb_pages_cell_number(table, seen, 1);
+    wb_pages_cell_plain(table, test->operator_name[0] ? WB_TONE_PLAIN : WB_TONE_QUIET,
                         test->operator_name[0] ? test->operator_name : "not given");
-    wb_pages_put_row(document, table, label[0] != '\0', &row);
 }
 
 /* Names of usual length stay in one line: "make-/recordings" reads as two. */
@@ -500,29 +496,26 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
     for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, NULL)); i++) {
         if (!test->usable)
             continue;
-        put_specimen(document, table, test, wire == before ? "" : wire->wanted->label);
+        put_specimen(table, test, wire == before ? "" : wire->wanted->label);
         before = wire;
     }
 }
 
 /* --- the bench --- */
 
-static void put_pair(struct wb_document *document, struct wb_document_table *table,
-                     const char *name, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+static void put_pair(struct wb_document_table *table, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-static void put_pair(struct wb_document *document, struct wb_document_table *table,
-                     const char *name, const char *format, ...)
+static void put_pair(struct wb_document_table *table, const char *name, const char *format, ...)
 {
     char plain[300];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(plain, sizeof plain, format, arguments);
     va_end(arguments);
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", name);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, plain);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", name);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, plain);
 }
 
 /* As their makers write it. */
@@ -559,31 +552,30 @@ static void put_rig(struct wb_document *document, const struct wb_recordings_res
         document,
         same ? NULL : "Not all recordings were made on the same bench; this is the first one's.", 2,
         columns);
-    put_pair(document, table, "Name", "%s%s", rig->name,
+    put_pair(table, "Name", "%s%s", rig->name,
              test->is_virtual && !strstr(rig->name, "virtual") ? " (virtual rig)" : "");
-    put_pair(document, table, "Load cell",
+    put_pair(table, "Load cell",
              "%.4g g, reads on to %.4g %%, serial number %s, "
              "calibrated %s",
              wb_recordings_results_capacity(rig) / WB_G,
              cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
              cell->serial_number[0] ? cell->serial_number : "not given",
              cell->calibration_date[0] ? cell->calibration_date : "not given");
-    put_pair(document, table, "Filter of the cell", "delay %.3g ms, uncertain by %.3g ms",
+    put_pair(table, "Filter of the cell", "delay %.3g ms, uncertain by %.3g ms",
              1e3 * cell->filter_delay, 1e3 * cell->filter_delay_uncertainty);
-    put_pair(document, table, "Motion capture",
+    put_pair(table, "Motion capture",
              "%s, %.4g frames a second expected, %d markers on "
              "the wire, %.3g mm off its axis",
              protocol_name(rig->mocap.protocol), rig->mocap.frame_rate, test->specimen.n_markers,
              test->specimen.marker_offset / WB_MM);
-    put_pair(document, table, "Stage", "%s, %.3g mm/s, %.4g mm of travel",
-             protocol_name(rig->stage.protocol), rig->stage.speed / WB_MM,
-             rig->stage.travel / WB_MM);
+    put_pair(table, "Stage", "%s, %.3g mm/s, %.4g mm of travel", protocol_name(rig->stage.protocol),
+             rig->stage.speed / WB_MM, rig->stage.travel / WB_MM);
     if (rig->strand.length > 0.0)
-        put_pair(document, table, "Strand", "%.4g mm, counterweight %.3g g at the tip",
+        put_pair(table, "Strand", "%.4g mm, counterweight %.3g g at the tip",
                  rig->strand.length / WB_MM, rig->strand.counterweight / WB_G);
     else
-        put_pair(document, table, "Strand", "none, the force is vertical");
-    put_pair(document, table, "Gravity", "%.6g m/s\xc2\xb2", rig->gravity);
+        put_pair(table, "Strand", "none, the force is vertical");
+    put_pair(table, "Gravity", "%.6g m/s\xc2\xb2", rig->gravity);
 }
 
 /* --- corrections --- */
@@ -618,7 +610,7 @@ static const struct wb_json *correction_of(const struct wb_recordings_results_te
 }
 
 /* One correction over all recordings: the range of its size and the largest uncertainty. */
-static void put_correction(struct wb_document *document, struct wb_document_table *table,
+static void put_correction(struct wb_document_table *table,
                            const struct wb_recordings_results *results, const char *name)
 {
     double low = (double)NAN, high = (double)NAN, largest = (double)NAN;
@@ -634,13 +626,12 @@ static void put_correction(struct wb_document *document, struct wb_document_tabl
         if (entry && correction_value(entry, "uncertainty", &value, &unit))
             largest = largest >= value ? largest : value;
     }
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, name);
-    wb_pages_cell_plain(&row, WB_TONE_QUIET, unit);
-    wb_pages_cell_number(&row, low, 3);
-    wb_pages_cell_number(&row, high, 3);
-    wb_pages_cell_number(&row, largest, 3);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
+    wb_pages_cell_plain(table, WB_TONE_QUIET, unit);
+    wb_pages_cell_number(table, low, 3);
+    wb_pages_cell_number(table, high, 3);
+    wb_pages_cell_number(table, largest, 3);
 }
 
 static void put_corrections(struct wb_document *document,
@@ -666,7 +657,7 @@ static void put_corrections(struct wb_document *document,
     for (size_t i = 0; i < wb_json_length(list); i++) {
         const char *name;
         if (wb_json_get_text(wb_json_item(list, i), "name", &name))
-            put_correction(document, table, results, name);
+            put_correction(table, results, name);
     }
 }
 
@@ -732,15 +723,13 @@ struct merit {
     int decimals;
 };
 
-static void put_merit(struct wb_document *document, struct wb_document_table *table,
-                      const struct merit *merit)
+static void put_merit(struct wb_document_table *table, const struct merit *merit)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", merit->name);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", merit->unit);
-    wb_pages_cell_number(&row, merit->calibration, merit->decimals);
-    wb_pages_cell_number(&row, merit->validation, merit->decimals);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", merit->name);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", merit->unit);
+    wb_pages_cell_number(table, merit->calibration, merit->decimals);
+    wb_pages_cell_number(table, merit->validation, merit->decimals);
 }
 
 static void put_numbers(struct wb_document *document, const struct wb_recordings_results_wire *wire)
@@ -797,7 +786,7 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         "1; an upper bound, near 0 the error is the model's.",
         4, columns);
     for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
-        put_merit(document, table, &merits[i]);
+        put_merit(table, &merits[i]);
 }
 
 static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
@@ -881,27 +870,27 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
 
 /* --- provenance: settings, recordings with their checksums --- */
 
-static void put_test(struct wb_document *document, struct wb_document_table *table,
-                     const struct wb_recordings_results_test *test, bool begins_group)
+static void put_test(struct wb_document_table *table, const struct wb_recordings_results_test *test,
+                     bool begins_group)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, test->wanted->name);
+    wb_document_row(table, begins_group);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, test->wanted->name);
     if (!test->usable) {
-        wb_pages_cell(&row, WB_TONE_WARNING, "not used");
+        wb_pages_cell(table, WB_TONE_WARNING, "not used");
     } else {
         char start[40];
         snprintf(start, sizeof start, "%.19s", test->start_utc);
         char *const t = strchr(start, 'T');
         if (t)
             *t = ' ';
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, start);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, start);
     }
     if (test->wanted->seed >= 0)
-        wb_pages_cell(&row, WB_TONE_PLAIN, "%d", test->wanted->seed);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", test->wanted->seed);
     else
-        wb_pages_cell_number(&row, (double)NAN, 0);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, test->sha256[0] ? test->sha256 : test->wanted->sha256);
-    wb_pages_put_row(document, table, begins_group, &row);
+        wb_pages_cell_number(table, (double)NAN, 0);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN,
+                        test->sha256[0] ? test->sha256 : test->wanted->sha256);
 }
 
 /* The revisions that recorded, each once, in the order of the list. */
@@ -940,20 +929,19 @@ static void put_recordings(struct wb_document *document,
     const struct wb_recordings_results_wire *wire, *wire_before = NULL;
     enum wb_recordings_purpose purpose, before = WB_RECORDINGS_CALIBRATION;
     for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, &purpose)); i++) {
-        put_test(document, table, test, wire != wire_before || purpose != before);
+        put_test(table, test, wire != wire_before || purpose != before);
         wire_before = wire;
         before = purpose;
     }
 }
 
-static void put_setting(struct wb_document *document, struct wb_document_table *table,
-                        const char *name, const char *value, const char *meaning)
+static void put_setting(struct wb_document_table *table, const char *name, const char *value,
+                        const char *meaning)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", name);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, value);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", meaning);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", name);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, value);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", meaning);
 }
 
 static void put_settings(struct wb_document *document, const struct wb_recordings_results *results)
@@ -966,24 +954,23 @@ static void put_settings(struct wb_document *document, const struct wb_recording
     wb_document_heading(document, 2, "settings", "Settings");
     struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
     snprintf(value, sizeof value, "%g", s->elastic_zone);
-    put_setting(document, table, "Elastic zone", value,
+    put_setting(table, "Elastic zone", value,
                 "deflection over length at which eq. 10 gives <i>E</i>");
     snprintf(value, sizeof value, "%g", s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
-    put_setting(document, table, "Yield point", value,
+    put_setting(table, "Yield point", value,
                 "deflection over length at which eq. 11 gives <i>\xcf\x83</i><sub>Y</sub>");
     snprintf(value, sizeof value, "%g mm", s->step / WB_MM);
-    put_setting(document, table, "Step", value, "between the deflections that are compared");
-    put_setting(document, table, "Initial shape", s->straight ? "straight" : "mean of the samples",
+    put_setting(table, "Step", value, "between the deflections that are compared");
+    put_setting(table, "Initial shape", s->straight ? "straight" : "mean of the samples",
                 "natural shape of the computed wire");
-    put_setting(document, table, "Restart", s->restart ? "once" : "no",
-                "of the search, from its optimum");
+    put_setting(table, "Restart", s->restart ? "once" : "no", "of the search, from its optimum");
     snprintf(value, sizeof value, "%d", s->n_elements);
-    put_setting(document, table, "Elements", value, "quadratic beam elements along the wire");
+    put_setting(table, "Elements", value, "quadratic beam elements along the wire");
     snprintf(value, sizeof value, "%d", s->n_fibres);
-    put_setting(document, table, "Fibres", value, "integration points over the diameter");
+    put_setting(table, "Fibres", value, "integration points over the diameter");
     snprintf(value, sizeof value, "%g of the size, %g of the error", s->size_tolerance,
              s->error_tolerance);
-    put_setting(document, table, "Stops at", value,
+    put_setting(table, "Stops at", value,
                 "size in units of <i>K</i><sub>0</sub> and <i>n</i><sub>0</sub>; error over "
                 "<i>F</i><sub>max</sub>");
 }
