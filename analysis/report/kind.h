@@ -34,20 +34,21 @@ struct wb_kind_outcome {
  * NULL. */
 typedef void wb_kind_progress(void *context, int done, const char *what);
 
-/* The functions of a kind. Both of `release` accept what is zeroed.
- *
- * `keys` reads the root of a campaign file; title, notes and checksum are those of its head.
- * `load` looks at the data; it may be called again after its results were released.
- * `compute` computes everything; WB_OK also where data are missing. `n_threads` 0: as many as
- * cores.
- * `json` makes all numbers; NULL when out of memory. */
+/* --- the functions of a kind --- */
+
+/* Reads the keys of a campaign file into a zeroed campaign, whose head was opened. */
 typedef enum wb_status wb_kind_keys(void *campaign, const struct wb_config_node *root);
+/* Looks at the data; may be called again after its results were released. */
 typedef enum wb_status wb_kind_load(void *results, const void *campaign);
+/* Then computes everything; WB_OK also where data are missing. `n_threads` 0: as many as cores. */
 typedef enum wb_status wb_kind_compute(void *results, int n_threads, wb_kind_progress *progress,
                                        void *context);
+/* Builds the document, which is released before the figures. */
 typedef void wb_kind_pages(struct wb_document *document, const void *results,
                            const struct wb_figures *figures);
+/* All numbers, with units in the keys; NULL when out of memory. */
 typedef struct wb_json *wb_kind_json(const void *results);
+/* Of a campaign or of results; accepts zeroed ones. */
 typedef void wb_kind_release(void *of);
 
 struct wb_kind {

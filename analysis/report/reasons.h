@@ -5,9 +5,9 @@
 #include "base/reason.h"
 #include "base/text.h"
 
-/* Appends the reason of a step that failed to `problem`; where there is none and nothing was heard,
- * the text of the status.
- * No path of this machine may reach the report: `path` is replaced by `name`; NULL: nothing is. */
+/* Where the reason of a step that failed is kept: it is appended to `problem`, or where there is
+ * none and nothing was heard, the text of the status. No path of this machine may reach the report:
+ * `path` is replaced by `name`; NULL: nothing is. */
 struct wb_reasons {
     struct wb_text *problem;
     const char *path, *name;

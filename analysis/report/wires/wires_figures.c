@@ -77,11 +77,10 @@ static void add_rod_axis(struct wb_panel *panel, const char *label, const struct
     wb_figure_add_line(panel, label, WB_WIRES_POINTS, x, y, style);
 }
 
-static struct wb_panel *add_shape_panel(struct wb_figure *figure, const char *title,
-                                        const char *y_label)
+static struct wb_panel *add_shape_panel(struct wb_figure *figure, const char *title)
 {
     struct wb_panel *const panel = wb_figure_add_panel(figure);
-    wb_figure_set_axes(panel, "<i>x</i> (mm)", y_label);
+    wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
     wb_figure_set_title(panel, title);
     wb_figure_set_width(panel, 290.0);
@@ -142,7 +141,7 @@ static enum wb_status draw_elastic_shapes(struct wb_figures_item *item)
                    "Simulated shapes of the axis at %g N%s, and how far they lie from that of the "
                    "bonded solid.",
                    force_of(results), figure_number(in, results, "4, linear elastic"));
-    struct wb_panel *panel = add_shape_panel(item->figure, "Linear elastic", "<i>y</i> (mm)");
+    struct wb_panel *panel = add_shape_panel(item->figure, "Linear elastic");
     add_axis(panel, "3D, bonded", bonded, &solid_style);
     add_axis(panel, "3D, friction", contact, &contact_style);
     add_axis(panel, "1D", rod, &rod_style);
@@ -171,7 +170,7 @@ static enum wb_status draw_shapes(struct wb_figures_item *item)
         "1D fibres: each material with its own law; 1D fitted: one homogenised material, "
         "fitted to the solid.",
         force_of(results), figure_number(in, results, "4, elastoplastic"));
-    struct wb_panel *panel = add_shape_panel(item->figure, "Elastoplastic", "<i>y</i> (mm)");
+    struct wb_panel *panel = add_shape_panel(item->figure, "Elastoplastic");
     add_axis(panel, "3D", solid, &solid_style);
     add_axis(panel, "1D fibres", rod, &rod_style);
     if (fitted)
@@ -281,7 +280,7 @@ static enum wb_status draw_residual_shapes(struct wb_figures_item *item)
     wb_text_append(&item->caption,
                    "The same shapes of solid and rod as lines, and how far residual "
                    "stress moves the tip while the force grows.");
-    struct wb_panel *const side = add_shape_panel(item->figure, "From the side", "<i>y</i> (mm)");
+    struct wb_panel *const side = add_shape_panel(item->figure, "From the side");
     struct wb_panel *const effect = wb_figure_add_panel(item->figure);
     wb_figure_set_title(effect, "Effect on the tip");
     wb_figure_set_axes(effect, "Follower force (N)", "Tip moved (mm)");
