@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "analysis/align.h"
+#include "analysis/report/bench/recordings_results_private.h"
 #include "analysis/report/reasons.h"
 #include "base/interrupt.h"
 #include "daq/recording.h"

@@ -73,10 +73,6 @@ wb_kind_load wb_recordings_results_load;
 wb_kind_compute wb_recordings_results_compute;
 wb_kind_release wb_recordings_results_release;
 
-/* The end of the computation, for results that come from elsewhere: counts and decides what is
- * complete, where it comes from and whether it keeps the limits. */
-void wb_recordings_results_judge(struct wb_recordings_results *results);
-
 /* The recording at an index, over all wires, of each those of the calibration first, with its wire
  * and purpose (NULL: not asked for); NULL after the last. */
 struct wb_recordings_results_test *

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/report/reasons.h"
+#include "analysis/report/wires/wires_results_private.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 

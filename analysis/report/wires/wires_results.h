@@ -75,9 +75,6 @@ enum {
 int wb_wires_results_judge(const struct wb_wires_results *results,
                            struct wb_verdict verdicts[WB_WIRES_VERDICTS]);
 
-/* Distance of a usable run's tip from the exact elastic one, over that one's displacement. */
-double wb_wires_tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run);
-
 /* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_wires_cost(const struct wb_wires_results *results, int index);
 

@@ -9,6 +9,7 @@
 #include "analysis/align.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"
+#include "analysis/report/bench/recordings_results_private.h"
 #include "base/interrupt_private.h"
 #include "base/json.h"
 #include "tests/analysis/report/report_folder.h"

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "analysis/report/wires/wires_kind.h"
+#include "analysis/report/wires/wires_results_private.h"
 #include "base/json.h"
 
 static struct wb_wires whole_comparison;
