@@ -23,7 +23,8 @@ enum {
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Replace the report that the folder holds", 0},
-    {"threads", KEY_THREADS, "N", 0, "Threads to compute on (as many as cores, 4 at most)", 0},
+    {"threads", KEY_THREADS, "N", 0, "Threads to compute on, 1 to 16 (as many as cores, 4 at most)",
+     0},
     {"json", WB_KEY_JSON, NULL, 0, "Print all numbers as one JSON object", 0},
     {0},
 };

@@ -20,6 +20,30 @@ enum wb_status wb_campaign_read_settings(const struct wb_config_node *node,
     return node ? wb_config_map(node, keys, n) : WB_OK;
 }
 
+const char *wb_campaign_as_shown(const char *given)
+{
+    if (given[0] == '/' || strstr(given, ".."))
+        given = wb_file_name(given);
+    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
+}
+
+enum wb_status wb_campaign_find(const struct wb_campaign *campaign,
+                                const struct wb_config_node *node, const char *key,
+                                const char *folder, const char *name, char path[WB_PATH],
+                                char shown[300])
+{
+    char named_in[WB_PATH + 32];
+    snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(node),
+             wb_config_line(wb_config_find(node, key)), key);
+    WB_TRY(wb_file_find_named(path, folder, name, campaign->folder, named_in));
+    const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
+    if (shown && is_shipped)
+        snprintf(shown, 300, "fixtures/%s/%s.yaml", folder, name);
+    else if (shown)
+        snprintf(shown, 300, "%s", wb_campaign_as_shown(name));
+    return WB_OK;
+}
+
 /* No path of this machine may reach the report: shipped campaigns are named from fixtures/ on. */
 static void set_name(char *name, size_t size, const char *path)
 {
@@ -33,6 +57,7 @@ static void set_name(char *name, size_t size, const char *path)
 enum wb_status wb_campaign_open(struct wb_campaign *campaign, struct wb_config **config,
                                 const char *path)
 {
+    wb_calibrate_default_settings(&campaign->fit);
     WB_TRY(wb_hash_file(path, campaign->sha256));
     set_name(campaign->name, sizeof campaign->name, path);
     wb_file_folder(campaign->folder, path);

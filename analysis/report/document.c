@@ -149,6 +149,7 @@ struct wb_document_table *wb_document_table(struct wb_document *document, const 
         return NULL;
     }
     block->table = table;
+    table->document = document;
     table->n_columns = n_columns;
     table->caption = caption ? copy_text(document, caption) : NULL;
     for (int i = 0; i < n_columns; i++) {
@@ -174,23 +175,29 @@ static bool grow(struct wb_document_table *table)
     return true;
 }
 
-void wb_document_row(struct wb_document *document, struct wb_document_table *table,
-                     bool begins_group, const char *const *cells)
+void wb_document_row(struct wb_document_table *table, bool begins_group)
 {
     if (!table)
         return;
     if (table->n_rows == table->capacity && !grow(table)) {
-        document->failed = true;
+        table->document->failed = true;
         return;
     }
     for (int i = 0; i < table->n_columns; i++)
         table->cells[table->n_rows * table->n_columns + i] =
-            (struct wb_document_cell){.text = copy_text(document, cells[i])};
+            (struct wb_document_cell){.text = copy_text(table->document, NULL)};
     table->begins_group[table->n_rows++] = begins_group;
+    table->n_cells = 0;
 }
 
-void wb_document_tone_cell(struct wb_document_table *table, int column, enum wb_document_tone tone)
+void wb_document_cell(struct wb_document_table *table, enum wb_document_tone tone,
+                      const char *markup)
 {
-    if (table && table->n_rows > 0 && column < table->n_columns)
-        table->cells[(table->n_rows - 1) * table->n_columns + column].tone = tone;
+    if (!table || table->n_rows == 0 || table->n_cells == table->n_columns)
+        return;
+    struct wb_document_cell *const cell =
+        &table->cells[(table->n_rows - 1) * table->n_columns + table->n_cells++];
+    free(cell->text);
+    cell->text = copy_text(table->document, markup);
+    cell->tone = tone;
 }

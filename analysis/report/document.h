@@ -47,8 +47,10 @@ struct wb_document_cell {
 #define WB_DOCUMENT_COLUMNS 10
 
 struct wb_document_table {
+    struct wb_document *document;
     char *caption; /* NULL: none */
     int n_columns, n_rows, capacity;
+    int n_cells;                                            /* of the last row */
     struct wb_document_column columns[WB_DOCUMENT_COLUMNS]; /* headings owned */
     struct wb_document_cell *cells;                         /* (n_rows x n_columns) */
     bool *begins_group;                                     /* (n_rows) a rule stands above */
@@ -99,10 +101,10 @@ void wb_document_figures(struct wb_document *document, const struct wb_figure *f
 struct wb_document_table *wb_document_table(struct wb_document *document, const char *caption,
                                             int n_columns,
                                             const struct wb_document_column *columns);
-/* `cells` are n_columns texts; NULL is an empty one. */
-void wb_document_row(struct wb_document *document, struct wb_document_table *table,
-                     bool begins_group, const char *const *cells);
-/* The tone of a cell of the last row. */
-void wb_document_tone_cell(struct wb_document_table *table, int column, enum wb_document_tone tone);
+/* Begins a row; cells that are not added to it stay empty. */
+void wb_document_row(struct wb_document_table *table, bool begins_group);
+/* Adds the next cell of the row that was begun; one too many is dropped. */
+void wb_document_cell(struct wb_document_table *table, enum wb_document_tone tone,
+                      const char *markup);
 
 #endif

@@ -17,27 +17,29 @@ static int count_of(const struct wb_figures_row *row, const void *results)
 }
 
 static enum wb_status draw_one(struct wb_figures *figures, const struct wb_figures_row *row,
-                               int index)
+                               const void *results, int index)
 {
-    struct wb_figure *figure = NULL;
-    const enum wb_status status = row->draw(&figure, figures->results, index);
-    if (figure)
-        figures->items[figures->n++] = (struct wb_figures_item){row, index, figure};
+    struct wb_figures_item item = {.row = row, .results = results, .index = index};
+    const enum wb_status status = row->draw(&item);
+    if (item.figure)
+        figures->items[figures->n++] = item;
+    else
+        wb_text_release(&item.caption);
     return status;
 }
 
 static enum wb_status draw_all(struct wb_figures *figures, const struct wb_figures_row *rows,
-                               size_t n_rows)
+                               size_t n_rows, const void *results)
 {
     for (size_t first = 0, end; first < n_rows; first = end) {
-        const int n = count_of(&rows[first], figures->results);
+        const int n = count_of(&rows[first], results);
         for (end = first + 1; end < n_rows && rows[first].count; end++) {
             if (rows[end].count != rows[first].count)
                 break;
         }
         for (int index = 0; index < n; index++) {
             for (size_t i = first; i < end; i++)
-                WB_TRY(draw_one(figures, &rows[i], index));
+                WB_TRY(draw_one(figures, &rows[i], results, index));
         }
     }
     return WB_OK;
@@ -49,11 +51,11 @@ enum wb_status wb_figures_create(struct wb_figures *figures, const struct wb_fig
     size_t most = 0;
     for (size_t i = 0; i < n_rows; i++)
         most += (size_t)count_of(&rows[i], results);
-    *figures = (struct wb_figures){.results = results};
+    *figures = (struct wb_figures){.n = 0};
     figures->items = calloc(most + 1, sizeof *figures->items);
     if (!figures->items)
         return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
-    const enum wb_status status = draw_all(figures, rows, n_rows);
+    const enum wb_status status = draw_all(figures, rows, n_rows, results);
     if (status != WB_OK)
         wb_figures_release(figures);
     return status;
@@ -61,8 +63,10 @@ enum wb_status wb_figures_create(struct wb_figures *figures, const struct wb_fig
 
 void wb_figures_release(struct wb_figures *figures)
 {
-    for (int i = 0; i < figures->n; i++)
+    for (int i = 0; i < figures->n; i++) {
         wb_figure_destroy(figures->items[i].figure);
+        wb_text_release(&figures->items[i].caption);
+    }
     free(figures->items);
     memset(figures, 0, sizeof *figures);
 }
@@ -89,21 +93,15 @@ void wb_figures_put(const struct wb_figures *figures, struct wb_document *docume
     for (int i = 0; i < figures->n; i++) {
         const struct wb_figures_item *const item = &figures->items[i];
         const struct wb_figures_item *beside = NULL;
-        struct wb_text captions[2] = {{0}, {0}};
         if (!is_at(item, place, index))
             continue;
         if (item->row->half && i + 1 < figures->n && is_at(item + 1, place, index) &&
             item[1].row->half)
             beside = &figures->items[++i];
-        item->row->caption(&captions[0], figures->results, index);
-        if (beside)
-            beside->row->caption(&captions[1], figures->results, index);
-        wb_document_figures(document, item->figure, wb_text_string(&captions[0]),
-                            beside ? beside->figure : NULL, wb_text_string(&captions[1]));
-        for (int k = 0; k < 2; k++) {
-            document->failed |= captions[k].failed;
-            wb_text_release(&captions[k]);
-        }
+        wb_document_figures(document, item->figure, wb_text_string(&item->caption),
+                            beside ? beside->figure : NULL,
+                            beside ? wb_text_string(&beside->caption) : NULL);
+        document->failed |= item->caption.failed || (beside && beside->caption.failed);
     }
 }
 

@@ -1,12 +1,15 @@
-/* The figures of a report, drawn from a table: a figure is a function that draws it, one that
- * writes its caption, and a row. Files, and places in the document, follow from the table.
+/* The figures of a report, drawn from a table: a figure is a function that draws it and writes its
+ * caption, and a row. Files, and places in the document, follow from the table.
  *
  *     static const struct wb_figures_row rows[] = {
- *         {.place = "overview", .draw = draw_errors, .caption = tell_errors},
- *         {.place = "wire", .count = count_wires, .draw = draw_cycles, .caption = tell_cycles},
+ *         {.place = "overview", .draw = draw_errors},
+ *         {.place = "wire", .count = count_wires, .draw = draw_cycles},
  *     };
  *     WB_TRY(wb_figures_create(&figures, rows, WB_COUNT(rows), results));
  *     ... wb_figures_put(&figures, document, "overview", 0);
+ *
+ * The tables of the reports are wb_recordings_figures (bench/recordings_figures.h),
+ * wb_wires_figures (wires/wires_kind.h) and wb_bundles_figures (bundles/bundles_kind.h).
  */
 #ifndef WB_ANALYSIS_REPORT_FIGURES_H
 #define WB_ANALYSIS_REPORT_FIGURES_H
@@ -19,28 +22,29 @@
 #include "base/status.h"
 #include "base/text.h"
 
+/* A figure that was drawn. */
+struct wb_figures_item {
+    const struct wb_figures_row *row; /* borrowed, as the results */
+    const void *results;
+    int index; /* below the row's count */
+    struct wb_figure *figure;
+    struct wb_text caption; /* markup */
+};
+
 struct wb_figures_row {
     const char *place; /* in the document: a name that wb_figures_put() is called with */
     /* How many figures the row stands for (of every wire, of every group); NULL: one. Rows that
      * follow each other and count with the same function take turns: all of the first wire, then
      * all of the second. */
     int (*count)(const void *results);
-    /* Leaves *figure NULL where data are missing: then there is no such figure. */
-    enum wb_status (*draw)(struct wb_figure **figure, const void *results, int index);
-    /* Appends the caption, markup; called only of a figure that was drawn. */
-    void (*caption)(struct wb_text *text, const void *results, int index);
+    /* Makes the item's figure and appends its caption. Leaves the figure NULL where data are
+     * missing: then there is no such figure. */
+    enum wb_status (*draw)(struct wb_figures_item *item);
     bool half; /* of half the width: two such rows that follow each other stand side by side */
-};
-
-struct wb_figures_item {
-    const struct wb_figures_row *row;
-    int index;
-    struct wb_figure *figure;
 };
 
 /* The figures that were drawn, in the order of the table. */
 struct wb_figures {
-    const void *results; /* borrowed, as the rows */
     int n;
     struct wb_figures_item *items; /* (n), owned */
 };

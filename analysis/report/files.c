@@ -37,40 +37,34 @@ static struct wb_text *add_output(struct outputs *outputs, const char *folder, c
     return &output->bytes;
 }
 
-static enum wb_status draw_json(struct outputs *outputs, const struct wb_files_content *content)
+static enum wb_status draw_json(struct outputs *outputs, struct wb_json *numbers)
 {
-    const char **const names = calloc((size_t)outputs->n + 1, sizeof *names);
-    if (!names)
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
-    for (int i = 0; i < outputs->n; i++)
-        names[i] = outputs->items[i].name;
-    names[outputs->n] = "report.json";
-    struct wb_json *const root = content->json(content->context, names, outputs->n + 1);
-    free(names);
+    struct wb_text *const bytes = add_output(outputs, "", "report", "json");
+    struct wb_json *const files = wb_json_set_array(numbers, "files");
     char *text;
-    const enum wb_status status = wb_json_format(root, &text);
-    wb_json_destroy(root);
-    if (status != WB_OK)
-        return status;
-    wb_text_append_bytes(add_output(outputs, "", "report", "json"), text, strlen(text));
+    for (int i = 0; i < outputs->n; i++)
+        wb_json_append_text(files, outputs->items[i].name);
+    WB_TRY(wb_json_format(numbers, &text));
+    wb_text_append_bytes(bytes, text, strlen(text));
     free(text);
     return WB_OK;
 }
 
-static enum wb_status draw(struct outputs *outputs, const struct wb_files_content *content)
+static enum wb_status draw(struct outputs *outputs, const struct wb_document *document,
+                           const struct wb_figures *figures, struct wb_json *numbers)
 {
-    outputs->items = calloc(2 * (size_t)content->figures->n + 3, sizeof *outputs->items);
+    outputs->items = calloc(2 * (size_t)figures->n + 3, sizeof *outputs->items);
     if (!outputs->items)
         return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
-    WB_TRY(wb_pdf_render(content->document, add_output(outputs, "", "report", "pdf")));
-    WB_TRY(wb_html_render(content->document, add_output(outputs, "", "report", "html")));
-    for (int i = 0; i < content->figures->n; i++) {
-        const struct wb_figure *const figure = content->figures->items[i].figure;
+    WB_TRY(wb_pdf_render(document, add_output(outputs, "", "report", "pdf")));
+    WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
+    for (int i = 0; i < figures->n; i++) {
+        const struct wb_figure *const figure = figures->items[i].figure;
         const char *const name = wb_figure_name(figure);
         WB_TRY(wb_figure_svg(figure, add_output(outputs, "figures/", name, "svg")));
         WB_TRY(wb_figure_png(figure, png_scale, add_output(outputs, "figures/", name, "png")));
     }
-    WB_TRY(draw_json(outputs, content));
+    WB_TRY(draw_json(outputs, numbers));
     for (int i = 0; i < outputs->n; i++) {
         if (outputs->items[i].bytes.failed)
             return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
@@ -180,11 +174,11 @@ static enum wb_status write_folder(const struct outputs *outputs, const char *fo
     return status;
 }
 
-enum wb_status wb_files_write(const struct wb_files_content *content, const char *folder,
-                              bool force)
+enum wb_status wb_files_write(const struct wb_document *document, const struct wb_figures *figures,
+                              struct wb_json *numbers, const char *folder, bool force)
 {
     struct outputs outputs = {0};
-    enum wb_status status = draw(&outputs, content);
+    enum wb_status status = draw(&outputs, document, figures, numbers);
     if (status == WB_OK)
         status = write_folder(&outputs, folder, force);
     release(&outputs);

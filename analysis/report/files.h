@@ -11,20 +11,14 @@
 #include "base/json.h"
 #include "base/status.h"
 
-/* All borrowed. */
-struct wb_files_content {
-    const struct wb_document *document;
-    const struct wb_figures *figures;
-    /* Makes the numbers, which list the report's files as `files`, relative to its folder. */
-    struct wb_json *(*json)(const void *context, const char *const *files, int n_files);
-    const void *context;
-};
-
-/* Writes everything into `folder`, which is made. WB_ERR_EXISTS when it holds anything, unless
+/* Writes everything into `folder`, which is made; `numbers` get the list of the report's files,
+ * `files`, relative to its folder. WB_ERR_EXISTS when it holds anything, unless
  * `force`: then the files of the report before are replaced (and those that are no longer made are
  * removed), others are left alone. All is drawn first and written into a hidden folder in it, so
  * that on a failure the old report stays and nothing half-written is left behind. */
-WB_MUST_CHECK enum wb_status wb_files_write(const struct wb_files_content *content,
-                                            const char *folder, bool force);
+WB_MUST_CHECK enum wb_status wb_files_write(const struct wb_document *document,
+                                            const struct wb_figures *figures,
+                                            struct wb_json *numbers, const char *folder,
+                                            bool force);
 
 #endif

@@ -2,8 +2,8 @@
  * analysis/report/kinds/kinds.c.
  *
  * `campaign` is what a file of this kind says, `results` what comes of it; both are of the kind's
- * own types, zeroed before the first function sees them. Results begin with a struct
- * wb_kind_outcome.
+ * own types, zeroed before the first function sees them. A campaign begins with a struct
+ * wb_campaign, results with a struct wb_kind_outcome.
  */
 #ifndef WB_ANALYSIS_REPORT_KIND_H
 #define WB_ANALYSIS_REPORT_KIND_H
@@ -12,49 +12,70 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "analysis/report/campaign.h"
 #include "analysis/report/document.h"
 #include "analysis/report/figures.h"
 #include "analysis/report/simulation.h"
 #include "base/json.h"
 #include "base/status.h"
 
-/* How a report came out. */
+/* How a report came out; the first three are known once the data were looked at. */
 struct wb_kind_outcome {
-    int n_wanted, n_usable; /* recordings or datasets */
-    bool is_complete;       /* nothing is missing, refused or failed */
-    bool exceeds_limit;     /* of the campaign */
-    bool interrupted;       /* by Ctrl-C; the results are not to be reported */
+    int n_wanted;       /* recordings or datasets */
+    int n_missing;      /* of recordings: what is not there */
+    int n_steps;        /* of the computation, for its progress */
+    int n_usable;       /* of those that are wanted */
+    bool is_complete;   /* nothing is missing, refused or failed */
+    bool exceeds_limit; /* of the campaign */
+    bool interrupted;   /* by Ctrl-C; the results are not to be reported */
 };
 
-/* Called after each finished step, by one thread at a time: how many of how many, and what was
- * done. May be NULL. */
-typedef void wb_kind_progress(void *context, int done, int total, const char *what);
+/* Called after each finished step, by one thread at a time: how many are done, and what was. May be
+ * NULL. */
+typedef void wb_kind_progress(void *context, int done, const char *what);
+
+/* --- the functions of a kind --- */
+
+/* Reads the keys of a campaign file into a zeroed campaign, whose head was opened. */
+typedef enum wb_status wb_kind_keys(void *campaign, const struct wb_config_node *root);
+/* Looks at the data; may be called again after its results were released. */
+typedef enum wb_status wb_kind_load(void *results, const void *campaign);
+/* Then computes everything; WB_OK also where data are missing. `n_threads` 0: as many as cores. */
+typedef enum wb_status wb_kind_compute(void *results, int n_threads, wb_kind_progress *progress,
+                                       void *context);
+/* Builds the document, which is released before the figures. */
+typedef void wb_kind_pages(struct wb_document *document, const void *results,
+                           const struct wb_figures *figures);
+/* All numbers, with units in the keys; NULL when out of memory. */
+typedef struct wb_json *wb_kind_json(const void *results);
+/* Of a campaign or of results; accepts zeroed ones. */
+typedef void wb_kind_release(void *of);
 
 struct wb_kind {
     const char *name; /* `kind:` of the campaign file */
     const char *data; /* what it is made from, for messages: "recordings" */
     size_t campaign_size, results_size;
 
-    enum wb_status (*read)(void *campaign, const char *path);
-    /* Looks at the data; may be called again after its results were released. */
-    enum wb_status (*load)(void *results, const void *campaign);
+    wb_kind_keys *keys;
+    wb_kind_load *load;
     wb_simulation_list *datasets; /* that may be computed; NULL: data are measured */
-    int (*count_steps)(const void *campaign);
-    /* Computes everything; WB_OK also where data are missing. `n_threads` 0: as many as cores. */
-    enum wb_status (*compute)(void *results, int n_threads, wb_kind_progress *progress,
-                              void *context);
+    wb_kind_compute *compute;
 
     const struct wb_figures_row *figures; /* (n_figures) */
     size_t n_figures;
-    void (*pages)(struct wb_document *document, const void *results,
-                  const struct wb_figures *figures);
-    /* All numbers, with the report's own files listed; NULL when out of memory. */
-    struct wb_json *(*json)(const void *results, const char *const *files, int n_files);
+    wb_kind_pages *pages;
+    wb_kind_json *json;
     void (*print)(FILE *out, const void *results); /* a summary */
 
-    /* Both accept zeroed ones. */
-    void (*release)(void *results);
-    void (*release_campaign)(void *campaign);
+    wb_kind_release *release, *release_campaign;
 };
+
+/* Reads a campaign file. Errors name file, line and key; on one nothing needs a release. */
+WB_MUST_CHECK enum wb_status wb_kind_read(const struct wb_kind *kind, void *campaign,
+                                          const char *path);
+
+/* Writes computed results into `folder`, as wb_files_write() does. */
+WB_MUST_CHECK enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results,
+                                           const char *folder, bool force);
 
 #endif

@@ -43,7 +43,7 @@ static enum wb_status name_checkpoint(const struct all *all,
     char hash[WB_SHA256_TEXT], name[200];
     struct wb_text text = {0};
     wb_text_append(&text, "%s %d %s %s", all->program, all->cores, entry->resumable,
-                   entry->wanted->command);
+                   wb_text_string(&entry->wanted->command));
     wb_hash_bytes(wb_text_string(&text), text.length, hash);
     wb_text_release(&text);
     snprintf(name, sizeof name, "%.128s-%.12s.checkpoint", entry->wanted->log, hash);

@@ -30,11 +30,15 @@ void wb_numbers_put_outcome(struct wb_json *root, const struct wb_kind_outcome *
     wb_json_set_boolean(root, "limit_exceeded", outcome->exceeds_limit);
 }
 
-void wb_numbers_put_files(struct wb_json *root, const char *const *files, int n_files)
+struct wb_json *wb_numbers_create(const struct wb_campaign *campaign,
+                                  const struct wb_kind_outcome *outcome)
 {
-    struct wb_json *const list = wb_json_set_array(root, "files");
-    for (int i = 0; i < n_files; i++)
-        wb_json_append_text(list, files[i]);
+    struct wb_json *const root = wb_json_create();
+    wb_numbers_put_title(root, campaign->title, "simulation");
+    wb_numbers_put_program(root);
+    wb_numbers_put_campaign(root, campaign);
+    wb_numbers_put_outcome(root, outcome);
+    return root;
 }
 
 void wb_numbers_put_list(struct wb_json *object, const char *key, const double *values, int n,

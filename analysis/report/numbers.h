@@ -8,13 +8,16 @@
 #include "base/json.h"
 #include "fe/material/material.h"
 
-/* Title, `data` ("simulation", "measured"), then the program; the campaign; how it came out; the
- * report's files. */
+/* Starts report.json of a report of simulations; the caller destroys it. */
+struct wb_json *wb_numbers_create(const struct wb_campaign *campaign,
+                                  const struct wb_kind_outcome *outcome);
+
+/* Its parts: title and `data` ("simulation", "measured"), the program, the campaign, how it came
+ * out. */
 void wb_numbers_put_title(struct wb_json *root, const char *title, const char *data);
 void wb_numbers_put_program(struct wb_json *root);
 void wb_numbers_put_campaign(struct wb_json *root, const struct wb_campaign *campaign);
 void wb_numbers_put_outcome(struct wb_json *root, const struct wb_kind_outcome *outcome);
-void wb_numbers_put_files(struct wb_json *root, const char *const *files, int n_files);
 
 /* A list of numbers in another unit. */
 void wb_numbers_put_list(struct wb_json *object, const char *key, const double *values, int n,

@@ -9,6 +9,10 @@
 #include "base/units.h"
 #include "base/version.h"
 
+enum {
+    CELL = 360 /* bytes of a cell's text */
+};
+
 const struct wb_pages_property wb_pages_properties[4] = {
     {"Young's modulus", "<i>E</i>", "MPa", "youngs_modulus_MPa", WB_MPA, 0},
     {"Yield stress", "<i>\xcf\x83</i><sub>Y</sub>", "MPa", "yield_stress_MPa", WB_MPA, 2},
@@ -62,44 +66,83 @@ char *wb_pages_escape(char *buffer, size_t size, const char *raw)
     return buffer;
 }
 
-void wb_pages_cell(struct wb_pages_row *row, enum wb_document_tone tone, const char *format, ...)
+void wb_pages_cell(struct wb_document_table *table, enum wb_document_tone tone, const char *format,
+                   ...)
 {
-    if (row->n == WB_DOCUMENT_COLUMNS)
-        return;
+    char text[CELL];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(row->cells[row->n], sizeof row->cells[0], format, arguments);
+    vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    row->tones[row->n++] = tone;
+    wb_document_cell(table, tone, text);
 }
 
-void wb_pages_cell_plain(struct wb_pages_row *row, enum wb_document_tone tone, const char *text)
+void wb_pages_cell_plain(struct wb_document_table *table, enum wb_document_tone tone,
+                         const char *text)
 {
-    char escaped[WB_PAGES_CELL];
-    wb_pages_cell(row, tone, "%s", wb_pages_escape(escaped, sizeof escaped, text));
+    char escaped[CELL];
+    wb_document_cell(table, tone, wb_pages_escape(escaped, sizeof escaped, text));
 }
 
-void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals)
+static void put_number(struct wb_document_table *table, enum wb_document_tone tone, double value,
+                       int decimals)
 {
     /* What rounds to zero has no sign. */
     const bool negative = value < 0.0 && -value * pow(10.0, decimals) >= 0.5;
-    if (isfinite(value))
-        wb_pages_cell(row, WB_TONE_PLAIN, "%s%.*f", negative ? "\xe2\x88\x92" : "", decimals,
-                      fabs(value));
-    else
-        wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");
+    wb_pages_cell(table, tone, "%s%.*f", negative ? "\xe2\x88\x92" : "", decimals, fabs(value));
 }
 
-void wb_pages_put_row(struct wb_document *document, struct wb_document_table *table,
-                      bool begins_group, struct wb_pages_row *row)
+void wb_pages_cell_number(struct wb_document_table *table, double value, int decimals)
 {
-    const char *cells[WB_DOCUMENT_COLUMNS] = {NULL};
-    for (int i = 0; i < row->n; i++)
-        cells[i] = row->cells[i];
-    wb_document_row(document, table, begins_group, cells);
-    for (int i = 0; i < row->n; i++)
-        wb_document_tone_cell(table, i, row->tones[i]);
-    row->n = 0;
+    if (isfinite(value))
+        put_number(table, WB_TONE_PLAIN, value, decimals);
+    else
+        wb_document_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
+}
+
+void wb_pages_cell_judged(struct wb_document_table *table, double value, int decimals,
+                          bool is_limited, bool is_kept)
+{
+    if (is_limited && isfinite(value))
+        put_number(table, is_kept ? WB_TONE_GOOD : WB_TONE_WARNING, value, decimals);
+    else
+        wb_pages_cell_number(table, value, decimals);
+}
+
+void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
+                       enum wb_document_tone tone, struct wb_text *text)
+{
+    const char *const markup = wb_text_string(text);
+    if (kind == WB_BLOCK_NOTICE)
+        wb_document_notice(document, tone, markup);
+    else if (kind == WB_BLOCK_ITEM)
+        wb_document_item(document, tone, markup);
+    else
+        wb_document_paragraph(document, markup);
+    document->failed |= text->failed;
+    wb_text_release(text);
+}
+
+struct wb_document_table *wb_pages_start_table(struct wb_document *document,
+                                               struct wb_text *caption, int n_columns,
+                                               const struct wb_document_column *columns)
+{
+    struct wb_document_table *const table =
+        wb_document_table(document, wb_text_string(caption), n_columns, columns);
+    document->failed |= caption->failed;
+    wb_text_release(caption);
+    return table;
+}
+
+void wb_pages_item(struct wb_document *document, enum wb_document_tone tone, const char *markup,
+                   const char *plain, const char *more_markup, const char *more_plain)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "%s", markup);
+    wb_text_append_escaped(&text, plain);
+    wb_text_append(&text, "%s", more_markup);
+    wb_text_append_escaped(&text, more_plain);
+    wb_pages_put_text(document, WB_BLOCK_ITEM, tone, &text);
 }
 
 void wb_pages_start_simulations(struct wb_document *document, const char *title,
@@ -123,7 +166,7 @@ static void put_missing_dataset(struct wb_document *document,
              "<b>%s</b>: %s. To make it:", wb_pages_escape(name, sizeof name, entry->wanted->name),
              wb_pages_escape(problem, sizeof problem, wb_text_string(&entry->result->problem)));
     wb_document_item(document, WB_TONE_WARNING, text);
-    wb_document_code(document, entry->wanted->command);
+    wb_document_code(document, wb_text_string(&entry->wanted->command));
 }
 
 void wb_pages_put_missing(struct wb_document *document, const struct wb_kind_outcome *outcome,
@@ -176,16 +219,15 @@ void wb_pages_put_datasets(struct wb_document *document, wb_simulation_list *lis
     struct wb_document_table *const table =
         wb_document_table(document, "Revision: of the program that made it.", 3, columns);
     for (int i = 0; list(results, i, &entry); i++) {
-        struct wb_pages_row row = {.n = 0};
         if (!entry.wanted->wanted)
             continue;
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, entry.wanted->name);
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, entry.wanted->name);
         if (entry.result->state == WB_SIMULATION_USABLE)
-            wb_pages_cell_plain(&row, WB_TONE_PLAIN, entry.result->revision);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, entry.result->revision);
         else
-            wb_pages_cell(&row, WB_TONE_WARNING, "not used");
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, entry.result->sha256);
-        wb_pages_put_row(document, table, false, &row);
+            wb_pages_cell(table, WB_TONE_WARNING, "not used");
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, entry.result->sha256);
     }
 }
 

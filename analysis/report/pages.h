@@ -1,4 +1,4 @@
-/* What pages of all reports share: rows of tables, escaped text, properties of a wire, the chapter
+/* What pages of all reports share: cells of tables, escaped text, properties of a wire, the chapter
  * on where everything comes from.
  */
 #ifndef WB_ANALYSIS_REPORT_PAGES_H
@@ -11,27 +11,31 @@
 #include "analysis/report/verdict.h"
 #include "fe/material/material.h"
 
-#define WB_PAGES_CELL 360
-
-/* One row of a table while it is written: cells by printf, in order. */
-struct wb_pages_row {
-    char cells[WB_DOCUMENT_COLUMNS][WB_PAGES_CELL];
-    enum wb_document_tone tones[WB_DOCUMENT_COLUMNS];
-    int n;
-};
-
-/* Adds a cell of markup; `wb_pages_cell_plain` escapes what comes from files. */
-void wb_pages_cell(struct wb_pages_row *row, enum wb_document_tone tone, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-void wb_pages_cell_plain(struct wb_pages_row *row, enum wb_document_tone tone, const char *text);
+/* Adds a cell of markup to the row that was begun; `wb_pages_cell_plain` escapes what comes from
+ * files. */
+void wb_pages_cell(struct wb_document_table *table, enum wb_document_tone tone, const char *format,
+                   ...) __attribute__((format(printf, 3, 4)));
+void wb_pages_cell_plain(struct wb_document_table *table, enum wb_document_tone tone,
+                         const char *text);
 /* A number with `decimals`, or an en dash when it is not finite. */
-void wb_pages_cell_number(struct wb_pages_row *row, double value, int decimals);
-/* Adds the row to the table and clears it. */
-void wb_pages_put_row(struct wb_document *document, struct wb_document_table *table,
-                      bool begins_group, struct wb_pages_row *row);
-
+void wb_pages_cell_number(struct wb_document_table *table, double value, int decimals);
+/* The same with a tone, where there is a limit: whether it is kept. */
+void wb_pages_cell_judged(struct wb_document_table *table, double value, int decimals,
+                          bool is_limited, bool is_kept);
 /* Escapes into a buffer, cut where it ends (never within an entity). Returns the buffer. */
 char *wb_pages_escape(char *buffer, size_t size, const char *raw);
+
+/* Adds a text of markup as a block of that kind and releases it. */
+void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
+                       enum wb_document_tone tone, struct wb_text *text);
+/* Adds an item of two plain texts, each behind markup: "<b>", name, "</b>: ", problem. */
+void wb_pages_item(struct wb_document *document, enum wb_document_tone tone, const char *markup,
+                   const char *plain, const char *more_markup, const char *more_plain);
+
+/* Starts a table whose caption is a text of markup, which is released. */
+struct wb_document_table *wb_pages_start_table(struct wb_document *document,
+                                               struct wb_text *caption, int n_columns,
+                                               const struct wb_document_column *columns);
 
 /* Starts the document of a report of simulations. */
 void wb_pages_start_simulations(struct wb_document *document, const char *title,

@@ -32,7 +32,10 @@ static void append(const struct wb_reasons *reasons, const char *message)
 static void keep(const struct wb_reasons *reasons, enum wb_status status,
                  const struct wb_reason *why)
 {
-    append(reasons, why->text[0] ? why->text : wb_status_text(status));
+    if (why->text[0])
+        append(reasons, why->text);
+    else if (reasons->problem->length == 0)
+        append(reasons, wb_status_text(status));
 }
 
 void wb_reasons_fail(const struct wb_reasons *reasons, enum wb_status status,
@@ -63,7 +66,9 @@ void wb_reasons_listen(const struct wb_reasons *reasons)
     wb_log_set_tap(listen, (void *)(uintptr_t)reasons);
 }
 
-void wb_reasons_end(void)
+void wb_reasons_end(const struct wb_reasons *reasons, enum wb_status status)
 {
     wb_log_set_tap(NULL, NULL);
+    if (status == WB_OK)
+        wb_text_release(reasons->problem);
 }

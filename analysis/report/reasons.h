@@ -5,8 +5,9 @@
 #include "base/reason.h"
 #include "base/text.h"
 
-/* Appends the reason of a step that failed to `problem`, or the status' text where there is none.
- * No path of this machine may reach the report: `path` is replaced by `name`; NULL: nothing is. */
+/* Where the reason of a step that failed is kept: it is appended to `problem`, or where there is
+ * none and nothing was heard, the text of the status. No path of this machine may reach the report:
+ * `path` is replaced by `name`; NULL: nothing is. */
 struct wb_reasons {
     struct wb_text *problem;
     const char *path, *name;
@@ -21,8 +22,10 @@ void wb_reasons_warn(const struct wb_reasons *reasons, enum wb_status status,
                      const struct wb_reason *why);
 
 /* Until the end, errors that the calling thread logs are appended to `problem`, "; " between them:
- * for the alignment of a recording, whose functions give no reason. `reasons` must live as long. */
+ * for functions that give no reason, those of alignments and of the sections and beams of fe/rod
+ * and fe/trial. `reasons` must live as long. What was heard of a step that ended well is dropped.
+ */
 void wb_reasons_listen(const struct wb_reasons *reasons);
-void wb_reasons_end(void);
+void wb_reasons_end(const struct wb_reasons *reasons, enum wb_status status);
 
 #endif

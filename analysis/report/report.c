@@ -3,28 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/report/files.h"
 #include "analysis/report/missing.h"
-#include "analysis/report/report_private.h"
 #include "base/config.h"
 #include "base/progress.h"
 
 #define WB_LOG_DOMAIN "report"
-
-enum wb_status wb_report_write(const struct wb_kind *kind, const void *results, const char *folder,
-                               bool force)
-{
-    struct wb_figures figures;
-    struct wb_document document;
-    WB_TRY(wb_figures_create(&figures, kind->figures, kind->n_figures, results));
-    kind->pages(&document, results, &figures);
-    const struct wb_files_content content = {
-        .document = &document, .figures = &figures, .json = kind->json, .context = results};
-    const enum wb_status status = wb_files_write(&content, folder, force);
-    wb_document_release(&document);
-    wb_figures_release(&figures);
-    return status;
-}
 
 /* --- one report in the making --- */
 
@@ -47,17 +30,20 @@ static enum wb_status make_missing(struct making *making, bool *ends)
 {
     const struct wb_kind *const kind = making->kind;
     const struct wb_report_order *const order = making->order;
-    struct wb_missing_outcome outcome;
-    if (!kind->datasets) {
+    const struct wb_kind_outcome *const known = making->results;
+    struct wb_missing_outcome outcome = {.n = 0};
+    if (kind->datasets)
+        WB_TRY(
+            wb_missing_make(&outcome, kind->datasets, making->results, order->folder, order->jobs));
+    else if (known->n_missing > 0)
         wb_warn("%s cannot be computed: nothing is made of what is missing", kind->data);
-        return WB_OK;
-    }
-    WB_TRY(wb_missing_make(&outcome, kind->datasets, making->results, order->folder, order->jobs));
-    *ends = outcome.n > 0 && (order->jobs->dry_run || outcome.interrupted);
-    if (*ends && outcome.interrupted)
+    *ends = order->jobs->dry_run || outcome.interrupted;
+    if (outcome.interrupted)
         return refuse_interrupted(making);
     making->end = WB_REPORT_NOTHING;
-    if (*ends)
+    if (*ends && outcome.n == 0)
+        wb_warn("there are no runs to list, and a dry run writes no report");
+    if (*ends || !kind->datasets)
         return WB_OK;
     if (outcome.n > 0) {
         kind->release(making->results);
@@ -67,17 +53,17 @@ static enum wb_status make_missing(struct making *making, bool *ends)
     return WB_OK;
 }
 
-static void show_progress(void *context, int done, int total, const char *what)
+static void show_progress(void *context, int done, const char *what)
 {
-    (void)total;
     wb_progress_update(context, done, what);
 }
 
 static enum wb_status compute(struct making *making)
 {
     const struct wb_kind *const kind = making->kind;
+    const struct wb_kind_outcome *const outcome = making->results;
     struct wb_progress progress;
-    wb_progress_start(&progress, "report", "steps", kind->count_steps(making->campaign));
+    wb_progress_start(&progress, "report", "steps", outcome->n_steps);
     const enum wb_status status =
         kind->compute(making->results, making->order->n_threads, show_progress, &progress);
     wb_progress_finish(&progress);
@@ -90,7 +76,7 @@ static enum wb_status deliver(struct making *making)
     const struct wb_kind_outcome *const outcome = making->results;
     if (outcome->interrupted)
         return refuse_interrupted(making);
-    WB_TRY(wb_report_write(making->kind, making->results, order->folder, order->force));
+    WB_TRY(wb_kind_write(making->kind, making->results, order->folder, order->force));
     if (!order->quiet)
         making->kind->print(stdout, making->results);
     making->end = !outcome->is_complete    ? WB_REPORT_INCOMPLETE
@@ -108,7 +94,7 @@ static enum wb_status make(struct making *making)
     making->results = calloc(1, kind->results_size);
     if (!making->campaign || !making->results)
         return wb_fail(WB_ERR_MEMORY, "out of memory");
-    WB_TRY(kind->read(making->campaign, order->campaign));
+    WB_TRY(wb_kind_read(kind, making->campaign, order->campaign));
     /* A folder that may not be written should not cost the time of the computations. */
     WB_TRY(wb_file_prepare_output(order->folder, order->force));
     WB_TRY(kind->load(making->results, making->campaign));

@@ -12,13 +12,6 @@ static const char shipped[] = "simulations";
 
 /* --- what a campaign wants --- */
 
-const char *wb_simulation_as_shown(const char *given)
-{
-    if (given[0] == '/' || strstr(given, ".."))
-        given = wb_file_name(given);
-    return strncmp(given, "./", 2) == 0 ? given + 2 : given;
-}
-
 enum wb_status wb_simulation_find(struct wb_simulation *simulation,
                                   const struct wb_campaign *campaign, const char *given)
 {
@@ -26,11 +19,14 @@ enum wb_status wb_simulation_find(struct wb_simulation *simulation,
     simulation->wanted = true;
     snprintf(simulation->log, sizeof simulation->log, "%.120s", wb_file_name(given));
     if (strchr(given, '/')) {
-        snprintf(simulation->name, sizeof simulation->name, "%.250s",
-                 wb_simulation_as_shown(given));
+        /* Datasets in other folders may have the same last part. */
+        char hash[WB_SHA256_TEXT];
+        wb_hash_bytes(given, strlen(given), hash);
+        snprintf(simulation->log, sizeof simulation->log, "%.100s-%.8s", wb_file_name(given), hash);
+        snprintf(simulation->name, sizeof simulation->name, "%.250s", wb_campaign_as_shown(given));
         return wb_file_join(simulation->path, campaign->folder, given);
     }
-    const char *const shown = wb_simulation_as_shown(campaign->simulations);
+    const char *const shown = wb_campaign_as_shown(campaign->simulations);
     const bool has_name = shown[0] && strcmp(shown, ".") != 0;
     snprintf(simulation->name, sizeof simulation->name, "%.120s/%.120s", has_name ? shown : shipped,
              given);
@@ -41,12 +37,21 @@ enum wb_status wb_simulation_find(struct wb_simulation *simulation,
     return wb_file_join(simulation->path, folder, given);
 }
 
-static void show(struct wb_simulation *simulation, const char *text)
+/* Adds a word as a shell takes it: in quotes when it holds more than plain characters. */
+static void show(struct wb_simulation *simulation, const char *word)
 {
-    const size_t used = strlen(simulation->command);
-    const char *const quote = strpbrk(text, " \t'\"$") ? "'" : "";
-    snprintf(simulation->command + used, sizeof simulation->command - used, "%s%s%s%s",
-             used ? " " : "", quote, text, quote);
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "_-+=./:,@%";
+    struct wb_text *const command = &simulation->command;
+    const bool quoted = word[strspn(word, plain)] != '\0';
+    wb_text_append(command, "%s%s", command->length > 0 ? " " : "", quoted ? "'" : "");
+    for (const char *c = word; *c; c++) {
+        if (quoted && *c == '\'')
+            wb_text_append(command, "'\\''");
+        else
+            wb_text_append_bytes(command, c, 1);
+    }
+    wb_text_append(command, "%s", quoted ? "'" : "");
 }
 
 static enum wb_status show_command(struct wb_simulation *simulation, const char *shown)
@@ -63,6 +68,8 @@ static enum wb_status show_command(struct wb_simulation *simulation, const char 
     show(simulation, "-o");
     show(simulation, simulation->name);
     free(words);
+    if (simulation->command.failed)
+        return wb_fail(WB_ERR_MEMORY, "no room for the command of %s", simulation->name);
     return WB_OK;
 }
 
@@ -81,6 +88,7 @@ enum wb_status wb_simulation_set(struct wb_simulation *simulation,
 void wb_simulation_release(struct wb_simulation *simulation)
 {
     free((char *)simulation->settings.model);
+    wb_text_release(&simulation->command);
 }
 
 /* --- what is there --- */
@@ -173,6 +181,6 @@ void wb_simulation_print_missing(FILE *out, wb_simulation_list *list, const void
     for (int i = 0; list(results, i, &entry); i++) {
         if (entry.wanted->wanted && entry.result->state != WB_SIMULATION_USABLE)
             fprintf(out, "  %s: %s; to make it:\n    %s\n", entry.wanted->name,
-                    wb_text_string(&entry.result->problem), entry.wanted->command);
+                    wb_text_string(&entry.result->problem), wb_text_string(&entry.wanted->command));
     }
 }

@@ -22,11 +22,11 @@
 /* What a campaign wants. */
 struct wb_simulation {
     bool wanted;
-    char name[256];                    /* for readers: no path of this machine */
-    char path[WB_PATH];                /* of its folder, which may not be there */
-    char log[128];                     /* a name for a log */
+    char name[256];     /* for readers: no path of this machine */
+    char path[WB_PATH]; /* of its folder, which may not be there */
+    char log[128];      /* a name for a log and a checkpoint, of this dataset alone */
     struct wb_solve_settings settings; /* with which it is computed; the model's path is owned */
-    char command[1200]; /* that computes it, for readers: without paths of this machine */
+    struct wb_text command; /* that computes it, for readers: without paths of this machine */
 };
 
 /* Path and name of a dataset. A name lies among the campaign's simulations, by default the shipped
@@ -42,10 +42,6 @@ WB_MUST_CHECK enum wb_status wb_simulation_set(struct wb_simulation *simulation,
                                                const char *shown);
 
 void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
-
-/* A path from the campaign file as a command in that file's folder has it: as it is given, or its
- * last part where it says where on this machine it is. */
-const char *wb_simulation_as_shown(const char *given);
 
 /* --- what is there --- */
 

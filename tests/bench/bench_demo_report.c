@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "analysis/report/bench/recordings_kind.h"
-#include "analysis/report/report_private.h"
 #include "base/log.h"
 
 static double seconds(clockid_t clock)
@@ -25,16 +24,18 @@ struct timing {
 static bool time_report(const char *path, int n_threads, const char *folder, struct timing *timing)
 {
     struct wb_recordings campaign;
-    struct wb_recordings_results results;
+    struct wb_recordings_results results = {.n_wires = 0};
     const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID), start = seconds(CLOCK_MONOTONIC);
-    if (wb_recordings_read(&campaign, path) != WB_OK)
+    if (wb_kind_read(&wb_recordings_kind, &campaign, path) != WB_OK)
         return false;
-    if (wb_recordings_results_compute(&results, &campaign, n_threads, NULL, NULL) != WB_OK) {
+    if (wb_recordings_results_load(&results, &campaign) != WB_OK ||
+        wb_recordings_results_compute(&results, n_threads, NULL, NULL) != WB_OK) {
+        wb_recordings_results_release(&results);
         wb_recordings_release(&campaign);
         return false;
     }
     const double computed = seconds(CLOCK_MONOTONIC);
-    const bool good = wb_report_write(&wb_recordings_kind, &results, folder, true) == WB_OK;
+    const bool good = wb_kind_write(&wb_recordings_kind, &results, folder, true) == WB_OK;
     timing->compute = computed - start;
     timing->draw = seconds(CLOCK_MONOTONIC) - computed;
     timing->cpu = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;

@@ -61,6 +61,12 @@ grep -q '3 of 3 datasets used' out || fail 'not all datasets were made'
 rms=$(sed -n 's/^one wire .* published curve \([0-9.]*\) .*/\1/p' out)
 awk -v rms="$rms" 'BEGIN { exit !(rms > 0 && rms < 0.02) }' ||
     fail "one wire is $rms from its own beam"
+
+# Then an array has no runs: that is told, and there is no report either.
+run 0 c.yaml -o dry --slurm-dry-run
+grep -q 'there are no runs to list' err || fail 'it is not told that there are no runs'
+[ -e dry ] && fail 'a dry run without runs wrote a report'
+
 before=$(sha256sum sim/*/dataset.json)
 mkdir -p again.jobs
 touch again.jobs/one-0123456789ab.checkpoint again.jobs/one-0123456789ab.checkpoint.Ab1234 \

@@ -50,6 +50,21 @@ grep -q 'recordings cannot be computed' "$folder/err" || fail 'it is not told wh
 cmp -s "$folder/before.json" "$folder/solved/report.json" || fail '--solve changed a report of recordings'
 [ -e "$folder/solved.jobs" ] && fail 'a campaign of recordings has runs'
 
+# Where none is missing there is nothing to tell: this one is there, though it is no recording.
+echo text >"$folder/there.wbr"
+cat >"$folder/there.yaml" <<'YAML'
+title: All there
+calibration_length_mm: 85
+wires: [{wire: type1, calibration: [there.wbr]}]
+YAML
+run 3 "$folder/there.yaml" -o "$folder/there" --solve
+grep -q 'cannot be computed' "$folder/err" && fail 'recordings are told missing that are there'
+
+# A dry run has nothing to list of recordings, and writes no report.
+run 0 "$folder/empty.yaml" -o "$folder/dry" --slurm-dry-run
+grep -q 'there are no runs to list' "$folder/err" || fail 'it is not told that there are no runs'
+[ -e "$folder/dry" ] && fail 'a dry run wrote a report'
+
 # No place to write.
 echo text >"$folder/file"
 run 1 "$folder/empty.yaml" -o "$folder/file/r"

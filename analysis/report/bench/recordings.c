@@ -12,6 +12,8 @@
 
 #define WB_LOG_DOMAIN "campaign"
 
+const char *const wb_recordings_purposes[] = {"calibration", "validation"};
+
 static const char default_index[] = "recordings/index.yaml";
 
 /* What reading needs besides the campaign itself. */
@@ -27,10 +29,8 @@ struct reading {
 static enum wb_status read_limits(const struct wb_config_node *node, struct wb_recordings *campaign)
 {
     const struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_NUMBER("calibration_rms_max", &campaign->calibration_limit, 1.0, 1e-6,
-                                  10.0),
-        WB_CONFIG_OPTIONAL_NUMBER("validation_rms_max", &campaign->validation_limit, 1.0, 1e-6,
-                                  10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("calibration_rms_max", &campaign->limit[0], 1.0, 1e-6, 10.0),
+        WB_CONFIG_OPTIONAL_NUMBER("validation_rms_max", &campaign->limit[1], 1.0, 1e-6, 10.0),
     };
     return node ? wb_config_map(node, keys, WB_COUNT(keys)) : WB_OK;
 }
@@ -53,23 +53,21 @@ static enum wb_status read_merits(const struct wb_config_node *node, struct wb_r
 static enum wb_status read_reference(const struct wb_config_node *node,
                                      struct wb_recordings_wire *wire)
 {
-    const struct wb_material *const known = &wire->product.material;
     if (!node) {
         wire->has_reference = wire->product.has_properties;
         snprintf(wire->reference_source, sizeof wire->reference_source, "%s", wire->product.source);
-        wire->reference[0] = known->youngs_modulus;
-        wire->reference[1] = known->yield_stress;
-        wire->reference[2] = known->strength_coefficient;
-        wire->reference[3] = known->hardening_exponent;
+        wire->reference = wire->product.material;
         return WB_OK;
     }
     wire->has_reference = true;
+    struct wb_material *const reference = &wire->reference;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("source", wire->reference_source),
-        WB_CONFIG_NUMBER("youngs_modulus_MPa", &wire->reference[0], WB_MPA, 1e-3, 1e7),
-        WB_CONFIG_NUMBER("yield_stress_MPa", &wire->reference[1], WB_MPA, 1e-6, 1e5),
-        WB_CONFIG_NUMBER("strength_coefficient_MPa", &wire->reference[2], WB_MPA, 0.0, 1e7),
-        WB_CONFIG_NUMBER("hardening_exponent", &wire->reference[3], 1.0, 1e-3, 2.0),
+        WB_CONFIG_NUMBER("youngs_modulus_MPa", &reference->youngs_modulus, WB_MPA, 1e-3, 1e7),
+        WB_CONFIG_NUMBER("yield_stress_MPa", &reference->yield_stress, WB_MPA, 1e-6, 1e5),
+        WB_CONFIG_NUMBER("strength_coefficient_MPa", &reference->strength_coefficient, WB_MPA, 0.0,
+                         1e7),
+        WB_CONFIG_NUMBER("hardening_exponent", &reference->hardening_exponent, 1.0, 1e-3, 2.0),
     };
     return wb_config_map(node, keys, WB_COUNT(keys));
 }
@@ -202,32 +200,28 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
                                 struct wb_recordings_wire *wire)
 {
     char name[256];
-    const struct wb_config_node *reference, *calibration, *validation;
+    const struct wb_config_node *reference, *lists[WB_RECORDINGS_PURPOSES];
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("wire", name),
         WB_CONFIG_OPTIONAL_TEXT("label", wire->label),
         WB_CONFIG_OPTIONAL_NODE("reference", &reference),
-        WB_CONFIG_OPTIONAL_NODE("calibration", &calibration),
-        WB_CONFIG_OPTIONAL_NODE("validation", &validation),
+        WB_CONFIG_OPTIONAL_NODE("calibration", &lists[WB_RECORDINGS_CALIBRATION]),
+        WB_CONFIG_OPTIONAL_NODE("validation", &lists[WB_RECORDINGS_VALIDATION]),
     };
+    const struct wb_recordings *const campaign = reading->campaign;
+    char path[WB_PATH];
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-    char path[WB_PATH], named_in[WB_PATH + 32];
-    snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
-             wb_config_line(wb_config_find(node, "wire")));
-    WB_TRY(wb_file_find_named(path, "wires", name, reading->campaign->head.folder, named_in));
+    WB_TRY(wb_campaign_find(&campaign->head, node, "wire", "wires", name, path, NULL));
     WB_TRY(wb_wire_read(path, &wire->product));
     if (!wire->label[0])
         snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);
     WB_TRY(read_reference(reference, wire));
-
-    const struct wb_recordings *const campaign = reading->campaign;
-    WB_TRY(
-        find_tests(reading, wire, calibration, campaign->calibration_length, &wire->calibration));
-    if (campaign->validation_length > 0.0)
-        WB_TRY(
-            find_tests(reading, wire, validation, campaign->validation_length, &wire->validation));
-    else if (validation)
-        return wb_config_refuse(node, "validation", "the campaign has no validation_length_mm");
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+        if (campaign->length[k] > 0.0)
+            WB_TRY(find_tests(reading, wire, lists[k], campaign->length[k], &wire->tests[k]));
+        else if (lists[k])
+            return wb_config_refuse(node, "validation", "the campaign has no validation_length_mm");
+    }
     return WB_OK;
 }
 
@@ -274,20 +268,17 @@ static enum wb_status read_index(struct reading *reading, const char *given)
     return WB_OK;
 }
 
-static enum wb_status read_campaign(struct reading *reading, const struct wb_config_node *root)
+static enum wb_status read_all(struct reading *reading, const struct wb_config_node *root)
 {
     struct wb_recordings *const campaign = reading->campaign;
     const struct wb_config_node *settings, *limits, *reference, *wires;
     char index[1024] = "";
     campaign->samples = 1;
     const struct wb_config_key keys[] = {
-        WB_CONFIG_IGNORED("kind"),
-        WB_CONFIG_TEXT("title", campaign->head.title),
-        WB_CONFIG_OPTIONAL_TEXT("notes", campaign->head.notes),
+        WB_CAMPAIGN_KEYS(&campaign->head),
         WB_CONFIG_OPTIONAL_TEXT("index", index),
-        WB_CONFIG_NUMBER("calibration_length_mm", &campaign->calibration_length, WB_MM, 1.0, 1e4),
-        WB_CONFIG_OPTIONAL_NUMBER("validation_length_mm", &campaign->validation_length, WB_MM, 1.0,
-                                  1e4),
+        WB_CONFIG_NUMBER("calibration_length_mm", &campaign->length[0], WB_MM, 1.0, 1e4),
+        WB_CONFIG_OPTIONAL_NUMBER("validation_length_mm", &campaign->length[1], WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_INTEGER("samples", &campaign->samples, 1, 1000),
         WB_CONFIG_OPTIONAL_NODE("settings", &settings),
         WB_CONFIG_OPTIONAL_NODE("limits", &limits),
@@ -295,33 +286,27 @@ static enum wb_status read_campaign(struct reading *reading, const struct wb_con
         WB_CONFIG_NODE("wires", &wires),
     };
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
-    WB_TRY(wb_campaign_read_settings(settings, &campaign->calibrate));
+    WB_TRY(wb_campaign_read_settings(settings, &campaign->head.fit));
     WB_TRY(read_limits(limits, campaign));
     WB_TRY(read_merits(reference, campaign));
     WB_TRY(read_index(reading, index));
     return read_wires(reading, wires);
 }
 
-enum wb_status wb_recordings_read(struct wb_recordings *campaign, const char *path)
+enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *root)
 {
-    memset(campaign, 0, sizeof *campaign);
-    wb_calibrate_default_settings(&campaign->calibrate);
-    struct wb_config *config;
-    WB_TRY(wb_campaign_open(&campaign->head, &config, path));
-    struct reading reading = {.campaign = campaign};
-    const enum wb_status status = read_campaign(&reading, wb_config_root(config));
+    struct reading reading = {.campaign = context};
+    const enum wb_status status = read_all(&reading, root);
     wb_index_release(&reading.index);
-    wb_config_destroy(config);
-    if (status != WB_OK)
-        wb_recordings_release(campaign);
     return status;
 }
 
-void wb_recordings_release(struct wb_recordings *campaign)
+void wb_recordings_release(void *context)
 {
+    struct wb_recordings *const campaign = context;
     for (int i = 0; i < campaign->n_wires; i++) {
-        free(campaign->wires[i].calibration.items);
-        free(campaign->wires[i].validation.items);
+        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++)
+            free(campaign->wires[i].tests[k].items);
     }
     free(campaign->wires);
     memset(campaign, 0, sizeof *campaign);
@@ -332,12 +317,11 @@ int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing)
     int n = 0;
     *n_missing = 0;
     for (int i = 0; i < campaign->n_wires; i++) {
-        const struct wb_recordings_tests *const both[] = {&campaign->wires[i].calibration,
-                                                          &campaign->wires[i].validation};
-        for (int k = 0; k < 2; k++) {
-            n += both[k]->n;
-            for (int j = 0; j < both[k]->n; j++)
-                *n_missing += both[k]->items[j].missing[0] != '\0';
+        const struct wb_recordings_tests *const tests = campaign->wires[i].tests;
+        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+            n += tests[k].n;
+            for (int j = 0; j < tests[k].n; j++)
+                *n_missing += tests[k].items[j].missing[0] != '\0';
         }
     }
     return n;

@@ -43,7 +43,6 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibrate.h"
 #include "analysis/report/campaign.h"
 #include "analysis/validate.h"
 #include "base/config.h"
@@ -67,31 +66,37 @@ struct wb_recordings_tests {
     struct wb_recordings_test *items; /* (n), owned */
 };
 
+/* What recordings are for. */
+enum wb_recordings_purpose {
+    WB_RECORDINGS_CALIBRATION,
+    WB_RECORDINGS_VALIDATION, /* the campaign may have none */
+    WB_RECORDINGS_PURPOSES
+};
+extern const char *const wb_recordings_purposes[WB_RECORDINGS_PURPOSES]; /* "calibration", ... */
+
 struct wb_recordings_wire {
     char label[64];
     struct wb_wire product;
     bool has_reference;
     char reference_source[160];
-    double reference[4]; /* E, sigma_Y, K in Pa, and n */
-    struct wb_recordings_tests calibration, validation;
+    struct wb_material reference; /* E, sigma_Y, K and n of it */
+    struct wb_recordings_tests tests[WB_RECORDINGS_PURPOSES];
 };
 
 struct wb_recordings {
     struct wb_campaign head;
-    double calibration_length; /* m */
-    double validation_length;  /* m; 0: no validation */
+    double length[WB_RECORDINGS_PURPOSES]; /* m; of the validation 0: there is none */
+    double limit[WB_RECORDINGS_PURPOSES];  /* of the RMS over F_max; 0: none */
     int samples;
-    struct wb_calibrate_settings calibrate;
-    double calibration_limit, validation_limit; /* of the RMS over F_max; 0: none */
     char reference_source[160];
     double reference_rms[2]; /* published range of the validation's RMS; 0: none */
     int n_wires;
     struct wb_recordings_wire *wires; /* (n_wires), owned */
 };
 
-/* Errors name file, line and key. */
-WB_MUST_CHECK enum wb_status wb_recordings_read(struct wb_recordings *campaign, const char *path);
-void wb_recordings_release(struct wb_recordings *campaign); /* accepts a zeroed one */
+/* Reading and release, as wb_kind_keys and wb_kind_release have it. */
+WB_MUST_CHECK enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *root);
+void wb_recordings_release(void *context);
 
 /* How many recordings it wants, and how many of them are missing. */
 int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing);

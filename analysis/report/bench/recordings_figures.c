@@ -57,28 +57,39 @@ static void set_force_axes(struct wb_panel *panel, double max_force)
         wb_figure_set_right_axis(panel, "<i>F</i> / <i>F</i><sub>max</sub>", WB_MN / max_force);
 }
 
-/* A figure named WIRE-KIND ("all-KIND" for all wires) that says where its data come from. */
-static enum wb_status start(struct wb_figure **figure, const struct wb_recordings_results *results,
-                            const struct wb_recordings_results_wire *wire, const char *kind,
-                            double width, double height)
+/* Starts a figure that says where its data come from, named WIRE-KIND ("all-KIND" when its row is
+ * not of single wires). */
+static enum wb_status start(struct wb_figures_item *item, const char *kind, double width,
+                            double height)
 {
+    const struct wb_recordings_results *const results = item->results;
     char slug[64] = "all", name[128];
-    if (wire)
-        wb_recordings_figures_slug(slug, wire->wanted->product.name);
+    if (item->row->count)
+        wb_recordings_figures_slug(slug, wire_of(results, item->index)->wanted->product.name);
     snprintf(name, sizeof name, "%s-%s", slug, kind);
-    WB_TRY(wb_figure_create(figure, name, width, height));
-    wb_figure_set_footer(*figure, wb_recordings_figures_measured(results));
+    WB_TRY(wb_figure_create(&item->figure, name, width, height));
+    wb_figure_set_footer(item->figure, wb_recordings_figures_measured(results));
     return WB_OK;
 }
 
-/* Adds F_max to the footer, where a scale or an error is a part of it. */
-static void state_max_force(struct wb_figure *figure, const struct wb_recordings_results *results,
-                            double max_force)
+/* A panel of deflection and force, whose scale over F_max is on the right; F_max is in the footer.
+ */
+static struct wb_panel *add_force_panel(struct wb_figures_item *item, double max_force)
 {
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     char footer[160];
     snprintf(footer, sizeof footer, "%s \xc2\xb7 <i>F</i><sub>max</sub> = %.1f mN",
-             wb_recordings_figures_measured(results), max_force / WB_MN);
-    wb_figure_set_footer(figure, footer);
+             wb_recordings_figures_measured(item->results), max_force / WB_MN);
+    set_force_axes(panel, max_force);
+    wb_figure_set_footer(item->figure, footer);
+    return panel;
+}
+
+static struct wb_panel *add_error_panel(struct wb_figures_item *item)
+{
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
+    return panel;
 }
 
 /* --- from datasets --- */
@@ -174,11 +185,10 @@ most_cycles(const struct wb_recordings_results_wire *wire, int *most)
 {
     const struct wb_recordings_results_test *best = NULL;
     *most = 0;
-    const struct wb_recordings_results_tests *const both[] = {&wire->calibration_tests,
-                                                              &wire->validation_tests};
-    for (int k = 0; k < 2; k++) {
-        for (int i = 0; i < both[k]->n; i++) {
-            const struct wb_recordings_results_test *const test = &both[k]->items[i];
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+        const struct wb_recordings_results_tests *const tests = &wire->steps[k].tests;
+        for (int i = 0; i < tests->n; i++) {
+            const struct wb_recordings_results_test *const test = &tests->items[i];
             if (test->usable && n_cycles(&test->dataset) > *most) {
                 *most = n_cycles(&test->dataset);
                 best = test;
@@ -188,16 +198,20 @@ most_cycles(const struct wb_recordings_results_wire *wire, int *most)
     return best;
 }
 
-static enum wb_status draw_cycles(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_cycles(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
     int most;
     const struct wb_recordings_results_test *const best = most_cycles(wire, &most);
     if (!best)
         return WB_OK;
-    WB_TRY(start(figure, results, wire, "cycles", WB_PDF_HALF_WIDTH, 200.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(item, "cycles", WB_PDF_HALF_WIDTH, 200.0));
+    wb_text_append(&item->caption,
+                   "Cycles of sample %d, %g mm, %s; stretches with a slack strand left out.",
+                   best->dataset.info.sample, best->dataset.info.length / WB_MM,
+                   wb_recordings_figures_measured(results));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, 0.0);
     for (int cycle = 1; cycle <= most; cycle++) {
         char label[40];
@@ -212,59 +226,42 @@ static enum wb_status draw_cycles(struct wb_figure **figure, const void *context
     return WB_OK;
 }
 
-static void tell_cycles(struct wb_text *text, const void *context, int index)
+static enum wb_status draw_samples(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    int most;
-    const struct wb_recordings_results_test *const test = most_cycles(wire, &most);
-    wb_text_append(text, "Cycles of sample %d, %g mm, %s; stretches with a slack strand left out.",
-                   test->dataset.info.sample, test->dataset.info.length / WB_MM,
-                   wb_recordings_figures_measured(results));
-}
-
-static enum wb_status draw_samples(struct wb_figure **figure, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
-    if (wire->calibration_state != WB_RECORDINGS_DONE)
-        return WB_OK;
     static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
-    WB_TRY(start(figure, results, wire, "samples", WB_PDF_HALF_WIDTH, 200.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
-    set_force_axes(panel, wire->fit.curve.max_force);
-    state_max_force(*figure, results, wire->fit.curve.max_force);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_recordings_results_tests *const tests =
+        &wire->steps[WB_RECORDINGS_CALIBRATION].tests;
+    const struct wb_validate_result *const fit =
+        wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION);
+    const struct wb_colour colour = wb_palette_wire(item->index);
+    if (!fit)
+        return WB_OK;
+    const struct wb_curve *const curve = &fit->curve;
+    WB_TRY(start(item, "samples", WB_PDF_HALF_WIDTH, 200.0));
+    wb_text_append(&item->caption,
+                   "First loading of %d %s, %g mm, %s, with mean and range; "
+                   "<i>F</i><sub>max</sub> = %.1f mN.",
+                   curve->n_samples, wb_pages_plural(curve->n_samples, "sample", "samples"),
+                   results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
+                   wb_recordings_figures_measured(results), curve->max_force / WB_MN);
+    struct wb_panel *const panel = add_force_panel(item, curve->max_force);
     char label[64];
-    snprintf(label, sizeof label, "range of %d", wire->fit.curve.n_samples);
-    WB_TRY(wb_figures_add_range(panel, label, &wire->fit.curve, colour));
+    snprintf(label, sizeof label, "range of %d", curve->n_samples);
+    WB_TRY(wb_figures_add_range(panel, label, curve, colour));
     const struct wb_figure_style mean = {.colour = colour, .width = 1.6};
-    for (int i = 0; i < wire->calibration_tests.n; i++) {
-        const struct wb_recordings_results_test *const test = &wire->calibration_tests.items[i];
-        if (!test->usable)
+    for (int i = 0; i < tests->n; i++) {
+        const struct wb_dataset *const dataset = &tests->items[i].dataset;
+        const int sample = dataset->info.sample;
+        if (!tests->items[i].usable)
             continue;
-        const int sample = test->dataset.info.sample;
         snprintf(label, sizeof label, "sample %d", sample);
         const struct wb_figure_style style = {
             .colour = wb_palette_sample(sample), .width = 1.0, .dash = dashes[(sample + 2) % 3]};
-        WB_TRY(add_rows(panel, label, &test->dataset, 1, true, &style));
+        WB_TRY(add_rows(panel, label, dataset, 1, true, &style));
     }
-    WB_TRY(
-        wb_figures_add_curve(panel, "mean", &wire->fit.curve, wire->fit.curve.force, WB_MN, &mean));
-    return WB_OK;
-}
-
-static void tell_samples(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    wb_text_append(text,
-                   "First loading of %d %s, %g mm, %s, with mean and range; "
-                   "<i>F</i><sub>max</sub> = %.1f mN.",
-                   wire->fit.curve.n_samples,
-                   wb_pages_plural(wire->fit.curve.n_samples, "sample", "samples"),
-                   results->campaign->calibration_length / WB_MM,
-                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
+    return wb_figures_add_curve(panel, "mean", curve, curve->force, WB_MN, &mean);
 }
 
 /* --- the paper's Fig. 10 --- */
@@ -280,18 +277,23 @@ first_with_shapes(const struct wb_recordings_results_tests *tests)
     return NULL;
 }
 
-static enum wb_status draw_shapes(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_shapes(struct wb_figures_item *item)
 {
     static const enum wb_figure_marker markers[] = {
         WB_MARKER_CIRCLE, WB_MARKER_SQUARE, WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND, WB_MARKER_RING};
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
     const struct wb_recordings_results_test *const test =
-        first_with_shapes(&wire->calibration_tests);
+        first_with_shapes(&wire->steps[WB_RECORDINGS_CALIBRATION].tests);
     if (!test)
         return WB_OK;
-    WB_TRY(start(figure, results, wire, "shapes", WB_PDF_WIDTH, 300.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(item, "shapes", WB_PDF_WIDTH, 300.0));
+    const struct wb_test_info *const info = &test->dataset.info;
+    wb_text_append(&item->caption,
+                   "Shapes of sample %d, %g mm, on its first loading, %s: the markers, moved onto "
+                   "the wire's axis, in the clamp's frame.",
+                   info->sample, info->length / WB_MM, wb_recordings_figures_measured(results));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
     double end, last_shown = (double)NAN;
@@ -314,30 +316,17 @@ static enum wb_status draw_shapes(struct wb_figure **figure, const void *context
     return WB_OK;
 }
 
-static void tell_shapes(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_test_info *const info =
-        &first_with_shapes(&wire->calibration_tests)->dataset.info;
-    wb_text_append(text,
-                   "Shapes of sample %d, %g mm, on its first loading, %s: the markers, moved onto "
-                   "the wire's axis, in the clamp's frame.",
-                   info->sample, info->length / WB_MM, wb_recordings_figures_measured(results));
-}
-
 /* --- the bench --- */
 
 static const struct wb_recordings_results_test *
 any_test(const struct wb_recordings_results *results)
 {
-    const struct wb_recordings_results_test *test = NULL;
-    for (int i = 0; i < results->n_wires && !test; i++) {
-        test = first_with_shapes(&results->wires[i].calibration_tests);
-        if (!test)
-            test = first_with_shapes(&results->wires[i].validation_tests);
+    const struct wb_recordings_results_test *test;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, NULL, NULL)); i++) {
+        if (test->usable && test->dataset.n_shape_rows > 0)
+            return test;
     }
-    return test;
+    return NULL;
 }
 
 static void add_box(struct wb_panel *panel, double x0, double y0, double x1, double y1,
@@ -394,10 +383,9 @@ static void add_bench(struct wb_panel *panel, const struct wb_recordings_results
     }
 }
 
-static enum wb_status draw_bench(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_bench(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    (void)index;
+    const struct wb_recordings_results *const results = item->results;
     const struct wb_recordings_results_test *const test = any_test(results);
     if (!test)
         return WB_OK;
@@ -406,8 +394,13 @@ static enum wb_status draw_bench(struct wb_figure **figure, const void *context,
     find_frame(&test->dataset, wb_recordings_figures_turn(&test->dataset, &end), &frame);
     if (frame.n < 2)
         return WB_OK;
-    WB_TRY(start(figure, results, NULL, "bench", WB_PDF_WIDTH, 190.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(item, "bench", WB_PDF_WIDTH, 190.0));
+    wb_text_append(&item->caption,
+                   "The test, drawn to scale but for the strand: the clamp moves down, the strand "
+                   "holds the wire's tip, the load cell above stands still. Markers as %s at the "
+                   "largest deflection.",
+                   wb_recordings_figures_measured(item->results));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_hide_axes(panel);
     wb_figure_set_equal_aspect(panel);
     const double length = test->dataset.info.length / WB_MM;
@@ -426,16 +419,6 @@ static enum wb_status draw_bench(struct wb_figure **figure, const void *context,
     return WB_OK;
 }
 
-static void tell_bench(struct wb_text *text, const void *context, int index)
-{
-    (void)index;
-    wb_text_append(text,
-                   "The test, drawn to scale but for the strand: the clamp moves down, the strand "
-                   "holds the wire's tip, the load cell above stands still. Markers as %s at the "
-                   "largest deflection.",
-                   wb_recordings_figures_measured(context));
-}
-
 /* --- beside the calibrated beam --- */
 
 #define SHAPE_POINTS 60
@@ -443,10 +426,11 @@ static void tell_bench(struct wb_text *text, const void *context, int index)
 /* Measured markers and the computed shape at half and at full deflection. */
 static enum wb_status add_shapes(struct wb_panel *inset,
                                  const struct wb_recordings_results_wire *wire,
-                                 const struct wb_recordings_results_tests *tests,
-                                 const struct wb_validate_result *result, struct wb_colour colour)
+                                 const struct wb_recordings_results_step *step,
+                                 struct wb_colour colour)
 {
-    const struct wb_recordings_results_test *const test = first_with_shapes(tests);
+    const struct wb_recordings_results_test *const test = first_with_shapes(&step->tests);
+    const struct wb_validate_result *const result = &step->result;
     const struct wb_dataset *const dataset = test ? &test->dataset : NULL;
     wb_figure_set_axes(inset, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(inset);
@@ -489,116 +473,91 @@ static enum wb_status add_measured(struct wb_panel *panel, const struct wb_curve
 static const struct wb_figure_style computed_style = {
     .colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.2, .dash = WB_DASH_DASHED};
 
-static enum wb_status draw_calibration(struct wb_figure **figure, const void *context, int index)
+/* Measured curve and calibrated beam of a step that is done, with room above for the inset. */
+static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings_purpose purpose,
+                                double room)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
-    if (wire->calibration_state != WB_RECORDINGS_DONE)
-        return WB_OK;
-    const struct wb_validate_result *const fit = &wire->fit;
-    WB_TRY(start(figure, results, wire, "calibration", WB_PDF_WIDTH, 208.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
-    set_force_axes(panel, fit->curve.max_force);
-    state_max_force(*figure, results, fit->curve.max_force);
-    /* Room above for the inset. */
-    wb_figure_set_y_range(panel, (double)NAN, 1.25 * fit->curve.max_force / WB_MN);
-    WB_TRY(add_measured(panel, &fit->curve, colour));
-    WB_TRY(wb_figures_add_curve(panel, "computed, calibrated", &fit->curve,
-                                fit->elastoplastic.force, WB_MN, &computed_style));
-    return add_shapes(wb_figure_add_inset(panel), wire, &wire->calibration_tests, fit, colour);
+    static const char *const labels[] = {"computed, calibrated", "computed, elastoplastic"};
+    const struct wb_recordings_results_wire *const wire = wire_of(item->results, item->index);
+    const struct wb_validate_result *const result = &wire->steps[purpose].result;
+    const struct wb_colour colour = wb_palette_wire(item->index);
+    WB_TRY(start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH, 208.0));
+    struct wb_panel *const panel = add_force_panel(item, result->curve.max_force);
+    wb_figure_set_y_range(panel, (double)NAN, room * result->curve.max_force / WB_MN);
+    WB_TRY(add_measured(panel, &result->curve, colour));
+    WB_TRY(wb_figures_add_curve(panel, labels[purpose], &result->curve, result->elastoplastic.force,
+                                WB_MN, &computed_style));
+    const struct wb_figure_style elastic = {
+        .colour = wb_palette_grey(), .width = 1.2, .dash = WB_DASH_DOTTED};
+    if (purpose == WB_RECORDINGS_VALIDATION)
+        WB_TRY(wb_figures_add_curve(panel, "computed, linear elastic", &result->curve,
+                                    result->elastic.force, WB_MN, &elastic));
+    return add_shapes(wb_figure_add_inset(panel), wire, &wire->steps[purpose], colour);
 }
 
-static void tell_calibration(struct wb_text *text, const void *context, int index)
+static enum wb_status draw_calibration(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    wb_text_append(text,
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_validate_result *const fit =
+        wb_recordings_results_of(wire_of(results, item->index), WB_RECORDINGS_CALIBRATION);
+    if (!fit)
+        return WB_OK;
+    wb_text_append(&item->caption,
                    "Calibration at %g mm: mean of the samples, %s, and the calibrated beam. Inset: "
                    "markers of one sample and computed shape at half and at full deflection. "
                    "<i>F</i><sub>max</sub> = %.1f mN.",
-                   results->campaign->calibration_length / WB_MM,
-                   wb_recordings_figures_measured(results), wire->fit.curve.max_force / WB_MN);
+                   results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
+                   wb_recordings_figures_measured(results), fit->curve.max_force / WB_MN);
+    return draw_step(item, WB_RECORDINGS_CALIBRATION, 1.25);
 }
 
-static enum wb_status draw_validation(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_validation(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
-    if (wire->validation_state != WB_RECORDINGS_DONE)
+    const struct wb_recordings_results *const results = item->results;
+    const double *const length = results->campaign->length;
+    const struct wb_validate_result *const validation =
+        wb_recordings_results_of(wire_of(results, item->index), WB_RECORDINGS_VALIDATION);
+    if (!validation)
         return WB_OK;
-    const struct wb_validate_result *const validation = &wire->validation;
-    WB_TRY(start(figure, results, wire, "validation", WB_PDF_WIDTH, 208.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
-    set_force_axes(panel, validation->curve.max_force);
-    state_max_force(*figure, results, validation->curve.max_force);
-    /* The elastic curve goes far beyond; it may leave the frame. */
-    wb_figure_set_y_range(panel, (double)NAN, 1.45 * validation->curve.max_force / WB_MN);
-    WB_TRY(add_measured(panel, &validation->curve, colour));
-    WB_TRY(wb_figures_add_curve(panel, "computed, elastoplastic", &validation->curve,
-                                validation->elastoplastic.force, WB_MN, &computed_style));
-    const struct wb_figure_style elastic = {
-        .colour = wb_palette_grey(), .width = 1.2, .dash = WB_DASH_DOTTED};
-    WB_TRY(wb_figures_add_curve(panel, "computed, linear elastic", &validation->curve,
-                                validation->elastic.force, WB_MN, &elastic));
-    return add_shapes(wb_figure_add_inset(panel), wire, &wire->validation_tests, validation,
-                      colour);
-}
-
-static void tell_validation(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
     wb_text_append(
-        text,
+        &item->caption,
         "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and "
         "for contrast the same beam without yielding, which leaves the frame. Inset as "
         "before. <i>F</i><sub>max</sub> = %.1f mN.",
-        results->campaign->validation_length / WB_MM, wb_recordings_figures_measured(results),
-        results->campaign->calibration_length / WB_MM, wire->validation.curve.max_force / WB_MN);
+        length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_figures_measured(results),
+        length[WB_RECORDINGS_CALIBRATION] / WB_MM, validation->curve.max_force / WB_MN);
+    /* The elastic curve goes far beyond; it may leave the frame. */
+    return draw_step(item, WB_RECORDINGS_VALIDATION, 1.45);
 }
 
-static enum wb_status add_error(struct wb_panel *panel, const char *what, double length,
-                                const struct wb_validate_result *result,
-                                const struct wb_figure_style *style)
+static enum wb_status draw_error(struct wb_figures_item *item)
 {
-    char label[160];
-    snprintf(label, sizeof label, "%s, %g mm: RMS %.4f, <i>F</i><sub>max</sub> %.1f mN", what,
-             length / WB_MM, result->elastoplastic.rms, result->curve.max_force / WB_MN);
-    return wb_figures_add_curve(panel, label, &result->curve, result->elastoplastic.error, 1.0,
-                                style);
-}
-
-static enum wb_status draw_error(struct wb_figure **figure, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
-    if (wire->calibration_state != WB_RECORDINGS_DONE)
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_figure_style styles[] = {
+        {.colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED},
+        {.colour = wb_palette_wire(item->index), .width = 1.5}};
+    if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
         return WB_OK;
-    const struct wb_recordings *const campaign = results->campaign;
-    WB_TRY(start(figure, results, wire, "error", WB_PDF_WIDTH, 155.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
-    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
-    const struct wb_figure_style calibration = {
-        .colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED};
-    WB_TRY(add_error(panel, "calibration", campaign->calibration_length, &wire->fit, &calibration));
-    const struct wb_figure_style validation = {.colour = colour, .width = 1.5};
-    if (wire->validation_state == WB_RECORDINGS_DONE)
-        WB_TRY(add_error(panel, "validation", campaign->validation_length, &wire->validation,
-                         &validation));
+    WB_TRY(start(item, "error", WB_PDF_WIDTH, 155.0));
+    wb_text_append(&item->caption,
+                   "Error of the computed force against the mean force, %s (eq. 18), as part of "
+                   "each curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19).",
+                   wb_recordings_figures_measured(results));
+    struct wb_panel *const panel = add_error_panel(item);
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+        const struct wb_validate_result *const result =
+            wb_recordings_results_of(wire, (enum wb_recordings_purpose)k);
+        char label[160];
+        if (!result)
+            continue;
+        snprintf(label, sizeof label, "%s, %g mm: RMS %.4f, <i>F</i><sub>max</sub> %.1f mN",
+                 wb_recordings_purposes[k], results->campaign->length[k] / WB_MM,
+                 result->elastoplastic.rms, result->curve.max_force / WB_MN);
+        WB_TRY(wb_figures_add_curve(panel, label, &result->curve, result->elastoplastic.error, 1.0,
+                                    &styles[k]));
+    }
     return WB_OK;
-}
-
-static void tell_error(struct wb_text *text, const void *context, int index)
-{
-    (void)index;
-    wb_text_append(
-        text,
-        "Error of the computed force against the mean force, %s (eq. 18), as part of each "
-        "curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19).",
-        wb_recordings_figures_measured(context));
 }
 
 /* --- the search --- */
@@ -646,22 +605,17 @@ static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibra
     return WB_OK;
 }
 
-static enum wb_status draw_optimiser(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_optimiser(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, index);
-    const struct wb_colour colour = wb_palette_wire(index);
-    if (wire->calibration_state != WB_RECORDINGS_DONE || wire->calibration.n_path < 1)
+    const struct wb_recordings_results *const results = item->results;
+    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION) || wire->calibration.n_path < 1)
         return WB_OK;
-    WB_TRY(start(figure, results, wire, "optimiser", WB_PDF_WIDTH, 170.0));
-    return add_path(*figure, &wire->calibration, colour);
-}
-
-static void tell_optimiser(struct wb_text *text, const void *context, int index)
-{
-    (void)context, (void)index;
-    wb_text_append(text, "Left: error of the best corner of the simplex after each iteration. "
-                         "Right: its path from the first guess to the calibrated values.");
+    WB_TRY(start(item, "optimiser", WB_PDF_WIDTH, 170.0));
+    wb_text_append(&item->caption,
+                   "Left: error of the best corner of the simplex after each iteration. "
+                   "Right: its path from the first guess to the calibrated values.");
+    return add_path(item->figure, &wire->calibration, wb_palette_wire(item->index));
 }
 
 /* --- all wires in one --- */
@@ -696,116 +650,94 @@ static enum wb_status add_overview(struct wb_panel *panel,
     return wb_figures_add_curve(panel, label, curve, result->elastoplastic.force, WB_MN, &line);
 }
 
-static enum wb_status draw_all(struct wb_figure **figure,
-                               const struct wb_recordings_results *results, bool validation)
+static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_purpose purpose)
 {
-    int n = 0;
-    for (int i = 0; i < results->n_wires; i++)
-        n += validation ? results->wires[i].validation_state == WB_RECORDINGS_DONE
-                        : results->wires[i].calibration_state == WB_RECORDINGS_DONE;
-    if (n == 0)
-        return WB_OK;
-    WB_TRY(start(figure, results, NULL, validation ? "validation" : "calibration", WB_PDF_WIDTH,
-                 205.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
-    set_force_axes(panel, 0.0);
+    const struct wb_recordings_results *const results = item->results;
+    struct wb_panel *panel = NULL;
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        if (validation && wire->validation_state == WB_RECORDINGS_DONE)
-            WB_TRY(add_overview(panel, results, i, &wire->validation));
-        if (!validation && wire->calibration_state == WB_RECORDINGS_DONE)
-            WB_TRY(add_overview(panel, results, i, &wire->fit));
+        const struct wb_validate_result *const result =
+            wb_recordings_results_of(&results->wires[i], purpose);
+        if (!result)
+            continue;
+        if (!panel) {
+            WB_TRY(start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH, 205.0));
+            panel = wb_figure_add_panel(item->figure);
+            set_force_axes(panel, 0.0);
+        }
+        WB_TRY(add_overview(panel, results, i, result));
     }
     return WB_OK;
 }
 
-static enum wb_status draw_calibrations(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_calibrations(struct wb_figures_item *item)
 {
-    (void)index;
-    return draw_all(figure, context, false);
-}
-
-static void tell_calibrations(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    (void)index;
-    wb_text_append(text,
+    const struct wb_recordings_results *const results = item->results;
+    wb_text_append(&item->caption,
                    "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
                    "against them. Bands: range of the samples.",
-                   results->campaign->calibration_length / WB_MM,
+                   results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
                    wb_recordings_figures_measured(results));
+    return draw_all(item, WB_RECORDINGS_CALIBRATION);
 }
 
-static enum wb_status draw_validations(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_validations(struct wb_figures_item *item)
 {
-    (void)index;
-    return draw_all(figure, context, true);
-}
-
-static void tell_validations(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    (void)index;
-    wb_text_append(text,
+    const struct wb_recordings_results *const results = item->results;
+    const double *const length = results->campaign->length;
+    wb_text_append(&item->caption,
                    "The same wires at %g mm, %s, and the prediction of the beams calibrated at %g "
                    "mm.",
-                   results->campaign->validation_length / WB_MM,
+                   length[WB_RECORDINGS_VALIDATION] / WB_MM,
                    wb_recordings_figures_measured(results),
-                   results->campaign->calibration_length / WB_MM);
+                   length[WB_RECORDINGS_CALIBRATION] / WB_MM);
+    return draw_all(item, WB_RECORDINGS_VALIDATION);
 }
 
-static enum wb_status draw_errors(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_errors(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = context;
-    (void)index;
+    const struct wb_recordings_results *const results = item->results;
     static const enum wb_figure_dash dashes[] = {WB_DASH_SOLID, WB_DASH_DASHED, WB_DASH_MIXED,
                                                  WB_DASH_DOTTED};
     struct wb_panel *panel = NULL;
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        if (wire->validation_state != WB_RECORDINGS_DONE)
+        const struct wb_validate_result *const validation =
+            wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
+        if (!validation)
             continue;
-        if (!*figure) {
-            WB_TRY(start(figure, results, NULL, "errors", WB_PDF_WIDTH, 165.0));
-            panel = wb_figure_add_panel(*figure);
-            wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)",
-                               "Error / <i>F</i><sub>max</sub>");
+        if (!panel) {
+            WB_TRY(start(item, "errors", WB_PDF_WIDTH, 165.0));
+            panel = add_error_panel(item);
         }
         char label[160];
         snprintf(label, sizeof label, "%s, RMS %.4f, <i>F</i><sub>max</sub> %.1f mN",
-                 wire->wanted->label, wire->validation.elastoplastic.rms,
-                 wire->validation.curve.max_force / WB_MN);
+                 wire->wanted->label, validation->elastoplastic.rms,
+                 validation->curve.max_force / WB_MN);
         const struct wb_figure_style style = {
             .colour = wb_palette_wire(i), .width = 1.3, .dash = dashes[i % 4]};
-        WB_TRY(wb_figures_add_curve(panel, label, &wire->validation.curve,
-                                    wire->validation.elastoplastic.error, 1.0, &style));
+        WB_TRY(wb_figures_add_curve(panel, label, &validation->curve,
+                                    validation->elastoplastic.error, 1.0, &style));
     }
-    return WB_OK;
-}
-
-static void tell_errors(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_recordings_results *const results = context;
-    (void)index;
-    wb_text_append(text,
+    wb_text_append(&item->caption,
                    "Error of the prediction at %g mm (eq. 18): distance of mean force, %s, and "
                    "computed force over the largest mean force of the wire.",
-                   results->campaign->validation_length / WB_MM,
+                   results->campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM,
                    wb_recordings_figures_measured(results));
+    return WB_OK;
 }
 
 /* --- the table --- */
 
 const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
-    {"bench", NULL, draw_bench, tell_bench, false},
-    {"overview", NULL, draw_calibrations, tell_calibrations, false},
-    {"overview", NULL, draw_validations, tell_validations, false},
-    {"overview", NULL, draw_errors, tell_errors, false},
-    {"measured", count_wires, draw_cycles, tell_cycles, true},
-    {"measured", count_wires, draw_samples, tell_samples, true},
-    {"measured", count_wires, draw_shapes, tell_shapes, false},
-    {"compared", count_wires, draw_calibration, tell_calibration, false},
-    {"compared", count_wires, draw_validation, tell_validation, false},
-    {"compared", count_wires, draw_error, tell_error, false},
-    {"search", count_wires, draw_optimiser, tell_optimiser, false},
+    {"bench", NULL, draw_bench, false},
+    {"overview", NULL, draw_calibrations, false},
+    {"overview", NULL, draw_validations, false},
+    {"overview", NULL, draw_errors, false},
+    {"measured", count_wires, draw_cycles, true},
+    {"measured", count_wires, draw_samples, true},
+    {"measured", count_wires, draw_shapes, false},
+    {"compared", count_wires, draw_calibration, false},
+    {"compared", count_wires, draw_validation, false},
+    {"compared", count_wires, draw_error, false},
+    {"search", count_wires, draw_optimiser, false},
 };

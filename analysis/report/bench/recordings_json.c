@@ -1,4 +1,4 @@
-#include "analysis/report/bench/recordings_json.h"
+#include "analysis/report/bench/recordings_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ static const char *state_text(enum wb_recordings_results_state state)
 
 static void put_settings(struct wb_json *root, const struct wb_recordings *campaign)
 {
-    const struct wb_calibrate_settings meant = wb_calibrate_settings_meant(&campaign->calibrate);
+    const struct wb_calibrate_settings meant = wb_calibrate_settings_meant(&campaign->head.fit);
     struct wb_json *const settings = wb_json_set_object(root, "settings");
     for (size_t i = 0; i < wb_calibrate_table.n; i++) {
         const struct wb_setting *const row = &wb_calibrate_table.rows[i];
@@ -24,45 +24,43 @@ static void put_settings(struct wb_json *root, const struct wb_recordings *campa
             wb_setting_set_json(row, &meant, settings);
     }
     struct wb_json *const limits = wb_json_set_object(root, "limits");
-    if (campaign->calibration_limit > 0.0)
-        wb_json_set_number(limits, "calibration_rms_max", campaign->calibration_limit);
-    if (campaign->validation_limit > 0.0)
-        wb_json_set_number(limits, "validation_rms_max", campaign->validation_limit);
+    if (campaign->limit[WB_RECORDINGS_CALIBRATION] > 0.0)
+        wb_json_set_number(limits, "calibration_rms_max", campaign->limit[0]);
+    if (campaign->limit[WB_RECORDINGS_VALIDATION] > 0.0)
+        wb_json_set_number(limits, "validation_rms_max", campaign->limit[1]);
 }
 
-static void put_tests(struct wb_json *list, const struct wb_recordings_results_wire *wire,
-                      const struct wb_recordings_results_tests *tests, const char *purpose)
+static void put_test(struct wb_json *list, const struct wb_recordings_results_wire *wire,
+                     const struct wb_recordings_results_test *test,
+                     enum wb_recordings_purpose purpose)
 {
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        struct wb_json *const entry = wb_json_append_object(list);
-        wb_json_set_text(entry, "name", test->wanted->name);
-        wb_json_set_text(entry, "wire", wire->wanted->product.name);
-        wb_json_set_text(entry, "purpose", purpose);
-        wb_json_set_boolean(entry, "used", test->usable);
-        if (test->wanted->seed >= 0)
-            wb_json_set_integer(entry, "seed", test->wanted->seed);
-        const char *const sha256 = test->sha256[0] ? test->sha256 : test->wanted->sha256;
-        if (sha256[0])
-            wb_json_set_text(entry, "sha256", sha256);
-        if (!test->usable) {
-            wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
-            continue;
-        }
-        const struct wb_test_info *const info = &test->dataset.info;
-        wb_json_set_integer(entry, "sample", info->sample);
-        wb_json_set_number(entry, "length_mm", info->length / WB_MM);
-        wb_json_set_boolean(entry, "virtual_rig", test->is_virtual);
-        wb_json_set_text(entry, "start_utc", test->start_utc);
-        wb_json_set_text(entry, "tool_revision", test->tool_revision);
-        wb_json_set_text(entry, "operator", test->operator_name);
-        wb_json_set_number(entry, "bow_mm", wb_dataset_bow(info) / WB_MM);
-        static const char *const parts[] = {"corrections", "checks", "warnings"};
-        for (int k = 0; k < 3; k++) {
-            const struct wb_json *const part = wb_json_get(test->dataset.document, parts[k]);
-            if (part)
-                wb_json_set_copy(entry, parts[k], part);
-        }
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "name", test->wanted->name);
+    wb_json_set_text(entry, "wire", wire->wanted->product.name);
+    wb_json_set_text(entry, "purpose", wb_recordings_purposes[purpose]);
+    wb_json_set_boolean(entry, "used", test->usable);
+    if (test->wanted->seed >= 0)
+        wb_json_set_integer(entry, "seed", test->wanted->seed);
+    const char *const sha256 = test->sha256[0] ? test->sha256 : test->wanted->sha256;
+    if (sha256[0])
+        wb_json_set_text(entry, "sha256", sha256);
+    if (!test->usable) {
+        wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
+        return;
+    }
+    const struct wb_test_info *const info = &test->dataset.info;
+    wb_json_set_integer(entry, "sample", info->sample);
+    wb_json_set_number(entry, "length_mm", info->length / WB_MM);
+    wb_json_set_boolean(entry, "virtual_rig", test->is_virtual);
+    wb_json_set_text(entry, "start_utc", test->start_utc);
+    wb_json_set_text(entry, "tool_revision", test->tool_revision);
+    wb_json_set_text(entry, "operator", test->operator_name);
+    wb_json_set_number(entry, "bow_mm", wb_dataset_bow(info) / WB_MM);
+    static const char *const parts[] = {"corrections", "checks", "warnings"};
+    for (int k = 0; k < 3; k++) {
+        const struct wb_json *const part = wb_json_get(test->dataset.document, parts[k]);
+        if (part)
+            wb_json_set_copy(entry, parts[k], part);
     }
 }
 
@@ -108,21 +106,13 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
 
 static void put_validation(struct wb_json *object, const struct wb_recordings_results_wire *wire)
 {
-    put_comparison(object, &wire->validation, wire->validation.scatter_rms,
-                   wire->validation.residual_scatter_rms);
+    const struct wb_validate_result *const validation =
+        &wire->steps[WB_RECORDINGS_VALIDATION].result;
+    put_comparison(object, validation, validation->scatter_rms, validation->residual_scatter_rms);
     wb_json_set_number(object, "rms_expected_from_scatter_at_most_over_F_max",
-                       wire->validation.expected_rms);
+                       validation->expected_rms);
     wb_json_set_number(object, "share_explained_by_scatter_at_most",
                        wb_recordings_results_validation_share(wire));
-}
-
-static void put_values(struct wb_json *object, const char *name, const double values[4])
-{
-    struct wb_json *const entry = wb_json_set_object(object, name);
-    wb_json_set_number(entry, "youngs_modulus_MPa", values[0] / WB_MPA);
-    wb_json_set_number(entry, "yield_stress_MPa", values[1] / WB_MPA);
-    wb_json_set_number(entry, "strength_coefficient_MPa", values[2] / WB_MPA);
-    wb_json_set_number(entry, "hardening_exponent", values[3]);
 }
 
 static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_result *result)
@@ -163,6 +153,18 @@ static void put_search(struct wb_json *object, const struct wb_calibrate_result 
     }
 }
 
+static void put_calibration(struct wb_json *object, const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_calibrate_result *const c = &wire->calibration;
+    wb_numbers_put_properties(wb_json_set_object(object, "properties"), &c->material);
+    put_uncertainties(object, c);
+    wb_json_set_number(object, "rms_over_F_max", c->rms);
+    wb_json_set_number(object, "largest_error_over_F_max", c->max_error);
+    put_comparison(object, &wire->steps[WB_RECORDINGS_CALIBRATION].result, c->scatter_rms,
+                   c->residual_scatter_rms);
+    put_search(object, c);
+}
+
 static void put_wire(struct wb_json *list, const struct wb_recordings_results_wire *wire)
 {
     const struct wb_recordings_wire *const wanted = wire->wanted;
@@ -173,36 +175,26 @@ static void put_wire(struct wb_json *list, const struct wb_recordings_results_wi
     wb_json_set_number(entry, "outer_diameter_mm", wanted->product.outer_diameter / WB_MM);
     wb_json_set_number(entry, "density_g_cm3", wanted->product.density / WB_G_PER_CM3);
     if (wanted->has_reference) {
-        put_values(entry, "published", wanted->reference);
-        wb_json_set_text(wb_json_get(entry, "published"), "source", wanted->reference_source);
+        struct wb_json *const published = wb_json_set_object(entry, "published");
+        wb_numbers_put_properties(published, &wanted->reference);
+        wb_json_set_text(published, "source", wanted->reference_source);
     }
-    struct wb_json *const calibration = wb_json_set_object(entry, "calibration");
-    wb_json_set_text(calibration, "state", state_text(wire->calibration_state));
-    if (wire->calibration_state == WB_RECORDINGS_DONE) {
-        const struct wb_material *const m = &wire->calibration.material;
-        const double values[] = {m->youngs_modulus, m->yield_stress, m->strength_coefficient,
-                                 m->hardening_exponent};
-        put_values(calibration, "properties", values);
-        put_uncertainties(calibration, &wire->calibration);
-        wb_json_set_number(calibration, "rms_over_F_max", wire->calibration.rms);
-        wb_json_set_number(calibration, "largest_error_over_F_max", wire->calibration.max_error);
-        put_comparison(calibration, &wire->fit, wire->calibration.scatter_rms,
-                       wire->calibration.residual_scatter_rms);
-        put_search(calibration, &wire->calibration);
-    } else {
-        wb_json_set_text(calibration, "problem", wb_text_string(&wire->calibration_problem));
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+        const struct wb_recordings_results_step *const step = &wire->steps[k];
+        struct wb_json *const of = wb_json_set_object(entry, wb_recordings_purposes[k]);
+        wb_json_set_text(of, "state", state_text(step->state));
+        if (step->state == WB_RECORDINGS_DONE && k == WB_RECORDINGS_CALIBRATION)
+            put_calibration(of, wire);
+        else if (step->state == WB_RECORDINGS_DONE)
+            put_validation(of, wire);
+        else if (step->state != WB_RECORDINGS_NOT_WANTED)
+            wb_json_set_text(of, "problem", wb_text_string(&step->problem));
     }
-    struct wb_json *const validation = wb_json_set_object(entry, "validation");
-    wb_json_set_text(validation, "state", state_text(wire->validation_state));
-    if (wire->validation_state == WB_RECORDINGS_DONE)
-        put_validation(validation, wire);
-    else if (wire->validation_state != WB_RECORDINGS_NOT_WANTED)
-        wb_json_set_text(validation, "problem", wb_text_string(&wire->validation_problem));
 }
 
-struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *results,
-                                         const char *const *files, int n_files)
+struct wb_json *wb_recordings_json_build(const void *context)
 {
+    const struct wb_recordings_results *const results = context;
     const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
     wb_numbers_put_title(root, campaign->head.title, wb_recordings_figures_measured(results));
@@ -212,13 +204,13 @@ struct wb_json *wb_recordings_json_build(const struct wb_recordings_results *res
     put_settings(root, campaign);
     wb_numbers_put_outcome(root, &results->outcome);
     struct wb_json *const recordings = wb_json_set_array(root, "recordings");
+    const struct wb_recordings_results_test *test;
+    const struct wb_recordings_results_wire *wire;
+    enum wb_recordings_purpose purpose;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, &purpose)); i++)
+        put_test(recordings, wire, test, purpose);
     struct wb_json *const wires = wb_json_set_array(root, "wires");
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        put_tests(recordings, wire, &wire->calibration_tests, "calibration");
-        put_tests(recordings, wire, &wire->validation_tests, "validation");
-        put_wire(wires, wire);
-    }
-    wb_numbers_put_files(root, files, n_files);
+    for (int i = 0; i < results->n_wires; i++)
+        put_wire(wires, &results->wires[i]);
     return root;
 }

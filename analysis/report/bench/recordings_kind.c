@@ -3,14 +3,17 @@
 #include <stdio.h>
 
 #include "analysis/report/bench/recordings_figures.h"
-#include "analysis/report/bench/recordings_json.h"
-#include "analysis/report/bench/recordings_pages.h"
 
 #define WB_LOG_DOMAIN "report"
 
-static void print_rms(FILE *out, const char *what, enum wb_recordings_results_state state,
-                      double rms, double limit)
+static void print_step(FILE *out, const struct wb_recordings_results *results, int index,
+                       enum wb_recordings_purpose purpose)
 {
+    const struct wb_recordings_results_wire *const wire = &results->wires[index];
+    const enum wb_recordings_results_state state = wire->steps[purpose].state;
+    const char *const what = wb_recordings_purposes[purpose];
+    const double rms = wb_recordings_results_rms(wire, purpose);
+    const double limit = results->campaign->limit[purpose];
     if (state == WB_RECORDINGS_NOT_WANTED)
         return;
     if (state != WB_RECORDINGS_DONE)
@@ -29,64 +32,11 @@ static void print(FILE *out, const void *context)
             results->any_virtual ? " (virtual rig)" : "", results->outcome.n_usable,
             results->outcome.n_wanted);
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        fprintf(out, "%-10s", wire->wanted->label);
-        print_rms(out, "calibration", wire->calibration_state, wire->calibration.rms,
-                  campaign->calibration_limit);
-        print_rms(out, "validation", wire->validation_state, wire->validation.elastoplastic.rms,
-                  campaign->validation_limit);
+        fprintf(out, "%-10s", results->wires[i].wanted->label);
+        print_step(out, results, i, WB_RECORDINGS_CALIBRATION);
+        print_step(out, results, i, WB_RECORDINGS_VALIDATION);
         fprintf(out, "\n");
     }
-}
-
-/* --- the row --- */
-
-static enum wb_status read(void *campaign, const char *path)
-{
-    return wb_recordings_read(campaign, path);
-}
-
-static enum wb_status load(void *results, const void *campaign)
-{
-    struct wb_recordings_results *const own = results;
-    own->campaign = campaign;
-    return WB_OK;
-}
-
-/* Recordings, and two steps of every wire. */
-static int count_steps(const void *campaign)
-{
-    const struct wb_recordings *const own = campaign;
-    int n_missing;
-    return wb_recordings_count(own, &n_missing) + 2 * own->n_wires;
-}
-
-static enum wb_status compute(void *results, int n_threads, wb_kind_progress *progress,
-                              void *context)
-{
-    const struct wb_recordings_results *const own = results;
-    return wb_recordings_results_compute(results, own->campaign, n_threads, progress, context);
-}
-
-static void pages(struct wb_document *document, const void *results,
-                  const struct wb_figures *figures)
-{
-    wb_recordings_pages_build(document, results, figures);
-}
-
-static struct wb_json *json(const void *results, const char *const *files, int n_files)
-{
-    return wb_recordings_json_build(results, files, n_files);
-}
-
-static void release(void *results)
-{
-    wb_recordings_results_release(results);
-}
-
-static void release_campaign(void *campaign)
-{
-    wb_recordings_release(campaign);
 }
 
 const struct wb_kind wb_recordings_kind = {
@@ -94,15 +44,14 @@ const struct wb_kind wb_recordings_kind = {
     .data = "recordings",
     .campaign_size = sizeof(struct wb_recordings),
     .results_size = sizeof(struct wb_recordings_results),
-    .read = read,
-    .load = load,
-    .count_steps = count_steps,
-    .compute = compute,
+    .keys = wb_recordings_keys,
+    .load = wb_recordings_results_load,
+    .compute = wb_recordings_results_compute,
     .figures = wb_recordings_figures,
     .n_figures = WB_RECORDINGS_FIGURES,
-    .pages = pages,
-    .json = json,
+    .pages = wb_recordings_pages_build,
+    .json = wb_recordings_json_build,
     .print = print,
-    .release = release,
-    .release_campaign = release_campaign,
+    .release = wb_recordings_results_release,
+    .release_campaign = wb_recordings_release,
 };

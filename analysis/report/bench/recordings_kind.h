@@ -8,4 +8,8 @@
 /* Campaign and results: struct wb_recordings, struct wb_recordings_results. */
 extern const struct wb_kind wb_recordings_kind;
 
+/* Its parts, with the figures of recordings_figures.h. */
+wb_kind_pages wb_recordings_pages_build;
+wb_kind_json wb_recordings_json_build;
+
 #endif

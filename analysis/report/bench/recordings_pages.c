@@ -1,5 +1,5 @@
 /* Recordings' report, in order: summary, specimens and bench, all wires, each wire, provenance. */
-#include "analysis/report/bench/recordings_pages.h"
+#include "analysis/report/bench/recordings_kind.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -13,23 +13,18 @@
 #include "base/units.h"
 #include "base/version.h"
 
-/* Tells why recordings are missing or were refused, one item each. Returns how many. */
-static int put_missing_tests(struct wb_document *document,
-                             const struct wb_recordings_results_tests *tests)
+/* Tells why recordings of a wire are missing or were refused, one item each. */
+static void put_missing_tests(struct wb_document *document,
+                              const struct wb_recordings_results *results,
+                              const struct wb_recordings_results_wire *of)
 {
-    int n = 0;
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        if (test->usable)
-            continue;
-        char name[400], problem[1200], item[1800];
-        wb_pages_escape(name, sizeof name, test->wanted->name);
-        wb_pages_escape(problem, sizeof problem, wb_text_string(&test->problem));
-        snprintf(item, sizeof item, "<b>%s</b>: %s", name, problem);
-        wb_document_item(document, WB_TONE_WARNING, item);
-        n++;
+    const struct wb_recordings_results_test *test;
+    const struct wb_recordings_results_wire *wire;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, NULL)); i++) {
+        if (wire == of && !test->usable)
+            wb_pages_item(document, WB_TONE_WARNING, "<b>", test->wanted->name,
+                          "</b>: ", wb_text_string(&test->problem));
     }
-    return n;
 }
 
 /* --- summary: origin, limits, what is missing, properties, figures of merit, warnings --- */
@@ -64,42 +59,34 @@ static void append_share(struct wb_text *text, const struct wb_validate_result *
                              "fewer than two samples.");
 }
 
-/* `validation` NULL: of the calibration. */
-static void put_miss(struct wb_document *document, const char *label, double rms, double limit,
-                     const struct wb_validate_result *validation)
+static void put_miss(struct wb_document *document, const struct wb_recordings_results_wire *wire,
+                     enum wb_recordings_purpose purpose, double limit)
 {
-    char escaped[300];
     struct wb_text text = {0};
-    wb_text_append(&text,
-                   "<b>Limit exceeded.</b> %s, %s: RMS %.4f of <i>F</i><sub>max</sub>, "
-                   "limit %.4g.",
-                   wb_pages_escape(escaped, sizeof escaped, label),
-                   validation ? "validation" : "calibration", rms, limit);
-    if (validation)
-        append_share(&text, validation);
-    wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
-    document->failed |= text.failed;
-    wb_text_release(&text);
+    wb_text_append(&text, "<b>Limit exceeded.</b> ");
+    wb_text_append_escaped(&text, wire->wanted->label);
+    wb_text_append(&text, ", %s: RMS %.4f of <i>F</i><sub>max</sub>, limit %.4g.",
+                   wb_recordings_purposes[purpose], wb_recordings_results_rms(wire, purpose),
+                   limit);
+    if (purpose == WB_RECORDINGS_VALIDATION)
+        append_share(&text, &wire->steps[purpose].result);
+    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
 }
 
 static void put_limits(struct wb_document *document, const struct wb_recordings_results *results)
 {
-    const struct wb_recordings *const campaign = results->campaign;
+    const double *const limit = results->campaign->limit;
     int judged = 0;
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        const char *const label = wire->wanted->label;
-        if (wire->calibration_state == WB_RECORDINGS_DONE && campaign->calibration_limit > 0.0) {
-            judged++;
-            if (!(wire->calibration.rms <= campaign->calibration_limit))
-                put_miss(document, label, wire->calibration.rms, campaign->calibration_limit, NULL);
-        }
-        if (wire->validation_state == WB_RECORDINGS_DONE && campaign->validation_limit > 0.0) {
-            judged++;
-            if (!(wire->validation.elastoplastic.rms <= campaign->validation_limit))
-                put_miss(document, label, wire->validation.elastoplastic.rms,
-                         campaign->validation_limit, &wire->validation);
-        }
+    for (int i = 0; i < WB_RECORDINGS_PURPOSES * results->n_wires; i++) {
+        const enum wb_recordings_purpose purpose =
+            (enum wb_recordings_purpose)(i % WB_RECORDINGS_PURPOSES);
+        const struct wb_recordings_results_wire *const wire =
+            &results->wires[i / WB_RECORDINGS_PURPOSES];
+        if (!wb_recordings_results_of(wire, purpose) || !(limit[purpose] > 0.0))
+            continue;
+        judged++;
+        if (!(wb_recordings_results_rms(wire, purpose) <= limit[purpose]))
+            put_miss(document, wire, purpose, limit[purpose]);
     }
     if (judged == 0 || results->outcome.exceeds_limit)
         return;
@@ -107,27 +94,22 @@ static void put_limits(struct wb_document *document, const struct wb_recordings_
     wb_text_append(&text, results->outcome.is_complete
                               ? "<b>All limits of the campaign are kept:</b>"
                               : "<b>What could be computed keeps the campaign's limits:</b>");
-    if (campaign->calibration_limit > 0.0)
-        wb_text_append(&text, " RMS of each calibration at most %.4g", campaign->calibration_limit);
-    if (campaign->validation_limit > 0.0)
-        wb_text_append(&text, "%s of each validation at most %.4g",
-                       campaign->calibration_limit > 0.0 ? "," : " RMS",
-                       campaign->validation_limit);
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+        if (limit[k] > 0.0)
+            wb_text_append(&text, "%s of each %s at most %.4g",
+                           k > 0 && limit[0] > 0.0 ? "," : " RMS", wb_recordings_purposes[k],
+                           limit[k]);
+    }
     wb_text_append(&text, " of <i>F</i><sub>max</sub>.");
-    wb_document_notice(document, WB_TONE_GOOD, wb_text_string(&text));
-    document->failed |= text.failed;
-    wb_text_release(&text);
+    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_GOOD, &text);
 }
 
-static void put_step_problem(struct wb_document *document, const char *label, const char *step,
-                             enum wb_recordings_results_state state, const struct wb_text *problem)
+/* Why a step of a wire could not be done; NULL: it was, or there is none. */
+static const char *problem_of(const struct wb_recordings_results_step *step)
 {
-    if (state != WB_RECORDINGS_MISSING && state != WB_RECORDINGS_FAILED)
-        return;
-    char name[300], reason[1200], item[1700];
-    snprintf(item, sizeof item, "<b>%s: no %s</b>: %s", wb_pages_escape(name, sizeof name, label),
-             step, wb_pages_escape(reason, sizeof reason, wb_text_string(problem)));
-    wb_document_item(document, WB_TONE_WARNING, item);
+    return step->state == WB_RECORDINGS_MISSING || step->state == WB_RECORDINGS_FAILED
+               ? wb_text_string(&step->problem)
+               : NULL;
 }
 
 static void put_missing(struct wb_document *document, const struct wb_recordings_results *results)
@@ -148,40 +130,42 @@ static void put_missing(struct wb_document *document, const struct wb_recordings
     wb_document_notice(document, WB_TONE_WARNING, text);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        put_missing_tests(document, &wire->calibration_tests);
-        put_missing_tests(document, &wire->validation_tests);
-        put_step_problem(document, wire->wanted->label, "calibration", wire->calibration_state,
-                         &wire->calibration_problem);
-        put_step_problem(document, wire->wanted->label, "validation", wire->validation_state,
-                         &wire->validation_problem);
+        put_missing_tests(document, results, wire);
+        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+            char between[40];
+            snprintf(between, sizeof between, ": no %s</b>: ", wb_recordings_purposes[k]);
+            if (problem_of(&wire->steps[k]))
+                wb_pages_item(document, WB_TONE_WARNING, "<b>", wire->wanted->label, between,
+                              problem_of(&wire->steps[k]));
+        }
     }
 }
 
-static void put_property(struct wb_document *document, struct wb_document_table *table,
+static void put_property(struct wb_document_table *table,
                          const struct wb_recordings_results_wire *wire, int i)
 {
     const struct wb_pages_property *const property = &wb_pages_properties[i];
     const struct wb_recordings_wire *const wanted = wire->wanted;
-    const bool done = wire->calibration_state == WB_RECORDINGS_DONE;
+    const bool done = wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION);
     const double value =
         done ? wb_pages_value(&wire->calibration.material, i) / property->factor : (double)NAN;
     /* K's is a factor. */
     const double own = done ? wire->calibration.deviation[i] : (double)NAN;
     const double deviation = i == 2 ? exp(own) : own / property->factor;
-    const double reference =
-        wanted->has_reference ? wanted->reference[i] / property->factor : (double)NAN;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, i == 0 ? wanted->label : "");
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
-    wb_pages_cell_number(&row, value, property->decimals);
+    const double reference = wanted->has_reference
+                                 ? wb_pages_value(&wanted->reference, i) / property->factor
+                                 : (double)NAN;
+    wb_document_row(table, i == 0);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, i == 0 ? wanted->label : "");
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", property->unit);
+    wb_pages_cell_number(table, value, property->decimals);
     if (i == 2 && isfinite(deviation))
-        wb_pages_cell(&row, WB_TONE_PLAIN, "\xc3\x97/\xc3\xb7 %.3g", deviation);
+        wb_pages_cell(table, WB_TONE_PLAIN, "\xc3\x97/\xc3\xb7 %.3g", deviation);
     else
-        wb_pages_cell_number(&row, deviation, property->decimals);
-    wb_pages_cell_number(&row, reference, property->decimals);
-    wb_pages_cell_number(&row, value / reference, 2);
-    wb_pages_put_row(document, table, i == 0, &row);
+        wb_pages_cell_number(table, deviation, property->decimals);
+    wb_pages_cell_number(table, reference, property->decimals);
+    wb_pages_cell_number(table, value / reference, 2);
 }
 
 static void put_properties(struct wb_document *document,
@@ -196,7 +180,7 @@ static void put_properties(struct wb_document *document,
         {.heading = "Published", .right = true},
         {.heading = "Ratio", .right = true},
     };
-    const struct wb_calibrate_settings *const settings = &results->campaign->calibrate;
+    const struct wb_calibrate_settings *const settings = &results->campaign->head.fit;
     char source[300] = "none", caption[900];
     for (int i = 0; i < results->n_wires; i++) {
         if (results->wires[i].wanted->has_reference) {
@@ -219,26 +203,23 @@ static void put_properties(struct wb_document *document,
     struct wb_document_table *const table = wb_document_table(document, caption, 7, columns);
     for (int i = 0; i < results->n_wires; i++) {
         for (int k = 0; k < 4; k++)
-            put_property(document, table, &results->wires[i], k);
+            put_property(table, &results->wires[i], k);
     }
 }
 
-static void put_rms(struct wb_pages_row *row, bool done, double rms, double limit)
+static void put_rms(struct wb_document_table *table, const struct wb_recordings_results *results,
+                    const struct wb_recordings_results_wire *wire,
+                    enum wb_recordings_purpose purpose)
 {
-    if (!done)
-        wb_pages_cell(row, WB_TONE_WARNING, "missing");
-    else if (limit > 0.0)
-        wb_pages_cell(row, rms <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.4f", rms);
+    const enum wb_recordings_results_state state = wire->steps[purpose].state;
+    const double limit = results->campaign->limit[purpose];
+    const double rms = wb_recordings_results_rms(wire, purpose);
+    if (state == WB_RECORDINGS_NOT_WANTED)
+        wb_pages_cell_number(table, (double)NAN, 0);
+    else if (state != WB_RECORDINGS_DONE)
+        wb_pages_cell(table, WB_TONE_WARNING, "missing");
     else
-        wb_pages_cell(row, WB_TONE_PLAIN, "%.4f", rms);
-}
-
-static void put_share(struct wb_pages_row *row, double share)
-{
-    if (isfinite(share))
-        wb_pages_cell(row, WB_TONE_PLAIN, "%.0f %%", 100.0 * share);
-    else
-        wb_pages_cell(row, WB_TONE_QUIET, "\xe2\x80\x93");
+        wb_pages_cell_judged(table, rms, 4, limit > 0.0, rms <= limit);
 }
 
 static void put_merits(struct wb_document *document, const struct wb_recordings_results *results)
@@ -262,12 +243,12 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
                           "RMS<sup>2</sup> that a perfect model would show too, because means of a "
                           "few unlike samples differ by chance; the scatter it comes from holds "
                           "the model's error with the samples' bows too.");
-    if (campaign->calibration_limit > 0.0)
-        length += snprintf(caption + length, sizeof caption - (size_t)length,
-                           " Limit of the calibration: %.4g.", campaign->calibration_limit);
-    if (campaign->validation_limit > 0.0)
-        length += snprintf(caption + length, sizeof caption - (size_t)length,
-                           " Limit of the validation: %.4g.", campaign->validation_limit);
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+        if (campaign->limit[k] > 0.0)
+            length +=
+                snprintf(caption + length, sizeof caption - (size_t)length,
+                         " Limit of the %s: %.4g.", wb_recordings_purposes[k], campaign->limit[k]);
+    }
     if (campaign->reference_rms[1] > 0.0)
         snprintf(caption + length, sizeof caption - (size_t)length,
                  " Published RMS of validations: %.4g to %.4g (%s).", campaign->reference_rms[0],
@@ -277,55 +258,51 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
     struct wb_document_table *const table = wb_document_table(document, caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        const bool validated = wire->validation_state == WB_RECORDINGS_DONE;
-        const struct wb_validate_result *const v = &wire->validation;
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, wire->wanted->label);
-        put_rms(&row, wire->calibration_state == WB_RECORDINGS_DONE, wire->calibration.rms,
-                campaign->calibration_limit);
-        if (wire->validation_state == WB_RECORDINGS_NOT_WANTED)
-            wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
+        const struct wb_validate_result *const v =
+            wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
+        const double none = (double)NAN, share = wb_recordings_results_validation_share(wire);
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+        put_rms(table, results, wire, WB_RECORDINGS_CALIBRATION);
+        put_rms(table, results, wire, WB_RECORDINGS_VALIDATION);
+        wb_pages_cell_number(table, v ? v->elastoplastic.max_error : none, 4);
+        wb_pages_cell_number(table, v ? v->elastic.rms : none, 4);
+        if (isfinite(share))
+            wb_pages_cell(table, WB_TONE_PLAIN, "%.0f %%", 100.0 * share);
         else
-            put_rms(&row, validated, v->elastoplastic.rms, campaign->validation_limit);
-        wb_pages_cell_number(&row, validated ? v->elastoplastic.max_error : (double)NAN, 4);
-        wb_pages_cell_number(&row, validated ? v->elastic.rms : (double)NAN, 4);
-        put_share(&row, wb_recordings_results_validation_share(wire));
-        wb_pages_cell_number(&row, validated ? v->shape_rms / WB_MM : (double)NAN, 2);
-        wb_pages_cell_number(&row, validated ? v->curve.max_force / WB_MN : (double)NAN, 1);
-        wb_pages_put_row(document, table, false, &row);
+            wb_pages_cell_number(table, none, 0);
+        wb_pages_cell_number(table, v ? v->shape_rms / WB_MM : none, 2);
+        wb_pages_cell_number(table, v ? v->curve.max_force / WB_MN : none, 1);
     }
 }
 
-static bool is_about_gaps(const char *warning)
+static const struct wb_recordings_results_test *
+usable_at(const struct wb_recordings_results *results, int index)
 {
-    return strstr(warning, WB_ALIGN_GAPS_TEXT);
-}
-
-static void count_gaps(const struct wb_recordings_results_tests *tests, int *n, double *longest)
-{
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        const struct wb_json *const rows =
-            test->usable ? wb_json_get(wb_json_get(test->dataset.document, "checks"), "rows")
-                         : NULL;
-        double gaps = 0.0, one = 0.0;
-        if (!wb_json_get_number(rows, "gaps", &gaps) || !(gaps > 0.0))
-            continue;
-        ++*n;
-        if (wb_json_get_number(rows, "longest_gap_s", &one))
-            *longest = fmax(*longest, one);
+    const struct wb_recordings_results_test *test;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, NULL, NULL)); i++) {
+        if (test->usable && index-- == 0)
+            break;
     }
+    return test;
 }
 
 /* Recordings with gaps, in one line: their curves stay usable, a gap is left out of them. */
 static int put_gaps(struct wb_document *document, const struct wb_recordings_results *results)
 {
+    const struct wb_recordings_results_test *test;
     char item[300];
     double longest = 0.0;
     int n = 0;
-    for (int i = 0; i < results->n_wires; i++) {
-        count_gaps(&results->wires[i].calibration_tests, &n, &longest);
-        count_gaps(&results->wires[i].validation_tests, &n, &longest);
+    for (int i = 0; (test = usable_at(results, i)); i++) {
+        const struct wb_json *const rows =
+            wb_json_get(wb_json_get(test->dataset.document, "checks"), "rows");
+        double gaps = 0.0, one = 0.0;
+        if (!wb_json_get_number(rows, "gaps", &gaps) || !(gaps > 0.0))
+            continue;
+        n++;
+        if (wb_json_get_number(rows, "longest_gap_s", &one))
+            longest = fmax(longest, one);
     }
     if (n == 0)
         return 0;
@@ -337,27 +314,27 @@ static int put_gaps(struct wb_document *document, const struct wb_recordings_res
     return 1;
 }
 
-/* Warnings of alignments, at most a few here; each wire's pages list its own. */
+/* Warnings of alignments: of one wire all, or (`of` NULL) of all wires the first few but those of
+ * gaps. Returns how many there are. */
 static int put_alignment_warnings(struct wb_document *document,
-                                  const struct wb_recordings_results_tests *tests, int shown)
+                                  const struct wb_recordings_results *results,
+                                  const struct wb_recordings_results_wire *of)
 {
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
+    const struct wb_recordings_results_test *test;
+    const struct wb_recordings_results_wire *wire;
+    int n = 0;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, NULL)); i++) {
         const struct wb_json *const warnings =
             test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
         for (size_t k = 0; k < wb_json_length(warnings); k++) {
             const char *warning;
-            if (!wb_json_text(wb_json_item(warnings, k), &warning) || is_about_gaps(warning) ||
-                ++shown > MOST_WARNINGS)
+            if ((of && wire != of) || !wb_json_text(wb_json_item(warnings, k), &warning) ||
+                (!of && (strstr(warning, WB_ALIGN_GAPS_TEXT) || n++ >= MOST_WARNINGS)))
                 continue;
-            char name[400], text[1000], item[1500];
-            snprintf(item, sizeof item, "%s: %s",
-                     wb_pages_escape(name, sizeof name, test->wanted->name),
-                     wb_pages_escape(text, sizeof text, warning));
-            wb_document_item(document, WB_TONE_PLAIN, item);
+            wb_pages_item(document, WB_TONE_PLAIN, "", test->wanted->name, ": ", warning);
         }
     }
-    return shown;
+    return n;
 }
 
 /* What a reader must know of a search before trusting K and n. */
@@ -367,7 +344,7 @@ static int put_search_warnings(struct wb_document *document,
     const struct wb_calibrate_result *const c = &wire->calibration;
     char label[300], item[700];
     int n = 0;
-    if (wire->calibration_state != WB_RECORDINGS_DONE)
+    if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
         return 0;
     wb_pages_escape(label, sizeof label, wire->wanted->label);
     if (c->end != WB_CALIBRATE_SIZE && c->end != WB_CALIBRATE_ERROR) {
@@ -396,15 +373,11 @@ static int put_search_warnings(struct wb_document *document,
 static void put_warnings(struct wb_document *document, const struct wb_recordings_results *results)
 {
     wb_document_heading(document, 2, "warnings", "Warnings");
-    int shown = 0, of_searches = 0;
+    int of_searches = 0;
     const int of_gaps = put_gaps(document, results);
     for (int i = 0; i < results->n_wires; i++)
         of_searches += put_search_warnings(document, &results->wires[i]);
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        shown = put_alignment_warnings(document, &wire->calibration_tests, shown);
-        shown = put_alignment_warnings(document, &wire->validation_tests, shown);
-    }
+    const int shown = put_alignment_warnings(document, results, NULL);
     if (shown + of_searches + of_gaps == 0)
         wb_document_item(document, WB_TONE_QUIET, "None.");
     if (shown > MOST_WARNINGS) {
@@ -441,15 +414,14 @@ static void put_wires(struct wb_document *document, const struct wb_recordings_r
     struct wb_document_table *const table = wb_document_table(document, NULL, 6, columns);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_wire *const wire = &results->wires[i].wanted->product;
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, results->wires[i].wanted->label);
-        wb_pages_cell_number(&row, wire->conductor_diameter / WB_MM, 2);
-        wb_pages_cell_number(&row, wire->outer_diameter / WB_MM, 2);
-        wb_pages_cell_number(&row, wire->density / WB_G_PER_CM3, 2);
-        wb_pages_cell_number(&row, wb_wire_mass_per_length(wire) / WB_G, 3);
-        wb_pages_cell_number(&row,
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, results->wires[i].wanted->label);
+        wb_pages_cell_number(table, wire->conductor_diameter / WB_MM, 2);
+        wb_pages_cell_number(table, wire->outer_diameter / WB_MM, 2);
+        wb_pages_cell_number(table, wire->density / WB_G_PER_CM3, 2);
+        wb_pages_cell_number(table, wb_wire_mass_per_length(wire) / WB_G, 3);
+        wb_pages_cell_number(table,
                              wire->has_properties ? wire->material.poissons_ratio : (double)NAN, 2);
-        wb_pages_put_row(document, table, false, &row);
     }
 }
 
@@ -467,48 +439,35 @@ static double largest_force(const struct wb_dataset *dataset, int *cycles)
     return force;
 }
 
-static void put_specimen_rows(struct wb_document *document, struct wb_document_table *table,
-                              const struct wb_recordings_results_wire *wire,
-                              const struct wb_recordings_results_tests *tests, bool *first)
+static void put_specimen(struct wb_document_table *table,
+                         const struct wb_recordings_results_test *test, const char *label)
 {
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        if (!test->usable)
-            continue;
-        const struct wb_dataset *const dataset = &test->dataset;
-        double seen = (double)NAN, t;
-        wb_json_get_number(wb_json_get(wb_json_get(dataset->document, "checks"), "markers"),
-                           "seen_percent", &seen);
-        int cycles;
-        const double force = largest_force(dataset, &cycles);
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, *first ? wire->wanted->label : "");
-        wb_pages_cell_number(&row, dataset->info.length / WB_MM, 0);
-        wb_pages_cell(&row, WB_TONE_PLAIN, "%d", dataset->info.sample);
-        wb_pages_cell(&row, WB_TONE_PLAIN, "%d", cycles);
-        wb_pages_cell_number(&row, wb_dataset_bow(&dataset->info) / WB_MM, 2);
-        wb_pages_cell_number(&row, wb_recordings_figures_turn(dataset, &t) / WB_MM, 1);
-        wb_pages_cell_number(&row, force / WB_MN, 1);
-        wb_pages_cell_number(&row, seen, 1);
-        wb_pages_cell_plain(&row, test->operator_name[0] ? WB_TONE_PLAIN : WB_TONE_QUIET,
-                            test->operator_name[0] ? test->operator_name : "not given");
-        wb_pages_put_row(document, table, *first, &row);
-        *first = false;
-    }
+    const struct wb_dataset *const dataset = &test->dataset;
+    double seen = (double)NAN, t;
+    int cycles;
+    const double force = largest_force(dataset, &cycles);
+    wb_json_get_number(wb_json_get(wb_json_get(dataset->document, "checks"), "markers"),
+                       "seen_percent", &seen);
+    wb_document_row(table, label[0] != '\0');
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, label);
+    wb_pages_cell_number(table, dataset->info.length / WB_MM, 0);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%d", dataset->info.sample);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%d", cycles);
+    wb_pages_cell_number(table, wb_dataset_bow(&dataset->info) / WB_MM, 2);
+    wb_pages_cell_number(table, wb_recordings_figures_turn(dataset, &t) / WB_MM, 1);
+    wb_pages_cell_number(table, force / WB_MN, 1);
+    wb_pages_cell_number(table, seen, 1);
+    wb_pages_cell_plain(table, test->operator_name[0] ? WB_TONE_PLAIN : WB_TONE_QUIET,
+                        test->operator_name[0] ? test->operator_name : "not given");
 }
 
 /* Names of usual length stay in one line: "make-/recordings" reads as two. */
 static bool has_long_operator(const struct wb_recordings_results *results)
 {
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_tests *const both[] = {
-            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
-        for (int k = 0; k < 2; k++) {
-            for (int j = 0; j < both[k]->n; j++) {
-                if (strlen(both[k]->items[j].operator_name) > 20)
-                    return true;
-            }
-        }
+    const struct wb_recordings_results_test *test;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, NULL, NULL)); i++) {
+        if (strlen(test->operator_name) > 20)
+            return true;
     }
     return false;
 }
@@ -532,48 +491,31 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
         "Bow: natural offset of the tip, upwards positive, found from the recording. Deflection "
         "and force: of the first loading.",
         9, columns);
-    for (int i = 0; i < results->n_wires; i++) {
-        bool first = true;
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
-        put_specimen_rows(document, table, wire, &wire->calibration_tests, &first);
-        put_specimen_rows(document, table, wire, &wire->validation_tests, &first);
+    const struct wb_recordings_results_test *test;
+    const struct wb_recordings_results_wire *wire, *before = NULL;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, NULL)); i++) {
+        if (!test->usable)
+            continue;
+        put_specimen(table, test, wire == before ? "" : wire->wanted->label);
+        before = wire;
     }
 }
 
 /* --- the bench --- */
 
-static const struct wb_recordings_results_test *test_at(const struct wb_recordings_results *results,
-                                                        int index)
-{
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_tests *const both[] = {
-            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
-        for (int k = 0; k < 2; k++) {
-            for (int j = 0; j < both[k]->n; j++) {
-                if (both[k]->items[j].usable && index-- == 0)
-                    return &both[k]->items[j];
-            }
-        }
-    }
-    return NULL;
-}
+static void put_pair(struct wb_document_table *table, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-static void put_pair(struct wb_document *document, struct wb_document_table *table,
-                     const char *name, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
-static void put_pair(struct wb_document *document, struct wb_document_table *table,
-                     const char *name, const char *format, ...)
+static void put_pair(struct wb_document_table *table, const char *name, const char *format, ...)
 {
     char plain[300];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(plain, sizeof plain, format, arguments);
     va_end(arguments);
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", name);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, plain);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", name);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, plain);
 }
 
 /* As their makers write it. */
@@ -603,38 +545,37 @@ static void put_rig(struct wb_document *document, const struct wb_recordings_res
     const struct wb_rig *const rig = &test->rig;
     const struct wb_rig_load_cell *const cell = &rig->load_cell;
     bool same = true;
-    for (int i = 1; test_at(results, i); i++)
-        same &= same_bench(rig, &test_at(results, i)->rig);
+    for (int i = 1; usable_at(results, i); i++)
+        same &= same_bench(rig, &usable_at(results, i)->rig);
     wb_document_heading(document, 2, "rig", "Bench");
     struct wb_document_table *const table = wb_document_table(
         document,
         same ? NULL : "Not all recordings were made on the same bench; this is the first one's.", 2,
         columns);
-    put_pair(document, table, "Name", "%s%s", rig->name,
+    put_pair(table, "Name", "%s%s", rig->name,
              test->is_virtual && !strstr(rig->name, "virtual") ? " (virtual rig)" : "");
-    put_pair(document, table, "Load cell",
+    put_pair(table, "Load cell",
              "%.4g g, reads on to %.4g %%, serial number %s, "
              "calibrated %s",
              wb_recordings_results_capacity(rig) / WB_G,
              cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
              cell->serial_number[0] ? cell->serial_number : "not given",
              cell->calibration_date[0] ? cell->calibration_date : "not given");
-    put_pair(document, table, "Filter of the cell", "delay %.3g ms, uncertain by %.3g ms",
+    put_pair(table, "Filter of the cell", "delay %.3g ms, uncertain by %.3g ms",
              1e3 * cell->filter_delay, 1e3 * cell->filter_delay_uncertainty);
-    put_pair(document, table, "Motion capture",
+    put_pair(table, "Motion capture",
              "%s, %.4g frames a second expected, %d markers on "
              "the wire, %.3g mm off its axis",
              protocol_name(rig->mocap.protocol), rig->mocap.frame_rate, test->specimen.n_markers,
              test->specimen.marker_offset / WB_MM);
-    put_pair(document, table, "Stage", "%s, %.3g mm/s, %.4g mm of travel",
-             protocol_name(rig->stage.protocol), rig->stage.speed / WB_MM,
-             rig->stage.travel / WB_MM);
+    put_pair(table, "Stage", "%s, %.3g mm/s, %.4g mm of travel", protocol_name(rig->stage.protocol),
+             rig->stage.speed / WB_MM, rig->stage.travel / WB_MM);
     if (rig->strand.length > 0.0)
-        put_pair(document, table, "Strand", "%.4g mm, counterweight %.3g g at the tip",
+        put_pair(table, "Strand", "%.4g mm, counterweight %.3g g at the tip",
                  rig->strand.length / WB_MM, rig->strand.counterweight / WB_G);
     else
-        put_pair(document, table, "Strand", "none, the force is vertical");
-    put_pair(document, table, "Gravity", "%.6g m/s\xc2\xb2", rig->gravity);
+        put_pair(table, "Strand", "none, the force is vertical");
+    put_pair(table, "Gravity", "%.6g m/s\xc2\xb2", rig->gravity);
 }
 
 /* --- corrections --- */
@@ -669,13 +610,13 @@ static const struct wb_json *correction_of(const struct wb_recordings_results_te
 }
 
 /* One correction over all recordings: the range of its size and the largest uncertainty. */
-static void put_correction(struct wb_document *document, struct wb_document_table *table,
+static void put_correction(struct wb_document_table *table,
                            const struct wb_recordings_results *results, const char *name)
 {
     double low = (double)NAN, high = (double)NAN, largest = (double)NAN;
     const char *unit = "";
     const struct wb_recordings_results_test *test;
-    for (int i = 0; (test = test_at(results, i)); i++) {
+    for (int i = 0; (test = usable_at(results, i)); i++) {
         const struct wb_json *const entry = correction_of(test, name);
         double value;
         if (entry && correction_value(entry, "value", &value, &unit)) {
@@ -685,13 +626,12 @@ static void put_correction(struct wb_document *document, struct wb_document_tabl
         if (entry && correction_value(entry, "uncertainty", &value, &unit))
             largest = largest >= value ? largest : value;
     }
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, name);
-    wb_pages_cell_plain(&row, WB_TONE_QUIET, unit);
-    wb_pages_cell_number(&row, low, 3);
-    wb_pages_cell_number(&row, high, 3);
-    wb_pages_cell_number(&row, largest, 3);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
+    wb_pages_cell_plain(table, WB_TONE_QUIET, unit);
+    wb_pages_cell_number(table, low, 3);
+    wb_pages_cell_number(table, high, 3);
+    wb_pages_cell_number(table, largest, 3);
 }
 
 static void put_corrections(struct wb_document *document,
@@ -717,14 +657,14 @@ static void put_corrections(struct wb_document *document,
     for (size_t i = 0; i < wb_json_length(list); i++) {
         const char *name;
         if (wb_json_get_text(wb_json_item(list, i), "name", &name))
-            put_correction(document, table, results, name);
+            put_correction(table, results, name);
     }
 }
 
 static void put_bench(struct wb_document *document, const struct wb_recordings_results *results,
                       const struct wb_figures *figures)
 {
-    const struct wb_recordings_results_test *const first = test_at(results, 0);
+    const struct wb_recordings_results_test *const first = usable_at(results, 0);
     wb_document_new_page(document);
     wb_document_heading(document, 1, "bench", "Specimens and bench");
     wb_figures_put(figures, document, "bench", 0);
@@ -754,40 +694,27 @@ static void put_calibration_text(struct wb_document *document,
 {
     const struct wb_recordings *const campaign = results->campaign;
     const struct wb_calibrate_result *const c = &wire->calibration;
+    const struct wb_recordings_results_step *const steps = wire->steps;
+    const int n = steps[0].tests.n_usable, n_predicted = steps[1].tests.n_usable;
+    const struct wb_validate_result *const v =
+        wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
     struct wb_text text = {0};
     wb_text_append(&text,
                    "Calibrated on %d %s of %g mm: <i>E</i> = %.0f MPa, "
                    "<i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = %.0f MPa, <i>n</i> = %.3f, "
                    "RMS %.4f of <i>F</i><sub>max</sub> = %.1f mN (largest error %.4f).",
-                   wire->calibration_tests.n_usable,
-                   wb_pages_plural(wire->calibration_tests.n_usable, "sample", "samples"),
-                   campaign->calibration_length / WB_MM, c->material.youngs_modulus / WB_MPA,
-                   c->material.yield_stress / WB_MPA, c->material.strength_coefficient / WB_MPA,
-                   c->material.hardening_exponent, c->rms, wire->fit.curve.max_force / WB_MN,
-                   c->max_error);
-    if (wire->validation_state == WB_RECORDINGS_DONE)
+                   n, wb_pages_plural(n, "sample", "samples"), campaign->length[0] / WB_MM,
+                   c->material.youngs_modulus / WB_MPA, c->material.yield_stress / WB_MPA,
+                   c->material.strength_coefficient / WB_MPA, c->material.hardening_exponent,
+                   c->rms, steps[0].result.curve.max_force / WB_MN, c->max_error);
+    if (v)
         wb_text_append(&text,
                        " Predicts %d %s of %g mm with RMS %.4f of <i>F</i><sub>max</sub> = %.1f mN "
                        "(largest error %.4f); a linear elastic wire would be off by RMS %.4f.",
-                       wire->validation_tests.n_usable,
-                       wb_pages_plural(wire->validation_tests.n_usable, "sample", "samples"),
-                       campaign->validation_length / WB_MM, wire->validation.elastoplastic.rms,
-                       wire->validation.curve.max_force / WB_MN,
-                       wire->validation.elastoplastic.max_error, wire->validation.elastic.rms);
-    wb_document_paragraph(document, wb_text_string(&text));
-    document->failed |= text.failed;
-    wb_text_release(&text);
-}
-
-static void put_problem(struct wb_document *document, const char *step,
-                        enum wb_recordings_results_state state, const struct wb_text *problem)
-{
-    if (state != WB_RECORDINGS_MISSING && state != WB_RECORDINGS_FAILED)
-        return;
-    char reason[1200], text[1500];
-    snprintf(text, sizeof text, "<b>No %s:</b> %s", step,
-             wb_pages_escape(reason, sizeof reason, wb_text_string(problem)));
-    wb_document_notice(document, WB_TONE_WARNING, text);
+                       n_predicted, wb_pages_plural(n_predicted, "sample", "samples"),
+                       campaign->length[1] / WB_MM, v->elastoplastic.rms,
+                       v->curve.max_force / WB_MN, v->elastoplastic.max_error, v->elastic.rms);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 struct merit {
@@ -796,15 +723,13 @@ struct merit {
     int decimals;
 };
 
-static void put_merit(struct wb_document *document, struct wb_document_table *table,
-                      const struct merit *merit)
+static void put_merit(struct wb_document_table *table, const struct merit *merit)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", merit->name);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", merit->unit);
-    wb_pages_cell_number(&row, merit->calibration, merit->decimals);
-    wb_pages_cell_number(&row, merit->validation, merit->decimals);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", merit->name);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", merit->unit);
+    wb_pages_cell_number(table, merit->calibration, merit->decimals);
+    wb_pages_cell_number(table, merit->validation, merit->decimals);
 }
 
 static void put_numbers(struct wb_document *document, const struct wb_recordings_results_wire *wire)
@@ -816,36 +741,35 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         {.heading = "Validation", .right = true},
     };
     const double none = (double)NAN;
-    const bool v = wire->validation_state == WB_RECORDINGS_DONE;
     const struct wb_calibrate_result *const c = &wire->calibration;
-    const struct wb_validate_result *const fit = &wire->fit, *const val = &wire->validation;
-    const bool scatters = fit->curve.n_samples > 1, v_scatters = v && val->curve.n_samples > 1;
+    const struct wb_validate_result *const fit = &wire->steps[WB_RECORDINGS_CALIBRATION].result;
+    const struct wb_validate_result *const v =
+        wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
+    const bool scatters = fit->curve.n_samples > 1, v_scatters = v && v->curve.n_samples > 1;
     const char *const part = "of <i>F</i><sub>max</sub>";
     const struct merit merits[] = {
-        {"RMS (eq. 19)", part, fit->elastoplastic.rms, v ? val->elastoplastic.rms : none, 4},
+        {"RMS (eq. 19)", part, fit->elastoplastic.rms, v ? v->elastoplastic.rms : none, 4},
         {"RMS beyond 5 mm", part, fit->elastoplastic.rms_from_5mm,
-         v ? val->elastoplastic.rms_from_5mm : none, 4},
+         v ? v->elastoplastic.rms_from_5mm : none, 4},
         {"Largest error (eq. 18)", part, fit->elastoplastic.max_error,
-         v ? val->elastoplastic.max_error : none, 4},
-        {"RMS of the linear elastic beam", part, fit->elastic.rms, v ? val->elastic.rms : none, 4},
+         v ? v->elastoplastic.max_error : none, 4},
+        {"RMS of the linear elastic beam", part, fit->elastic.rms, v ? v->elastic.rms : none, 4},
         {"Scatter between samples <i>s</i>", part, scatters ? c->scatter_rms : none,
-         v_scatters ? val->scatter_rms : none, 4},
+         v_scatters ? v->scatter_rms : none, 4},
         {"Scatter beyond the natural shapes <i>r</i>", part,
-         scatters ? c->residual_scatter_rms : none, v_scatters ? val->residual_scatter_rms : none,
-         4},
-        {"RMS expected from scatter, at most", part, none, v ? val->expected_rms : none, 4},
+         scatters ? c->residual_scatter_rms : none, v_scatters ? v->residual_scatter_rms : none, 4},
+        {"RMS expected from scatter, at most", part, none, v ? v->expected_rms : none, 4},
         {"Share that the scatter explains, at most", "1", none,
          wb_recordings_results_validation_share(wire), 2},
-        {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? val->shape_rms / WB_MM : none,
+        {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? v->shape_rms / WB_MM : none, 2},
+        {"Shapes, largest distance", "mm", fit->shape_max / WB_MM, v ? v->shape_max / WB_MM : none,
          2},
-        {"Shapes, largest distance", "mm", fit->shape_max / WB_MM,
-         v ? val->shape_max / WB_MM : none, 2},
         {"<i>F</i><sub>max</sub>", "mN", fit->curve.max_force / WB_MN,
-         v ? val->curve.max_force / WB_MN : none, 1},
+         v ? v->curve.max_force / WB_MN : none, 1},
         {"Largest deflection of all samples", "mm", fit->curve.max_deflection / WB_MM,
-         v ? val->curve.max_deflection / WB_MM : none, 1},
+         v ? v->curve.max_deflection / WB_MM : none, 1},
         {"Mean bow of the samples", "mm", wb_dataset_bow(&fit->info) / WB_MM,
-         v ? wb_dataset_bow(&val->info) / WB_MM : none, 2},
+         v ? wb_dataset_bow(&v->info) / WB_MM : none, 2},
     };
     wb_document_heading(document, 2, "", "Numbers");
     struct wb_document_table *const table = wb_document_table(
@@ -862,19 +786,15 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         "1; an upper bound, near 0 the error is the model's.",
         4, columns);
     for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
-        put_merit(document, table, &merits[i]);
+        put_merit(table, &merits[i]);
 }
 
 static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
 {
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
     const int n = wb_calibrate_remarks(result, remarks);
-    for (int i = 0; i < n; i++) {
-        char escaped[400], item[440];
-        snprintf(item, sizeof item, "Note: %s.",
-                 wb_pages_escape(escaped, sizeof escaped, remarks[i]));
-        wb_document_item(document, WB_TONE_PLAIN, item);
-    }
+    for (int i = 0; i < n; i++)
+        wb_pages_item(document, WB_TONE_PLAIN, "Note: ", remarks[i], ".", "");
 }
 
 static void put_search(struct wb_document *document, const struct wb_recordings_results *results,
@@ -897,38 +817,19 @@ static void put_search(struct wb_document *document, const struct wb_recordings_
     if (c->failed_evaluations > 0)
         wb_text_append(&text, " %d of the runs did not converge and were given a large error.",
                        c->failed_evaluations);
-    wb_document_paragraph(document, wb_text_string(&text));
-    document->failed |= text.failed;
-    wb_text_release(&text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
     put_remarks(document, c);
     wb_figures_put(figures, document, "search", index);
 }
 
-static void put_test_warnings(struct wb_document *document,
-                              const struct wb_recordings_results_tests *tests)
+static bool has_warnings(const struct wb_recordings_results *results,
+                         const struct wb_recordings_results_wire *of)
 {
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        const struct wb_json *const warnings =
-            test->usable ? wb_json_get(test->dataset.document, "warnings") : NULL;
-        for (size_t k = 0; k < wb_json_length(warnings); k++) {
-            const char *warning;
-            if (!wb_json_text(wb_json_item(warnings, k), &warning))
-                continue;
-            char name[400], escaped[1000], item[1500];
-            snprintf(item, sizeof item, "%s: %s",
-                     wb_pages_escape(name, sizeof name, test->wanted->name),
-                     wb_pages_escape(escaped, sizeof escaped, warning));
-            wb_document_item(document, WB_TONE_PLAIN, item);
-        }
-    }
-}
-
-static bool has_warnings(const struct wb_recordings_results_tests *tests)
-{
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        if (!test->usable || wb_json_length(wb_json_get(test->dataset.document, "warnings")) > 0)
+    const struct wb_recordings_results_test *test;
+    const struct wb_recordings_results_wire *wire;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, NULL)); i++) {
+        if (wire == of &&
+            (!test->usable || wb_json_length(wb_json_get(test->dataset.document, "warnings")) > 0))
             return true;
     }
     return false;
@@ -943,70 +844,65 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
     snprintf(anchor, sizeof anchor, "wire-%s", slug);
     wb_document_new_page(document);
     wb_document_heading(document, 1, anchor, wire->wanted->label);
-    put_problem(document, "calibration", wire->calibration_state, &wire->calibration_problem);
-    put_problem(document, "validation", wire->validation_state, &wire->validation_problem);
-    if (wire->calibration_state == WB_RECORDINGS_DONE)
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+        struct wb_text text = {0};
+        if (!problem_of(&wire->steps[k]))
+            continue;
+        wb_text_append(&text, "<b>No %s:</b> ", wb_recordings_purposes[k]);
+        wb_text_append_escaped(&text, problem_of(&wire->steps[k]));
+        wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
+    }
+    const bool calibrated = wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION);
+    if (calibrated)
         put_calibration_text(document, results, wire);
     wb_figures_put(figures, document, "measured", index);
-    if (wire->calibration_state == WB_RECORDINGS_DONE) {
+    if (calibrated) {
         wb_figures_put(figures, document, "compared", index);
         put_search(document, results, index, figures);
         put_numbers(document, wire);
     }
-    if (has_warnings(&wire->calibration_tests) || has_warnings(&wire->validation_tests)) {
+    if (has_warnings(results, wire)) {
         wb_document_heading(document, 2, "", "Warnings");
-        put_missing_tests(document, &wire->calibration_tests);
-        put_missing_tests(document, &wire->validation_tests);
-        put_test_warnings(document, &wire->calibration_tests);
-        put_test_warnings(document, &wire->validation_tests);
+        put_missing_tests(document, results, wire);
+        put_alignment_warnings(document, results, wire);
     }
 }
 
 /* --- provenance: settings, recordings with their checksums --- */
 
-static void put_test_rows(struct wb_document *document, struct wb_document_table *table,
-                          const struct wb_recordings_results_tests *tests, bool begins_group)
+static void put_test(struct wb_document_table *table, const struct wb_recordings_results_test *test,
+                     bool begins_group)
 {
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, test->wanted->name);
-        if (!test->usable) {
-            wb_pages_cell(&row, WB_TONE_WARNING, "not used");
-        } else {
-            char start[40];
-            snprintf(start, sizeof start, "%.19s", test->start_utc);
-            char *const t = strchr(start, 'T');
-            if (t)
-                *t = ' ';
-            wb_pages_cell_plain(&row, WB_TONE_PLAIN, start);
-        }
-        if (test->wanted->seed >= 0)
-            wb_pages_cell(&row, WB_TONE_PLAIN, "%d", test->wanted->seed);
-        else
-            wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN,
-                            test->sha256[0] ? test->sha256 : test->wanted->sha256);
-        wb_pages_put_row(document, table, begins_group && i == 0, &row);
+    wb_document_row(table, begins_group);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, test->wanted->name);
+    if (!test->usable) {
+        wb_pages_cell(table, WB_TONE_WARNING, "not used");
+    } else {
+        char start[40];
+        snprintf(start, sizeof start, "%.19s", test->start_utc);
+        char *const t = strchr(start, 'T');
+        if (t)
+            *t = ' ';
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, start);
     }
+    if (test->wanted->seed >= 0)
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", test->wanted->seed);
+    else
+        wb_pages_cell_number(table, (double)NAN, 0);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN,
+                        test->sha256[0] ? test->sha256 : test->wanted->sha256);
 }
 
 /* The revisions that recorded, each once, in the order of the list. */
 static void append_revisions(struct wb_text *caption, const struct wb_recordings_results *results)
 {
     struct wb_text list = {0};
-    for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_tests *const both[] = {
-            &results->wires[i].calibration_tests, &results->wires[i].validation_tests};
-        for (int k = 0; k < 2; k++) {
-            for (int j = 0; j < both[k]->n; j++) {
-                char revision[400];
-                wb_pages_escape(revision, sizeof revision, both[k]->items[j].tool_revision);
-                if (!revision[0] || strstr(wb_text_string(&list), revision))
-                    continue;
-                wb_text_append(&list, "%s%s", list.length > 0 ? ", " : "", revision);
-            }
-        }
+    const struct wb_recordings_results_test *test;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, NULL, NULL)); i++) {
+        char revision[400];
+        wb_pages_escape(revision, sizeof revision, test->tool_revision);
+        if (revision[0] && !strstr(wb_text_string(&list), revision))
+            wb_text_append(&list, "%s%s", list.length > 0 ? ", " : "", revision);
     }
     if (list.length > 0)
         wb_text_append(caption, " Recorded with revision %s.", wb_text_string(&list));
@@ -1028,24 +924,24 @@ static void put_recordings(struct wb_document *document,
     wb_text_append(&caption, "All checksums are those of the uncompressed recordings.%s",
                    results->any_virtual ? " Seed: of the virtual rig." : "");
     append_revisions(&caption, results);
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 4, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
-    for (int i = 0; i < results->n_wires; i++) {
-        put_test_rows(document, table, &results->wires[i].calibration_tests, true);
-        put_test_rows(document, table, &results->wires[i].validation_tests, true);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 4, columns);
+    const struct wb_recordings_results_test *test;
+    const struct wb_recordings_results_wire *wire, *wire_before = NULL;
+    enum wb_recordings_purpose purpose, before = WB_RECORDINGS_CALIBRATION;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, &wire, &purpose)); i++) {
+        put_test(table, test, wire != wire_before || purpose != before);
+        wire_before = wire;
+        before = purpose;
     }
 }
 
-static void put_setting(struct wb_document *document, struct wb_document_table *table,
-                        const char *name, const char *value, const char *meaning)
+static void put_setting(struct wb_document_table *table, const char *name, const char *value,
+                        const char *meaning)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", name);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, value);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", meaning);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", name);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, value);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", meaning);
 }
 
 static void put_settings(struct wb_document *document, const struct wb_recordings_results *results)
@@ -1053,29 +949,28 @@ static void put_settings(struct wb_document *document, const struct wb_recording
     static const struct wb_document_column columns[] = {
         {"Setting"}, {"Value"}, {.heading = "Meaning", .wraps = true}};
     const struct wb_recordings *const campaign = results->campaign;
-    const struct wb_calibrate_settings *const s = &campaign->calibrate;
+    const struct wb_calibrate_settings *const s = &campaign->head.fit;
     char value[80];
     wb_document_heading(document, 2, "settings", "Settings");
     struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
     snprintf(value, sizeof value, "%g", s->elastic_zone);
-    put_setting(document, table, "Elastic zone", value,
+    put_setting(table, "Elastic zone", value,
                 "deflection over length at which eq. 10 gives <i>E</i>");
     snprintf(value, sizeof value, "%g", s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
-    put_setting(document, table, "Yield point", value,
+    put_setting(table, "Yield point", value,
                 "deflection over length at which eq. 11 gives <i>\xcf\x83</i><sub>Y</sub>");
     snprintf(value, sizeof value, "%g mm", s->step / WB_MM);
-    put_setting(document, table, "Step", value, "between the deflections that are compared");
-    put_setting(document, table, "Initial shape", s->straight ? "straight" : "mean of the samples",
+    put_setting(table, "Step", value, "between the deflections that are compared");
+    put_setting(table, "Initial shape", s->straight ? "straight" : "mean of the samples",
                 "natural shape of the computed wire");
-    put_setting(document, table, "Restart", s->restart ? "once" : "no",
-                "of the search, from its optimum");
+    put_setting(table, "Restart", s->restart ? "once" : "no", "of the search, from its optimum");
     snprintf(value, sizeof value, "%d", s->n_elements);
-    put_setting(document, table, "Elements", value, "quadratic beam elements along the wire");
+    put_setting(table, "Elements", value, "quadratic beam elements along the wire");
     snprintf(value, sizeof value, "%d", s->n_fibres);
-    put_setting(document, table, "Fibres", value, "integration points over the diameter");
+    put_setting(table, "Fibres", value, "integration points over the diameter");
     snprintf(value, sizeof value, "%g of the size, %g of the error", s->size_tolerance,
              s->error_tolerance);
-    put_setting(document, table, "Stops at", value,
+    put_setting(table, "Stops at", value,
                 "size in units of <i>K</i><sub>0</sub> and <i>n</i><sub>0</sub>; error over "
                 "<i>F</i><sub>max</sub>");
 }
@@ -1091,10 +986,10 @@ static void put_provenance(struct wb_document *document,
 
 /* --- all of it --- */
 
-void wb_recordings_pages_build(struct wb_document *document,
-                               const struct wb_recordings_results *results,
+void wb_recordings_pages_build(struct wb_document *document, const void *context,
                                const struct wb_figures *figures)
 {
+    const struct wb_recordings_results *const results = context;
     char subtitle[300], footer[300];
     snprintf(footer, sizeof footer, "wirebench %s, revision %s%s", wb_version(),
              wb_version_revision(), results->any_virtual ? " \xc2\xb7 virtual rig" : "");

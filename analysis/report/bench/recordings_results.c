@@ -15,24 +15,18 @@
 
 #define WB_LOG_DOMAIN "report"
 
-enum job_kind {
-    JOB_ALIGN,
-    JOB_CALIBRATE,
-    JOB_VALIDATE
-};
-
 enum job_state {
     JOB_WAITING,
     JOB_RUNNING,
     JOB_FINISHED
 };
 
+/* The alignment of a recording, or the step that follows for all of a wire. */
 struct job {
-    enum job_kind kind;
     enum job_state state;
+    enum wb_recordings_purpose purpose;
     struct wb_recordings_results_wire *wire;
-    struct wb_recordings_results_test *test; /* of an alignment */
-    bool calibrates;                         /* an alignment for the calibration */
+    struct wb_recordings_results_test *test; /* of an alignment; NULL: of a step */
 };
 
 struct schedule {
@@ -119,14 +113,10 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
     }
     const struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
     wb_reasons_listen(&reasons);
-    const enum wb_status status =
-        align(test, job->wire,
-              job->calibrates ? campaign->calibration_length : campaign->validation_length);
-    wb_reasons_end();
+    const enum wb_status status = align(test, job->wire, campaign->length[job->purpose]);
+    wb_reasons_end(&reasons, status);
     test->usable = status == WB_OK;
-    if (test->usable)
-        wb_text_release(&test->problem);
-    else if (test->problem.length == 0)
+    if (!test->usable && test->problem.length == 0)
         wb_text_append(&test->problem, "%s", wb_status_text(status));
 }
 
@@ -146,76 +136,55 @@ static enum wb_status calibrate(const struct wb_recordings *campaign,
                                 const struct wb_dataset *const *datasets, int n,
                                 struct wb_reason *why)
 {
-    struct wb_calibrate_settings settings = campaign->calibrate;
+    struct wb_calibrate_settings settings = campaign->head.fit;
     settings.progress = wb_campaign_go_on;
     WB_TRY(wb_calibrate_run(&wire->calibration, datasets, n, &settings, why));
     wb_properties_from_result(&wire->calibration, &wire->properties);
-    const enum wb_status status =
-        wb_validate_run(&wire->fit, &wire->properties, datasets, n, &campaign->calibrate, why);
-    if (status != WB_OK)
-        wb_calibrate_result_release(&wire->calibration);
-    return status;
+    return WB_OK;
 }
 
 static enum wb_recordings_results_state run_step(const struct wb_recordings *campaign,
                                                  const struct job *job)
 {
     struct wb_recordings_results_wire *const wire = job->wire;
-    const bool calibrates = job->kind == JOB_CALIBRATE;
-    const struct wb_recordings_results_tests *const tests =
-        calibrates ? &wire->calibration_tests : &wire->validation_tests;
-    struct wb_text *const problem =
-        calibrates ? &wire->calibration_problem : &wire->validation_problem;
-    const struct wb_dataset **const datasets = calloc((size_t)tests->n + 1, sizeof *datasets);
-    const int n = datasets ? usable_datasets(tests, datasets) : 0;
-    if (n == 0 || (!calibrates && wire->calibration_state != WB_RECORDINGS_DONE)) {
-        wb_text_append(problem, n == 0 ? "no usable recording"
-                                       : "the calibration that it builds on is missing");
+    struct wb_recordings_results_step *const step = &wire->steps[job->purpose];
+    const bool calibrates = job->purpose == WB_RECORDINGS_CALIBRATION;
+    const struct wb_dataset **const datasets = calloc((size_t)step->tests.n + 1, sizeof *datasets);
+    const int n = datasets ? usable_datasets(&step->tests, datasets) : 0;
+    if (n == 0 || (!calibrates && !wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))) {
+        wb_text_append(&step->problem, n == 0 ? "no usable recording"
+                                              : "the calibration that it builds on is missing");
         free(datasets);
         return WB_RECORDINGS_MISSING;
     }
+    const struct wb_reasons reasons = {&step->problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
-    const enum wb_status status = calibrates
-                                      ? calibrate(campaign, wire, datasets, n, &why)
-                                      : wb_validate_run(&wire->validation, &wire->properties,
-                                                        datasets, n, &campaign->calibrate, &why);
+    wb_reasons_listen(&reasons);
+    enum wb_status status = calibrates ? calibrate(campaign, wire, datasets, n, &why) : WB_OK;
+    if (status == WB_OK) {
+        status = wb_validate_run(&step->result, &wire->properties, datasets, n, &campaign->head.fit,
+                                 &why);
+        if (status != WB_OK && calibrates)
+            wb_calibrate_result_release(&wire->calibration);
+    }
+    wb_reasons_end(&reasons, status);
     free(datasets);
     if (status == WB_OK)
         return WB_RECORDINGS_DONE;
-    const struct wb_reasons reasons = {problem, NULL, NULL};
     wb_reasons_fail(&reasons, status, &why);
     return WB_RECORDINGS_FAILED;
 }
 
-static void run_job(const struct wb_recordings *campaign, const struct job *job)
-{
-    switch (job->kind) {
-    case JOB_ALIGN:
-        run_align(campaign, job);
-        break;
-    case JOB_CALIBRATE:
-        job->wire->calibration_state = run_step(campaign, job);
-        break;
-    case JOB_VALIDATE:
-        job->wire->validation_state = run_step(campaign, job);
-        break;
-    }
-}
-
 /* --- the schedule --- */
 
+/* A calibration waits for the recordings of its own, a validation for all else of its wire. */
 static bool is_ready(const struct schedule *schedule, const struct job *job)
 {
-    if (job->kind == JOB_ALIGN)
-        return true;
-    for (int i = 0; i < schedule->n; i++) {
+    for (int i = 0; i < schedule->n && !job->test; i++) {
         const struct job *const other = &schedule->jobs[i];
-        if (other->wire != job->wire || other->state == JOB_FINISHED)
-            continue;
-        const bool before = job->kind == JOB_CALIBRATE
-                                ? other->kind == JOB_ALIGN && other->calibrates
-                                : other != job;
-        if (before)
+        const bool before = job->purpose == WB_RECORDINGS_VALIDATION ||
+                            (other->test && other->purpose == WB_RECORDINGS_CALIBRATION);
+        if (other != job && other->wire == job->wire && before && other->state != JOB_FINISHED)
             return false;
     }
     return true;
@@ -237,12 +206,10 @@ static void tell(const struct schedule *schedule, const struct job *job)
         return;
     char what[160];
     const char *const label = job->wire->wanted->label;
-    if (job->kind == JOB_ALIGN)
-        snprintf(what, sizeof what, "aligned %.120s", job->test->wanted->name);
-    else
-        snprintf(what, sizeof what, "%s %.120s",
-                 job->kind == JOB_CALIBRATE ? "calibrated" : "validated", label);
-    schedule->progress(schedule->context, schedule->n_finished, schedule->n, what);
+    static const char *const done[] = {"calibrated", "validated"};
+    snprintf(what, sizeof what, "%s %.120s", job->test ? "aligned" : done[job->purpose],
+             job->test ? job->test->wanted->name : label);
+    schedule->progress(schedule->context, schedule->n_finished, what);
 }
 
 static void *work(void *context)
@@ -257,7 +224,10 @@ static void *work(void *context)
         }
         job->state = JOB_RUNNING;
         pthread_mutex_unlock(&schedule->lock);
-        run_job(schedule->results->campaign, job);
+        if (job->test)
+            run_align(schedule->results->campaign, job);
+        else
+            job->wire->steps[job->purpose].state = run_step(schedule->results->campaign, job);
         pthread_mutex_lock(&schedule->lock);
         job->state = JOB_FINISHED;
         schedule->n_finished++;
@@ -270,29 +240,32 @@ static void *work(void *context)
     return NULL;
 }
 
+static void add_steps(struct schedule *schedule, enum wb_recordings_purpose purpose)
+{
+    for (int i = 0; i < schedule->results->n_wires; i++) {
+        struct wb_recordings_results_wire *const wire = &schedule->results->wires[i];
+        if (wire->steps[purpose].state != WB_RECORDINGS_NOT_WANTED)
+            schedule->jobs[schedule->n++] = (struct job){.purpose = purpose, .wire = wire};
+    }
+}
+
+static void add_alignments(struct schedule *schedule, enum wb_recordings_purpose purpose)
+{
+    for (int i = 0; i < schedule->results->n_wires; i++) {
+        struct wb_recordings_results_wire *const wire = &schedule->results->wires[i];
+        const struct wb_recordings_results_tests *const tests = &wire->steps[purpose].tests;
+        for (int k = 0; k < tests->n; k++)
+            schedule->jobs[schedule->n++] =
+                (struct job){.purpose = purpose, .wire = wire, .test = &tests->items[k]};
+    }
+}
+
 static void add_jobs(struct schedule *schedule)
 {
-    struct wb_recordings_results *const results = schedule->results;
-    for (int i = 0; i < results->n_wires; i++)
-        schedule->jobs[schedule->n++] =
-            (struct job){.kind = JOB_CALIBRATE, .wire = &results->wires[i]};
-    for (int round = 0; round < 2; round++) {
-        for (int i = 0; i < results->n_wires; i++) {
-            struct wb_recordings_results_wire *const wire = &results->wires[i];
-            struct wb_recordings_results_tests *const tests =
-                round == 0 ? &wire->calibration_tests : &wire->validation_tests;
-            for (int k = 0; k < tests->n; k++)
-                schedule->jobs[schedule->n++] = (struct job){.kind = JOB_ALIGN,
-                                                             .wire = wire,
-                                                             .test = &tests->items[k],
-                                                             .calibrates = round == 0};
-        }
-    }
-    for (int i = 0; i < results->n_wires; i++) {
-        if (results->wires[i].validation_state != WB_RECORDINGS_NOT_WANTED)
-            schedule->jobs[schedule->n++] =
-                (struct job){.kind = JOB_VALIDATE, .wire = &results->wires[i]};
-    }
+    add_steps(schedule, WB_RECORDINGS_CALIBRATION);
+    add_alignments(schedule, WB_RECORDINGS_CALIBRATION);
+    add_alignments(schedule, WB_RECORDINGS_VALIDATION);
+    add_steps(schedule, WB_RECORDINGS_VALIDATION);
 }
 
 static void run_threads(struct schedule *schedule, int n_threads)
@@ -321,11 +294,14 @@ static enum wb_status prepare_tests(struct wb_recordings_results_tests *tests,
     return WB_OK;
 }
 
-enum wb_status wb_recordings_results_init(struct wb_recordings_results *results,
-                                          const struct wb_recordings *campaign)
+enum wb_status wb_recordings_results_load(void *context, const void *of)
 {
-    memset(results, 0, sizeof *results);
+    struct wb_recordings_results *const results = context;
+    const struct wb_recordings *const campaign = of;
+    struct wb_kind_outcome *const outcome = &results->outcome;
     results->campaign = campaign;
+    outcome->n_wanted = wb_recordings_count(campaign, &outcome->n_missing);
+    outcome->n_steps = outcome->n_wanted + 2 * campaign->n_wires;
     results->wires = calloc((size_t)campaign->n_wires, sizeof *results->wires);
     if (!results->wires)
         return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
@@ -333,77 +309,68 @@ enum wb_status wb_recordings_results_init(struct wb_recordings_results *results,
     for (int i = 0; i < campaign->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &results->wires[i];
         wire->wanted = &campaign->wires[i];
-        wire->calibration_state = WB_RECORDINGS_MISSING;
-        wire->validation_state =
-            campaign->validation_length > 0.0 ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
-        WB_TRY(prepare_tests(&wire->calibration_tests, &wire->wanted->calibration));
-        WB_TRY(prepare_tests(&wire->validation_tests, &wire->wanted->validation));
-        results->outcome.n_wanted += wire->calibration_tests.n + wire->validation_tests.n;
+        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+            wire->steps[k].state =
+                campaign->length[k] > 0.0 ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
+            WB_TRY(prepare_tests(&wire->steps[k].tests, &wire->wanted->tests[k]));
+        }
     }
     return WB_OK;
 }
 
-static void count_tests(struct wb_recordings_results *results,
-                        struct wb_recordings_results_tests *tests)
+static void count_test(struct wb_recordings_results *results,
+                       struct wb_recordings_results_tests *tests,
+                       const struct wb_recordings_results_test *test)
 {
-    for (int i = 0; i < tests->n; i++) {
-        const struct wb_recordings_results_test *const test = &tests->items[i];
-        if (!test->usable)
-            continue;
-        tests->n_usable++;
-        results->outcome.n_usable++;
-        results->any_virtual |= test->is_virtual;
-        results->all_virtual &= test->is_virtual;
-        if (strcmp(test->start_utc, results->latest_utc) > 0)
-            memcpy(results->latest_utc, test->start_utc, sizeof results->latest_utc);
+    tests->n_usable++;
+    results->outcome.n_usable++;
+    results->any_virtual |= test->is_virtual;
+    results->all_virtual &= test->is_virtual;
+    if (strcmp(test->start_utc, results->latest_utc) > 0)
+        memcpy(results->latest_utc, test->start_utc, sizeof results->latest_utc);
+}
+
+static void judge_step(struct wb_recordings_results *results,
+                       struct wb_recordings_results_wire *wire, enum wb_recordings_purpose purpose)
+{
+    struct wb_recordings_results_step *const step = &wire->steps[purpose];
+    const double limit = results->campaign->limit[purpose];
+    for (int i = 0; i < step->tests.n; i++) {
+        if (step->tests.items[i].usable)
+            count_test(results, &step->tests, &step->tests.items[i]);
     }
+    results->outcome.is_complete &=
+        step->state == WB_RECORDINGS_DONE || step->state == WB_RECORDINGS_NOT_WANTED;
+    /* Compared so that a NaN exceeds. */
+    if (step->state == WB_RECORDINGS_DONE && limit > 0.0 &&
+        !(wb_recordings_results_rms(wire, purpose) <= limit))
+        results->outcome.exceeds_limit = true;
 }
 
 void wb_recordings_results_judge(struct wb_recordings_results *results)
 {
-    const struct wb_recordings *const campaign = results->campaign;
     results->all_virtual = true;
     results->outcome.is_complete = true;
     for (int i = 0; i < results->n_wires; i++) {
-        struct wb_recordings_results_wire *const wire = &results->wires[i];
-        count_tests(results, &wire->calibration_tests);
-        count_tests(results, &wire->validation_tests);
-        const bool calibrated = wire->calibration_state == WB_RECORDINGS_DONE;
-        const bool validated = wire->validation_state == WB_RECORDINGS_DONE;
-        results->outcome.is_complete &=
-            calibrated && (validated || wire->validation_state == WB_RECORDINGS_NOT_WANTED);
-        /* Compared so that a NaN exceeds. */
-        if (calibrated && campaign->calibration_limit > 0.0 &&
-            !(wire->calibration.rms <= campaign->calibration_limit))
-            results->outcome.exceeds_limit = true;
-        if (validated && campaign->validation_limit > 0.0 &&
-            !(wire->validation.elastoplastic.rms <= campaign->validation_limit))
-            results->outcome.exceeds_limit = true;
+        judge_step(results, &results->wires[i], WB_RECORDINGS_CALIBRATION);
+        judge_step(results, &results->wires[i], WB_RECORDINGS_VALIDATION);
     }
     results->outcome.is_complete &= results->outcome.n_usable == results->outcome.n_wanted;
     results->all_virtual &= results->outcome.n_usable > 0;
 }
 
-enum wb_status wb_recordings_results_compute(struct wb_recordings_results *results,
-                                             const struct wb_recordings *campaign, int n_threads,
-                                             wb_kind_progress *progress, void *context)
+enum wb_status wb_recordings_results_compute(void *of, int n_threads, wb_kind_progress *progress,
+                                             void *context)
 {
-    enum wb_status status = wb_recordings_results_init(results, campaign);
+    struct wb_recordings_results *const results = of;
     struct schedule schedule = {.lock = PTHREAD_MUTEX_INITIALIZER,
                                 .changed = PTHREAD_COND_INITIALIZER,
                                 .results = results,
                                 .progress = progress,
                                 .context = context};
-    if (status == WB_OK) {
-        const size_t n = (size_t)results->outcome.n_wanted + 2 * (size_t)results->n_wires;
-        schedule.jobs = calloc(n, sizeof *schedule.jobs);
-        if (!schedule.jobs)
-            status = wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
-    }
-    if (status != WB_OK) {
-        wb_recordings_results_release(results);
-        return status;
-    }
+    schedule.jobs = calloc((size_t)results->outcome.n_steps, sizeof *schedule.jobs);
+    if (!schedule.jobs)
+        return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
     add_jobs(&schedule);
     if (n_threads <= 0) {
         const long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -416,32 +383,69 @@ enum wb_status wb_recordings_results_compute(struct wb_recordings_results *resul
     return WB_OK;
 }
 
-static void release_tests(struct wb_recordings_results_tests *tests)
+static void release_step(struct wb_recordings_results_step *step)
 {
-    for (int i = 0; i < tests->n; i++) {
-        wb_text_release(&tests->items[i].problem);
-        wb_dataset_release(&tests->items[i].dataset);
+    for (int i = 0; i < step->tests.n; i++) {
+        wb_text_release(&step->tests.items[i].problem);
+        wb_dataset_release(&step->tests.items[i].dataset);
     }
-    free(tests->items);
+    free(step->tests.items);
+    wb_text_release(&step->problem);
+    if (step->state == WB_RECORDINGS_DONE)
+        wb_validate_result_release(&step->result);
 }
 
-void wb_recordings_results_release(struct wb_recordings_results *results)
+void wb_recordings_results_release(void *context)
 {
+    struct wb_recordings_results *const results = context;
     for (int i = 0; i < results->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &results->wires[i];
-        release_tests(&wire->calibration_tests);
-        release_tests(&wire->validation_tests);
-        wb_text_release(&wire->calibration_problem);
-        wb_text_release(&wire->validation_problem);
-        if (wire->calibration_state == WB_RECORDINGS_DONE) {
+        if (wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
             wb_calibrate_result_release(&wire->calibration);
-            wb_validate_result_release(&wire->fit);
-        }
-        if (wire->validation_state == WB_RECORDINGS_DONE)
-            wb_validate_result_release(&wire->validation);
+        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++)
+            release_step(&wire->steps[k]);
     }
     free(results->wires);
     memset(results, 0, sizeof *results);
+}
+
+/* --- what they hold --- */
+
+struct wb_recordings_results_test *
+wb_recordings_results_at(const struct wb_recordings_results *results, int index,
+                         const struct wb_recordings_results_wire **wire,
+                         enum wb_recordings_purpose *purpose)
+{
+    for (int i = 0; i < WB_RECORDINGS_PURPOSES * results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const of =
+            &results->wires[i / WB_RECORDINGS_PURPOSES];
+        const struct wb_recordings_results_tests *const tests =
+            &of->steps[i % WB_RECORDINGS_PURPOSES].tests;
+        if (index < tests->n) {
+            if (wire)
+                *wire = of;
+            if (purpose)
+                *purpose = (enum wb_recordings_purpose)(i % WB_RECORDINGS_PURPOSES);
+            return &tests->items[index];
+        }
+        index -= tests->n;
+    }
+    return NULL;
+}
+
+const struct wb_validate_result *
+wb_recordings_results_of(const struct wb_recordings_results_wire *wire,
+                         enum wb_recordings_purpose purpose)
+{
+    const struct wb_recordings_results_step *const step = &wire->steps[purpose];
+    return step->state == WB_RECORDINGS_DONE ? &step->result : NULL;
+}
+
+double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,
+                                 enum wb_recordings_purpose purpose)
+{
+    return purpose == WB_RECORDINGS_CALIBRATION ? wire->calibration.rms
+                                                : wire->steps[purpose].result.elastoplastic.rms;
 }
 
 double wb_recordings_results_capacity(const struct wb_rig *rig)
@@ -451,6 +455,7 @@ double wb_recordings_results_capacity(const struct wb_rig *rig)
 
 double wb_recordings_results_validation_share(const struct wb_recordings_results_wire *wire)
 {
-    return wire->validation_state == WB_RECORDINGS_DONE ? wire->validation.scatter_share
-                                                        : (double)NAN;
+    const struct wb_validate_result *const validation =
+        wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
+    return validation ? validation->scatter_share : (double)NAN;
 }

@@ -43,19 +43,18 @@ enum wb_recordings_results_state {
     WB_RECORDINGS_DONE
 };
 
+struct wb_recordings_results_step {
+    enum wb_recordings_results_state state;
+    struct wb_text problem;
+    struct wb_recordings_results_tests tests;
+    struct wb_validate_result result; /* the calibrated beam on the curves of `tests`, when done */
+};
+
 struct wb_recordings_results_wire {
     const struct wb_recordings_wire *wanted; /* borrowed */
-    struct wb_recordings_results_tests calibration_tests, validation_tests;
-
-    enum wb_recordings_results_state calibration_state;
-    struct wb_text calibration_problem;
-    struct wb_calibrate_result calibration;
+    struct wb_recordings_results_step steps[WB_RECORDINGS_PURPOSES];
+    struct wb_calibrate_result calibration; /* when it is done, as the next */
     struct wb_properties properties;
-    struct wb_validate_result fit; /* the calibrated model on the curves it was calibrated on */
-
-    enum wb_recordings_results_state validation_state;
-    struct wb_text validation_problem;
-    struct wb_validate_result validation;
 };
 
 struct wb_recordings_results {
@@ -67,15 +66,28 @@ struct wb_recordings_results {
     char latest_utc[40];                      /* start of the latest recording; "" without any */
 };
 
+/* Prepares zeroed results: all places, with nothing in them. */
+wb_kind_load wb_recordings_results_load;
 /* Computes everything, on `n_threads` threads (0: as many as cores, 4 at most). WB_OK also when
  * recordings are missing or steps failed: the results say so. */
-WB_MUST_CHECK enum wb_status wb_recordings_results_compute(struct wb_recordings_results *results,
-                                                           const struct wb_recordings *campaign,
-                                                           int n_threads,
-                                                           wb_kind_progress *progress,
-                                                           void *context);
-void wb_recordings_results_release(
-    struct wb_recordings_results *results); /* accepts a zeroed one */
+wb_kind_compute wb_recordings_results_compute;
+wb_kind_release wb_recordings_results_release;
+
+/* The recording at an index, over all wires, of each those of the calibration first, with its wire
+ * and purpose (NULL: not asked for); NULL after the last. */
+struct wb_recordings_results_test *
+wb_recordings_results_at(const struct wb_recordings_results *results, int index,
+                         const struct wb_recordings_results_wire **wire,
+                         enum wb_recordings_purpose *purpose);
+
+/* What a step of a wire gave; NULL unless it is done. */
+const struct wb_validate_result *
+wb_recordings_results_of(const struct wb_recordings_results_wire *wire,
+                         enum wb_recordings_purpose purpose);
+
+/* The RMS error over F_max of a step that is done: what limits bound. */
+double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,
+                                 enum wb_recordings_purpose purpose);
 
 /* Capacity of a rig's load cell as its maker states it: the mass, kg, that weighs so much under the
  * rig's gravity; NaN when that is not known. */

@@ -234,14 +234,13 @@ static enum wb_status find_inset(struct wb_bundles *all, const struct wb_config_
     return WB_OK;
 }
 
-static enum wb_status read_root(struct wb_bundles *all, const struct wb_config_node *root)
+enum wb_status wb_bundles_keys(void *context, const struct wb_config_node *root)
 {
+    struct wb_bundles *const all = context;
     const struct wb_config_node *defaults, *runs, *groups, *studies, *fit, *limits, *printed;
     char inset[64] = "";
     const struct wb_config_key keys[] = {
-        WB_CONFIG_IGNORED("kind"),
-        WB_CONFIG_TEXT("title", all->head.title),
-        WB_CONFIG_OPTIONAL_TEXT("notes", all->head.notes),
+        WB_CAMPAIGN_KEYS(&all->head),
         WB_CONFIG_OPTIONAL_TEXT("simulations", all->head.simulations),
         WB_CONFIG_OPTIONAL_NODE("defaults", &defaults),
         WB_CONFIG_NODE("runs", &runs),
@@ -257,26 +256,14 @@ static enum wb_status read_root(struct wb_bundles *all, const struct wb_config_n
     WB_TRY(read_groups(all, root, groups));
     WB_TRY(read_studies(all, root, studies));
     WB_TRY(find_inset(all, root, inset));
-    WB_TRY(wb_campaign_read_settings(fit, &all->fit));
+    WB_TRY(wb_campaign_read_settings(fit, &all->head.fit));
     WB_TRY(read_limits(limits, &all->limits));
     return read_printed(printed, all);
 }
 
-enum wb_status wb_bundles_read(struct wb_bundles *bundles, const char *path)
+void wb_bundles_release(void *context)
 {
-    memset(bundles, 0, sizeof *bundles);
-    wb_calibrate_default_settings(&bundles->fit);
-    struct wb_config *config;
-    WB_TRY(wb_campaign_open(&bundles->head, &config, path));
-    const enum wb_status status = read_root(bundles, wb_config_root(config));
-    wb_config_destroy(config);
-    if (status != WB_OK)
-        wb_bundles_release(bundles);
-    return status;
-}
-
-void wb_bundles_release(struct wb_bundles *bundles)
-{
+    struct wb_bundles *const bundles = context;
     for (int i = 0; i < WB_BUNDLES_RUNS; i++) {
         free(bundles->runs[i].model);
         wb_simulation_release(&bundles->runs[i].dataset);

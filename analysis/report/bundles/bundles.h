@@ -51,7 +51,6 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibrate.h"
 #include "analysis/report/campaign.h"
 #include "analysis/report/draw/figures_bundle.h"
 #include "analysis/report/simulation.h"
@@ -122,16 +121,15 @@ struct wb_bundles {
     struct wb_bundles_bundle bundles[WB_BUNDLES_BUNDLES]; /* in the order of the groups */
     struct wb_bundles_study studies[WB_BUNDLES_STUDIES];
     int inset; /* bundle; -1: none */
-    struct wb_calibrate_settings fit;
     struct wb_bundles_limits limits;
     char printed_source[160];
     double printed_rms[2]; /* range; 0: none */
     double printed_cost;   /* 0: none */
 };
 
-/* Errors name file, line and key. */
-WB_MUST_CHECK enum wb_status wb_bundles_read(struct wb_bundles *bundles, const char *path);
-void wb_bundles_release(struct wb_bundles *bundles); /* accepts a zeroed one */
+/* Reading and release, as wb_kind_keys and wb_kind_release have it. */
+WB_MUST_CHECK enum wb_status wb_bundles_keys(void *context, const struct wb_config_node *root);
+void wb_bundles_release(void *context);
 
 /* The homogenised beam that is published of a run's bundle, with its properties; NULL: none. */
 const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run);
@@ -139,8 +137,7 @@ const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run);
 /* How a run is loaded, for readers: "dead force", "strand, weight". */
 const char *wb_bundles_loading(const struct wb_bundles_run *run);
 
-/* A part of wb_bundles_read(): the list of runs. */
-struct wb_config_node;
+/* A part of wb_bundles_keys(): the list of runs. */
 WB_MUST_CHECK enum wb_status wb_bundles_run_read(struct wb_bundles *all,
                                                  const struct wb_config_node *list,
                                                  const struct wb_config_node *defaults);

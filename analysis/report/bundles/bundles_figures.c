@@ -1,4 +1,4 @@
-#include "analysis/report/bundles/bundles_figures.h"
+#include "analysis/report/bundles/bundles_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -73,32 +73,26 @@ static void append_labels(struct wb_text *text, const struct wb_bundles *campaig
     }
 }
 
-static enum wb_status draw_sections(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_sections(struct wb_figures_item *item)
 {
-    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles *const campaign = results->campaign;
-    const struct wb_bundles_group *const group = &campaign->groups[index];
+    const struct wb_bundles_group *const group = &campaign->groups[item->index];
     const struct wb_bundle_model *models[WB_FIGURES_BUNDLE_MOST];
     const char *mesh = campaign->runs[campaign->bundles[group->first].dynamic].mesh->name;
     char name[64];
-    snprintf(name, sizeof name, "sections-%d", index + 1);
+    snprintf(name, sizeof name, "sections-%d", item->index + 1);
     for (int i = 0; i < group->n; i++) {
         models[i] = campaign->runs[campaign->bundles[group->first + i].dynamic].model;
         if (!wb_bundle_model_mesh(models[i], mesh))
             mesh = "engineering";
     }
-    return wb_figures_bundle_draw(figure, name, group->n, models, mesh);
-}
-
-static void tell_sections(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles_group *const group = &results->campaign->groups[index];
     char place[48];
-    wb_text_append(text, "Sections%s of ",
+    wb_text_append(&item->caption, "Sections%s of ",
                    wb_pages_paper_figure(place, group->figures[WB_BUNDLES_SECTION]));
-    append_labels(text, results->campaign, group);
-    wb_text_append(text, ", with the lines of the mesh and the homogenised cylinder.");
+    append_labels(&item->caption, results->campaign, group);
+    wb_text_append(&item->caption, ", with the lines of the mesh and the homogenised cylinder.");
+    return wb_figures_bundle_draw(&item->figure, name, group->n, models, mesh);
 }
 
 /* --- constant and decaying friction --- */
@@ -121,36 +115,32 @@ static enum wb_status add_forces(struct wb_panel *panel, const struct wb_bundles
     return add_run(panel, "decaying", dynamic, &dynamic_style);
 }
 
-static enum wb_status draw_forces(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_forces(struct wb_figures_item *item)
 {
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    const struct wb_bundles_results *const results = item->results;
+    const struct wb_bundles_group *const group = &results->campaign->groups[item->index];
     if (!wb_bundles_results_any(results, group))
         return WB_OK;
-    WB_TRY(start(figure, "forces", index, panel_height));
-    for (int i = group->first, n = 0; i < group->first + group->n; i++) {
-        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
-        if (wb_bundles_results_either(results, bundle))
-            WB_TRY(add_forces(add_force_panel(*figure, bundle->label, n++ == 0), results, bundle));
-    }
-    return WB_OK;
-}
-
-static void tell_forces(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    WB_TRY(start(&item->figure, "forces", item->index, panel_height));
     char place[48];
     const struct wb_bundles_run *const run =
         &results->campaign->runs[results->campaign->bundles[group->first].dynamic];
-    wb_text_append(text,
+    wb_text_append(&item->caption,
                    "Force over deflection%s, simulated with decaying and with constant friction "
                    "(%s), and the published curve.",
                    wb_pages_paper_figure(place, group->figures[WB_BUNDLES_FORCE]),
                    wb_bundles_loading(run));
     if (group->figures[WB_BUNDLES_FORCE][0])
-        wb_text_append(text, " The paper's figure has tests in the published curve's place; "
-                             "they are not at hand.");
+        wb_text_append(&item->caption,
+                       " The paper's figure has tests in the published curve's place; "
+                       "they are not at hand.");
+    for (int i = group->first, n = 0; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        if (wb_bundles_results_either(results, bundle))
+            WB_TRY(add_forces(add_force_panel(item->figure, bundle->label, n++ == 0), results,
+                              bundle));
+    }
+    return WB_OK;
 }
 
 /* --- errors --- */
@@ -170,19 +160,24 @@ static enum wb_status add_error(struct wb_panel *panel, const char *bundle, cons
     return status;
 }
 
-static enum wb_status draw_errors(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_errors(struct wb_figures_item *item)
 {
-    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles *const campaign = results->campaign;
-    const struct wb_bundles_group *const group = &campaign->groups[index];
+    const struct wb_bundles_group *const group = &campaign->groups[item->index];
     bool any = false;
     for (int i = 0; i < group->n; i++)
         any |= wb_bundles_published(&campaign->runs[campaign->bundles[group->first + i].dynamic]) !=
                NULL;
     if (!any || !wb_bundles_results_any(results, group))
         return WB_OK;
-    WB_TRY(start(figure, "errors", index, 180.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, "errors", item->index, 180.0));
+    char place[48];
+    wb_text_append(&item->caption,
+                   "Distance of the simulated curves from the published ones%s, over the published "
+                   "curve's largest force <i>F</i><sub>max</sub>.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ERROR]));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Error / <i>F</i><sub>max</sub>");
     wb_figure_set_y_range(panel, 0.0, (double)NAN);
     for (int i = 0; i < group->n; i++) {
@@ -196,17 +191,6 @@ static enum wb_status draw_errors(struct wb_figure **figure, const void *context
                          wb_bundles_results_usable(results, bundle->constant), &dashed));
     }
     return WB_OK;
-}
-
-static void tell_errors(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles_group *const group = &results->campaign->groups[index];
-    char place[48];
-    wb_text_append(text,
-                   "Distance of the simulated curves from the published ones%s, over the published "
-                   "curve's largest force <i>F</i><sub>max</sub>.",
-                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ERROR]));
 }
 
 /* --- energies --- */
@@ -264,23 +248,28 @@ static double largest_energy(const struct wb_bundles_result *run)
     return largest > 0.0 ? largest : millijoule;
 }
 
-static enum wb_status draw_energies(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_energies(struct wb_figures_item *item)
 {
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles_group *const group = &results->campaign->groups[index];
+    const struct wb_bundles_results *const results = item->results;
+    const struct wb_bundles_group *const group = &results->campaign->groups[item->index];
     bool any = false;
     for (int i = group->first; i < group->first + group->n; i++)
         any |= wb_bundles_results_usable(results, results->campaign->bundles[i].dynamic) != NULL;
     if (!any)
         return WB_OK;
-    WB_TRY(start(figure, "energies", index, panel_height));
+    WB_TRY(start(&item->figure, "energies", item->index, panel_height));
+    char place[48];
+    wb_text_append(&item->caption,
+                   "Energies%s over the model's own time, with decaying friction. Internal: stored "
+                   "and plastic, in wires, tape, contact and cohesion.",
+                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ENERGY]));
     for (int i = group->first, n = 0; i < group->first + group->n; i++) {
         const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
         const struct wb_bundles_result *const run =
             wb_bundles_results_usable(results, bundle->dynamic);
         if (!run)
             continue;
-        struct wb_panel *const panel = wb_figure_add_panel(*figure);
+        struct wb_panel *const panel = wb_figure_add_panel(item->figure);
         wb_figures_set_title(panel, bundle->label);
         wb_figure_set_axes(panel, "Time of the model (s)", n++ == 0 ? "Energy (mJ)" : "");
         /* Room above for the legend, so that the panels are alike. */
@@ -288,17 +277,6 @@ static enum wb_status draw_energies(struct wb_figure **figure, const void *conte
         WB_TRY(add_energies(panel, run));
     }
     return WB_OK;
-}
-
-static void tell_energies(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles_group *const group = &results->campaign->groups[index];
-    char place[48];
-    wb_text_append(text,
-                   "Energies%s over the model's own time, with decaying friction. Internal: stored "
-                   "and plastic, in wires, tape, contact and cohesion.",
-                   wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ENERGY]));
 }
 
 /* --- bent bundles --- */
@@ -317,40 +295,34 @@ static double most_stress(const struct wb_bundles_results *results,
     return most;
 }
 
-static enum wb_status draw_shape(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_shape(struct wb_figures_item *item)
 {
-    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles *const campaign = results->campaign;
-    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
+    const struct wb_bundles_bundle *const bundle = &campaign->bundles[item->index];
     const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
     struct wb_text title = {0};
     char name[64];
     if (!run || run->surface.n == 0)
         return WB_OK;
+    char place[48];
+    wb_text_append_escaped(&item->caption, bundle->label);
+    wb_text_append(
+        &item->caption,
+        " bent by %.0f mm%s: von Mises stress of the wires, with the tape drawn as "
+        "glass, from the side and its ends from nearby.",
+        run->curve.max_deflection / WB_MM,
+        wb_pages_paper_figure(place, campaign->groups[bundle->group].figures[WB_BUNDLES_SHAPE]));
     wb_text_append_escaped(&title, bundle->label);
-    snprintf(name, sizeof name, "shape-%d", index + 1);
+    snprintf(name, sizeof name, "shape-%d", item->index + 1);
     const struct wb_figures_surface_style style = {
         .width = WB_PDF_WIDTH,
         .most_stress = most_stress(results, &campaign->groups[bundle->group]),
         .title = wb_text_string(&title)};
-    const enum wb_status status = wb_figures_surface_draw(figure, name, &run->surface, &style);
+    const enum wb_status status =
+        wb_figures_surface_draw(&item->figure, name, &run->surface, &style);
     wb_text_release(&title);
     return status;
-}
-
-static void tell_shape(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles *const campaign = results->campaign;
-    const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
-    char place[48];
-    wb_text_append_escaped(text, bundle->label);
-    wb_text_append(
-        text,
-        " bent by %.0f mm%s: von Mises stress of the wires, with the tape drawn as "
-        "glass, from the side and its ends from nearby.",
-        wb_bundles_results_usable(results, bundle->dynamic)->curve.max_deflection / WB_MM,
-        wb_pages_paper_figure(place, campaign->groups[bundle->group].figures[WB_BUNDLES_SHAPE]));
 }
 
 /* --- studies --- */
@@ -381,40 +353,35 @@ static enum wb_status draw_study(struct wb_figure *figure, const struct wb_bundl
     return WB_OK;
 }
 
-static enum wb_status draw_studies(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_studies(struct wb_figures_item *item)
 {
-    const struct wb_bundles_results *const results = context;
+    const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles *const campaign = results->campaign;
     bool any = false;
-    for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++) {
+    for (int k = 2 * item->index; k < 2 * item->index + 2 && k < campaign->n_studies; k++) {
         for (int i = 0; i < campaign->studies[k].n; i++)
             any |= wb_bundles_results_usable(results, campaign->studies[k].runs[i]) != NULL;
     }
     if (!any)
         return WB_OK;
-    WB_TRY(start(figure, "study", index, 220.0));
-    for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++)
-        WB_TRY(draw_study(*figure, results, &campaign->studies[k], k == 2 * index));
-    return WB_OK;
-}
-
-static void tell_studies(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles *const campaign = results->campaign;
-    wb_text_append(text, "Studies of ");
-    for (int k = 2 * index; k < 2 * index + 2 && k < campaign->n_studies; k++) {
+    WB_TRY(start(&item->figure, "study", item->index, 220.0));
+    wb_text_append(&item->caption, "Studies of ");
+    for (int k = 2 * item->index; k < 2 * item->index + 2 && k < campaign->n_studies; k++) {
         const struct wb_bundles_study *const study = &campaign->studies[k];
-        wb_text_append(text, "%s<i>", k > 2 * index ? " and " : "");
-        wb_text_append_escaped(text, study->title);
-        wb_text_append(text, "</i> (");
-        wb_text_append_escaped(text, campaign->runs[study->runs[0]].model->title);
-        wb_text_append(text, ")");
+        wb_text_append(&item->caption, "%s<i>", k > 2 * item->index ? " and " : "");
+        wb_text_append_escaped(&item->caption, study->title);
+        wb_text_append(&item->caption, "</i> (");
+        wb_text_append_escaped(&item->caption, campaign->runs[study->runs[0]].model->title);
+        wb_text_append(&item->caption, ")");
     }
-    wb_text_append(text,
+    wb_text_append(&item->caption,
                    "%s. Published: the 1D beam with the published properties, under "
                    "the first run's loading.",
-                   index == 0 && campaign->printed_source[0] ? ", after the paper's Fig. 18" : "");
+                   item->index == 0 && campaign->printed_source[0] ? ", after the paper's Fig. 18"
+                                                                   : "");
+    for (int k = 2 * item->index; k < 2 * item->index + 2 && k < campaign->n_studies; k++)
+        WB_TRY(draw_study(item->figure, results, &campaign->studies[k], k == 2 * item->index));
+    return WB_OK;
 }
 
 /* --- 3D and 1D --- */
@@ -511,10 +478,9 @@ static enum wb_status add_fit(struct wb_panel *panel, const struct wb_bundles_re
     return status;
 }
 
-static enum wb_status draw_fit(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_fit(struct wb_figures_item *item)
 {
-    const struct wb_bundles_results *const results = context;
-    (void)index;
+    const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles *const campaign = results->campaign;
     double largest = 0.0;
     bool some_rod = false; /* then variants without one would only crowd the figure */
@@ -526,8 +492,17 @@ static enum wb_status draw_fit(struct wb_figure **figure, const void *context, i
     }
     if (!(largest > 0.0))
         return WB_OK;
-    WB_TRY(start(figure, "fit", -1, 300.0));
-    struct wb_panel *const panel = wb_figure_add_panel(*figure);
+    WB_TRY(start(&item->figure, "fit", -1, 300.0));
+    wb_text_append(&item->caption,
+                   "Simulated force over deflection in 3D (broad) and of the fitted 1D "
+                   "beam (dashed)%s.",
+                   campaign->printed_source[0] ? ", after the paper's Fig. 26" : "");
+    if (campaign->inset >= 0) {
+        wb_text_append(&item->caption, " Inset: bent axes of ");
+        wb_text_append_escaped(&item->caption, campaign->bundles[campaign->inset].label);
+        wb_text_append(&item->caption, " at a third, two thirds and all of the deflection.");
+    }
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Force (N)");
     /* Room above for legend and inset. */
     wb_figure_set_y_range(panel, 0.0, 1.3 * largest);
@@ -542,22 +517,6 @@ static enum wb_status draw_fit(struct wb_figure **figure, const void *context, i
         wb_figure_add_inset(panel),
         wb_bundles_results_usable(results, campaign->bundles[campaign->inset].dynamic),
         wb_bundles_results_fit(results, campaign->inset), &solid, &beam);
-}
-
-static void tell_fit(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_bundles_results *const results = context;
-    const struct wb_bundles *const campaign = results->campaign;
-    (void)index;
-    wb_text_append(text,
-                   "Simulated force over deflection in 3D (broad) and of the fitted 1D "
-                   "beam (dashed)%s.",
-                   campaign->printed_source[0] ? ", after the paper's Fig. 26" : "");
-    if (campaign->inset >= 0) {
-        wb_text_append(text, " Inset: bent axes of ");
-        wb_text_append_escaped(text, campaign->bundles[campaign->inset].label);
-        wb_text_append(text, " at a third, two thirds and all of the deflection.");
-    }
 }
 
 /* --- the table --- */
@@ -582,11 +541,11 @@ static int count_studies(const void *context)
 }
 
 const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
-    {"sections", count_groups, draw_sections, tell_sections, false},
-    {"studies", count_studies, draw_studies, tell_studies, false},
-    {"curves", count_groups, draw_forces, tell_forces, false},
-    {"curves", count_groups, draw_errors, tell_errors, false},
-    {"energies", count_groups, draw_energies, tell_energies, false},
-    {"shapes", count_bundles, draw_shape, tell_shape, false},
-    {"fit", NULL, draw_fit, tell_fit, false},
+    {"sections", count_groups, draw_sections, false},
+    {"studies", count_studies, draw_studies, false},
+    {"curves", count_groups, draw_forces, false},
+    {"curves", count_groups, draw_errors, false},
+    {"energies", count_groups, draw_energies, false},
+    {"shapes", count_bundles, draw_shape, false},
+    {"fit", NULL, draw_fit, false},
 };

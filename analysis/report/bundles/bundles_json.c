@@ -1,4 +1,4 @@
-#include "analysis/report/bundles/bundles_json.h"
+#include "analysis/report/bundles/bundles_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ static void put_state(struct wb_json *entry, const struct wb_simulation *wanted,
     static const char *const states[] = {"not wanted", "missing", "outdated", "refused", "used"};
     wb_json_set_text(entry, "dataset", wanted->name);
     wb_json_set_text(entry, "state", states[result->simulation.state]);
-    wb_json_set_text(entry, "command", wanted->command);
+    wb_json_set_text(entry, "command", wb_text_string(&wanted->command));
     if (result->simulation.state != WB_SIMULATION_USABLE) {
         wb_json_set_text(entry, "problem", wb_text_string(&result->simulation.problem));
         return;
@@ -157,15 +157,11 @@ static void put_verdicts(struct wb_json *root, const struct wb_bundles_results *
     }
 }
 
-struct wb_json *wb_bundles_json_build(const struct wb_bundles_results *results,
-                                      const char *const *files, int n_files)
+struct wb_json *wb_bundles_json_build(const void *context)
 {
+    const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
-    struct wb_json *const root = wb_json_create();
-    wb_numbers_put_title(root, campaign->head.title, "simulation");
-    wb_numbers_put_program(root);
-    wb_numbers_put_campaign(root, &campaign->head);
-    wb_numbers_put_outcome(root, &results->outcome);
+    struct wb_json *const root = wb_numbers_create(&campaign->head, &results->outcome);
     put_verdicts(root, results);
     struct wb_json *const bundles = wb_json_set_array(root, "bundles");
     for (int i = 0; i < campaign->n_bundles; i++)
@@ -173,6 +169,5 @@ struct wb_json *wb_bundles_json_build(const struct wb_bundles_results *results,
     struct wb_json *const runs = wb_json_set_array(root, "runs");
     for (int i = 0; i < campaign->n_runs; i++)
         put_run(runs, results, i);
-    wb_numbers_put_files(root, files, n_files);
     return root;
 }

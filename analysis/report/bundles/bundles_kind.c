@@ -2,9 +2,6 @@
 
 #include <stdio.h>
 
-#include "analysis/report/bundles/bundles_figures.h"
-#include "analysis/report/bundles/bundles_json.h"
-#include "analysis/report/bundles/bundles_pages.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
@@ -49,69 +46,20 @@ static void print(FILE *out, const void *context)
     }
 }
 
-/* --- the row --- */
-
-static enum wb_status read(void *campaign, const char *path)
-{
-    return wb_bundles_read(campaign, path);
-}
-
-static enum wb_status load(void *results, const void *campaign)
-{
-    wb_bundles_results_load(results, campaign);
-    return WB_OK;
-}
-
-static int count_steps(const void *campaign)
-{
-    const struct wb_bundles *const own = campaign;
-    return own->n_bundles;
-}
-
-static enum wb_status compute(void *results, int n_threads, wb_kind_progress *progress,
-                              void *context)
-{
-    (void)n_threads;
-    wb_bundles_results_compute(results, progress, context);
-    return WB_OK;
-}
-
-static void pages(struct wb_document *document, const void *results,
-                  const struct wb_figures *figures)
-{
-    wb_bundles_pages_build(document, results, figures);
-}
-
-static struct wb_json *json(const void *results, const char *const *files, int n_files)
-{
-    return wb_bundles_json_build(results, files, n_files);
-}
-
-static void release(void *results)
-{
-    wb_bundles_results_release(results);
-}
-
-static void release_campaign(void *campaign)
-{
-    wb_bundles_release(campaign);
-}
-
 const struct wb_kind wb_bundles_kind = {
     .name = "bundles",
     .data = "datasets",
     .datasets = wb_bundles_results_list,
     .campaign_size = sizeof(struct wb_bundles),
     .results_size = sizeof(struct wb_bundles_results),
-    .read = read,
-    .load = load,
-    .count_steps = count_steps,
-    .compute = compute,
+    .keys = wb_bundles_keys,
+    .load = wb_bundles_results_load,
+    .compute = wb_bundles_results_compute,
     .figures = wb_bundles_figures,
     .n_figures = WB_BUNDLES_FIGURE_ROWS,
-    .pages = pages,
-    .json = json,
+    .pages = wb_bundles_pages_build,
+    .json = wb_bundles_json_build,
     .print = print,
-    .release = release,
-    .release_campaign = release_campaign,
+    .release = wb_bundles_results_release,
+    .release_campaign = wb_bundles_release,
 };

@@ -1,6 +1,6 @@
 /* The report of bundles, in order: summary, bundles, studies, groups, 1D properties, cost, runs,
  * provenance. */
-#include "analysis/report/bundles/bundles_pages.h"
+#include "analysis/report/bundles/bundles_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,15 +14,11 @@
 
 static void put_unfitted(struct wb_document *document, const struct wb_bundles_results *results)
 {
-    char text[1700], name[600], problem[900];
     for (int i = 0; i < results->campaign->n_bundles; i++) {
         const struct wb_bundles_fit *const fit = &results->fits[i];
-        if (fit->state != WB_SIMULATION_REFUSED)
-            continue;
-        snprintf(text, sizeof text, "<b>%s</b>, no fitted beam: %s",
-                 wb_pages_escape(name, sizeof name, results->campaign->bundles[i].label),
-                 wb_pages_escape(problem, sizeof problem, wb_text_string(&fit->problem)));
-        wb_document_item(document, WB_TONE_WARNING, text);
+        if (fit->state == WB_SIMULATION_REFUSED)
+            wb_pages_item(document, WB_TONE_WARNING, "<b>", results->campaign->bundles[i].label,
+                          "</b>, no fitted beam: ", wb_text_string(&fit->problem));
     }
 }
 
@@ -34,8 +30,8 @@ static void put_limits(struct wb_document *document, const struct wb_bundles_res
 
 /* --- what came out --- */
 
-static void put_fact(struct wb_document *document, struct wb_document_table *table,
-                     const struct wb_bundles_results *results, int index)
+static void put_fact(struct wb_document_table *table, const struct wb_bundles_results *results,
+                     int index)
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_result *const dynamic =
@@ -44,15 +40,14 @@ static void put_fact(struct wb_document *document, struct wb_document_table *tab
         wb_bundles_results_usable(results, bundle->constant);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
     const double none = (double)NAN;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
-    wb_pages_cell_number(&row, dynamic ? dynamic->curve.max_force : none, 3);
-    wb_pages_cell_number(&row, dynamic && dynamic->published ? dynamic->published_max : none, 3);
-    wb_pages_cell_number(&row, dynamic && dynamic->published ? dynamic->rms : none, 4);
-    wb_pages_cell_number(&row, constant && constant->published ? constant->rms : none, 4);
-    wb_pages_cell_number(&row, fit ? fit->result.rms : none, 4);
-    wb_pages_cell_number(&row, wb_bundles_results_cost(results, index) / WB_PERCENT, 3);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->label);
+    wb_pages_cell_number(table, dynamic ? dynamic->curve.max_force : none, 3);
+    wb_pages_cell_number(table, dynamic && dynamic->published ? dynamic->published_max : none, 3);
+    wb_pages_cell_number(table, dynamic && dynamic->published ? dynamic->rms : none, 4);
+    wb_pages_cell_number(table, constant && constant->published ? constant->rms : none, 4);
+    wb_pages_cell_number(table, fit ? fit->result.rms : none, 4);
+    wb_pages_cell_number(table, wb_bundles_results_cost(results, index) / WB_PERCENT, 3);
 }
 
 static void put_facts(struct wb_document *document, const struct wb_bundles_results *results)
@@ -76,12 +71,9 @@ static void put_facts(struct wb_document *document, const struct wb_bundles_resu
         wb_text_append(&caption, " The paper's own 3D curves lie %g to %g from its tests.",
                        campaign->printed_rms[0], campaign->printed_rms[1]);
     wb_document_heading(document, 2, "facts", "What came out");
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 7, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 7, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
-        put_fact(document, table, results, i);
+        put_fact(table, results, i);
 }
 
 static void put_summary(struct wb_document *document, const struct wb_bundles_results *results)
@@ -101,44 +93,43 @@ static void put_summary(struct wb_document *document, const struct wb_bundles_re
 /* --- a table of runs --- */
 
 /* In percent, as short as the column. */
-static void put_ratio(struct wb_pages_row *row, double value, double limit)
+static void put_ratio(struct wb_document_table *table, double value, double limit)
 {
     const double percent = value / WB_PERCENT;
     enum wb_document_tone tone = WB_TONE_PLAIN;
     if (limit > 0.0)
         tone = value <= limit ? WB_TONE_GOOD : WB_TONE_WARNING;
     if (isfinite(value) && percent < 0.005)
-        wb_pages_cell(row, tone, "&lt; 0.01");
+        wb_pages_cell(table, tone, "&lt; 0.01");
     else if (isfinite(value))
-        wb_pages_cell(row, tone, "%.*f", percent < 1.0 ? 2 : percent < 10.0 ? 1 : 0, percent);
+        wb_pages_cell(table, tone, "%.*f", percent < 1.0 ? 2 : percent < 10.0 ? 1 : 0, percent);
     else
-        wb_pages_cell_number(row, value, 0);
+        wb_pages_cell_number(table, value, 0);
 }
 
-static void put_run(struct wb_document *document, struct wb_document_table *table,
-                    const struct wb_bundles_results *results, int index)
+static void put_run(struct wb_document_table *table, const struct wb_bundles_results *results,
+                    int index)
 {
     const struct wb_bundles_run *const wanted = &results->campaign->runs[index];
     const struct wb_bundles_limits *const limits = &results->campaign->limits;
     const struct wb_bundles_result *const run = wb_bundles_results_usable(results, index);
     const struct wb_bundle_interface *const interface = &wanted->model->interface;
     const double none = (double)NAN;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, wanted->name);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, wanted->name);
     if (interface->friction_kinetic != interface->friction_static)
-        wb_pages_cell(&row, WB_TONE_PLAIN, "%g\xe2\x80\x93%g", interface->friction_static,
+        wb_pages_cell(table, WB_TONE_PLAIN, "%g\xe2\x80\x93%g", interface->friction_static,
                       interface->friction_kinetic);
     else
-        wb_pages_cell(&row, WB_TONE_PLAIN, "%g", interface->friction_static);
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%g", interface->normal_stiffness / 1e9);
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", wb_bundles_loading(wanted));
-    wb_pages_cell_number(&row, run ? run->numbers.duration : none, 2);
-    wb_pages_cell_number(&row, run ? run->curve.max_force : none, 3);
-    wb_pages_cell_number(&row, run && run->published ? run->rms : none, 4);
-    put_ratio(&row, run ? run->numbers.kinetic : none, limits->kinetic);
-    put_ratio(&row, run ? run->numbers.artificial : none, limits->artificial);
-    put_ratio(&row, run ? run->numbers.imbalance : none, limits->imbalance);
-    wb_pages_put_row(document, table, false, &row);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%g", interface->friction_static);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%g", interface->normal_stiffness / 1e9);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_bundles_loading(wanted));
+    wb_pages_cell_number(table, run ? run->numbers.duration : none, 2);
+    wb_pages_cell_number(table, run ? run->curve.max_force : none, 3);
+    wb_pages_cell_number(table, run && run->published ? run->rms : none, 4);
+    put_ratio(table, run ? run->numbers.kinetic : none, limits->kinetic);
+    put_ratio(table, run ? run->numbers.artificial : none, limits->artificial);
+    put_ratio(table, run ? run->numbers.imbalance : none, limits->imbalance);
 }
 
 static void put_runs(struct wb_document *document, const struct wb_bundles_results *results, int n,
@@ -164,7 +155,7 @@ static void put_runs(struct wb_document *document, const struct wb_bundles_resul
     struct wb_document_table *const table =
         wb_document_table(document, explained ? caption : NULL, 10, columns);
     for (int i = 0; i < n; i++)
-        put_run(document, table, results, runs[i]);
+        put_run(table, results, runs[i]);
 }
 
 static const double n_mm2 = 1e-6;                     /* N m2 of one N mm2 */
@@ -172,25 +163,24 @@ static const int property_decimals[4] = {0, 2, 1, 3}; /* E, sigma_Y, K, n */
 
 /* --- sections and Table 4 --- */
 
-static void put_section(struct wb_document *document, struct wb_document_table *table,
-                        const struct wb_bundles_bundle *bundle, const struct wb_bundles_run *run)
+static void put_section(struct wb_document_table *table, const struct wb_bundles_bundle *bundle,
+                        const struct wb_bundles_run *run)
 {
     const struct wb_bundle_model *const m = run->model;
     const struct wb_bundle_rigidity rigidity = wb_bundle_model_rigidity(m);
     const double own = wb_bundle_model_diameter(m), none = (double)NAN;
     const double printed = m->has_published ? m->published.outer_diameter : none;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%d", m->packing.n);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, wb_bundle_model_arrangement(m));
-    wb_pages_cell_number(&row, own / WB_MM, 2);
-    wb_pages_cell_number(&row, printed / WB_MM, 2);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->label);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%d", m->packing.n);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_bundle_model_arrangement(m));
+    wb_pages_cell_number(table, own / WB_MM, 2);
+    wb_pages_cell_number(table, printed / WB_MM, 2);
     wb_pages_cell_number(
-        &row, wb_bundle_model_density(m, m->has_published ? printed : own) / WB_G_PER_CM3, 2);
-    wb_pages_cell_number(&row, m->has_published ? m->published.density / WB_G_PER_CM3 : none, 2);
-    wb_pages_cell_number(&row, rigidity.sliding[0] / n_mm2, 0);
-    wb_pages_cell_number(&row, rigidity.bonded[0] / n_mm2, 0);
-    wb_pages_put_row(document, table, false, &row);
+        table, wb_bundle_model_density(m, m->has_published ? printed : own) / WB_G_PER_CM3, 2);
+    wb_pages_cell_number(table, m->has_published ? m->published.density / WB_G_PER_CM3 : none, 2);
+    wb_pages_cell_number(table, rigidity.sliding[0] / n_mm2, 0);
+    wb_pages_cell_number(table, rigidity.bonded[0] / n_mm2, 0);
 }
 
 static void put_sections(struct wb_document *document, const struct wb_bundles_results *results,
@@ -216,8 +206,7 @@ static void put_sections(struct wb_document *document, const struct wb_bundles_r
         "freely and of wires that do not slide at all, with the tape.",
         9, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
-        put_section(document, table, &campaign->bundles[i],
-                    &campaign->runs[campaign->bundles[i].dynamic]);
+        put_section(table, &campaign->bundles[i], &campaign->runs[campaign->bundles[i].dynamic]);
     for (int i = 0; i < campaign->n_groups; i++)
         wb_figures_put(figures, document, "sections", i);
 }
@@ -268,29 +257,27 @@ static void put_groups(struct wb_document *document, const struct wb_bundles_res
 
 /* --- 1D properties --- */
 
-static void put_properties(struct wb_document *document, struct wb_document_table *table,
-                           const char *label, const char *of, const struct wb_material *material,
-                           double diameter)
+static void put_properties(struct wb_document_table *table, const char *label, const char *of,
+                           const struct wb_material *material, double diameter)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, label);
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", of);
-    wb_pages_cell_number(&row, diameter / WB_MM, 2);
+    wb_document_row(table, label[0] != '\0');
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, label);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", of);
+    wb_pages_cell_number(table, diameter / WB_MM, 2);
     for (int k = 0; k < 4; k++)
-        wb_pages_cell_number(&row,
+        wb_pages_cell_number(table,
                              material ? wb_pages_value(material, k) / wb_pages_properties[k].factor
                                       : (double)NAN,
                              property_decimals[k]);
     wb_pages_cell_number(
-        &row,
+        table,
         material ? wb_bundles_results_rigidity(material->youngs_modulus, diameter) / n_mm2
                  : (double)NAN,
         0);
-    wb_pages_put_row(document, table, label[0] != '\0', &row);
 }
 
-static void put_bundle(struct wb_document *document, struct wb_document_table *table,
-                       const struct wb_bundles_results *results, int index)
+static void put_bundle(struct wb_document_table *table, const struct wb_bundles_results *results,
+                       int index)
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_run *const run = &results->campaign->runs[bundle->dynamic];
@@ -298,11 +285,10 @@ static void put_bundle(struct wb_document *document, struct wb_document_table *t
         wb_bundles_results_usable(results, bundle->dynamic);
     const struct wb_wire *const published = wb_bundles_published(run);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
-    put_properties(document, table, bundle->label, "here", fit ? &fit->result.material : NULL,
+    put_properties(table, bundle->label, "here", fit ? &fit->result.material : NULL,
                    result ? result->simulation.dataset.info.outer_diameter : (double)NAN);
     if (published)
-        put_properties(document, table, "", "paper", &published->material,
-                       published->outer_diameter);
+        put_properties(table, "", "paper", &published->material, published->outer_diameter);
 }
 
 static void put_table(struct wb_document *document, const struct wb_bundles_results *results)
@@ -327,7 +313,7 @@ static void put_table(struct wb_document *document, const struct wb_bundles_resu
         "<i>EI</i> does not depend on it.",
         8, columns);
     for (int i = 0; i < results->campaign->n_bundles; i++)
-        put_bundle(document, table, results, i);
+        put_bundle(table, results, i);
 }
 
 static void put_quality(struct wb_document *document, const struct wb_bundles_results *results)
@@ -347,21 +333,20 @@ static void put_quality(struct wb_document *document, const struct wb_bundles_re
         const struct wb_wire *const published =
             wb_bundles_published(&results->campaign->runs[bundle->dynamic]);
         const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, i);
-        struct wb_pages_row row = {.n = 0};
         if (!fit)
             continue;
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
-        wb_pages_cell_number(&row, fit->result.rms, 4);
-        wb_pages_cell_number(&row, fit->result.max_error, 4);
-        wb_pages_cell_number(&row,
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->label);
+        wb_pages_cell_number(table, fit->result.rms, 4);
+        wb_pages_cell_number(table, fit->result.max_error, 4);
+        wb_pages_cell_number(table,
                              published ? fit->rigidity / wb_bundles_results_rigidity(
                                                              published->material.youngs_modulus,
                                                              published->outer_diameter)
                                        : (double)NAN,
                              2);
-        wb_pages_cell(&row, WB_TONE_PLAIN, "%d", fit->result.evaluations);
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, wb_calibrate_end_text(fit->result.end));
-        wb_pages_put_row(document, table, false, &row);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", fit->result.evaluations);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_calibrate_end_text(fit->result.end));
     }
 }
 
@@ -393,8 +378,8 @@ static void put_fit(struct wb_document *document, const struct wb_bundles_result
 
 /* --- cost --- */
 
-static void put_cost_of(struct wb_document *document, struct wb_document_table *table,
-                        const struct wb_bundles_results *results, int index)
+static void put_cost_of(struct wb_document_table *table, const struct wb_bundles_results *results,
+                        int index)
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
@@ -403,20 +388,15 @@ static void put_cost_of(struct wb_document *document, struct wb_document_table *
     const double limit = results->campaign->limits.cost;
     const double rod_cpu =
         rod->simulation.state == WB_SIMULATION_USABLE ? rod->simulation.cpu_s : none;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, bundle->label);
-    wb_pages_cell_number(&row, run ? run->numbers.elements : none, 0);
-    wb_pages_cell_number(&row, run ? run->numbers.shells : none, 0);
-    wb_pages_cell_number(&row, run ? run->numbers.steps / 1e3 : none, 0);
-    wb_pages_cell_number(&row, run ? run->numbers.ns : none, 1);
-    wb_pages_cell_number(&row, run ? run->simulation.cpu_s : none, 1);
-    wb_pages_cell_number(&row, rod_cpu, 3);
-    if (limit > 0.0 && isfinite(cost))
-        wb_pages_cell(&row, cost <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.3f",
-                      cost / WB_PERCENT);
-    else
-        wb_pages_cell_number(&row, cost / WB_PERCENT, 3);
-    wb_pages_put_row(document, table, false, &row);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->label);
+    wb_pages_cell_number(table, run ? run->numbers.elements : none, 0);
+    wb_pages_cell_number(table, run ? run->numbers.shells : none, 0);
+    wb_pages_cell_number(table, run ? run->numbers.steps / 1e3 : none, 0);
+    wb_pages_cell_number(table, run ? run->numbers.ns : none, 1);
+    wb_pages_cell_number(table, run ? run->simulation.cpu_s : none, 1);
+    wb_pages_cell_number(table, rod_cpu, 3);
+    wb_pages_cell_judged(table, cost / WB_PERCENT, 3, limit > 0.0, cost <= limit);
 }
 
 static void put_cost(struct wb_document *document, const struct wb_bundles_results *results)
@@ -439,12 +419,9 @@ static void put_cost(struct wb_document *document, const struct wb_bundles_resul
         wb_text_append(&caption, " The paper: 1D costs below %g %% of 3D.",
                        campaign->printed_cost / WB_PERCENT);
     wb_document_heading(document, 1, "cost", "Cost");
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 8, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
-        put_cost_of(document, table, results, i);
+        put_cost_of(table, results, i);
 }
 
 /* --- all runs --- */
@@ -468,8 +445,7 @@ static void put_all_runs(struct wb_document *document, const struct wb_bundles_r
         wb_text_append(&note, "Strains went beyond what the elements' logarithm is made for in ");
         wb_text_append_escaped(&note, wb_text_string(&text));
         wb_text_append(&note, ".");
-        wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&note));
-        wb_text_release(&note);
+        wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &note);
     }
     wb_text_release(&text);
 }
@@ -487,11 +463,10 @@ static void put_models(struct wb_document *document, const struct wb_bundles *ca
     struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
     for (int i = 0; i < campaign->n_bundles; i++) {
         const struct wb_bundles_run *const run = &campaign->runs[campaign->bundles[i].dynamic];
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->model_name);
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->mesh->name);
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, run->model->sha256);
-        wb_pages_put_row(document, table, false, &row);
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, run->model_name);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, run->mesh->name);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, run->model->sha256);
     }
 }
 
@@ -505,9 +480,10 @@ static void put_provenance(struct wb_document *document, const struct wb_bundles
 
 /* --- all of it --- */
 
-void wb_bundles_pages_build(struct wb_document *document, const struct wb_bundles_results *results,
+void wb_bundles_pages_build(struct wb_document *document, const void *context,
                             const struct wb_figures *figures)
 {
+    const struct wb_bundles_results *const results = context;
     wb_pages_start_simulations(document, results->campaign->head.title, &results->outcome);
     put_summary(document, results);
     put_sections(document, results, figures);

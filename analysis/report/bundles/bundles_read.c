@@ -60,14 +60,7 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
 static enum wb_status read_model(const struct wb_bundles *all, const struct wb_config_node *node,
                                  const char *name, struct wb_bundles_run *run, char path[WB_PATH])
 {
-    char named_in[WB_PATH + 32];
-    snprintf(named_in, sizeof named_in, "%s:%d: bundle", wb_config_origin(node),
-             wb_config_line(wb_config_find(node, "bundle")));
-    WB_TRY(wb_file_find_named(path, "bundles", name, all->head.folder, named_in));
-    const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
-    snprintf(run->model_name, sizeof run->model_name,
-             is_shipped ? "fixtures/bundles/%s.yaml" : "%s",
-             is_shipped ? name : wb_simulation_as_shown(name));
+    WB_TRY(wb_campaign_find(&all->head, node, "bundle", "bundles", name, path, run->model_name));
     run->model = calloc(1, sizeof *run->model);
     if (!run->model)
         return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");

@@ -211,7 +211,9 @@ static void fit_bundle(struct wb_bundles_results *results, int index)
     }
     const struct wb_reasons reasons = {&fit->problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
-    const enum wb_status status = calibrate(fit, run, &campaign->fit, &why);
+    wb_reasons_listen(&reasons);
+    const enum wb_status status = calibrate(fit, run, &campaign->head.fit, &why);
+    wb_reasons_end(&reasons, status);
     fit->state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         wb_reasons_fail(&reasons, status, &why);
@@ -224,7 +226,9 @@ static void compare_run(struct wb_bundles_result *result, const struct wb_bundle
     const struct wb_reasons reasons = {&result->simulation.problem, run->dataset.path,
                                        run->dataset.name};
     struct wb_reason why = {.text = ""};
+    wb_reasons_listen(&reasons);
     const enum wb_status status = wb_bundles_run_compare(result, run, fit, &why);
+    wb_reasons_end(&reasons, status);
     if (status == WB_OK)
         return;
     result->simulation.state = WB_SIMULATION_REFUSED;
@@ -253,36 +257,44 @@ bool wb_bundles_results_list(const void *context, int index, struct wb_simulatio
     return true;
 }
 
-void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign)
+enum wb_status wb_bundles_results_load(void *context, const void *of)
 {
+    struct wb_bundles_results *const results = context;
+    const struct wb_bundles *const campaign = of;
     results->campaign = campaign;
+    results->outcome.n_steps = campaign->n_bundles;
     for (int i = 0; i < campaign->n_runs; i++)
         wb_bundles_run_load(&results->runs[i], &campaign->runs[i]);
     for (int i = 0; i < campaign->n_bundles; i++) {
         const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
         wb_bundles_run_load_rod(&results->rods[i], bundle, &campaign->runs[bundle->dynamic]);
     }
+    return WB_OK;
 }
 
-void wb_bundles_results_compute(struct wb_bundles_results *results, wb_kind_progress *progress,
-                                void *context)
+enum wb_status wb_bundles_results_compute(void *of, int n_threads, wb_kind_progress *progress,
+                                          void *context)
 {
+    struct wb_bundles_results *const results = of;
+    (void)n_threads;
     const struct wb_bundles *const campaign = results->campaign;
     for (int i = 0; i < campaign->n_runs && !wb_interrupted(); i++) {
         if (results->runs[i].simulation.state == WB_SIMULATION_USABLE)
-            compare_run(&results->runs[i], &campaign->runs[i], &campaign->fit);
+            compare_run(&results->runs[i], &campaign->runs[i], &campaign->head.fit);
     }
     for (int i = 0; i < campaign->n_bundles && !wb_interrupted(); i++) {
         fit_bundle(results, i);
         if (progress)
-            progress(context, i + 1, campaign->n_bundles, campaign->bundles[i].label);
+            progress(context, i + 1, campaign->bundles[i].label);
     }
     results->outcome.interrupted = wb_interrupted();
     judge(results);
+    return WB_OK;
 }
 
-void wb_bundles_results_release(struct wb_bundles_results *results)
+void wb_bundles_results_release(void *context)
 {
+    struct wb_bundles_results *const results = context;
     for (int i = 0; i < WB_BUNDLES_RUNS; i++)
         wb_bundles_run_release(&results->runs[i]);
     for (int i = 0; i < WB_BUNDLES_BUNDLES; i++) {

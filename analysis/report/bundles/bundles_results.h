@@ -31,13 +31,11 @@ struct wb_bundles_results {
     struct wb_bundles_fit fits[WB_BUNDLES_BUNDLES];
 };
 
-/* Reads and checks the datasets into zeroed results. Nothing fails. */
-void wb_bundles_results_load(struct wb_bundles_results *results, const struct wb_bundles *campaign);
-/* Then compares and fits the usable ones, with progress after each bundle. Nothing fails: the
- * results say what is wrong. */
-void wb_bundles_results_compute(struct wb_bundles_results *results, wb_kind_progress *progress,
-                                void *context);
-void wb_bundles_results_release(struct wb_bundles_results *results); /* accepts a zeroed one */
+/* Reads and checks the datasets; then compares and fits the usable ones, with progress after each
+ * bundle. Nothing fails: the results say what is wrong. */
+wb_kind_load wb_bundles_results_load;
+wb_kind_compute wb_bundles_results_compute;
+wb_kind_release wb_bundles_results_release;
 
 /* Every run, then every bundle's 1D beam; of struct wb_bundles_results. */
 wb_simulation_list wb_bundles_results_list;

@@ -22,14 +22,8 @@ static enum wb_status read_model(const struct wb_wires *comparison,
                                  const struct wb_config_node *node, const char *name,
                                  struct wb_wires_case *item, char path[WB_PATH])
 {
-    char named_in[WB_PATH + 32];
-    snprintf(named_in, sizeof named_in, "%s:%d: model", wb_config_origin(node),
-             wb_config_line(wb_config_find(node, "model")));
-    WB_TRY(wb_file_find_named(path, "models", name, comparison->head.folder, named_in));
-    const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
-    snprintf(item->model_name, sizeof item->model_name,
-             is_shipped ? "fixtures/models/%s.yaml" : "%s",
-             is_shipped ? name : wb_simulation_as_shown(name));
+    WB_TRY(
+        wb_campaign_find(&comparison->head, node, "model", "models", name, path, item->model_name));
     item->model = calloc(1, sizeof *item->model);
     if (!item->model)
         return wb_fail(WB_ERR_MEMORY, "out of memory reading a campaign");
@@ -175,7 +169,7 @@ static enum wb_status read_limits(const struct wb_config_node *node, struct wb_w
 
 static enum wb_status read_printed(struct wb_wires *comparison, const struct wb_config_node *node)
 {
-    char wire[256] = "", path[WB_PATH], named_in[WB_PATH + 32];
+    char wire[256] = "", path[WB_PATH];
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_TEXT("wire", wire),
         WB_CONFIG_TEXT("source", comparison->printed_source),
@@ -187,9 +181,7 @@ static enum wb_status read_printed(struct wb_wires *comparison, const struct wb_
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     if (!wire[0])
         return WB_OK;
-    snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
-             wb_config_line(wb_config_find(node, "wire")));
-    WB_TRY(wb_file_find_named(path, "wires", wire, comparison->head.folder, named_in));
+    WB_TRY(wb_campaign_find(&comparison->head, node, "wire", "wires", wire, path, NULL));
     WB_TRY(wb_wire_read(path, &comparison->printed_wire));
     if (!comparison->printed_wire.has_properties)
         return wb_config_refuse(node, "wire", "'%s' has no properties", wire);
@@ -197,16 +189,15 @@ static enum wb_status read_printed(struct wb_wires *comparison, const struct wb_
     return WB_OK;
 }
 
-static enum wb_status read_root(struct wb_wires *comparison, const struct wb_config_node *root)
+enum wb_status wb_wires_keys(void *context, const struct wb_config_node *root)
 {
+    struct wb_wires *const comparison = context;
     static const char *const moduli[] = {"mixture", "curve", NULL};
     const struct wb_config_node *cases[WB_WIRES_RESIDUAL], *residual, *states, *fit, *limits,
         *printed;
     int modulus = 0;
     const struct wb_config_key keys[] = {
-        WB_CONFIG_IGNORED("kind"),
-        WB_CONFIG_TEXT("title", comparison->head.title),
-        WB_CONFIG_OPTIONAL_TEXT("notes", comparison->head.notes),
+        WB_CAMPAIGN_KEYS(&comparison->head),
         WB_CONFIG_OPTIONAL_TEXT("simulations", comparison->head.simulations),
         WB_CONFIG_NODE("elastic", &cases[WB_WIRES_ELASTIC]),
         WB_CONFIG_OPTIONAL_NODE("contact", &cases[WB_WIRES_CONTACT]),
@@ -230,26 +221,14 @@ static enum wb_status read_root(struct wb_wires *comparison, const struct wb_con
     if (isnan(comparison->section))
         comparison->section = comparison->cases[0].model->part[0].outer_diameter;
     WB_TRY(read_states(states, comparison));
-    WB_TRY(wb_campaign_read_settings(fit, &comparison->fit));
+    WB_TRY(wb_campaign_read_settings(fit, &comparison->head.fit));
     WB_TRY(read_limits(limits, comparison));
     return read_printed(comparison, printed);
 }
 
-enum wb_status wb_wires_read(struct wb_wires *comparison, const char *path)
+void wb_wires_release(void *context)
 {
-    memset(comparison, 0, sizeof *comparison);
-    wb_calibrate_default_settings(&comparison->fit);
-    struct wb_config *config;
-    WB_TRY(wb_campaign_open(&comparison->head, &config, path));
-    const enum wb_status status = read_root(comparison, wb_config_root(config));
-    wb_config_destroy(config);
-    if (status != WB_OK)
-        wb_wires_release(comparison);
-    return status;
-}
-
-void wb_wires_release(struct wb_wires *comparison)
-{
+    struct wb_wires *const comparison = context;
     for (int i = 0; i < WB_WIRES_CASES; i++) {
         free(comparison->cases[i].model);
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)

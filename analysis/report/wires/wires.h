@@ -38,7 +38,6 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibrate.h"
 #include "analysis/report/campaign.h"
 #include "analysis/report/simulation.h"
 #include "base/file.h"
@@ -81,7 +80,6 @@ struct wb_wires {
     double section;                            /* m */
     char loaded_state[32], residual_state[32]; /* names of steps */
     bool mixture;                              /* E of eq. 8 for the fit */
-    struct wb_calibrate_settings fit;
     double tip_limit; /* distance over the exact tip's displacement, 1; 0: none, as all of them */
     double stress_limit; /* of the ratio from 1 */
     double cost_limit;   /* 1 */
@@ -92,9 +90,9 @@ struct wb_wires {
     double printed_cost;   /* 1; 0: none */
 };
 
-/* Errors name file, line and key. */
-WB_MUST_CHECK enum wb_status wb_wires_read(struct wb_wires *comparison, const char *path);
-void wb_wires_release(struct wb_wires *comparison); /* accepts a zeroed one */
+/* Reading and release, as wb_kind_keys and wb_kind_release have it. */
+WB_MUST_CHECK enum wb_status wb_wires_keys(void *context, const struct wb_config_node *root);
+void wb_wires_release(void *context);
 
 /* Whether a material of the elastoplastic solid stands in for one that the paper lost. */
 bool wb_wires_has_substitutes(const struct wb_wires *comparison);

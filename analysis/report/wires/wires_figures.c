@@ -1,4 +1,4 @@
-#include "analysis/report/wires/wires_figures.h"
+#include "analysis/report/wires/wires_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -77,11 +77,10 @@ static void add_rod_axis(struct wb_panel *panel, const char *label, const struct
     wb_figure_add_line(panel, label, WB_WIRES_POINTS, x, y, style);
 }
 
-static struct wb_panel *add_shape_panel(struct wb_figure *figure, const char *title,
-                                        const char *y_label)
+static struct wb_panel *add_shape_panel(struct wb_figure *figure, const char *title)
 {
     struct wb_panel *const panel = wb_figure_add_panel(figure);
-    wb_figure_set_axes(panel, "<i>x</i> (mm)", y_label);
+    wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
     wb_figure_set_title(panel, title);
     wb_figure_set_width(panel, 290.0);
@@ -128,79 +127,60 @@ static struct wb_panel *add_distance_panel(struct wb_figure *figure, const char 
     return panel;
 }
 
-static enum wb_status draw_elastic_shapes(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_elastic_shapes(struct wb_figures_item *item)
 {
-    const struct wb_wires_results *const results = context;
-    (void)index;
-    const struct wb_wires_run *const bonded =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const contact =
-        wb_wires_usable(results, WB_WIRES_CONTACT, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod = wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_ROD);
+    const struct wb_wires_results *const results = item->results;
+    const struct wb_wires_run *const bonded = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const contact = wb_wires_solid_run(results, WB_WIRES_CONTACT);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTIC);
     if (!bonded && !contact && !rod)
         return WB_OK;
-    WB_TRY(wb_figures_start_simulation(figure, "shapes-elastic", 150.0));
-    struct wb_panel *panel = add_shape_panel(*figure, "Linear elastic", "<i>y</i> (mm)");
+    WB_TRY(wb_figures_start_simulation(&item->figure, "shapes-elastic", 150.0));
+    char in[48];
+    wb_text_append(&item->caption,
+                   "Simulated shapes of the axis at %g N%s, and how far they lie from that of the "
+                   "bonded solid.",
+                   force_of(results), figure_number(in, results, "4, linear elastic"));
+    struct wb_panel *panel = add_shape_panel(item->figure, "Linear elastic");
     add_axis(panel, "3D, bonded", bonded, &solid_style);
     add_axis(panel, "3D, friction", contact, &contact_style);
     add_axis(panel, "1D", rod, &rod_style);
     add_rod_axis(panel, "1D, exact", &results->exact, &fitted_style);
-    panel = add_distance_panel(*figure, "From the bonded solid");
+    panel = add_distance_panel(item->figure, "From the bonded solid");
     add_distance(panel, bonded, contact, &contact_style);
     add_distance(panel, bonded, rod, &rod_style);
     add_rod_distance(panel, bonded, &results->exact, &fitted_style);
     return WB_OK;
 }
 
-static void tell_elastic_shapes(struct wb_text *text, const void *context, int index)
+static enum wb_status draw_shapes(struct wb_figures_item *item)
 {
-    const struct wb_wires_results *const results = context;
-    char in[48];
-    (void)index;
-    wb_text_append(text,
-                   "Simulated shapes of the axis at %g N%s, and how far they lie from that of the "
-                   "bonded solid.",
-                   force_of(results), figure_number(in, results, "4, linear elastic"));
-}
-
-static enum wb_status draw_shapes(struct wb_figure **figure, const void *context, int index)
-{
-    const struct wb_wires_results *const results = context;
-    (void)index;
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
-    const struct wb_wires_run *const elastic =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_results *const results = item->results;
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const elastic = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
     const bool fitted = results->fit_state == WB_SIMULATION_USABLE;
     if (!solid && !rod)
         return WB_OK;
-    WB_TRY(wb_figures_start_simulation(figure, "shapes-elastoplastic", 170.0));
-    struct wb_panel *panel = add_shape_panel(*figure, "Elastoplastic", "<i>y</i> (mm)");
+    WB_TRY(wb_figures_start_simulation(&item->figure, "shapes-elastoplastic", 170.0));
+    char in[48];
+    wb_text_append(
+        &item->caption,
+        "Simulated shapes of the axis at %g N%s, and how far they lie from that of the solid. "
+        "1D fibres: each material with its own law; 1D fitted: one homogenised material, "
+        "fitted to the solid.",
+        force_of(results), figure_number(in, results, "4, elastoplastic"));
+    struct wb_panel *panel = add_shape_panel(item->figure, "Elastoplastic");
     add_axis(panel, "3D", solid, &solid_style);
     add_axis(panel, "1D fibres", rod, &rod_style);
     if (fitted)
         add_rod_axis(panel, "1D fitted", &results->fitted, &fitted_style);
     add_axis(panel, "3D, linear elastic", elastic, &printed_style);
-    panel = add_distance_panel(*figure, "From the solid");
+    panel = add_distance_panel(item->figure, "From the solid");
     add_distance(panel, solid, rod, &rod_style);
     if (fitted)
         add_rod_distance(panel, solid, &results->fitted, &fitted_style);
     return WB_OK;
-}
-
-static void tell_shapes(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_wires_results *const results = context;
-    char in[48];
-    (void)index;
-    wb_text_append(
-        text,
-        "Simulated shapes of the axis at %g N%s, and how far they lie from that of the solid. "
-        "1D fibres: each material with its own law; 1D fitted: one homogenised material, "
-        "fitted to the solid.",
-        force_of(results), figure_number(in, results, "4, elastoplastic"));
 }
 
 /* --- force against deflection and angle --- */
@@ -235,20 +215,23 @@ static void add_rod_rows(struct wb_panel *panels[2], const char *label,
     wb_figure_add_line(panels[1], label, (size_t)rod->n_curve, angle, rod->force, style);
 }
 
-static enum wb_status draw_loading(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_loading(struct wb_figures_item *item)
 {
-    const struct wb_wires_results *const results = context;
-    (void)index;
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
+    const struct wb_wires_results *const results = item->results;
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTOPLASTIC);
     if (!solid && !rod)
         return WB_OK;
-    WB_TRY(wb_figures_start_simulation(figure, "loading", 200.0));
+    WB_TRY(wb_figures_start_simulation(&item->figure, "loading", 200.0));
+    wb_text_append(&item->caption, "%s",
+                   results->printed.reached
+                       ? "Follower force against deflection and angle of the tip, "
+                         "simulated. As printed: with the paper's effective properties."
+                       : "Follower force against deflection and angle of the tip, "
+                         "simulated.");
     struct wb_panel *panels[2];
     for (int i = 0; i < 2; i++)
-        panels[i] = wb_figure_add_panel(*figure);
+        panels[i] = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panels[0], "Deflection of the tip (mm)", "Follower force (N)");
     wb_figure_set_axes(panels[1], "Angle of the tip (degrees)", "Follower force (N)");
     add_rows(panels, "3D", solid, &solid_style);
@@ -257,18 +240,6 @@ static enum wb_status draw_loading(struct wb_figure **figure, const void *contex
         add_rod_rows(panels, "1D fitted", &results->fitted, &fitted_style);
     add_rod_rows(panels, "1D as printed", &results->printed, &printed_style);
     return WB_OK;
-}
-
-static void tell_loading(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_wires_results *const results = context;
-    (void)index;
-    wb_text_append(text, "%s",
-                   results->printed.reached
-                       ? "Follower force against deflection and angle of the tip, "
-                         "simulated. As printed: with the paper's effective properties."
-                       : "Follower force against deflection and angle of the tip, "
-                         "simulated.");
 }
 
 /* --- shapes with residual stresses --- */
@@ -298,18 +269,19 @@ static bool any_residual(const struct wb_wires_results *results)
     return any;
 }
 
-static enum wb_status draw_residual_shapes(struct wb_figure **figure, const void *context,
-                                           int index)
+static enum wb_status draw_residual_shapes(struct wb_figures_item *item)
 {
-    const struct wb_wires_results *const results = context;
-    (void)index;
+    const struct wb_wires_results *const results = item->results;
     static const char *const models[] = {"3D", "1D fibres"};
     const struct wb_wires *const comparison = results->comparison;
     if (!any_residual(results))
         return WB_OK;
-    WB_TRY(wb_figures_start_simulation(figure, "residual-shapes", 190.0));
-    struct wb_panel *const side = add_shape_panel(*figure, "From the side", "<i>y</i> (mm)");
-    struct wb_panel *const effect = wb_figure_add_panel(*figure);
+    WB_TRY(wb_figures_start_simulation(&item->figure, "residual-shapes", 190.0));
+    wb_text_append(&item->caption,
+                   "The same shapes of solid and rod as lines, and how far residual "
+                   "stress moves the tip while the force grows.");
+    struct wb_panel *const side = add_shape_panel(item->figure, "From the side");
+    struct wb_panel *const effect = wb_figure_add_panel(item->figure);
     wb_figure_set_title(effect, "Effect on the tip");
     wb_figure_set_axes(effect, "Follower force (N)", "Tip moved (mm)");
     wb_figure_set_y_range(effect, 0.0, (double)NAN);
@@ -330,13 +302,6 @@ static enum wb_status draw_residual_shapes(struct wb_figure **figure, const void
         }
     }
     return WB_OK;
-}
-
-static void tell_residual_shapes(struct wb_text *text, const void *context, int index)
-{
-    (void)context, (void)index;
-    wb_text_append(text, "The same shapes of solid and rod as lines, and how far residual "
-                         "stress moves the tip while the force grows.");
 }
 
 /* --- stress fields: the paper's Figs. 3 and 5 --- */
@@ -519,7 +484,7 @@ static enum wb_status draw_stress(struct wb_figure **figure, const struct wb_wir
                                   int index)
 {
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const run = wb_wires_usable(results, index, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
     const struct wb_field *const along =
         run ? wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN) : NULL;
     const struct wb_field *const across =
@@ -555,42 +520,30 @@ static enum wb_status draw_stress(struct wb_figure **figure, const struct wb_wir
     return WB_OK;
 }
 
-static void tell_elastic(struct wb_text *text, const void *context, int index)
+static enum wb_status draw_elastic(struct wb_figures_item *item)
 {
-    const struct wb_wires_results *const results = context;
+    const struct wb_wires_results *const results = item->results;
     char in[48];
-    (void)index;
     wb_text_append(
-        text,
+        &item->caption,
         "Simulated wire of linear elastic materials under a follower force of %g N%s: von "
         "Mises "
         "stress on the longitudinal section as it is deformed, and on a cross section, seen "
         "from the clamp. Ring: the largest value.",
         force_of(results), figure_number(in, results, "3a"));
+    return draw_stress(&item->figure, results, WB_WIRES_ELASTIC);
 }
 
-static enum wb_status draw_elastic(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_elastoplastic(struct wb_figures_item *item)
 {
-    (void)index;
-    return draw_stress(figure, context, WB_WIRES_ELASTIC);
-}
-
-static enum wb_status draw_elastoplastic(struct wb_figure **figure, const void *context, int index)
-{
-    (void)index;
-    return draw_stress(figure, context, WB_WIRES_ELASTOPLASTIC);
-}
-
-static void tell_elastoplastic(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_wires_results *const results = context;
+    const struct wb_wires_results *const results = item->results;
     char in[48];
-    (void)index;
     wb_text_append(
-        text,
+        &item->caption,
         "The same wire of elastoplastic materials at %g N%s: von Mises stress, simulated. "
         "The colours have another scale than the elastic ones.",
         force_of(results), figure_number(in, results, "3b"));
+    return draw_stress(&item->figure, results, WB_WIRES_ELASTOPLASTIC);
 }
 
 /* --- Fig. 5a --- */
@@ -621,40 +574,35 @@ static enum wb_status add_pair(struct wb_figure *figure, const struct wb_field *
     return WB_OK;
 }
 
-static enum wb_status draw_residual(struct wb_figure **figure, const void *context, int index)
+static enum wb_status draw_residual(struct wb_figures_item *item)
 {
-    const struct wb_wires_results *const results = context;
+    const struct wb_wires_results *const results = item->results;
     const struct wb_wires *const comparison = results->comparison;
     const struct wb_field *fields[2] = {NULL, NULL};
     char name[40];
     for (int k = 0; k < 2; k++) {
         const struct wb_wires_run *const run =
-            wb_wires_usable(results, WB_WIRES_RESIDUAL + index, (enum wb_wires_solver)k);
+            wb_wires_usable(results, WB_WIRES_RESIDUAL + item->index, (enum wb_wires_solver)k);
         if (run)
             fields[k] =
                 wb_fields_find(&run->fields, comparison->residual_state, comparison->section);
     }
     if (!fields[0] && !fields[1])
         return WB_OK;
-    snprintf(name, sizeof name, "residual-%d", index + 1);
-    WB_TRY(wb_figures_start_simulation(figure, name, 122.0));
-    WB_TRY(add_pair(*figure, fields, AXIAL));
-    return add_pair(*figure, fields, VON_MISES);
-}
-
-static void tell_residual(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_wires_results *const results = context;
+    snprintf(name, sizeof name, "residual-%d", item->index + 1);
+    WB_TRY(wb_figures_start_simulation(&item->figure, name, 122.0));
     char in[48];
     char label[200];
     wb_text_append(
-        text,
+        &item->caption,
         "%s%s: simulated residual stress in the core near the clamp, seen from it: axial "
         "stress, tension positive, and von Mises stress, of the solid and of the rod's "
         "fibres.",
         wb_pages_escape(label, sizeof label,
-                        results->comparison->cases[WB_WIRES_RESIDUAL + index].label),
+                        results->comparison->cases[WB_WIRES_RESIDUAL + item->index].label),
         figure_number(in, results, "5a"));
+    WB_TRY(add_pair(item->figure, fields, AXIAL));
+    return add_pair(item->figure, fields, VON_MISES);
 }
 
 static int count_residual(const void *context)
@@ -716,7 +664,7 @@ static void find_loaded(struct loaded *loaded, const struct wb_wires_results *re
     *loaded = (struct loaded){.n = 0};
     for (int i = 0; i <= comparison->n_residual && loaded->n < 3; i++) {
         const int index = WB_WIRES_ELASTOPLASTIC + i;
-        const struct wb_wires_run *const run = wb_wires_usable(results, index, WB_WIRES_SOLID);
+        const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
         const struct wb_field *const field =
             run ? wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN) : NULL;
         if (!field)
@@ -728,11 +676,9 @@ static void find_loaded(struct loaded *loaded, const struct wb_wires_results *re
     }
 }
 
-static enum wb_status draw_residual_stress(struct wb_figure **figure, const void *context,
-                                           int index)
+static enum wb_status draw_residual_stress(struct wb_figures_item *item)
 {
-    const struct wb_wires_results *const results = context;
-    (void)index;
+    const struct wb_wires_results *const results = item->results;
     struct loaded loaded;
     find_loaded(&loaded, results);
     if (loaded.n == 0 || results->comparison->n_residual == 0)
@@ -741,35 +687,29 @@ static enum wb_status draw_residual_stress(struct wb_figure **figure, const void
     const struct extent *const extent = &loaded.extent;
     const double width = (WB_PDF_WIDTH - 46.0 - 10.0 * loaded.n) / loaded.n;
     const double ratio = (extent->high[1] - extent->low[1]) / (extent->high[0] - extent->low[0]);
-    WB_TRY(wb_figures_start_simulation(figure, "residual-stress",
+    WB_TRY(wb_figures_start_simulation(&item->figure, "residual-stress",
                                        fmin(fmax(width * ratio, 60.0), 260.0) + 30.0));
-    for (int i = 0; i < loaded.n; i++)
-        WB_TRY(add_loaded(*figure, loaded.labels[i], loaded.fields[i], extent, &colours));
-    wb_figure_add_colour_bar(*figure, &colours, "MPa");
-    return WB_OK;
-}
-
-static void tell_residual_stress(struct wb_text *text, const void *context, int index)
-{
-    const struct wb_wires_results *const results = context;
     char in[48];
-    (void)index;
-    wb_text_append(text,
+    wb_text_append(&item->caption,
                    "Von Mises stress at %g N without and with residual stresses%s, simulated: "
                    "longitudinal sections as they are deformed, seen from the side, with the "
                    "largest value of the core.",
                    force_of(results), figure_number(in, results, "5b"));
+    for (int i = 0; i < loaded.n; i++)
+        WB_TRY(add_loaded(item->figure, loaded.labels[i], loaded.fields[i], extent, &colours));
+    wb_figure_add_colour_bar(item->figure, &colours, "MPa");
+    return WB_OK;
 }
 
 /* --- the table --- */
 
 const struct wb_figures_row wb_wires_figures[WB_WIRES_FIGURES] = {
-    {"elastic", NULL, draw_elastic, tell_elastic, false},
-    {"elastic-shapes", NULL, draw_elastic_shapes, tell_elastic_shapes, false},
-    {"elastoplastic", NULL, draw_elastoplastic, tell_elastoplastic, false},
-    {"elastoplastic", NULL, draw_shapes, tell_shapes, false},
-    {"loading", NULL, draw_loading, tell_loading, false},
-    {"residual", count_residual, draw_residual, tell_residual, false},
-    {"residual-effect", NULL, draw_residual_stress, tell_residual_stress, false},
-    {"residual-effect", NULL, draw_residual_shapes, tell_residual_shapes, false},
+    {"elastic", NULL, draw_elastic, false},
+    {"elastic-shapes", NULL, draw_elastic_shapes, false},
+    {"elastoplastic", NULL, draw_elastoplastic, false},
+    {"elastoplastic", NULL, draw_shapes, false},
+    {"loading", NULL, draw_loading, false},
+    {"residual", count_residual, draw_residual, false},
+    {"residual-effect", NULL, draw_residual_stress, false},
+    {"residual-effect", NULL, draw_residual_shapes, false},
 };

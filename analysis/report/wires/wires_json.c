@@ -1,4 +1,4 @@
-#include "analysis/report/wires/wires_json.h"
+#include "analysis/report/wires/wires_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +36,7 @@ static void put_fields(struct wb_json *entry, const struct wb_fields *fields)
 static void put_usable(struct wb_json *entry, const struct wb_wires_results *results,
                        const struct wb_wires_run *run, int index)
 {
-    const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, index);
     wb_json_set_text(entry, "sha256", run->simulation.sha256);
     wb_json_set_number(entry, "follower_force_N", run->force);
     wb_numbers_put_list(entry, "tip_mm", run->tip, 3, WB_MM);
@@ -72,7 +72,7 @@ static void put_run(struct wb_json *object, const struct wb_wires_results *resul
     wb_json_set_text(entry, "state", states[run->simulation.state]);
     if (run->simulation.state != WB_SIMULATION_USABLE) {
         wb_json_set_text(entry, "problem", wb_text_string(&run->simulation.problem));
-        wb_json_set_text(entry, "command", item->datasets[solver].command);
+        wb_json_set_text(entry, "command", wb_text_string(&item->datasets[solver].command));
     }
     wb_json_set_number(entry, "elements", run->elements);
     wb_json_set_number(entry, "degrees_of_freedom", run->unknowns);
@@ -122,8 +122,7 @@ static void put_material(struct wb_json *object, const char *key,
 
 static void put_fit(struct wb_json *root, const struct wb_wires_results *results)
 {
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     struct wb_json *const entry = wb_json_set_object(root, "fit");
     if (results->comparison->has_printed_wire)
         put_material(entry, "printed", &results->comparison->printed_wire.material);
@@ -173,19 +172,13 @@ static void put_cases(struct wb_json *root, const struct wb_wires_results *resul
     }
 }
 
-struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
-                                    const char *const *files, int n_files)
+struct wb_json *wb_wires_json_build(const void *context)
 {
+    const struct wb_wires_results *const results = context;
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const elastic =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const plastic =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    struct wb_json *const root = wb_json_create();
-    wb_numbers_put_title(root, comparison->head.title, "simulation");
-    wb_numbers_put_program(root);
-    wb_numbers_put_campaign(root, &comparison->head);
-    wb_numbers_put_outcome(root, &results->outcome);
+    const struct wb_wires_run *const elastic = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const plastic = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    struct wb_json *const root = wb_numbers_create(&comparison->head, &results->outcome);
     wb_json_set_number(root, "jacket_modulus_per_percent_of_core_MPa",
                        wb_wires_split(comparison->cases[WB_WIRES_ELASTOPLASTIC].model, 0.01) /
                            WB_MPA);
@@ -196,6 +189,5 @@ struct wb_json *wb_wires_json_build(const struct wb_wires_results *results,
     put_rod(root, "printed_rod", &results->printed, plastic);
     if (results->printed.done)
         wb_json_set_number(root, "printed_collapse_force_N", results->collapse_force);
-    wb_numbers_put_files(root, files, n_files);
     return root;
 }

@@ -8,4 +8,16 @@
 /* Campaign and results: struct wb_wires, struct wb_wires_results. */
 extern const struct wb_kind wb_wires_kind;
 
+/* --- its parts --- */
+
+enum {
+    WB_WIRES_FIGURES = 8
+};
+
+/* After the paper's Figs. 3, 4 and 5. Places: "elastic", "elastic-shapes", "elastoplastic",
+ * "loading", "residual" of each case with residual stress, "residual-effect". */
+extern const struct wb_figures_row wb_wires_figures[WB_WIRES_FIGURES];
+wb_kind_pages wb_wires_pages_build;
+wb_kind_json wb_wires_json_build;
+
 #endif

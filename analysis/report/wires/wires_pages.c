@@ -1,13 +1,12 @@
 /* The report of wires, in order: summary, linear elastic, elastoplastic, residual stresses, cost,
  * provenance. */
-#include "analysis/report/wires/wires_pages.h"
+#include "analysis/report/wires/wires_kind.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "analysis/report/pages.h"
-#include "analysis/report/wires/wires_figures.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -15,12 +14,9 @@
 
 static void put_unfitted(struct wb_document *document, const struct wb_wires_results *results)
 {
-    char text[1700], problem[900];
-    if (results->fit_state == WB_SIMULATION_USABLE)
-        return;
-    snprintf(text, sizeof text, "<b>No fitted rod</b>: %s",
-             wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
-    wb_document_item(document, WB_TONE_WARNING, text);
+    if (results->fit_state != WB_SIMULATION_USABLE)
+        wb_pages_item(document, WB_TONE_WARNING,
+                      "<b>No fitted rod</b>: ", wb_text_string(&results->fit_problem), "", "");
 }
 
 static void put_limits(struct wb_document *document, const struct wb_wires_results *results)
@@ -38,18 +34,16 @@ struct fact {
     const char *paper; /* NULL or "": nothing */
 };
 
-static void put_fact(struct wb_document *document, struct wb_document_table *table,
-                     const struct fact *fact)
+static void put_fact(struct wb_document_table *table, const struct fact *fact)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", fact->what);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", fact->unit);
-    wb_pages_cell_number(&row, fact->ours, fact->decimals);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", fact->what);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", fact->unit);
+    wb_pages_cell_number(table, fact->ours, fact->decimals);
     if (fact->paper && fact->paper[0])
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, fact->paper);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, fact->paper);
     else
-        wb_pages_cell(&row, WB_TONE_QUIET, "\xe2\x80\x93");
-    wb_pages_put_row(document, table, false, &row);
+        wb_pages_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
 }
 
 static double angle_of(const struct wb_wires_run *run)
@@ -59,7 +53,7 @@ static double angle_of(const struct wb_wires_run *run)
 
 static double largest_stress(const struct wb_wires_results *results, int index)
 {
-    const struct wb_wires_run *const run = wb_wires_usable(results, index, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
     const struct wb_field *const field =
         run ? wb_fields_find(&run->fields, results->comparison->loaded_state, (double)NAN) : NULL;
     return wb_wires_find_peak(field, 0).stress / WB_MPA;
@@ -120,7 +114,7 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
             : NULL,
         4, columns);
     for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
-        put_fact(document, table, &facts[i]);
+        put_fact(table, &facts[i]);
 }
 
 static void put_summary(struct wb_document *document, const struct wb_wires_results *results)
@@ -139,13 +133,6 @@ static void put_summary(struct wb_document *document, const struct wb_wires_resu
     put_unfitted(document, results);
     put_limits(document, results);
     put_facts(document, results);
-}
-
-static void put_paragraph(struct wb_document *document, struct wb_text *text)
-{
-    wb_document_paragraph(document, wb_text_string(text));
-    document->failed |= text->failed;
-    wb_text_release(text);
 }
 
 /* --- tips --- */
@@ -173,26 +160,24 @@ struct tip {
     double largest;         /* m, of the axis from the solid's */
 };
 
-static void put_tip(struct wb_document *document, struct wb_document_table *table,
-                    const struct tip *tip, const struct wb_wires_run *solid, bool begins)
+static void put_tip(struct wb_document_table *table, const struct tip *tip,
+                    const struct wb_wires_run *solid, bool begins)
 {
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, tip->label);
+    wb_document_row(table, begins);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, tip->label);
     for (int i = 0; i < 3; i++)
-        wb_pages_cell_number(&row, tip->place[i] / WB_MM, 3);
-    wb_pages_cell_number(&row, tip->angle / WB_DEGREE, 3);
+        wb_pages_cell_number(table, tip->place[i] / WB_MM, 3);
+    wb_pages_cell_number(table, tip->angle / WB_DEGREE, 3);
     double away = (double)NAN;
     if (solid && isfinite(tip->largest))
         away = hypot(hypot(tip->place[0] - solid->tip[0], tip->place[1] - solid->tip[1]),
                      tip->place[2] - solid->tip[2]);
-    wb_pages_cell_number(&row, away / WB_MM, 3);
-    wb_pages_cell_number(&row, tip->largest / WB_MM, 3);
-    wb_pages_put_row(document, table, begins, &row);
+    wb_pages_cell_number(table, away / WB_MM, 3);
+    wb_pages_cell_number(table, tip->largest / WB_MM, 3);
 }
 
-static void put_tip_of(struct wb_document *document, struct wb_document_table *table,
-                       const char *label, const struct wb_wires_run *run,
-                       const struct wb_wires_run *solid)
+static void put_tip_of(struct wb_document_table *table, const char *label,
+                       const struct wb_wires_run *run, const struct wb_wires_run *solid)
 {
     if (!run)
         return;
@@ -200,12 +185,11 @@ static void put_tip_of(struct wb_document *document, struct wb_document_table *t
     memcpy(tip.place, run->tip, sizeof tip.place);
     if (solid && run != solid)
         tip.largest = wb_wires_distance(solid, run);
-    put_tip(document, table, &tip, solid, run == solid);
+    put_tip(table, &tip, solid, run == solid);
 }
 
-static void put_rod(struct wb_document *document, struct wb_document_table *table,
-                    const char *label, const struct wb_wires_rod *rod,
-                    const struct wb_wires_run *solid)
+static void put_rod(struct wb_document_table *table, const char *label,
+                    const struct wb_wires_rod *rod, const struct wb_wires_run *solid)
 {
     const int last = WB_WIRES_POINTS - 1;
     if (!rod->reached)
@@ -214,7 +198,7 @@ static void put_rod(struct wb_document *document, struct wb_document_table *tabl
                             .place = {rod->x[last], rod->y[last], 0.0},
                             .angle = rod->tip_angle,
                             .largest = solid ? wb_wires_rod_distance(solid, rod) : (double)NAN};
-    put_tip(document, table, &tip, solid, false);
+    put_tip(table, &tip, solid, false);
 }
 
 /* --- linear elastic --- */
@@ -242,18 +226,13 @@ static void put_stresses(struct wb_document *document, const struct wb_wires_res
     for (int i = 0; i < results->n_stresses; i++) {
         const struct wb_wires_stress *const stress = &results->stresses[i];
         const double ratio = stress->core.stress / stress->beam;
-        struct wb_pages_row row = {.n = 0};
-        wb_pages_cell_number(&row, stress->x / WB_MM, 2);
-        wb_pages_cell_number(&row, stress->core.stress / WB_MPA, 1);
-        wb_pages_cell_number(&row, stress->beam / WB_MPA, 1);
-        if (limit > 0.0)
-            wb_pages_cell(&row, fabs(ratio - 1.0) <= limit ? WB_TONE_GOOD : WB_TONE_WARNING, "%.4f",
-                          ratio);
-        else
-            wb_pages_cell_number(&row, ratio, 4);
-        wb_pages_cell_number(&row, stress->curvature * WB_MM, 6);
-        wb_pages_cell_number(&row, stress->jacket.stress / WB_MPA, 2);
-        wb_pages_put_row(document, table, false, &row);
+        wb_document_row(table, false);
+        wb_pages_cell_number(table, stress->x / WB_MM, 2);
+        wb_pages_cell_number(table, stress->core.stress / WB_MPA, 1);
+        wb_pages_cell_number(table, stress->beam / WB_MPA, 1);
+        wb_pages_cell_judged(table, ratio, 4, limit > 0.0, fabs(ratio - 1.0) <= limit);
+        wb_pages_cell_number(table, stress->curvature * WB_MM, 6);
+        wb_pages_cell_number(table, stress->jacket.stress / WB_MPA, 2);
     }
 }
 
@@ -285,17 +264,15 @@ static void put_largest(struct wb_document *document, const struct wb_wires_resu
         wb_text_append(&text,
                        " Its Young's modulus of copper is lost, and the core's was chosen so "
                        "that beam theory gives that stress.");
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 static void put_elastic(struct wb_document *document, const struct wb_wires_results *results,
                         const struct wb_figures *figures)
 {
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const contact =
-        wb_wires_usable(results, WB_WIRES_CONTACT, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod = wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_ROD);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const contact = wb_wires_solid_run(results, WB_WIRES_CONTACT);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTIC);
     const struct wb_wire_model *const model = results->comparison->cases[WB_WIRES_ELASTIC].model;
     wb_document_heading(document, 1, "elastic", "Linear elastic: solid and rod");
     wb_figures_put(figures, document, "elastic", 0);
@@ -308,10 +285,10 @@ static void put_elastic(struct wb_document *document, const struct wb_wires_resu
         document, "Tip from 3D: distance of the tips. Largest distance: of points at the same arc "
                   "length. Exact: the elastica under the follower force, which neither shears nor "
                   "stretches.");
-    put_tip_of(document, table, "3D, bonded", solid, solid);
-    put_tip_of(document, table, "3D, friction", contact, solid);
-    put_tip_of(document, table, "1D", rod, solid);
-    put_rod(document, table, "1D, exact", &results->exact, solid);
+    put_tip_of(table, "3D, bonded", solid, solid);
+    put_tip_of(table, "3D, friction", contact, solid);
+    put_tip_of(table, "1D", rod, solid);
+    put_rod(table, "1D, exact", &results->exact, solid);
     struct wb_text text = {0};
     wb_text_append(&text,
                    "The rod's effective Young's modulus is %.2f GPa (eq. 8), its Poisson's ratio "
@@ -326,7 +303,7 @@ static void put_elastic(struct wb_document *document, const struct wb_wires_resu
                        wb_wires_distance(solid, contact) / WB_MM);
     if (contact && isfinite(contact->slip))
         wb_text_append(&text, " Core and jacket slip by %.4f mm at most.", contact->slip / WB_MM);
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 /* --- elastoplastic --- */
@@ -385,30 +362,27 @@ static void put_curl(struct wb_document *document, const struct wb_wires_results
                        results->collapse_force);
         append_misprint(&text, results, solid->tip_angle / WB_DEGREE > 90.0);
     }
-    wb_document_notice(document, WB_TONE_WARNING, wb_text_string(&text));
-    document->failed |= text.failed;
-    wb_text_release(&text);
+    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
 }
 
-static void put_property(struct wb_document *document, struct wb_document_table *table,
-                         const struct wb_wires_results *results, int i)
+static void put_property(struct wb_document_table *table, const struct wb_wires_results *results,
+                         int i)
 {
     const struct wb_pages_property *const property = &wb_pages_properties[i];
     const int decimals = i == 2 ? 1 : property->decimals; /* K is small here */
     const bool fitted = results->fit_state == WB_SIMULATION_USABLE;
     const bool printed = results->comparison->has_printed_wire;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
-    wb_pages_cell(&row, WB_TONE_QUIET, "%s", property->unit);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", property->unit);
     wb_pages_cell_number(
-        &row, fitted ? wb_pages_value(&results->fit.material, i) / property->factor : (double)NAN,
+        table, fitted ? wb_pages_value(&results->fit.material, i) / property->factor : (double)NAN,
         decimals);
-    wb_pages_cell_number(&row,
+    wb_pages_cell_number(table,
                          printed ? wb_pages_value(&results->comparison->printed_wire.material, i) /
                                        property->factor
                                  : (double)NAN,
                          decimals);
-    wb_pages_put_row(document, table, false, &row);
 }
 
 static void put_fit(struct wb_document *document, const struct wb_wires_results *results,
@@ -423,12 +397,9 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
     const struct wb_wires *const comparison = results->comparison;
     char source[400], caption[900];
     wb_document_heading(document, 2, "fit", "Properties of the rod, fitted to the solid");
-    if (results->fit_state != WB_SIMULATION_USABLE) {
-        char problem[900], item[1000];
-        snprintf(item, sizeof item, "<b>No fit</b>: %s",
-                 wb_pages_escape(problem, sizeof problem, wb_text_string(&results->fit_problem)));
-        wb_document_item(document, WB_TONE_WARNING, item);
-    }
+    if (results->fit_state != WB_SIMULATION_USABLE)
+        wb_pages_item(document, WB_TONE_WARNING,
+                      "<b>No fit</b>: ", wb_text_string(&results->fit_problem), "", "");
     snprintf(
         caption, sizeof caption,
         "%s, <i>\xcf\x83</i><sub>Y</sub> of eq. 11, <i>K</i> and <i>n</i> by the search of "
@@ -439,7 +410,7 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
                         comparison->has_printed_wire ? comparison->printed_source : "none"));
     struct wb_document_table *const table = wb_document_table(document, caption, 4, columns);
     for (int i = 0; i < 4; i++)
-        put_property(document, table, results, i);
+        put_property(table, results, i);
     if (results->fit_state != WB_SIMULATION_USABLE)
         return;
     struct wb_text text = {0};
@@ -460,7 +431,7 @@ static void put_fit(struct wb_document *document, const struct wb_wires_results 
     const int n = wb_calibrate_remarks(&results->fit, remarks);
     for (int i = 0; i < n; i++)
         wb_text_append(&text, " Remark: %s.", remarks[i]);
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 static void put_split(struct wb_document *document, const struct wb_wires_results *results)
@@ -480,27 +451,25 @@ static void put_split(struct wb_document *document, const struct wb_wires_result
         wb_wire_model_youngs_modulus(model) / (1e3 * WB_MPA),
         jacket->material.youngs_modulus / WB_MPA, core->material.youngs_modulus / (1e3 * WB_MPA),
         wb_wires_split(model, 0.01) / WB_MPA, most / (1e3 * WB_MPA));
-    put_paragraph(document, &text);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
 static void put_elastoplastic(struct wb_document *document, const struct wb_wires_results *results,
                               const struct wb_figures *figures)
 {
-    const struct wb_wires_run *const solid =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_ROD);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTOPLASTIC);
     wb_document_heading(document, 1, "elastoplastic", "Elastoplastic: solid and rod");
     if (solid)
         put_curl(document, results, solid);
     wb_figures_put(figures, document, "elastoplastic", 0);
     wb_document_heading(document, 2, "elastoplastic-shapes", "Shapes");
     struct wb_document_table *const table = start_tips(document, NULL);
-    put_tip_of(document, table, "3D", solid, solid);
-    put_tip_of(document, table, "1D fibres", rod, solid);
+    put_tip_of(table, "3D", solid, solid);
+    put_tip_of(table, "1D fibres", rod, solid);
     if (results->fit_state == WB_SIMULATION_USABLE)
-        put_rod(document, table, "1D fitted", &results->fitted, solid);
-    put_rod(document, table, "1D as printed", &results->printed, solid);
+        put_rod(table, "1D fitted", &results->fitted, solid);
+    put_rod(table, "1D as printed", &results->printed, solid);
     put_fit(document, results, solid);
     wb_figures_put(figures, document, "loading", 0);
     put_split(document, results);
@@ -544,9 +513,7 @@ static void put_preloads(struct wb_document *document, const struct wb_wires *co
             append_step(&text, &item->model->step[k].loads);
         }
         wb_text_append(&text, ".");
-        wb_document_item(document, WB_TONE_PLAIN, wb_text_string(&text));
-        document->failed |= text.failed;
-        wb_text_release(&text);
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
     }
 }
 
@@ -562,7 +529,7 @@ static void find_axial(const struct wb_field *field, double range[2])
     }
 }
 
-static void put_residual_row(struct wb_document *document, struct wb_document_table *table,
+static void put_residual_row(struct wb_document_table *table,
                              const struct wb_wires_results *results, int index,
                              enum wb_wires_solver solver)
 {
@@ -576,16 +543,15 @@ static void put_residual_row(struct wb_document *document, struct wb_document_ta
     if (!run)
         return;
     find_axial(field, axial);
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, comparison->cases[index].label);
-    wb_pages_cell(&row, WB_TONE_PLAIN, solver == WB_WIRES_SOLID ? "3D" : "1D fibres");
-    wb_pages_cell_number(&row, field ? field->x / WB_MM : (double)NAN, 2);
-    wb_pages_cell_number(&row, axial[1] / WB_MPA, 1);
-    wb_pages_cell_number(&row, axial[0] / WB_MPA, 1);
-    wb_pages_cell_number(&row, wb_wires_find_peak(field, 0).stress / WB_MPA, 1);
-    wb_pages_cell_number(&row, without ? wb_wires_effect(run, without) / WB_MM : (double)NAN, 3);
-    wb_pages_cell_number(&row, without ? wb_wires_distance(without, run) / WB_MM : (double)NAN, 3);
-    wb_pages_put_row(document, table, solver == WB_WIRES_SOLID, &row);
+    wb_document_row(table, solver == WB_WIRES_SOLID);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, comparison->cases[index].label);
+    wb_pages_cell(table, WB_TONE_PLAIN, solver == WB_WIRES_SOLID ? "3D" : "1D fibres");
+    wb_pages_cell_number(table, field ? field->x / WB_MM : (double)NAN, 2);
+    wb_pages_cell_number(table, axial[1] / WB_MPA, 1);
+    wb_pages_cell_number(table, axial[0] / WB_MPA, 1);
+    wb_pages_cell_number(table, wb_wires_find_peak(field, 0).stress / WB_MPA, 1);
+    wb_pages_cell_number(table, without ? wb_wires_effect(run, without) / WB_MM : (double)NAN, 3);
+    wb_pages_cell_number(table, without ? wb_wires_distance(without, run) / WB_MM : (double)NAN, 3);
 }
 
 static void put_residual_stresses(struct wb_document *document,
@@ -610,8 +576,7 @@ static void put_residual_stresses(struct wb_document *document,
         8, columns);
     for (int i = 0; i < comparison->n_residual; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
-            put_residual_row(document, table, results, WB_WIRES_RESIDUAL + i,
-                             (enum wb_wires_solver)k);
+            put_residual_row(table, results, WB_WIRES_RESIDUAL + i, (enum wb_wires_solver)k);
     }
 }
 
@@ -619,13 +584,11 @@ static void put_residual_stresses(struct wb_document *document,
 static void put_finding(struct wb_document *document, const struct wb_wires_results *results)
 {
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const without =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const without = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     double moved = (double)NAN, stress = (double)NAN;
     char text[500];
     for (int i = 0; i < comparison->n_residual; i++) {
-        const struct wb_wires_run *const run =
-            wb_wires_usable(results, WB_WIRES_RESIDUAL + i, WB_WIRES_SOLID);
+        const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_RESIDUAL + i);
         if (!run || !without)
             continue;
         moved = fmax(moved, wb_wires_effect(run, without));
@@ -670,45 +633,44 @@ static void put_residual(struct wb_document *document, const struct wb_wires_res
     for (int i = 0; i <= comparison->n_residual; i++) {
         const int index = WB_WIRES_ELASTOPLASTIC + i;
         const char *const name = i == 0 ? "None" : comparison->cases[index].label;
-        const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
+        const struct wb_wires_run *const solid = wb_wires_solid_run(results, index);
         char label[100];
         snprintf(label, sizeof label, "%s, 3D", name);
-        put_tip_of(document, table, label, solid, solid);
+        put_tip_of(table, label, solid, solid);
         snprintf(label, sizeof label, "%s, 1D fibres", name);
-        put_tip_of(document, table, label, wb_wires_usable(results, index, WB_WIRES_ROD), solid);
+        put_tip_of(table, label, wb_wires_rod_run(results, index), solid);
     }
 }
 
 /* --- cost --- */
 
-static void put_simulation(struct wb_document *document, struct wb_document_table *table,
-                           const struct wb_wires_results *results, int i, int k)
+static void put_simulation(struct wb_document_table *table, const struct wb_wires_results *results,
+                           int i, int k)
 {
     static const char *const models[] = {"3D solid", "1D rod"};
     const struct wb_wires_run *const run = &results->runs[i][k];
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN,
+    wb_document_row(table, k == WB_WIRES_SOLID);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN,
                         k == WB_WIRES_SOLID ? results->comparison->cases[i].label : "");
-    wb_pages_cell(&row, WB_TONE_PLAIN, "%s", models[k]);
-    wb_pages_cell_number(&row, run->elements, 0);
-    wb_pages_cell_number(&row, run->unknowns, 0);
-    wb_pages_cell_number(&row, run->iterations, 0);
-    wb_pages_cell_number(&row, run->simulation.cpu_s,
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", models[k]);
+    wb_pages_cell_number(table, run->elements, 0);
+    wb_pages_cell_number(table, run->unknowns, 0);
+    wb_pages_cell_number(table, run->iterations, 0);
+    wb_pages_cell_number(table, run->simulation.cpu_s,
                          run->simulation.cpu_s < 0.1    ? 3
                          : run->simulation.cpu_s < 10.0 ? 2
                                                         : 0);
-    wb_pages_cell_number(&row, run->memory_MB, 0);
+    wb_pages_cell_number(table, run->memory_MB, 0);
     if (run->simulation.state == WB_SIMULATION_USABLE)
-        wb_pages_cell(&row, WB_TONE_GOOD, "converged");
+        wb_pages_cell(table, WB_TONE_GOOD, "converged");
     else
-        wb_pages_cell(&row, WB_TONE_WARNING, "%s",
+        wb_pages_cell(table, WB_TONE_WARNING, "%s",
                       run->is_stale                                    ? "model changed"
                       : run->is_cut_short                              ? "cut short"
                       : run->simulation.state == WB_SIMULATION_MISSING ? "missing"
                                                                        : "not used");
     wb_pages_cell_number(
-        &row, k == WB_WIRES_ROD ? wb_wires_cost(results, i) / WB_PERCENT : (double)NAN, 2);
-    wb_pages_put_row(document, table, k == WB_WIRES_SOLID, &row);
+        table, k == WB_WIRES_ROD ? wb_wires_cost(results, i) / WB_PERCENT : (double)NAN, 2);
 }
 
 static void put_cost(struct wb_document *document, const struct wb_wires_results *results)
@@ -733,36 +695,31 @@ static void put_cost(struct wb_document *document, const struct wb_wires_results
         wb_text_append(&caption,
                        " The paper: the elastic rod costs below %g %% of the bonded solid.",
                        comparison->printed_cost / WB_PERCENT);
-    struct wb_document_table *const table =
-        wb_document_table(document, wb_text_string(&caption), 9, columns);
-    document->failed |= caption.failed;
-    wb_text_release(&caption);
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 9, columns);
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
             if (results->runs[i][k].simulation.state != WB_SIMULATION_NOT_WANTED)
-                put_simulation(document, table, results, i, k);
+                put_simulation(table, results, i, k);
         }
     }
 }
 
 /* --- provenance --- */
 
-static void put_material(struct wb_document *document, struct wb_document_table *table,
-                         const struct wb_wire_model_part *part)
+static void put_material(struct wb_document_table *table, const struct wb_wire_model_part *part)
 {
     const struct wb_material *const m = &part->material;
-    struct wb_pages_row row = {.n = 0};
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, part->name);
-    wb_pages_cell_plain(&row, WB_TONE_PLAIN, part->material_name);
-    wb_pages_cell_number(&row, part->outer_diameter / WB_MM, 2);
-    wb_pages_cell_number(&row, m->youngs_modulus / WB_MPA, 0);
-    wb_pages_cell_number(&row, m->poissons_ratio, 2);
-    wb_pages_cell_number(&row, m->yield_stress / WB_MPA, 1);
-    wb_pages_cell_number(&row, m->strength_coefficient / WB_MPA, 1);
-    wb_pages_cell_number(&row, m->hardening_exponent, 2);
-    wb_pages_cell(&row, part->is_substitute ? WB_TONE_WARNING : WB_TONE_PLAIN, "%s",
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, part->name);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, part->material_name);
+    wb_pages_cell_number(table, part->outer_diameter / WB_MM, 2);
+    wb_pages_cell_number(table, m->youngs_modulus / WB_MPA, 0);
+    wb_pages_cell_number(table, m->poissons_ratio, 2);
+    wb_pages_cell_number(table, m->yield_stress / WB_MPA, 1);
+    wb_pages_cell_number(table, m->strength_coefficient / WB_MPA, 1);
+    wb_pages_cell_number(table, m->hardening_exponent, 2);
+    wb_pages_cell(table, part->is_substitute ? WB_TONE_WARNING : WB_TONE_PLAIN, "%s",
                   part->is_substitute ? "substitute" : "given");
-    wb_pages_put_row(document, table, false, &row);
 }
 
 static void put_materials(struct wb_document *document, const struct wb_wires *comparison)
@@ -787,14 +744,10 @@ static void put_materials(struct wb_document *document, const struct wb_wires *c
             : NULL,
         9, columns);
     for (int i = 0; i < model->n_parts; i++)
-        put_material(document, table, &model->part[i]);
-    for (int i = 0; i < model->n_parts; i++) {
-        char name[300], source[1200], item[1600];
-        snprintf(item, sizeof item, "<b>%s</b>: %s",
-                 wb_pages_escape(name, sizeof name, model->part[i].material_name),
-                 wb_pages_escape(source, sizeof source, model->part[i].source));
-        wb_document_item(document, WB_TONE_PLAIN, item);
-    }
+        put_material(table, &model->part[i]);
+    for (int i = 0; i < model->n_parts; i++)
+        wb_pages_item(document, WB_TONE_PLAIN, "<b>", model->part[i].material_name,
+                      "</b>: ", model->part[i].source);
 }
 
 static void put_models(struct wb_document *document, const struct wb_wires *comparison)
@@ -805,12 +758,11 @@ static void put_models(struct wb_document *document, const struct wb_wires *comp
     struct wb_document_table *const table = wb_document_table(document, NULL, 2, columns);
     for (int i = 0; i < comparison->n_cases; i++) {
         const struct wb_wires_case *const item = &comparison->cases[i];
-        struct wb_pages_row row = {.n = 0};
         if (!item->model)
             continue;
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, item->model_name);
-        wb_pages_cell_plain(&row, WB_TONE_PLAIN, item->model->sha256);
-        wb_pages_put_row(document, table, false, &row);
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, item->model_name);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, item->model->sha256);
     }
 }
 
@@ -825,9 +777,10 @@ static void put_provenance(struct wb_document *document, const struct wb_wires_r
 
 /* --- all of it --- */
 
-void wb_wires_pages_build(struct wb_document *document, const struct wb_wires_results *results,
+void wb_wires_pages_build(struct wb_document *document, const void *context,
                           const struct wb_figures *figures)
 {
+    const struct wb_wires_results *const results = context;
     wb_pages_start_simulations(document, results->comparison->head.title, &results->outcome);
     put_summary(document, results);
     put_elastic(document, results, figures);

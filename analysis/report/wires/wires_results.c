@@ -19,6 +19,16 @@ const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *result
     return run->simulation.state == WB_SIMULATION_USABLE ? run : NULL;
 }
 
+const struct wb_wires_run *wb_wires_solid_run(const struct wb_wires_results *results, int index)
+{
+    return wb_wires_usable(results, index, WB_WIRES_SOLID);
+}
+
+const struct wb_wires_run *wb_wires_rod_run(const struct wb_wires_results *results, int index)
+{
+    return wb_wires_usable(results, index, WB_WIRES_ROD);
+}
+
 /* --- stresses --- */
 
 struct wb_wires_peak wb_wires_find_peak(const struct wb_field *field, int part)
@@ -41,8 +51,7 @@ struct wb_wires_peak wb_wires_find_peak(const struct wb_field *field, int part)
 static void find_stresses(struct wb_wires_results *results)
 {
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const run =
-        wb_wires_usable(results, WB_WIRES_ELASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
     const struct wb_wire_model_part *const core =
         &comparison->cases[WB_WIRES_ELASTIC].model->part[0];
     for (int i = 0; run && i < run->fields.n; i++) {
@@ -72,8 +81,8 @@ static struct wb_wires_wire wire_of(const struct wb_wires *comparison, int index
                      .youngs_modulus = wb_wire_model_youngs_modulus(model),
                      .poissons_ratio = wb_wire_model_poissons_ratio(model)},
         .force = model->step[model->n_steps - 1].loads.follower[1],
-        .n_elements = comparison->fit.n_elements,
-        .n_fibres = comparison->fit.n_fibres,
+        .n_elements = comparison->head.fit.n_elements,
+        .n_fibres = comparison->head.fit.n_fibres,
     };
 }
 
@@ -98,7 +107,7 @@ static enum wb_status calibrate(struct wb_wires_results *results, const struct w
 {
     const struct wb_wires *const comparison = results->comparison;
     struct wb_wires_wire wire = wire_of(comparison, WB_WIRES_ELASTOPLASTIC);
-    struct wb_calibrate_settings settings = comparison->fit;
+    struct wb_calibrate_settings settings = comparison->head.fit;
     const struct wb_dataset *const dataset = &run->simulation.dataset;
     settings.progress = wb_campaign_go_on;
     if (comparison->mixture)
@@ -113,8 +122,7 @@ static enum wb_status calibrate(struct wb_wires_results *results, const struct w
 
 static void fit(struct wb_wires_results *results)
 {
-    const struct wb_wires_run *const run =
-        wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, WB_WIRES_SOLID);
+    const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     results->fit_state = WB_SIMULATION_MISSING;
     if (!run) {
         wb_text_append(&results->fit_problem, "the solid's dataset that it builds on is missing");
@@ -122,7 +130,9 @@ static void fit(struct wb_wires_results *results)
     }
     const struct wb_reasons reasons = {&results->fit_problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
+    wb_reasons_listen(&reasons);
     const enum wb_status status = calibrate(results, run, &why);
+    wb_reasons_end(&reasons, status);
     results->fit_state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         wb_reasons_fail(&reasons, status, &why);
@@ -140,8 +150,8 @@ double wb_wires_split(const struct wb_wire_model *model, double change)
 
 double wb_wires_cost(const struct wb_wires_results *results, int index)
 {
-    const struct wb_wires_run *const solid = wb_wires_usable(results, index, WB_WIRES_SOLID);
-    const struct wb_wires_run *const rod = wb_wires_usable(results, index, WB_WIRES_ROD);
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, index);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, index);
     return solid && rod ? rod->simulation.cpu_s / solid->simulation.cpu_s : (double)NAN;
 }
 
@@ -245,34 +255,41 @@ bool wb_wires_results_list(const void *context, int index, struct wb_simulation_
     return true;
 }
 
-void wb_wires_results_load(struct wb_wires_results *results, const struct wb_wires *comparison)
+enum wb_status wb_wires_results_load(void *context, const void *campaign)
 {
+    struct wb_wires_results *const results = context;
+    const struct wb_wires *const comparison = campaign;
     results->comparison = comparison;
+    results->outcome.n_steps = 2;
     for (int i = 0; i < comparison->n_cases; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
             wb_wires_run_load(&results->runs[i][k], &comparison->cases[i], (enum wb_wires_solver)k);
     }
+    return WB_OK;
 }
 
-enum wb_status wb_wires_results_compute(struct wb_wires_results *results,
-                                        wb_kind_progress *progress, void *context)
+enum wb_status wb_wires_results_compute(void *of, int n_threads, wb_kind_progress *progress,
+                                        void *context)
 {
+    struct wb_wires_results *const results = of;
+    (void)n_threads;
     const struct wb_wires_wire elastic = wire_of(results->comparison, WB_WIRES_ELASTIC);
     wb_wires_rod_exact(&results->exact, &elastic);
     find_stresses(results);
     WB_TRY(compute_printed(results));
     if (progress)
-        progress(context, 1, WB_WIRES_COMPUTE_STEPS, "computed the printed properties");
+        progress(context, 1, "computed the printed properties");
     fit(results);
     if (progress)
-        progress(context, 2, WB_WIRES_COMPUTE_STEPS, "fitted the rod");
+        progress(context, 2, "fitted the rod");
     results->outcome.interrupted = wb_interrupted();
     judge(results);
     return WB_OK;
 }
 
-void wb_wires_results_release(struct wb_wires_results *results)
+void wb_wires_results_release(void *context)
 {
+    struct wb_wires_results *const results = context;
     for (int i = 0; i < WB_WIRES_CASES; i++) {
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
             wb_wires_run_release(&results->runs[i][k]);

@@ -53,20 +53,16 @@ struct wb_wires_results {
 /* Every case's solid, then its rod; of struct wb_wires_results. */
 wb_simulation_list wb_wires_results_list;
 
-enum {
-    WB_WIRES_COMPUTE_STEPS = 2 /* of wb_wires_results_compute() */
-};
+/* Reads and checks the datasets; then computes what stands beside them. */
+wb_kind_load wb_wires_results_load;
+wb_kind_compute wb_wires_results_compute;
+wb_kind_release wb_wires_results_release;
 
-/* Reads and checks the datasets into zeroed results. Nothing fails. */
-void wb_wires_results_load(struct wb_wires_results *results, const struct wb_wires *comparison);
-/* Then computes what stands beside them; WB_OK also when datasets are missing. */
-WB_MUST_CHECK enum wb_status wb_wires_results_compute(struct wb_wires_results *results,
-                                                      wb_kind_progress *progress, void *context);
-void wb_wires_results_release(struct wb_wires_results *results); /* accepts a zeroed one */
-
-/* A run that is usable, else NULL. */
+/* A run that is usable, else NULL; of a case its solid, and its rod. */
 const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *results, int index,
                                            enum wb_wires_solver solver);
+const struct wb_wires_run *wb_wires_solid_run(const struct wb_wires_results *results, int index);
+const struct wb_wires_run *wb_wires_rod_run(const struct wb_wires_results *results, int index);
 
 enum {
     WB_WIRES_VERDICTS = 4

@@ -5,9 +5,8 @@
 #include <unistd.h>
 
 #include "analysis/report/bench/index.h"
-#include "analysis/report/bench/recordings.h"
-#include "base/file.h"
-#include "tests/own_folder.h"
+#include "analysis/report/bench/recordings_kind.h"
+#include "tests/analysis/report/report_folder.h"
 
 #define SHA_A "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
 
@@ -15,14 +14,6 @@ static int set_up(void **state)
 {
     keep_messages();
     return make_folder(state);
-}
-
-static const char *write_file(const char *name, const char *text)
-{
-    static char path[WB_PATH];
-    assert_int_equal(wb_file_join(path, folder, name), WB_OK);
-    assert_int_equal(wb_file_write(path, text, strlen(text)), WB_OK);
-    return path;
 }
 
 static const char index_text[] =
@@ -40,22 +31,24 @@ static const char head[] = "title: Some wires\n"
                            "validation_length_mm: 100\n"
                            "samples: 2\n";
 
-static enum wb_status read_text(struct wb_recordings *campaign, const char *tail)
+static enum wb_status read_campaign(struct wb_recordings *campaign, const char *tail)
 {
     char text[4096];
     snprintf(text, sizeof text, "%s%s", head, tail);
-    return wb_recordings_read(campaign, write_file("campaign.yaml", text));
+    return wb_kind_read(&wb_recordings_kind, campaign, write_text("campaign.yaml", text));
 }
 
 static void recordings_come_from_the_index_and_missing_ones_are_named(void **state)
 {
     (void)state;
-    write_file("index.yaml", index_text);
-    write_file("one.wbr.zst", "x");
+    write_text("index.yaml", index_text);
+    write_text("one.wbr.zst", "x");
     struct wb_recordings campaign;
-    assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n    label: Type 1\n"), WB_OK);
+    assert_int_equal(read_campaign(&campaign, "wires:\n  - wire: type1\n    label: Type 1\n"),
+                     WB_OK);
     assert_int_equal(campaign.n_wires, 1);
-    const struct wb_recordings_tests *const calibration = &campaign.wires[0].calibration;
+    const struct wb_recordings_tests *const calibration =
+        &campaign.wires[0].tests[WB_RECORDINGS_CALIBRATION];
     assert_int_equal(calibration->n, 2);
     /* In the order of the samples, not of the index. */
     assert_string_equal(calibration->items[0].name, "two.wbr.zst");
@@ -64,7 +57,8 @@ static void recordings_come_from_the_index_and_missing_ones_are_named(void **sta
     assert_string_equal(calibration->items[1].missing, "");
     assert_string_equal(calibration->items[1].sha256, SHA_A);
     assert_int_equal(calibration->items[1].seed, 4);
-    const struct wb_recordings_tests *const validation = &campaign.wires[0].validation;
+    const struct wb_recordings_tests *const validation =
+        &campaign.wires[0].tests[WB_RECORDINGS_VALIDATION];
     assert_int_equal(validation->n, 2);
     assert_string_equal(validation->items[1].name, "Type 1, 100 mm, sample 2");
     assert_non_null(strstr(validation->items[1].missing, "not in the index"));
@@ -78,20 +72,20 @@ static void the_wire_files_properties_are_the_reference_unless_another_is_given(
 {
     (void)state;
     struct wb_recordings campaign;
-    assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
+    assert_int_equal(read_campaign(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
     assert_true(campaign.wires[0].has_reference);
-    assert_close(campaign.wires[0].reference[0], 5021e6, 1.0);
-    assert_close(campaign.wires[0].reference[3], 0.99, 1e-12);
+    assert_close(campaign.wires[0].reference.youngs_modulus, 5021e6, 1.0);
+    assert_close(campaign.wires[0].reference.hardening_exponent, 0.99, 1e-12);
     assert_string_equal(campaign.wires[0].label, "type1");
     wb_recordings_release(&campaign);
-    assert_int_equal(read_text(&campaign,
-                               "wires:\n  - wire: type1\n    reference:\n"
-                               "      source: a catalogue\n      youngs_modulus_MPa: 4000\n"
-                               "      yield_stress_MPa: 3\n      strength_coefficient_MPa: 100\n"
-                               "      hardening_exponent: 0.5\n"),
-                     WB_OK);
+    assert_int_equal(
+        read_campaign(&campaign, "wires:\n  - wire: type1\n    reference:\n"
+                                 "      source: a catalogue\n      youngs_modulus_MPa: 4000\n"
+                                 "      yield_stress_MPa: 3\n      strength_coefficient_MPa: 100\n"
+                                 "      hardening_exponent: 0.5\n"),
+        WB_OK);
     assert_string_equal(campaign.wires[0].reference_source, "a catalogue");
-    assert_close(campaign.wires[0].reference[2], 1e8, 1e-3);
+    assert_close(campaign.wires[0].reference.strength_coefficient, 1e8, 1e-3);
     wb_recordings_release(&campaign);
 }
 
@@ -101,25 +95,26 @@ static void settings_and_limits_are_read_and_have_defaults(void **state)
     struct wb_recordings campaign;
     struct wb_calibrate_settings defaults;
     wb_calibrate_default_settings(&defaults);
-    assert_int_equal(read_text(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
-    assert_close(campaign.calibrate.elastic_zone, defaults.elastic_zone, 0.0);
-    assert_close(campaign.calibration_limit, 0.0, 0.0);
+    assert_int_equal(read_campaign(&campaign, "wires:\n  - wire: type1\n"), WB_OK);
+    assert_close(campaign.head.fit.elastic_zone, defaults.elastic_zone, 0.0);
+    assert_close(campaign.limit[WB_RECORDINGS_CALIBRATION], 0.0, 0.0);
     wb_recordings_release(&campaign);
     assert_int_equal(
-        read_text(&campaign, "settings:\n  yield_point: 0.04\n  step_mm: 0.25\n  straight: true\n  "
-                             "bow_corrected: true\n"
-                             "  elements: 20\n"
-                             "limits:\n  calibration_rms_max: 1e-2\n  validation_rms_max: 3.65e-2\n"
-                             "reference:\n  source: Fig. 15\n  validation_rms: [0.01, 0.03]\n"
-                             "wires:\n  - wire: type2\n"),
+        read_campaign(&campaign,
+                      "settings:\n  yield_point: 0.04\n  step_mm: 0.25\n  straight: true\n  "
+                      "bow_corrected: true\n"
+                      "  elements: 20\n"
+                      "limits:\n  calibration_rms_max: 1e-2\n  validation_rms_max: 3.65e-2\n"
+                      "reference:\n  source: Fig. 15\n  validation_rms: [0.01, 0.03]\n"
+                      "wires:\n  - wire: type2\n"),
         WB_OK);
-    assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
-    assert_close(campaign.calibrate.step, 0.25e-3, 1e-15);
-    assert_true(campaign.calibrate.straight);
-    assert_true(campaign.calibrate.bow_corrected);
-    assert_int_equal(campaign.calibrate.n_elements, 20);
-    assert_close(campaign.calibration_limit, 0.01, 1e-15);
-    assert_close(campaign.validation_limit, 0.0365, 1e-15);
+    assert_close(campaign.head.fit.yield_point, 0.04, 1e-15);
+    assert_close(campaign.head.fit.step, 0.25e-3, 1e-15);
+    assert_true(campaign.head.fit.straight);
+    assert_true(campaign.head.fit.bow_corrected);
+    assert_int_equal(campaign.head.fit.n_elements, 20);
+    assert_close(campaign.limit[WB_RECORDINGS_CALIBRATION], 0.01, 1e-15);
+    assert_close(campaign.limit[WB_RECORDINGS_VALIDATION], 0.0365, 1e-15);
     assert_close(campaign.reference_rms[1], 0.03, 1e-15);
     wb_recordings_release(&campaign);
 }
@@ -127,21 +122,22 @@ static void settings_and_limits_are_read_and_have_defaults(void **state)
 static void recordings_may_be_named_by_path_and_glob(void **state)
 {
     (void)state;
-    write_file("own-b.wbr", "x");
-    write_file("own-a.wbr", "x");
+    write_text("own-b.wbr", "x");
+    write_text("own-a.wbr", "x");
     struct wb_recordings campaign;
-    assert_int_equal(read_text(&campaign,
-                               "wires:\n  - wire: type1\n"
-                               "    calibration: [\"own-*.wbr\", one.wbr.zst, none.wbr]\n"
-                               "    validation: []\n"),
+    assert_int_equal(read_campaign(&campaign,
+                                   "wires:\n  - wire: type1\n"
+                                   "    calibration: [\"own-*.wbr\", one.wbr.zst, none.wbr]\n"
+                                   "    validation: []\n"),
                      WB_OK);
-    const struct wb_recordings_tests *const tests = &campaign.wires[0].calibration;
+    const struct wb_recordings_tests *const tests =
+        &campaign.wires[0].tests[WB_RECORDINGS_CALIBRATION];
     assert_int_equal(tests->n, 4);
     assert_string_equal(tests->items[0].name, "own-a.wbr");
     assert_string_equal(tests->items[1].name, "own-b.wbr");
     assert_string_equal(tests->items[2].sha256, SHA_A);
     assert_string_equal(tests->items[3].missing, "no such file");
-    assert_int_equal(campaign.wires[0].validation.n, 0);
+    assert_int_equal(campaign.wires[0].tests[WB_RECORDINGS_VALIDATION].n, 0);
     wb_recordings_release(&campaign);
 }
 
@@ -149,14 +145,15 @@ static void without_an_index_all_recordings_are_missing(void **state)
 {
     (void)state;
     struct wb_recordings campaign;
-    const char *const path = write_file("no-index.yaml", "title: t\nindex: none.yaml\n"
+    const char *const path = write_text("no-index.yaml", "title: t\nindex: none.yaml\n"
                                                          "calibration_length_mm: 85\nsamples: 3\n"
                                                          "wires:\n  - wire: type1\n");
-    assert_int_equal(wb_recordings_read(&campaign, path), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_recordings_kind, &campaign, path), WB_OK);
     int n_missing;
     assert_int_equal(wb_recordings_count(&campaign, &n_missing), 3);
     assert_int_equal(n_missing, 3);
-    assert_non_null(strstr(campaign.wires[0].calibration.items[0].missing, "no index"));
+    assert_non_null(
+        strstr(campaign.wires[0].tests[WB_RECORDINGS_CALIBRATION].items[0].missing, "no index"));
     wb_recordings_release(&campaign);
 }
 
@@ -186,13 +183,14 @@ static void errors_name_file_line_and_key(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_recordings campaign;
         keep_messages();
-        assert_int_not_equal(read_text(&campaign, cases[i].tail), WB_OK);
+        assert_int_not_equal(read_campaign(&campaign, cases[i].tail), WB_OK);
         assert_message(cases[i].said);
         assert_int_equal(kept.n, 1);
         assert_null(campaign.wires);
     }
     struct wb_recordings campaign;
-    assert_int_equal(wb_recordings_read(&campaign, "/nowhere/campaign.yaml"), WB_ERR_NOT_FOUND);
+    assert_int_equal(wb_kind_read(&wb_recordings_kind, &campaign, "/nowhere/campaign.yaml"),
+                     WB_ERR_NOT_FOUND);
 }
 
 static void a_damaged_index_is_an_error(void **state)
@@ -213,7 +211,7 @@ static void a_damaged_index_is_an_error(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_index index;
         keep_messages();
-        assert_int_equal(wb_index_read(&index, write_file("bad.yaml", cases[i].text)),
+        assert_int_equal(wb_index_read(&index, write_text("bad.yaml", cases[i].text)),
                          WB_ERR_FORMAT);
         assert_message(cases[i].said);
         assert_null(index.entries);
@@ -227,14 +225,14 @@ the_shipped_campaign_can_be_read_and_is_named_without_this_machines_folders(void
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/single-wires.yaml"), WB_OK);
     struct wb_recordings campaign;
-    assert_int_equal(wb_recordings_read(&campaign, path), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_recordings_kind, &campaign, path), WB_OK);
     assert_string_equal(campaign.head.name, "fixtures/campaigns/single-wires.yaml");
     assert_int_equal(campaign.n_wires, 3);
-    assert_close(campaign.calibrate.yield_point, 0.04, 1e-15);
+    assert_close(campaign.head.fit.yield_point, 0.04, 1e-15);
     for (int i = 0; i < 3; i++) {
         assert_true(campaign.wires[i].has_reference);
-        assert_int_equal(campaign.wires[i].calibration.n, 3);
-        assert_int_equal(campaign.wires[i].validation.n, 3);
+        assert_int_equal(campaign.wires[i].tests[WB_RECORDINGS_CALIBRATION].n, 3);
+        assert_int_equal(campaign.wires[i].tests[WB_RECORDINGS_VALIDATION].n, 3);
     }
     wb_recordings_release(&campaign);
 }

@@ -10,42 +10,10 @@
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"
 #include "analysis/report/bench/recordings_results_private.h"
-#include "analysis/report/report_private.h"
-#include "base/file.h"
 #include "base/interrupt_private.h"
 #include "base/json.h"
+#include "tests/analysis/report/report_folder.h"
 #include "tests/analysis/synthetic.h"
-#include "tests/own_folder.h"
-
-static const char *in_folder(const char *name)
-{
-    static char paths[4][WB_PATH];
-    static int next;
-    char *const path = paths[next++ % 4];
-    assert_int_equal(wb_file_join(path, folder, name), WB_OK);
-    return path;
-}
-
-static void write_text(const char *name, const char *text)
-{
-    assert_int_equal(wb_file_write(in_folder(name), text, strlen(text)), WB_OK);
-}
-
-static char *read_text(const char *name, size_t *size)
-{
-    char *bytes;
-    assert_int_equal(wb_file_read(in_folder(name), &bytes, size), WB_OK);
-    return bytes;
-}
-
-static bool says(const char *name, const char *part)
-{
-    size_t size;
-    char *const bytes = read_text(name, &size);
-    const bool found = memmem(bytes, size, part, strlen(part)) != NULL;
-    free(bytes);
-    return found;
-}
 
 /* --- a good campaign, of the beam's own curves --- */
 
@@ -105,26 +73,32 @@ static void fill_tests(struct wb_recordings_results_tests *tests, double length,
 static void make_good(struct good *good, double validation_factor)
 {
     write_text("good.yaml", good_campaign);
-    assert_int_equal(wb_recordings_read(&good->campaign, in_folder("good.yaml")), WB_OK);
-    assert_int_equal(wb_recordings_results_init(&good->results, &good->campaign), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_recordings_kind, &good->campaign, in_folder("good.yaml")),
+                     WB_OK);
+    memset(&good->results, 0, sizeof good->results);
+    assert_int_equal(wb_recordings_results_load(&good->results, &good->campaign), WB_OK);
     struct wb_recordings_results_wire *const wire = &good->results.wires[0];
-    fill_tests(&wire->calibration_tests, 0.085, 1.0);
-    fill_tests(&wire->validation_tests, 0.100, validation_factor);
-    const struct wb_dataset *const calibration[] = {&wire->calibration_tests.items[0].dataset,
-                                                    &wire->calibration_tests.items[1].dataset};
-    const struct wb_dataset *const validation[] = {&wire->validation_tests.items[0].dataset,
-                                                   &wire->validation_tests.items[1].dataset};
+    fill_tests(&wire->steps[WB_RECORDINGS_CALIBRATION].tests, 0.085, 1.0);
+    fill_tests(&wire->steps[WB_RECORDINGS_VALIDATION].tests, 0.100, validation_factor);
+    const struct wb_dataset *const calibration[] = {
+        &wire->steps[WB_RECORDINGS_CALIBRATION].tests.items[0].dataset,
+        &wire->steps[WB_RECORDINGS_CALIBRATION].tests.items[1].dataset};
+    const struct wb_dataset *const validation[] = {
+        &wire->steps[WB_RECORDINGS_VALIDATION].tests.items[0].dataset,
+        &wire->steps[WB_RECORDINGS_VALIDATION].tests.items[1].dataset};
     assert_int_equal(
-        wb_calibrate_run(&wire->calibration, calibration, 2, &good->campaign.calibrate, NULL),
+        wb_calibrate_run(&wire->calibration, calibration, 2, &good->campaign.head.fit, NULL),
         WB_OK);
     wb_properties_from_result(&wire->calibration, &wire->properties);
-    assert_int_equal(wb_validate_run(&wire->fit, &wire->properties, calibration, 2,
-                                     &good->campaign.calibrate, NULL),
+    assert_int_equal(wb_validate_run(&wire->steps[WB_RECORDINGS_CALIBRATION].result,
+                                     &wire->properties, calibration, 2, &good->campaign.head.fit,
+                                     NULL),
                      WB_OK);
-    assert_int_equal(wb_validate_run(&wire->validation, &wire->properties, validation, 2,
-                                     &good->campaign.calibrate, NULL),
+    assert_int_equal(wb_validate_run(&wire->steps[WB_RECORDINGS_VALIDATION].result,
+                                     &wire->properties, validation, 2, &good->campaign.head.fit,
+                                     NULL),
                      WB_OK);
-    wire->calibration_state = wire->validation_state = WB_RECORDINGS_DONE;
+    wire->steps[0].state = wire->steps[1].state = WB_RECORDINGS_DONE;
     wb_recordings_results_judge(&good->results);
 }
 
@@ -169,11 +143,10 @@ static void the_same_results_give_the_same_bytes_in_all_files(void **state)
     const struct good *const good = *state;
     assert_true(good->results.outcome.is_complete);
     assert_false(good->results.outcome.exceeds_limit);
-    assert_int_equal(wb_report_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
                      WB_OK);
     assert_int_equal(
-        wb_report_write(&wb_recordings_kind, &good->results, in_folder("twice/deep"), false),
-        WB_OK);
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("twice/deep"), false), WB_OK);
     for (size_t i = 0; i < sizeof good_files / sizeof good_files[0]; i++) {
         char a[128], b[128];
         size_t n, m;
@@ -295,7 +268,7 @@ static void a_slack_strand_or_a_gap_breaks_the_line(void **state)
     (void)state;
     struct good good;
     make_good(&good, 1.0);
-    struct wb_dataset *const dataset = &good.results.wires[0].calibration_tests.items[0].dataset;
+    struct wb_dataset *const dataset = &good.results.wires[0].steps[0].tests.items[0].dataset;
     const int whole = begun_lines(&good.results);
     assert_true(dataset->n_rows > 40);
     for (size_t i = 20; i < 25; i++)
@@ -325,9 +298,10 @@ static void the_json_file_holds_the_computed_numbers(void **state)
     const struct wb_json *const validation = wb_json_get(entry, "validation");
     assert_true(
         wb_json_get_number(wb_json_get(validation, "elastoplastic"), "rms_over_F_max", &value));
-    assert_close(value, wire->validation.elastoplastic.rms, 1e-15);
+    assert_close(value, wire->steps[WB_RECORDINGS_VALIDATION].result.elastoplastic.rms, 1e-15);
     assert_true(wb_json_get_number(validation, "F_max_mN", &value));
-    assert_close_relative(value * WB_MN, wire->validation.curve.max_force, 1e-12);
+    assert_close_relative(value * WB_MN,
+                          wire->steps[WB_RECORDINGS_VALIDATION].result.curve.max_force, 1e-12);
     assert_int_equal(wb_json_length(wb_json_get(root, "recordings")), 4);
     assert_int_equal(wb_json_length(wb_json_get(root, "files")), 25);
     wb_json_destroy(root);
@@ -361,14 +335,14 @@ static void a_full_folder_is_refused_and_force_replaces_only_the_reports_own_fil
 {
     const struct good *const good = *state;
     keep_messages();
-    assert_int_equal(wb_report_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), false),
                      WB_ERR_EXISTS);
     assert_message("--force");
     write_text("once/mine.txt", "mine");
     write_text("once/figures/mine.svg", "mine");
     write_text("once/figures/stale.svg", "an old figure");
     write_text("once/report.json", "{\"files\": [\"figures/stale.svg\", \"../good.yaml\"]}");
-    assert_int_equal(wb_report_write(&wb_recordings_kind, &good->results, in_folder("once"), true),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &good->results, in_folder("once"), true),
                      WB_OK);
     assert_true(says("once/mine.txt", "mine"));
     assert_true(says("once/figures/mine.svg", "mine"));
@@ -382,9 +356,9 @@ static void a_folder_that_cannot_be_written_leaves_nothing(void **state)
     const struct good *const good = *state;
     write_text("file", "a file");
     assert_int_not_equal(
-        wb_report_write(&wb_recordings_kind, &good->results, in_folder("file"), false), WB_OK);
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("file"), false), WB_OK);
     assert_int_not_equal(
-        wb_report_write(&wb_recordings_kind, &good->results, in_folder("file/below"), true), WB_OK);
+        wb_kind_write(&wb_recordings_kind, &good->results, in_folder("file/below"), true), WB_OK);
     assert_true(says("file", "a file"));
 }
 
@@ -397,12 +371,13 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
     assert_true(bad.results.outcome.is_complete);
     const struct wb_recordings_results_wire *const wire = &bad.results.wires[0];
     const double share = wb_recordings_results_validation_share(wire);
-    const double r_v = fmin(wire->validation.scatter_rms, wire->validation.residual_scatter_rms);
+    const double r_v = fmin(wire->steps[WB_RECORDINGS_VALIDATION].result.scatter_rms,
+                            wire->steps[WB_RECORDINGS_VALIDATION].result.residual_scatter_rms);
     const double r_c = fmin(wire->calibration.scatter_rms, wire->calibration.residual_scatter_rms);
-    const double rms = wire->validation.elastoplastic.rms;
+    const double rms = wire->steps[WB_RECORDINGS_VALIDATION].result.elastoplastic.rms;
     assert_close(share, fmin(1.0, (r_v * r_v + r_c * r_c) / 2.0 / (rms * rms)), 1e-12);
     assert_true(share > 0.01 && share < 0.9);
-    assert_int_equal(wb_report_write(&wb_recordings_kind, &bad.results, in_folder("bad"), false),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &bad.results, in_folder("bad"), false),
                      WB_OK);
     char text[80];
     snprintf(text, sizeof text, "explains at most %.0f %% of the mean square error", 100.0 * share);
@@ -418,8 +393,10 @@ static void compute(const char *name, const char *text, int threads, struct wb_r
                     struct wb_recordings_results *results)
 {
     write_text(name, text);
-    assert_int_equal(wb_recordings_read(campaign, in_folder(name)), WB_OK);
-    assert_int_equal(wb_recordings_results_compute(results, campaign, threads, NULL, NULL), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_recordings_kind, campaign, in_folder(name)), WB_OK);
+    memset(results, 0, sizeof *results);
+    assert_int_equal(wb_recordings_results_load(results, campaign), WB_OK);
+    assert_int_equal(wb_recordings_results_compute(results, threads, NULL, NULL), WB_OK);
 }
 
 static void a_campaign_without_any_recording_still_reports(void **state)
@@ -432,7 +409,7 @@ static void a_campaign_without_any_recording_still_reports(void **state)
     assert_false(results.any_virtual);
     assert_int_equal(results.outcome.n_wanted, 4);
     assert_int_equal(results.outcome.n_usable, 0);
-    assert_int_equal(wb_report_write(&wb_recordings_kind, &results, in_folder("empty"), false),
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &results, in_folder("empty"), false),
                      WB_OK);
     assert_true(says("empty/report.html", "4 of 4 recordings are missing"));
     assert_true(says("empty/report.html", "there is no index of recordings"));
@@ -479,18 +456,18 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
         assert_true(results.all_virtual);
         assert_false(results.outcome.is_complete);
         const struct wb_recordings_results_wire *const wire = &results.wires[0];
-        const struct wb_recordings_results_test *const tests = wire->calibration_tests.items;
+        const struct wb_recordings_results_test *const tests =
+            wire->steps[WB_RECORDINGS_CALIBRATION].tests.items;
         assert_true(tests[0].usable);
         assert_string_equal(tests[0].start_utc, "2026-01-01T00:00:00Z");
         assert_non_null(strstr(wb_text_string(&tests[1].problem), "not the recording"));
         assert_non_null(strstr(wb_text_string(&tests[2].problem), "not a recording"));
         assert_null(strstr(wb_text_string(&tests[2].problem), folder));
-        assert_int_equal(wire->calibration_state, WB_RECORDINGS_FAILED);
-        assert_true(wire->calibration_problem.length > 10);
-        assert_int_equal(wire->validation_state, WB_RECORDINGS_NOT_WANTED);
+        assert_int_equal(wire->steps[WB_RECORDINGS_CALIBRATION].state, WB_RECORDINGS_FAILED);
+        assert_true(wire->steps[WB_RECORDINGS_CALIBRATION].problem.length > 10);
+        assert_int_equal(wire->steps[WB_RECORDINGS_VALIDATION].state, WB_RECORDINGS_NOT_WANTED);
         assert_int_equal(
-            wb_report_write(&wb_recordings_kind, &results, in_folder("made-up"), threads > 1),
-            WB_OK);
+            wb_kind_write(&wb_recordings_kind, &results, in_folder("made-up"), threads > 1), WB_OK);
         texts[threads - 1] = read_text("made-up/report.json", NULL);
         if (threads == 2) {
             assert_true(says("made-up/report.html", "2 of 3 recordings are missing"));

@@ -2,17 +2,14 @@
  * report. The datasets are made up: forces of the published beams times a factor, so that errors
  * and fits are known. */
 #include "tests/analysis/made_up_bundle.h"
-#include "tests/messages.h"
-#include "tests/own_folder.h"
+#include "tests/analysis/report/report_folder.h"
 
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "analysis/report/bundles/bundles_kind.h"
-#include "analysis/report/report_private.h"
 #include "analysis/simulated.h"
-#include "base/file.h"
 #include "base/json.h"
 
 static struct wb_bundles campaign;
@@ -33,34 +30,9 @@ static int tear_down(void **state)
     return remove_folder(state);
 }
 
-static const char *in_folder(const char *name)
-{
-    static char paths[4][WB_PATH];
-    static int next;
-    char *const path = paths[next++ % 4];
-    assert_int_equal(wb_file_join(path, folder, name), WB_OK);
-    return path;
-}
-
-static void write_text(const char *name, const char *text)
-{
-    assert_int_equal(wb_file_write(in_folder(name), text, strlen(text)), WB_OK);
-}
-
-static bool says(const char *name, const char *part)
-{
-    char *bytes;
-    size_t size;
-    assert_int_equal(wb_file_read(in_folder(name), &bytes, &size), WB_OK);
-    const bool found = memmem(bytes, size, part, strlen(part)) != NULL;
-    free(bytes);
-    return found;
-}
-
 static enum wb_status read_campaign(const char *text)
 {
-    write_text("c.yaml", text);
-    return wb_bundles_read(&campaign, in_folder("c.yaml"));
+    return wb_kind_read(&wb_bundles_kind, &campaign, write_text("c.yaml", text));
 }
 
 /* --- campaigns --- */
@@ -133,13 +105,13 @@ static void commands_make_the_datasets(void **state)
 {
     (void)state;
     assert_int_equal(read_campaign(whole), WB_OK);
-    assert_string_equal(campaign.runs[2].dataset.command,
+    assert_string_equal(wb_text_string(&campaign.runs[2].dataset.command),
                         "wirebench solve bundle fixtures/bundles/7-type3.yaml --dead-force "
                         "--no-weight --friction 0.5,0.2,3 --cohesive-stiffness 300 --mesh paper "
                         "--mass-scaling 9 --selective 50 --duration-s 2.5 -o sim/stiff");
-    assert_string_equal(campaign.runs[3].dataset.command,
+    assert_string_equal(wb_text_string(&campaign.runs[3].dataset.command),
                         "wirebench solve bundle fixtures/bundles/7-type3.yaml -o sim/hung");
-    assert_string_equal(campaign.bundles[1].rod.command,
+    assert_string_equal(wb_text_string(&campaign.bundles[1].rod.command),
                         "wirebench solve cantilever --wire bundle-12 --length-mm 114 "
                         "--deflection-mm 53 -o sim/twelve-1d");
     /* What is run names files that are there, and no output. */
@@ -165,7 +137,7 @@ static void the_shipped_campaign_can_be_read(void **state)
     (void)state;
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/bundles.yaml"), WB_OK);
-    assert_int_equal(wb_bundles_read(&campaign, path), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_bundles_kind, &campaign, path), WB_OK);
     assert_string_equal(campaign.head.name, "fixtures/campaigns/bundles.yaml");
     /* Then those with the tape on a circle. */
     assert_int_equal(campaign.n_bundles, 10);
@@ -189,9 +161,7 @@ static void the_shipped_campaign_can_be_read(void **state)
 static void a_campaign_that_makes_no_sense_is_refused_with_its_line(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct refused_campaign wrong[] = {
         {HEAD "runs: [{name: a, bundle: none-such}]\ngroups: []\n",
          "c.yaml:6: bundle: no 'none-such'"},
         {HEAD "runs: [{name: a, bundle: 7-type3, mesh: none}]\ngroups: []\n", "c.yaml:6: "},
@@ -216,11 +186,7 @@ static void a_campaign_that_makes_no_sense_is_refused_with_its_line(void **state
          "c.yaml:8: inset: there is no bundle with the label 'z'"},
         {RUN "groups: [{label: x, bundles: [{label: y, dynamic: a}]}]\nspeed: 3\n", "c.yaml:8: "},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        assert_true(read_campaign(wrong[i].text) != WB_OK);
-        if (!strstr(kept.error, wrong[i].message))
-            fail_msg("'%s' does not say '%s'", kept.error, wrong[i].message);
-    }
+    assert_refused(&wb_bundles_kind, &campaign, wrong, sizeof wrong / sizeof wrong[0]);
 }
 
 /* --- datasets --- */
@@ -263,8 +229,8 @@ static void make_rod(int index, double cpu)
 static void compute(void)
 {
     memset(&results, 0, sizeof results);
-    wb_bundles_results_load(&results, &campaign);
-    wb_bundles_results_compute(&results, NULL, NULL);
+    assert_int_equal(wb_bundles_results_load(&results, &campaign), WB_OK);
+    assert_int_equal(wb_bundles_results_compute(&results, 0, NULL, NULL), WB_OK);
 }
 
 static void release(void)
@@ -286,9 +252,9 @@ static const struct wb_bundles_results *whole_report(void)
     make_rod(0, 0.1);
     make_rod(1, 0.1);
     wb_bundles_release(&campaign);
-    assert_int_equal(wb_bundles_read(&whole_campaign, in_folder("c.yaml")), WB_OK);
-    wb_bundles_results_load(&whole_results, &whole_campaign);
-    wb_bundles_results_compute(&whole_results, NULL, NULL);
+    assert_int_equal(wb_kind_read(&wb_bundles_kind, &whole_campaign, in_folder("c.yaml")), WB_OK);
+    assert_int_equal(wb_bundles_results_load(&whole_results, &whole_campaign), WB_OK);
+    assert_int_equal(wb_bundles_results_compute(&whole_results, 0, NULL, NULL), WB_OK);
     return &whole_results;
 }
 
@@ -374,14 +340,8 @@ static const char small[] =
 
 static void read_small(const char *more, const char *bundle_more)
 {
-    char path[WB_PATH], *bytes, text[1000];
-    struct wb_text bundle = {0};
-    assert_int_equal(wb_file_find_data(path, "fixtures/bundles/7-type3.yaml"), WB_OK);
-    assert_int_equal(wb_file_read(path, &bytes, NULL), WB_OK);
-    wb_text_append(&bundle, "%s%s", bytes, bundle_more);
-    write_text("seven.yaml", wb_text_string(&bundle));
-    wb_text_release(&bundle);
-    free(bytes);
+    char text[1000];
+    copy_shipped("fixtures/bundles/7-type3.yaml", "seven.yaml", bundle_more);
     snprintf(text, sizeof text, small, more);
     assert_int_equal(read_campaign(text), WB_OK);
 }
@@ -555,7 +515,7 @@ static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
         assert_int_equal(
-            wb_report_write(&wb_bundles_kind, whole_report(), in_folder("report"), false), WB_OK);
+            wb_kind_write(&wb_bundles_kind, whole_report(), in_folder("report"), false), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -563,17 +523,10 @@ static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
     (void)state;
     static const char *const figures[] = {"forces-1", "errors-1", "energies-1", "study-1", "fit"};
     write_report();
-    for (size_t i = 0; i < sizeof figures / sizeof figures[0]; i++) {
-        char name[80];
-        snprintf(name, sizeof name, "report/figures/%s.svg", figures[i]);
-        assert_true(says(name, "simulation, no test"));
-        snprintf(name, sizeof name, "report/figures/%s.png", figures[i]);
-        assert_true(wb_file_exists(in_folder(name)));
-    }
+    assert_simulated_figures(figures, sizeof figures / sizeof figures[0]);
     assert_true(wb_file_exists(in_folder("report/figures/sections-1.svg")));
     assert_true(wb_file_exists(in_folder("report/figures/shape-1.svg")));
     assert_true(wb_file_exists(in_folder("report/figures/shape-2.svg")));
-    assert_true(says("report/report.pdf", "%PDF"));
     static const char *const texts[] = {
         "<b>Simulations.</b>",
         "simulations, no tests",
@@ -588,14 +541,8 @@ static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
         "1114",
         "0.200",
     };
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
-        if (!says("report/report.html", texts[i]))
-            fail_msg("the report does not say '%s'", texts[i]);
-    }
-    assert_false(says("report/report.html", "xperiment"));
-    assert_false(says("report/report.html", folder));
-    assert_false(says("report/report.json", folder));
-    assert_false(says("report/report.html", ">nan") || says("report/report.html", " nan"));
+    assert_says_all("report/report.html", texts, sizeof texts / sizeof texts[0]);
+    assert_clean_report();
 }
 
 static void report_json_has_what_the_pages_tell(void **state)
@@ -622,13 +569,8 @@ static void report_json_has_what_the_pages_tell(void **state)
 static void the_same_datasets_give_the_same_bytes(void **state)
 {
     (void)state;
-    char command[3 * WB_PATH];
     write_report();
-    assert_int_equal(wb_report_write(&wb_bundles_kind, whole_report(), in_folder("again"), true),
-                     WB_OK);
-    snprintf(command, sizeof command, "diff -r '%s' '%s' >/dev/null", in_folder("report"),
-             in_folder("again"));
-    assert_int_equal(system(command), 0);
+    assert_same_report(&wb_bundles_kind, whole_report());
 }
 
 static void a_report_without_datasets_says_how_to_make_them(void **state)
@@ -640,7 +582,7 @@ static void a_report_without_datasets_says_how_to_make_them(void **state)
     assert_int_equal(read_campaign(text), WB_OK);
     compute();
     assert_int_equal(results.outcome.n_usable, 1); /* the beam that is named by its path */
-    assert_int_equal(wb_report_write(&wb_bundles_kind, &results, in_folder("none"), true), WB_OK);
+    assert_int_equal(wb_kind_write(&wb_bundles_kind, &results, in_folder("none"), true), WB_OK);
     release();
     assert_true(says("none/report.html", "6 of 7 datasets are missing"));
     assert_true(says("none/report.html", "-o xyz/twelve"));

@@ -1,16 +1,13 @@
 /* Comparison campaigns: reading, what their datasets may be, what is computed from them, and the
  * report. The datasets are made up of beam theory, so its numbers must come out. */
 #include "tests/analysis/bent_wire.h"
-#include "tests/messages.h"
-#include "tests/own_folder.h"
+#include "tests/analysis/report/report_folder.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/report/report_private.h"
 #include "analysis/report/wires/wires_kind.h"
 #include "analysis/report/wires/wires_results_private.h"
-#include "base/file.h"
 #include "base/json.h"
 
 static struct wb_wires whole_comparison;
@@ -27,30 +24,6 @@ static int tear_down(void **state)
     wb_wires_results_release(&whole_results);
     wb_wires_release(&whole_comparison);
     return remove_folder(state);
-}
-
-static const char *in_folder(const char *name)
-{
-    static char paths[4][WB_PATH];
-    static int next;
-    char *const path = paths[next++ % 4];
-    assert_int_equal(wb_file_join(path, folder, name), WB_OK);
-    return path;
-}
-
-static void write_text(const char *name, const char *text)
-{
-    assert_int_equal(wb_file_write(in_folder(name), text, strlen(text)), WB_OK);
-}
-
-static bool says(const char *name, const char *part)
-{
-    char *bytes;
-    size_t size;
-    assert_int_equal(wb_file_read(in_folder(name), &bytes, &size), WB_OK);
-    const bool found = memmem(bytes, size, part, strlen(part)) != NULL;
-    free(bytes);
-    return found;
 }
 
 /* --- campaigns --- */
@@ -74,8 +47,7 @@ static struct wb_wires_results results;
 
 static enum wb_status read_campaign(const char *text)
 {
-    write_text("c.yaml", text);
-    return wb_wires_read(&comparison, in_folder("c.yaml"));
+    return wb_kind_read(&wb_wires_kind, &comparison, write_text("c.yaml", text));
 }
 
 static void a_campaign_names_models_and_their_datasets(void **state)
@@ -109,7 +81,7 @@ static void the_shipped_campaign_can_be_read(void **state)
     (void)state;
     char path[WB_PATH];
     assert_int_equal(wb_file_find_data(path, "fixtures/campaigns/section2.yaml"), WB_OK);
-    assert_int_equal(wb_wires_read(&comparison, path), WB_OK);
+    assert_int_equal(wb_kind_read(&wb_wires_kind, &comparison, path), WB_OK);
     assert_string_equal(comparison.head.name, "fixtures/campaigns/section2.yaml");
     assert_int_equal(comparison.n_cases, 5);
     wb_wires_release(&comparison);
@@ -118,9 +90,7 @@ static void the_shipped_campaign_can_be_read(void **state)
 static void a_campaign_that_cannot_be_compared_is_refused_with_its_line(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text, *message;
-    } wrong[] = {
+    static const struct refused_campaign wrong[] = {
         {"kind: comparison\ntitle: x\nelastic: {model: follower-8awg}\n"
          "elastoplastic: {model: follower-8awg}\n",
          "c.yaml:3: model: 'follower-8awg' is elastoplastic"},
@@ -146,11 +116,7 @@ static void a_campaign_that_cannot_be_compared_is_refused_with_its_line(void **s
          "elastoplastic: {model: follower-8awg}\nspeed: 3\n",
          "c.yaml:5: "},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        assert_true(read_campaign(wrong[i].text) != WB_OK);
-        if (!strstr(kept.error, wrong[i].message))
-            fail_msg("'%s' does not say '%s'", kept.error, wrong[i].message);
-    }
+    assert_refused(&wb_wires_kind, &comparison, wrong, sizeof wrong / sizeof wrong[0]);
 }
 
 static void a_wire_with_weight_cannot_be_compared(void **state)
@@ -208,8 +174,8 @@ static void compute(const char *text)
 {
     assert_int_equal(read_campaign(text), WB_OK);
     memset(&results, 0, sizeof results);
-    wb_wires_results_load(&results, &comparison);
-    assert_int_equal(wb_wires_results_compute(&results, NULL, NULL), WB_OK);
+    assert_int_equal(wb_wires_results_load(&results, &comparison), WB_OK);
+    assert_int_equal(wb_wires_results_compute(&results, 0, NULL, NULL), WB_OK);
 }
 
 static void release(void)
@@ -231,8 +197,8 @@ static const struct wb_wires_results *whole_campaign(void)
         }
     }
     whole_comparison = comparison;
-    wb_wires_results_load(&whole_results, &whole_comparison);
-    assert_int_equal(wb_wires_results_compute(&whole_results, NULL, NULL), WB_OK);
+    assert_int_equal(wb_wires_results_load(&whole_results, &whole_comparison), WB_OK);
+    assert_int_equal(wb_wires_results_compute(&whole_results, 0, NULL, NULL), WB_OK);
     return &whole_results;
 }
 
@@ -384,19 +350,6 @@ static void limits_that_are_exceeded_are_told(void **state)
 
 /* --- datasets that cannot be used --- */
 
-static void copy_file(const char *from, const char *to, const char *more)
-{
-    char path[WB_PATH], *bytes;
-    size_t size;
-    assert_int_equal(wb_file_find_data(path, from), WB_OK);
-    assert_int_equal(wb_file_read(path, &bytes, &size), WB_OK);
-    struct wb_text text = {0};
-    wb_text_append(&text, "%s%s", bytes, more);
-    write_text(to, wb_text_string(&text));
-    wb_text_release(&text);
-    free(bytes);
-}
-
 static const char own[] = "kind: comparison\n"
                           "title: own models\n"
                           "simulations: own\n"
@@ -404,19 +357,25 @@ static const char own[] = "kind: comparison\n"
                           "elastoplastic: {model: ./plastic.yaml}\n"
                           "fit: {elements: 10, fibres: 12}\n";
 
+static void copy_models(void)
+{
+    copy_shipped("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
+    copy_shipped("fixtures/models/follower-8awg.yaml", "plastic.yaml", "");
+}
+
 static void a_missing_dataset_is_told_with_the_command_that_makes_it(void **state)
 {
     (void)state;
-    copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
-    copy_file("fixtures/models/follower-8awg.yaml", "plastic.yaml", "");
+    copy_models();
     compute(own);
     assert_int_equal(results.outcome.n_wanted, 4);
     assert_int_equal(results.outcome.n_usable, 0);
     assert_false(results.outcome.is_complete);
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTOPLASTIC][WB_WIRES_SOLID];
     assert_int_equal(run->simulation.state, WB_SIMULATION_MISSING);
-    assert_string_equal(results.comparison->cases[WB_WIRES_ELASTOPLASTIC].datasets[0].command,
-                        "wirebench solve wire3d plastic.yaml -o own/follower-8awg-3d");
+    assert_string_equal(
+        wb_text_string(&results.comparison->cases[WB_WIRES_ELASTOPLASTIC].datasets[0].command),
+        "wirebench solve wire3d plastic.yaml -o own/follower-8awg-3d");
     assert_int_equal(results.fit_state, WB_SIMULATION_MISSING);
     release();
 }
@@ -424,8 +383,7 @@ static void a_missing_dataset_is_told_with_the_command_that_makes_it(void **stat
 static void a_dataset_of_a_changed_model_is_outdated(void **state)
 {
     (void)state;
-    copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
-    copy_file("fixtures/models/follower-8awg.yaml", "plastic.yaml", "");
+    copy_models();
     assert_int_equal(read_campaign(own), WB_OK);
     write_dataset(WB_WIRES_ELASTIC, WB_WIRES_SOLID);
     write_dataset(WB_WIRES_ELASTIC, WB_WIRES_ROD);
@@ -434,7 +392,7 @@ static void a_dataset_of_a_changed_model_is_outdated(void **state)
     assert_int_equal(results.outcome.n_usable, 2);
     release();
 
-    copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "# one more line\n");
+    copy_shipped("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "# one more line\n");
     compute(own);
     assert_int_equal(results.outcome.n_usable, 0);
     const struct wb_wires_run *const run = &results.runs[WB_WIRES_ELASTIC][WB_WIRES_SOLID];
@@ -449,8 +407,7 @@ static void a_dataset_of_a_changed_model_is_outdated(void **state)
 static void a_dataset_that_did_not_converge_is_outdated(void **state)
 {
     (void)state;
-    copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
-    copy_file("fixtures/models/follower-8awg.yaml", "plastic.yaml", "");
+    copy_models();
     assert_int_equal(read_campaign(own), WB_OK);
     struct bent_wire bent = bent_of(WB_WIRES_ELASTOPLASTIC, "wire3d");
     bent.cut_short = true;
@@ -473,8 +430,7 @@ static void a_dataset_that_did_not_converge_is_outdated(void **state)
 static void a_damaged_dataset_is_refused_without_this_machines_paths(void **state)
 {
     (void)state;
-    copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
-    copy_file("fixtures/models/follower-8awg.yaml", "plastic.yaml", "");
+    copy_models();
     assert_int_equal(read_campaign(own), WB_OK);
     write_dataset(WB_WIRES_ELASTIC, WB_WIRES_SOLID);
     wb_wires_release(&comparison);
@@ -495,7 +451,7 @@ static void write_report(void)
 {
     if (!wb_file_exists(in_folder("report")))
         assert_int_equal(
-            wb_report_write(&wb_wires_kind, whole_campaign(), in_folder("report"), false), WB_OK);
+            wb_kind_write(&wb_wires_kind, whole_campaign(), in_folder("report"), false), WB_OK);
 }
 
 static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
@@ -506,28 +462,25 @@ static void the_report_is_whole_and_says_that_it_shows_simulations(void **state)
         "loading",         "residual-1",           "residual-2",
         "residual-stress", "residual-shapes",      "shapes-elastic"};
     write_report();
+    static const char *const texts[] = {
+        "<b>Simulations.</b>",
+        "simulations, no tests",
+        "Solid &lt;and&gt; rod",
+        "a note &amp; more",
+        "<b>173 MPa</b>",
+        "<b>228 degrees</b>",
+        "11.4 N",
+    };
+    assert_simulated_figures(figures, sizeof figures / sizeof figures[0]);
     for (size_t i = 0; i < sizeof figures / sizeof figures[0]; i++) {
+        struct stat info;
         char name[80];
         snprintf(name, sizeof name, "report/figures/%s.svg", figures[i]);
-        assert_true(says(name, "simulation, no test"));
-        struct stat info;
         assert_int_equal(stat(in_folder(name), &info), 0);
         assert_true(info.st_size < 600000);
-        snprintf(name, sizeof name, "report/figures/%s.png", figures[i]);
-        assert_true(wb_file_exists(in_folder(name)));
     }
-    assert_true(says("report/report.pdf", "%PDF"));
-    assert_true(says("report/report.html", "<b>Simulations.</b>"));
-    assert_true(says("report/report.html", "simulations, no tests"));
-    assert_true(says("report/report.html", "Solid &lt;and&gt; rod"));
-    assert_true(says("report/report.html", "a note &amp; more"));
-    assert_true(says("report/report.html", "<b>173 MPa</b>"));
-    assert_true(says("report/report.html", "<b>228 degrees</b>"));
-    assert_true(says("report/report.html", "11.4 N"));
-    assert_false(says("report/report.html", "xperiment"));
-    assert_false(says("report/report.html", folder));
-    assert_false(says("report/report.json", folder));
-    assert_false(says("report/report.html", ">nan") || says("report/report.html", " nan"));
+    assert_says_all("report/report.html", texts, sizeof texts / sizeof texts[0]);
+    assert_clean_report();
 }
 
 static void report_json_has_what_the_pages_tell(void **state)
@@ -553,28 +506,22 @@ static void report_json_has_what_the_pages_tell(void **state)
 static void the_same_datasets_give_the_same_bytes(void **state)
 {
     (void)state;
-    char command[3 * WB_PATH];
     write_report();
-    assert_int_equal(wb_report_write(&wb_wires_kind, whole_campaign(), in_folder("again"), true),
-                     WB_OK);
-    snprintf(command, sizeof command, "diff -r '%s' '%s' >/dev/null", in_folder("report"),
-             in_folder("again"));
-    assert_int_equal(system(command), 0);
+    assert_same_report(&wb_wires_kind, whole_campaign());
 }
 
 static void a_report_without_datasets_says_how_to_make_them(void **state)
 {
     (void)state;
     char text[sizeof own + 64];
-    copy_file("fixtures/models/follower-8awg-elastic.yaml", "elastic.yaml", "");
-    copy_file("fixtures/models/follower-8awg.yaml", "plastic.yaml", "");
+    copy_models();
     snprintf(text, sizeof text, "%s", own);
     memcpy(strstr(text, "own\nelastic"), "xyz", 3);
     assert_int_equal(read_campaign(text), WB_OK);
     memset(&results, 0, sizeof results);
-    wb_wires_results_load(&results, &comparison);
-    assert_int_equal(wb_wires_results_compute(&results, NULL, NULL), WB_OK);
-    assert_int_equal(wb_report_write(&wb_wires_kind, &results, in_folder("none"), true), WB_OK);
+    assert_int_equal(wb_wires_results_load(&results, &comparison), WB_OK);
+    assert_int_equal(wb_wires_results_compute(&results, 0, NULL, NULL), WB_OK);
+    assert_int_equal(wb_kind_write(&wb_wires_kind, &results, in_folder("none"), true), WB_OK);
     release();
     assert_true(says("none/report.html", "<b>Incomplete.</b> 4 of 4 datasets are missing"));
     assert_true(says("none/report.html", "wirebench solve wire3d plastic.yaml -o "

@@ -1,0 +1,35 @@
+#include "analysis/report/kind.h"
+
+#include <string.h>
+
+#include "analysis/report/files.h"
+
+#define WB_LOG_DOMAIN "report"
+
+enum wb_status wb_kind_read(const struct wb_kind *kind, void *campaign, const char *path)
+{
+    struct wb_campaign *const head = campaign;
+    struct wb_config *config;
+    memset(campaign, 0, kind->campaign_size);
+    WB_TRY(wb_campaign_open(head, &config, path));
+    const enum wb_status status = kind->keys(campaign, wb_config_root(config));
+    wb_config_destroy(config);
+    if (status != WB_OK)
+        kind->release_campaign(campaign);
+    return status;
+}
+
+enum wb_status wb_kind_write(const struct wb_kind *kind, const void *results, const char *folder,
+                             bool force)
+{
+    struct wb_figures figures;
+    struct wb_document document;
+    WB_TRY(wb_figures_create(&figures, kind->figures, kind->n_figures, results));
+    kind->pages(&document, results, &figures);
+    struct wb_json *const numbers = kind->json(results);
+    const enum wb_status status = wb_files_write(&document, &figures, numbers, folder, force);
+    wb_json_destroy(numbers);
+    wb_document_release(&document);
+    wb_figures_release(&figures);
+    return status;
+}
