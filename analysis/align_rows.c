@@ -79,7 +79,7 @@ enum wb_status wb_align_markers(struct wb_align *align)
         .frame_period = typical_period(align),
     };
     WB_TRY(wb_markers_track(&align->tracks, &align->cloud, &align->specimen, &settings));
-    if (wb_frame_is_reversed(&align->tracks, &align->cloud, up)) {
+    if (wb_frame_is_reversed(&align->tracks, up)) {
         if (!align->tracks.symmetric)
             wb_align_warn(align, "by their distances the markers are in the other order than by "
                                  "their motion (the clamp moves, the tip does not): markers_mm of "
@@ -87,8 +87,7 @@ enum wb_status wb_align_markers(struct wb_align *align)
         else
             wb_markers_reverse(&align->tracks);
     }
-    WB_TRY(wb_frame_fit(&align->frame, &align->tracks, &align->cloud, align->frame_t, CLAMP_WINDOW,
-                        up));
+    WB_TRY(wb_frame_fit(&align->frame, &align->tracks, align->frame_t, CLAMP_WINDOW, up));
     if (align->frame.tilt > 5.0 * WB_DEGREE)
         wb_align_warn(align,
                       "the clamp's motion leans %.1f degrees from the server's %c axis: is "
@@ -164,14 +163,13 @@ static void average_frames(const struct wb_align *align, size_t first, size_t la
     memset(means, 0, sizeof *means);
     for (size_t i = first; i < last; i++) {
         const double height = wb_frame_clamp_height(&align->frame, i);
-        if (!isfinite(height) ||
-            !wb_markers_position(&align->tracks, &align->cloud, i, n_markers - 1))
+        if (!isfinite(height) || !wb_markers_position(&align->tracks, i, n_markers - 1))
             continue;
         means->n_tip++;
         means->t += align->frame_t[i];
         means->height += height;
         for (int k = 0; k < n_markers; k++) {
-            const double *const p = wb_markers_position(&align->tracks, &align->cloud, i, k);
+            const double *const p = wb_markers_position(&align->tracks, i, k);
             double x, y;
             if (!p)
                 continue;

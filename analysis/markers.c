@@ -551,6 +551,7 @@ enum wb_status wb_markers_track(struct wb_marker_tracks *tracks, const struct wb
 {
     memset(tracks, 0, sizeof *tracks);
     struct wb_marker_tracks made = {
+        .cloud = cloud,
         .n_markers = specimen->n_markers,
         .n_frames = cloud->n_frames,
         .symmetric = is_symmetric(specimen),
@@ -597,9 +598,8 @@ void wb_markers_reverse(struct wb_marker_tracks *tracks)
     }
 }
 
-const double *wb_markers_position(const struct wb_marker_tracks *tracks,
-                                  const struct wb_point_cloud *cloud, size_t frame, int marker)
+const double *wb_markers_position(const struct wb_marker_tracks *tracks, size_t frame, int marker)
 {
     const int32_t index = row_of(tracks, frame)[marker];
-    return index >= 0 ? cloud->points[index] : NULL;
+    return index >= 0 ? tracks->cloud->points[index] : NULL;
 }

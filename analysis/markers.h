@@ -49,6 +49,7 @@ struct wb_marker_settings {
 
 /* The identified markers. */
 struct wb_marker_tracks {
+    const struct wb_point_cloud *cloud; /* they were found in; must live as long */
     int n_markers;
     size_t n_frames;
     /* (n_frames x n_markers) index into the cloud's points; -1: not seen in this frame */
@@ -73,7 +74,6 @@ void wb_marker_tracks_release(struct wb_marker_tracks *tracks);
 void wb_markers_reverse(struct wb_marker_tracks *tracks);
 
 /* Position of a marker in a frame, or NULL when it is not seen. */
-const double *wb_markers_position(const struct wb_marker_tracks *tracks,
-                                  const struct wb_point_cloud *cloud, size_t frame, int marker);
+const double *wb_markers_position(const struct wb_marker_tracks *tracks, size_t frame, int marker);
 
 #endif

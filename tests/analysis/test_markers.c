@@ -261,11 +261,11 @@ static void reversing_turns_the_order_round(void **state)
     const struct scene scene = plain();
     film(&scene, &cloud, truth);
     assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings), WB_OK);
-    const double *const first = wb_markers_position(&tracks, &cloud, 100, 0);
-    const double *const last = wb_markers_position(&tracks, &cloud, 100, N - 1);
+    const double *const first = wb_markers_position(&tracks, 100, 0);
+    const double *const last = wb_markers_position(&tracks, 100, N - 1);
     wb_markers_reverse(&tracks);
-    assert_ptr_equal(wb_markers_position(&tracks, &cloud, 100, N - 1), first);
-    assert_ptr_equal(wb_markers_position(&tracks, &cloud, 100, 0), last);
+    assert_ptr_equal(wb_markers_position(&tracks, 100, N - 1), first);
+    assert_ptr_equal(wb_markers_position(&tracks, 100, 0), last);
     wb_marker_tracks_release(&tracks);
     wb_point_cloud_release(&cloud);
 }
