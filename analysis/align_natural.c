@@ -139,7 +139,7 @@ static enum wb_status gather_loading(const struct wb_align *align, double carrie
     loading->n = 0;
     loading->y = malloc(2 * align->n_rows * sizeof *loading->y);
     if (!loading->y)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     loading->force = loading->y + align->n_rows;
     for (size_t i = 0; i < align->n_rows && align->rows[i].cycle == 1; i++) {
         const struct wb_align_row *const row = &align->rows[i];

@@ -78,7 +78,8 @@ enum wb_status wb_align_markers(struct wb_align *align)
         .noise = align->rig.mocap.marker_noise,
         .frame_period = typical_period(align),
     };
-    WB_TRY(wb_markers_track(&align->tracks, &align->cloud, &align->specimen, &settings));
+    WB_TRY(
+        wb_markers_track(&align->tracks, &align->cloud, &align->specimen, &settings, align->why));
     if (wb_frame_is_reversed(&align->tracks, up)) {
         if (!align->tracks.symmetric)
             wb_align_warn(align, "by their distances the markers are in the other order than by "
@@ -87,7 +88,8 @@ enum wb_status wb_align_markers(struct wb_align *align)
         else
             wb_markers_reverse(&align->tracks);
     }
-    WB_TRY(wb_frame_fit(&align->frame, &align->tracks, align->frame_t, CLAMP_WINDOW, up));
+    WB_TRY(
+        wb_frame_fit(&align->frame, &align->tracks, align->frame_t, CLAMP_WINDOW, up, align->why));
     if (align->frame.tilt > 5.0 * WB_DEGREE)
         wb_align_warn(align,
                       "the clamp's motion leans %.1f degrees from the server's %c axis: is "
@@ -293,7 +295,7 @@ enum wb_status wb_align_rows(struct wb_align *align)
     const double half = fmax(0.5 / rate, 2.5 * period);
     align->rows = malloc((n_frames + 1) * sizeof *align->rows);
     if (!align->rows)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", n_frames);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", n_frames);
     for (size_t first = 0, last; first < n_frames; first = last) {
         const double bin = floor(align->frame_t[first] * rate);
         for (last = first + 1; last < n_frames; last++) {
@@ -306,9 +308,9 @@ enum wb_status wb_align_rows(struct wb_align *align)
             align->n_dropped_rows++;
     }
     if (align->n_rows < 20)
-        return wb_fail(WB_ERR_DATA,
-                       "%s: only %zu rows have tip, clamp and load cell at the same time",
-                       align->name, align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: only %zu rows have tip, clamp and load cell at the same time",
+                          align->name, align->n_rows);
     struct wb_align_row *const fitted = realloc(align->rows, align->n_rows * sizeof *align->rows);
     align->rows = fitted ? fitted : align->rows;
     zero_travel(align);
@@ -377,7 +379,7 @@ static enum wb_status measure_speed(struct wb_align *align)
     double *const speeds = malloc(align->n_rows * sizeof *speeds);
     size_t n = 0;
     if (!speeds)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     for (size_t i = 20; i < align->n_rows; i++) {
         const struct wb_align_row *const a = &align->rows[i - 20], *const b = &align->rows[i];
         if (b->phase == WB_PHASE_LOAD && a->cycle == b->cycle &&
@@ -394,8 +396,9 @@ enum wb_status wb_align_cycles(struct wb_align *align)
     double low, high;
     find_range(align, &low, &high);
     if (high - low < LEAST_TURN)
-        return wb_fail(WB_ERR_DATA, "%s: the clamp moved by %.2f mm only: this is no bending test",
-                       align->name, (high - low) / WB_MM);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the clamp moved by %.2f mm only: this is no bending test",
+                          align->name, (high - low) / WB_MM);
     cut_cycles(align, fmax(TURN_PART * (high - low), LEAST_TURN));
     if (align->n_cycle_starts > 0 && align->n_cycle_starts != align->n_cycles)
         wb_align_warn(align, "the recording tells %d cycles, the clamp's path has %d",
@@ -661,7 +664,8 @@ enum wb_status wb_align_stage(struct wb_align *align)
     struct pair *const pairs = malloc((align->reports.n + 1) * sizeof *pairs);
     struct stage_fit fit = {0};
     if (!pairs)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu reports", align->reports.n);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu reports",
+                          align->reports.n);
     const size_t n = make_pairs(align, pairs);
     const bool fitted = fit_stage(align, pairs, n, &fit);
     if (fitted) {

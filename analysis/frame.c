@@ -88,7 +88,8 @@ bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const double se
 /* The vertical from the clamp's path. Positions are taken relative to the first seen one, for the
  * sums of squares to keep their digits. */
 static enum wb_status fit_motion(struct wb_bench_frame *frame,
-                                 const struct wb_marker_tracks *tracks, const double *server_up)
+                                 const struct wb_marker_tracks *tracks, const double *server_up,
+                                 struct wb_reason *why)
 {
     struct scatter scatter = {0};
     const double *first = NULL;
@@ -101,7 +102,7 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
         add_point(&scatter, relative);
     }
     if (!first)
-        return wb_fail(WB_ERR_DATA, "the clamp's marker is not seen in any frame");
+        return wb_fail_to(why, WB_ERR_DATA, "the clamp's marker is not seen in any frame");
     double directions[3][3], spread[3];
     principal(&scatter, directions, spread);
     memcpy(frame->up, server_up, sizeof frame->up);
@@ -199,7 +200,8 @@ static bool find_from_clamp(const struct wb_bench_frame *frame,
 
 /* Horizontal direction of the largest spread of the markers' horizontal parts, pointing from the
  * clamp to the tip. */
-static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks)
+static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
+                                struct wb_reason *why)
 {
     struct scatter flat = {0}, full = {0};
     for (size_t i = 0; i < tracks->n_frames; i++) {
@@ -215,7 +217,7 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
         }
     }
     if (flat.n < 3)
-        return wb_fail(WB_ERR_DATA, "too few markers are seen together with the clamp's");
+        return wb_fail_to(why, WB_ERR_DATA, "too few markers are seen together with the clamp's");
     double directions[3][3], spread[3];
     /* With one marker beside the clamp's there is no spread: its mean gives the direction. */
     if (tracks->n_markers > 2)
@@ -228,8 +230,9 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
         frame->along[k] = sign * (directions[0][k] - vertical * frame->up[k]);
     if (!(wb_vec3_normalise(frame->along) > 0.0) ||
         !(wb_vec3_dot(flat.sum, frame->along) / (double)flat.n > LEAST_SPREAD))
-        return wb_fail(WB_ERR_DATA, "the markers lie one above the other along the clamp's motion: "
-                                    "no bending plane (is the rig's mocap.up right?)");
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the markers lie one above the other along the clamp's motion: "
+                          "no bending plane (is the rig's mocap.up right?)");
     wb_vec3_cross(frame->along, frame->up, frame->normal);
     principal(&full, directions, spread);
     frame->plane_tilt = 0.0;
@@ -256,16 +259,17 @@ static void measure_planarity(struct wb_bench_frame *frame, const struct wb_mark
 }
 
 enum wb_status wb_frame_fit(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
-                            const double *times, double window, const double server_up[3])
+                            const double *times, double window, const double server_up[3],
+                            struct wb_reason *why)
 {
     memset(frame, 0, sizeof *frame);
     struct wb_bench_frame fitted = {.n_frames = tracks->n_frames};
-    WB_TRY(fit_motion(&fitted, tracks, server_up));
+    WB_TRY(fit_motion(&fitted, tracks, server_up, why));
     fitted.clamp = malloc((tracks->n_frames + 1) * sizeof *fitted.clamp);
     if (!fitted.clamp)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu frames", tracks->n_frames);
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for %zu frames", tracks->n_frames);
     smooth_clamp(&fitted, tracks, times, window);
-    const enum wb_status status = fit_along(&fitted, tracks);
+    const enum wb_status status = fit_along(&fitted, tracks, why);
     if (status != WB_OK) {
         free(fitted.clamp);
         return status;

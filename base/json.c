@@ -374,8 +374,8 @@ static void put_parsed(struct wb_json *value, json_t *parsed)
     }
 }
 
-static enum wb_status parse(struct wb_json **root, const char *text, const char *origin,
-                            struct wb_reason *why)
+enum wb_status wb_json_parse_with_reason(struct wb_json **root, const char *text,
+                                         const char *origin, struct wb_reason *why)
 {
     *root = NULL;
     json_error_t error;
@@ -399,7 +399,7 @@ static enum wb_status parse(struct wb_json **root, const char *text, const char 
 
 enum wb_status wb_json_parse(struct wb_json **root, const char *text, const char *origin)
 {
-    return parse(root, text, origin, NULL);
+    return wb_json_parse_with_reason(root, text, origin, NULL);
 }
 
 enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
@@ -408,7 +408,7 @@ enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
     *root = NULL;
     char *text;
     WB_TRY(wb_file_read_with_reason(path, &text, NULL, why));
-    const enum wb_status status = parse(root, text, path, why);
+    const enum wb_status status = wb_json_parse_with_reason(root, text, path, why);
     free(text);
     return status;
 }

@@ -51,3 +51,17 @@ void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *fo
     else
         wb_log(WB_LOG_ERROR, domain, "%s", message);
 }
+
+void wb_reason_tell_also(struct wb_reason *reason, const char *domain, const char *format, ...)
+{
+    char message[MOST_MESSAGE];
+    va_list arguments;
+
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    if (reason && reason->text[0])
+        wb_reason_set(reason, "%s; %s", reason->text, message);
+    else
+        wb_reason_tell(reason, domain, "%s", message);
+}

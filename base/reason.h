@@ -30,4 +30,11 @@ void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *fo
 #define wb_fail_to(reason, status, ...)                                                            \
     (wb_reason_tell((reason), WB_LOG_DOMAIN, __VA_ARGS__), (status))
 
+/* The same for one of several failures that the caller can go on after: `reason` keeps what it says
+ * already, "; " between them. */
+void wb_reason_tell_also(struct wb_reason *reason, const char *domain, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+#define wb_fail_also(reason, status, ...)                                                          \
+    (wb_reason_tell_also((reason), WB_LOG_DOMAIN, __VA_ARGS__), (status))
+
 #endif

@@ -36,7 +36,7 @@ static enum wb_status prepare(struct run *run)
     char path[WB_PATH];
 
     WB_TRY(wb_file_find_fixture(path, "wires", o->wire, NULL));
-    WB_TRY(wb_wire_read(path, &run->wire));
+    WB_TRY(wb_wire_read(path, &run->wire, NULL));
     if (!run->wire.has_properties)
         return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);
     run->material = run->wire.material;

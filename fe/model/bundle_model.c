@@ -588,7 +588,7 @@ static enum wb_status find_file(struct reader *reader, const struct wb_config_no
     char named_in[WB_PATH + 64];
     snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(map),
              wb_config_line(wb_config_find(map, key)), key);
-    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in));
+    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in, NULL));
     return keep_text(reader, path);
 }
 
@@ -597,7 +597,7 @@ static enum wb_status find_wire(struct reader *reader, const struct wb_config_no
 {
     char path[WB_PATH];
     WB_TRY(find_file(reader, map, key, "wires", name, path));
-    WB_TRY(wb_wire_read(path, wire));
+    WB_TRY(wb_wire_read(path, wire, NULL));
     if (!wire->has_properties)
         return wb_config_refuse(map, key, "wire %s has no properties", wire->name);
     if (wire->material.poissons_ratio > largest_poisson)
@@ -1144,7 +1144,7 @@ static enum wb_status read_all(struct reader *reader, const char *path)
     set_defaults(m);
     WB_TRY(wb_file_join(m->path, "", path));
     wb_file_folder(reader->folder, path);
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     reader->root = wb_config_root(config);
     enum wb_status status = keep_text(reader, path);
     if (status == WB_OK)

@@ -67,7 +67,7 @@ static enum wb_status find(struct reader *reader, const struct wb_config_node *m
     char named_in[WB_PATH + 64];
     snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(map),
              wb_config_line(wb_config_find(map, key)), key);
-    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in));
+    WB_TRY(wb_file_find_named(path, kind, name, reader->folder, named_in, NULL));
     return keep_text(reader, path);
 }
 
@@ -427,7 +427,7 @@ static enum wb_status read_root(struct reader *reader)
     m->is_elastic = law == 0;
     m->clamp = clamp == 1 ? WB_WIRE_CLAMP_FIXED : WB_WIRE_CLAMP_PLANE;
     WB_TRY(find(reader, reader->root, "wire", "wires", wire, path));
-    WB_TRY(wb_wire_read(path, &m->wire));
+    WB_TRY(wb_wire_read(path, &m->wire, NULL));
     if (parts)
         WB_TRY(read_parts(reader, parts));
     else
@@ -450,7 +450,7 @@ static enum wb_status read_all(struct reader *reader, const char *path)
     m->section_density = DEFAULT_DENSITY;
     WB_TRY(wb_file_join(m->path, "", path));
     wb_file_folder(reader->folder, path);
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     reader->root = wb_config_root(config);
     enum wb_status status = keep_text(reader, path);
     if (status == WB_OK)

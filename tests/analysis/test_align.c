@@ -28,20 +28,40 @@ static void align(struct syn *syn, struct wb_dataset *dataset)
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
     record(syn, path);
-    if (wb_align_run(dataset, path, &settings) != WB_OK)
+    if (wb_align_run(dataset, path, &settings, NULL) != WB_OK)
         fail_msg("not aligned: %s", kept.last);
 }
 
+/* The same text goes to the log, or to the reason and not to the log. */
 static void refuse(struct syn *syn, const char *expected)
 {
+    struct wb_reason why = {.text = "of before"};
     char path[WB_PATH];
     struct wb_dataset dataset;
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
     record(syn, path);
-    assert_int_equal(wb_align_run(&dataset, path, &settings), WB_ERR_DATA);
+    assert_int_equal(wb_align_run(&dataset, path, &settings, NULL), WB_ERR_DATA);
     assert_message(expected);
+    assert_int_equal(wb_align_run(&dataset, path, &settings, &why), WB_ERR_DATA);
+    assert_string_equal(why.text, kept.error);
+    keep_messages();
+    assert_int_equal(wb_align_run(&dataset, path, &settings, &why), WB_ERR_DATA);
+    assert_string_equal(kept.error, "");
     wb_dataset_release(&dataset);
+}
+
+/* Overwrites the recording from that part of its length on. */
+static void overwrite(const char *path, double part)
+{
+    FILE *const file = fopen(path, "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    const long size = ftell(file), from = (long)(part * (double)size) / 4096 * 4096;
+    assert_int_equal(fseek(file, from, SEEK_SET), 0);
+    for (long i = from; i < size; i++)
+        assert_int_equal(fputc(0, file), 0);
+    assert_int_equal(fclose(file), 0);
 }
 
 /* --- reading what alignment says of itself --- */
@@ -257,7 +277,7 @@ static void drift_that_cannot_be_seen_is_bounded(void **state)
     syn.gap_from = 35.0;
     syn.gap_until = 1e9;
     record(&syn, path);
-    assert_int_equal(wb_align_run(&dataset, path, &settings), WB_OK);
+    assert_int_equal(wb_align_run(&dataset, path, &settings, NULL), WB_OK);
     const bool only_tare = warns(&dataset, "zero drift is not corrected");
     const double value = correction(&dataset, "zero drift", "value_mN");
     assert_true(only_tare);
@@ -529,9 +549,44 @@ static void what_cannot_serve_is_refused_with_the_reason(void **state)
     struct wb_dataset dataset;
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
-    assert_int_equal(wb_align_run(&dataset, "/nonexistent/test.wbr", &settings), WB_ERR_NOT_FOUND);
+    assert_int_equal(wb_align_run(&dataset, "/nonexistent/test.wbr", &settings, NULL),
+                     WB_ERR_NOT_FOUND);
     settings.longest_gap = -1.0;
-    assert_int_equal(wb_align_run(&dataset, "/nonexistent/test.wbr", &settings), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_align_run(&dataset, "/nonexistent/test.wbr", &settings, NULL),
+                     WB_ERR_ARGUMENT);
+}
+
+/* What could not be read stands before what that led to; of a recording that serves all the same it
+ * is logged. */
+static void what_is_lost_is_told_with_the_reason(void **state)
+{
+    (void)state;
+    char path[WB_PATH];
+    struct syn syn;
+    struct wb_dataset dataset;
+    struct wb_align_settings settings;
+    struct wb_reason why = {.text = ""};
+    wb_align_default_settings(&settings);
+    syn_default(&syn);
+    record(&syn, path);
+    overwrite(path, 0.97);
+    keep_messages();
+    assert_int_equal(wb_align_run(&dataset, path, &settings, &why), WB_OK);
+    assert_non_null(strstr(kept.error, "table chunk breaks off"));
+    assert_string_equal(why.text, "");
+    assert_true(warns(&dataset, "the recording breaks off"));
+    wb_dataset_release(&dataset);
+
+    overwrite(path, 0.1);
+    keep_messages();
+    assert_int_equal(wb_align_run(&dataset, path, &settings, &why), WB_ERR_DATA);
+    assert_string_equal(kept.error, "");
+    const char *const lost = strstr(why.text, "table chunk breaks off");
+    assert_non_null(lost);
+    const char *const failed = strstr(lost, "; ");
+    assert_non_null(failed);
+    assert_int_equal(wb_align_run(&dataset, path, &settings, NULL), WB_ERR_DATA);
+    assert_string_equal(failed + 2, kept.error);
 }
 
 static void wrong_bytes_never_crash_it(void **state)
@@ -548,7 +603,7 @@ static void wrong_bytes_never_crash_it(void **state)
         syn.corrupt = parts[i];
         syn.travel = 8e-3;
         record(&syn, path);
-        const enum wb_status status = wb_align_run(&dataset, path, &settings);
+        const enum wb_status status = wb_align_run(&dataset, path, &settings, NULL);
         assert_true(status == WB_OK || status == WB_ERR_DATA);
         /* A few wrong bytes are what a bad cable does; the test is still worth something. */
         if (i == 0)
@@ -569,7 +624,7 @@ static void the_same_recording_gives_the_same_bytes(void **state)
     record(&syn, path);
     for (int i = 0; i < 2; i++) {
         struct wb_dataset dataset;
-        assert_int_equal(wb_align_run(&dataset, path, &settings), WB_OK);
+        assert_int_equal(wb_align_run(&dataset, path, &settings, NULL), WB_OK);
         snprintf(outputs[i], WB_PATH, "%.200s/output-%d", folder, i);
         assert_int_equal(wb_dataset_write(&dataset, outputs[i], false), WB_OK);
         wb_dataset_release(&dataset);
@@ -611,6 +666,7 @@ int main(void)
         cmocka_unit_test(a_busy_host_does_no_harm),
         cmocka_unit_test(polled_readings_keep_their_arrival),
         cmocka_unit_test(what_cannot_serve_is_refused_with_the_reason),
+        cmocka_unit_test(what_is_lost_is_told_with_the_reason),
         cmocka_unit_test(wrong_bytes_never_crash_it),
         cmocka_unit_test(the_same_recording_gives_the_same_bytes),
     };

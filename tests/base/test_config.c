@@ -44,7 +44,7 @@ static enum wb_status read_sample(const char *text, struct sample *sample)
     static const char *const colours[] = {"red", "blue", NULL};
     *sample = (struct sample){.length = -1.0, .count = -1};
     struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, "test.yaml"));
+    WB_TRY(wb_config_parse(&config, text, "test.yaml", NULL));
     const struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("length_mm", &sample->length, WB_MM, 1.0, 1000.0),
         {.name = "count",
@@ -134,14 +134,14 @@ static void lists_of_numbers_are_checked(void **state)
         .name = "markers_mm", .factor = WB_MM, .minimum = 0.0, .maximum = 100.0};
     double values[4];
     int n = 0;
-    assert_int_equal(wb_config_parse(&config, "[0, 14.2, 85]", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, "[0, 14.2, 85]", "test.yaml", NULL), WB_OK);
     assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 2, 4, values, &n), WB_OK);
     assert_int_equal(n, 3);
     assert_close(values[1], 0.0142, 1e-15);
     assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 2, 2, values, &n),
                      WB_ERR_FORMAT);
     wb_config_destroy(config);
-    assert_int_equal(wb_config_parse(&config, "[0, 200]", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, "[0, 200]", "test.yaml", NULL), WB_OK);
     assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 1, 4, values, &n),
                      WB_ERR_FORMAT);
     wb_config_destroy(config);
@@ -151,7 +151,8 @@ static void checks_after_the_table_name_the_line_of_the_key(void **state)
 {
     (void)state;
     struct wb_config *config;
-    assert_int_equal(wb_config_parse(&config, "a: 1\nb:\n  c: 2\n  d: 3\n", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, "a: 1\nb:\n  c: 2\n  d: 3\n", "test.yaml", NULL),
+                     WB_OK);
     const struct wb_config_node *const root = wb_config_root(config);
     const struct wb_config_node *const b = wb_config_find(root, "b");
     assert_non_null(b);
@@ -181,7 +182,7 @@ static void a_missing_file_is_named(void **state)
 {
     (void)state;
     struct wb_config *config;
-    assert_int_equal(wb_config_read(&config, "/no/such/file.yaml"), WB_ERR_NOT_FOUND);
+    assert_int_equal(wb_config_read(&config, "/no/such/file.yaml", NULL), WB_ERR_NOT_FOUND);
     assert_null(config);
     assert_non_null(strstr(last_message, "/no/such/file.yaml"));
     assert_int_equal(messages, 1);

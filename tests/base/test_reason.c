@@ -65,6 +65,29 @@ static void a_text_is_replaced_also_by_one_made_of_itself(void **state)
     assert_string_equal(reason.text, "none");
 }
 
+static enum wb_status lose(struct wb_reason *reason, const char *table)
+{
+    return wb_fail_also(reason, WB_ERR_DATA, "table %s is lost", table);
+}
+
+static void one_failure_after_another_is_kept(void **state)
+{
+    (void)state;
+    struct seen seen = {0};
+    struct wb_reason reason = {.text = ""};
+    wb_log_set_sink(remember, &seen);
+    assert_int_equal(lose(&reason, "a"), WB_ERR_DATA);
+    assert_string_equal(reason.text, "table a is lost");
+    assert_int_equal(lose(&reason, "b"), WB_ERR_DATA);
+    assert_string_equal(reason.text, "table a is lost; table b is lost");
+    assert_int_equal(seen.messages, 0);
+    assert_int_equal(lose(NULL, "c"), WB_ERR_DATA);
+    wb_log_set_sink(NULL, NULL);
+    assert_int_equal(seen.messages, 1);
+    assert_string_equal(seen.domain, "test");
+    assert_string_equal(seen.message, "table c is lost");
+}
+
 /* The last bytes that fit are "..."; a character of two bytes would lie across their begin. */
 static void a_long_text_is_cut_at_the_end_of_a_character(void **state)
 {
@@ -95,6 +118,7 @@ int main(void)
         cmocka_unit_test(a_failure_goes_to_the_reason_and_not_to_the_log),
         cmocka_unit_test(a_failure_without_a_reason_is_logged),
         cmocka_unit_test(a_text_is_replaced_also_by_one_made_of_itself),
+        cmocka_unit_test(one_failure_after_another_is_kept),
         cmocka_unit_test(a_long_text_is_cut_at_the_end_of_a_character),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

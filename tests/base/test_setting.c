@@ -203,7 +203,7 @@ static enum wb_status read_text(struct example *example, const char *text, unsig
     for (size_t i = 0; i < n; i++) /* text without an array is of options only */
         if (strcmp(keys[i].name, "path") == 0)
             keys[i] = keys[--n];
-    assert_int_equal(wb_config_parse(&config, text, "text"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, text, "text", NULL), WB_OK);
     const enum wb_status status = wb_config_map(wb_config_root(config), keys, n);
     wb_config_destroy(config);
     return status;
@@ -232,7 +232,7 @@ static void files_are_read_by_place(void **unused)
 static enum wb_status read_pair(struct example *example, const char *text)
 {
     struct wb_config *config;
-    assert_int_equal(wb_config_parse(&config, text, "text"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, text, "text", NULL), WB_OK);
     const enum wb_status status =
         wb_setting_read_list(find("pair"), wb_config_find(wb_config_root(config), "pair"), example);
     wb_config_destroy(config);

@@ -214,8 +214,8 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
     char path[WB_PATH], named_in[WB_PATH + 32];
     snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
              wb_config_line(wb_config_find(node, "wire")));
-    WB_TRY(wb_file_find_named(path, "wires", name, reading->campaign->head.folder, named_in));
-    WB_TRY(wb_wire_read(path, &wire->product));
+    WB_TRY(wb_file_find_named(path, "wires", name, reading->campaign->head.folder, named_in, NULL));
+    WB_TRY(wb_wire_read(path, &wire->product, NULL));
     if (!wire->label[0])
         snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);
     WB_TRY(read_reference(reference, wire));

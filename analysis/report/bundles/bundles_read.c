@@ -63,7 +63,7 @@ static enum wb_status read_model(const struct wb_bundles *all, const struct wb_c
     char named_in[WB_PATH + 32];
     snprintf(named_in, sizeof named_in, "%s:%d: bundle", wb_config_origin(node),
              wb_config_line(wb_config_find(node, "bundle")));
-    WB_TRY(wb_file_find_named(path, "bundles", name, all->head.folder, named_in));
+    WB_TRY(wb_file_find_named(path, "bundles", name, all->head.folder, named_in, NULL));
     const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
     snprintf(run->model_name, sizeof run->model_name,
              is_shipped ? "fixtures/bundles/%s.yaml" : "%s",

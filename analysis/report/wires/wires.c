@@ -25,7 +25,7 @@ static enum wb_status read_model(const struct wb_wires *comparison,
     char named_in[WB_PATH + 32];
     snprintf(named_in, sizeof named_in, "%s:%d: model", wb_config_origin(node),
              wb_config_line(wb_config_find(node, "model")));
-    WB_TRY(wb_file_find_named(path, "models", name, comparison->head.folder, named_in));
+    WB_TRY(wb_file_find_named(path, "models", name, comparison->head.folder, named_in, NULL));
     const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
     snprintf(item->model_name, sizeof item->model_name,
              is_shipped ? "fixtures/models/%s.yaml" : "%s",
@@ -189,8 +189,8 @@ static enum wb_status read_printed(struct wb_wires *comparison, const struct wb_
         return WB_OK;
     snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(node),
              wb_config_line(wb_config_find(node, "wire")));
-    WB_TRY(wb_file_find_named(path, "wires", wire, comparison->head.folder, named_in));
-    WB_TRY(wb_wire_read(path, &comparison->printed_wire));
+    WB_TRY(wb_file_find_named(path, "wires", wire, comparison->head.folder, named_in, NULL));
+    WB_TRY(wb_wire_read(path, &comparison->printed_wire, NULL));
     if (!comparison->printed_wire.has_properties)
         return wb_config_refuse(node, "wire", "'%s' has no properties", wire);
     comparison->has_printed_wire = true;
