@@ -20,9 +20,4 @@ void wb_reasons_fail(const struct wb_reasons *reasons, enum wb_status status,
 void wb_reasons_warn(const struct wb_reasons *reasons, enum wb_status status,
                      const struct wb_reason *why);
 
-/* Until the end, errors that the calling thread logs are appended to `problem`, "; " between them:
- * for the alignment of a recording, whose functions give no reason. `reasons` must live as long. */
-void wb_reasons_listen(const struct wb_reasons *reasons);
-void wb_reasons_end(void);
-
 #endif
