@@ -105,15 +105,7 @@ enum wb_status wb_align_markers(struct wb_align *align)
 static size_t first_reading_at(const struct wb_align *align, double t)
 {
     const struct wb_align_reading *const readings = wb_align_readings(align);
-    size_t low = 0, high = align->readings.n;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (readings[middle].t < t)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return wb_fit_first_at(&readings->t, sizeof *readings, align->readings.n, t);
 }
 
 /* Reading less tare at bench time t: a local straight line over +-half seconds, or between the two
@@ -416,20 +408,12 @@ struct pair {
 static bool clamp_at(const struct wb_align *align, double t, double *height)
 {
     const double *const times = align->frame_t;
-    size_t low = 0, high = align->cloud.n_frames;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (times[middle] < t)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low == 0 || low == align->cloud.n_frames ||
-        times[low] - times[low - 1] > align->settings.longest_gap)
+    const size_t n = align->cloud.n_frames, next = wb_fit_first_at(times, sizeof *times, n, t);
+    if (next == 0 || next == n || times[next] - times[next - 1] > align->settings.longest_gap)
         return false;
-    const double part = (t - times[low - 1]) / (times[low] - times[low - 1]);
-    *height = (1.0 - part) * wb_frame_clamp_height(&align->frame, low - 1) +
-              part * wb_frame_clamp_height(&align->frame, low);
+    const double part = (t - times[next - 1]) / (times[next] - times[next - 1]);
+    *height = (1.0 - part) * wb_frame_clamp_height(&align->frame, next - 1) +
+              part * wb_frame_clamp_height(&align->frame, next);
     return isfinite(*height);
 }
 

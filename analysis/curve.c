@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/curve_private.h"
+#include "analysis/fit.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "curve"
@@ -45,9 +46,7 @@ static bool is_first_loading(const struct wb_row *row)
     return row->cycle == 1 && row->phase == WB_PHASE_LOAD;
 }
 
-/* Rows of the first loading: up to the largest force of a follower test, and up to the largest
- * deflection that is wanted. */
-static size_t end_of_loading(const struct wb_dataset *dataset, double largest_deflection)
+size_t wb_curve_end_of_loading(const struct wb_dataset *dataset, double largest_deflection)
 {
     const double limit = largest_deflection > 0.0 ? largest_deflection * (1.0 + 1e-9) : HUGE_VAL;
     double force = -HUGE_VAL;
@@ -85,7 +84,7 @@ static enum wb_status extract_loading(struct loading *loading, const struct wb_d
     const char *const wire = dataset->info.wire;
     const int sample = dataset->info.sample;
     const bool follows = dataset->info.is_follower;
-    const size_t end = end_of_loading(dataset, grid->largest_deflection);
+    const size_t end = wb_curve_end_of_loading(dataset, grid->largest_deflection);
     double highest = -HUGE_VAL, lowest = HUGE_VAL;
     loading->n = 0;
     loading->points = malloc((end + 1) * sizeof *loading->points);
@@ -129,15 +128,7 @@ static void release_loading(struct loading *loading)
 /* Index of the first point at or above `at`; n when there is none. */
 static size_t first_at_or_above(const struct loading *loading, double at)
 {
-    size_t low = 0, high = loading->n;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (loading->points[middle].at < at)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return wb_fit_first_at(&loading->points->at, sizeof *loading->points, loading->n, at);
 }
 
 /* Straight line through the points around `centre` with triangular weights, taken at `centre`.
