@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <glib.h>
 #include <jansson.h>
 
 #include "base/file.h"
@@ -147,13 +148,6 @@ static void put_boolean(struct wb_json *value, bool boolean)
     value->as.boolean = boolean;
 }
 
-static bool is_utf8(const char *text)
-{
-    json_t *const quoted = json_string(text);
-    json_decref(quoted);
-    return quoted != NULL;
-}
-
 static void put_text(struct wb_json *value, const char *text)
 {
     if (!value || !text)
@@ -164,7 +158,7 @@ static void put_text(struct wb_json *value, const char *text)
         return;
     }
     /* Not UTF-8 (bytes from a device, say): keep what is ASCII. */
-    if (!is_utf8(copy)) {
+    if (!g_utf8_validate(copy, -1, NULL)) {
         for (char *c = copy; *c; c++) {
             if ((unsigned char)*c >= 0x80)
                 *c = '?';
