@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+#include "analysis/calibrate.h"
 #include "analysis/computed.h"
 #include "analysis/dataset.h"
 #include "base/log.h"
@@ -115,6 +116,32 @@ static inline void plain_dataset(struct wb_dataset *dataset, double (*force)(dou
         row.force = row.tension = force(row.deflection);
         assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
     }
+}
+
+/* Of a test or a group: messages are kept. */
+static inline int silence(void **state)
+{
+    (void)state;
+    keep_messages();
+    return 0;
+}
+
+/* Of a calibration that is fast. */
+static inline struct wb_calibrate_settings beam_settings(void)
+{
+    struct wb_calibrate_settings settings;
+    wb_calibrate_default_settings(&settings);
+    settings.yield_point = 0.04;
+    settings.n_elements = BEAM_ELEMENTS;
+    settings.step = 1.0 * WB_MM;
+    return settings;
+}
+
+static inline enum wb_status calibrate_one(struct wb_calibrate_result *result,
+                                           const struct wb_dataset *dataset,
+                                           const struct wb_calibrate_settings *settings)
+{
+    return wb_calibrate_run(result, &dataset, 1, settings, NULL);
 }
 
 #endif

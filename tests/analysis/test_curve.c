@@ -14,18 +14,30 @@ static double parabola(double x)
     return 2.0 * x - 10.0 * x * x;
 }
 
-static int silence(void **state)
-{
-    (void)state;
-    keep_messages();
-    return 0;
-}
-
 /* Evenly spread numbers without a library: -1..1, mean 0, variance 1/3. */
 static double noise(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) / 4503599627370496.0 - 1.0;
+}
+
+static enum wb_status average(struct wb_curve *curve, const struct wb_dataset *dataset, double step)
+{
+    return wb_curve_average(curve, &dataset, 1, step);
+}
+
+static void assert_follows(const struct wb_curve *curve, double (*force)(double deflection))
+{
+    for (int i = 0; i < curve->n; i++)
+        assert_close(curve->force[i], force(i * curve->step), 1e-12);
+}
+
+/* The loading is refused with that message. */
+static void refuse(const struct wb_dataset *dataset, double step, const char *message)
+{
+    struct wb_curve curve;
+    assert_int_equal(average(&curve, dataset, step), WB_ERR_DATA);
+    assert_message(message);
 }
 
 static void a_single_curve_comes_back_on_the_grid(void **state)
@@ -34,8 +46,7 @@ static void a_single_curve_comes_back_on_the_grid(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_OK);
+    assert_int_equal(average(&curve, &dataset, 0.0), WB_OK);
     assert_int_equal(curve.n, 107);
     assert_int_equal(curve.n_samples, 1);
     assert_close(curve.step, 0.5 * mm, 0.0);
@@ -60,8 +71,7 @@ static void loads_in_space_make_no_curve(void **state)
     struct wb_curve curve;
     plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
     dataset.info.is_general = true;
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
+    assert_int_equal(average(&curve, &dataset, 0.0), WB_ERR_DATA);
     wb_dataset_release(&dataset);
 }
 
@@ -71,11 +81,9 @@ static void rows_on_the_grid_are_taken_as_they_are(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, parabola, 0.5 * mm, 53 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
     assert_int_equal(curve.n, 107);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], parabola(i * curve.step), 1e-12);
+    assert_follows(&curve, parabola);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
 }
@@ -86,10 +94,8 @@ static void coarse_rows_are_interpolated(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, line, 1.0 * mm, 53 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], line(i * curve.step), 1e-12);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
+    assert_follows(&curve, line);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
 }
@@ -139,8 +145,7 @@ static void noise_of_force_and_deflection_is_averaged_away_without_bias(void **s
         dataset.rows[i].force += force_noise * noise(&seed);
         dataset.rows[i].deflection += deflection_noise * noise(&seed);
     }
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
     double sum = 0.0, squares = 0.0;
     for (int i = 1; i < curve.n - 1; i++) {
         const double error = curve.force[i] - parabola(i * curve.step);
@@ -174,10 +179,8 @@ static void only_the_taut_first_loading_counts(void **state)
         const struct wb_row row = {.cycle = 1, .deflection = -0.5 * mm, .force = -0.001 * k};
         assert_int_equal(wb_dataset_add_row(&dataset, &row), WB_OK);
     }
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], line(i * curve.step), 1e-12);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
+    assert_follows(&curve, line);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
 }
@@ -199,15 +202,12 @@ static void a_short_gap_is_bridged_and_a_long_one_refused(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, line, 0.05 * mm, 50 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
     cut(&dataset, 20.01 * mm, 21.89 * mm);
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], line(i * curve.step), 1e-12);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
+    assert_follows(&curve, line);
     wb_curve_release(&curve);
     cut(&dataset, 20.01 * mm, 22.14 * mm);
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_ERR_DATA);
-    assert_message("no rows of the first loading around 2");
+    refuse(&dataset, 0.5 * mm, "no rows of the first loading around 2");
     wb_dataset_release(&dataset);
 }
 
@@ -238,24 +238,20 @@ static void unusable_rows_are_refused_with_the_reason(void **state)
     (void)state;
     struct wb_dataset dataset;
     struct wb_curve curve;
-    const struct wb_dataset *const datasets[] = {&dataset};
     plain_dataset(&dataset, line, 0.1 * mm, 50 * mm);
     dataset.rows[100].force = (double)NAN;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("row 101 has no finite");
+    refuse(&dataset, 0.0, "row 101 has no finite");
     dataset.rows[100].force = 0.0;
     for (size_t i = 0; i < dataset.n_rows; i++)
         dataset.rows[i].deflection = -dataset.rows[i].deflection;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("reversed");
+    refuse(&dataset, 0.0, "reversed");
     dataset.n_rows = 5;
     for (size_t i = 0; i < dataset.n_rows; i++)
         dataset.rows[i].deflection = (double)i * mm;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("only 5 rows");
+    refuse(&dataset, 0.0, "only 5 rows");
     dataset.n_rows = 0;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_int_equal(wb_curve_average(&curve, datasets, 0, 0.0), WB_ERR_ARGUMENT);
+    assert_int_equal(average(&curve, &dataset, 0.0), WB_ERR_DATA);
+    assert_int_equal(wb_curve_average(&curve, NULL, 0, 0.0), WB_ERR_ARGUMENT);
     wb_dataset_release(&dataset);
 }
 
@@ -263,11 +259,8 @@ static void a_loading_of_a_few_steps_is_refused(void **state)
 {
     (void)state;
     struct wb_dataset dataset;
-    struct wb_curve curve;
-    const struct wb_dataset *const datasets[] = {&dataset};
     plain_dataset(&dataset, line, 0.05 * mm, 3 * mm);
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_ERR_DATA);
-    assert_message("reaches only 7 points");
+    refuse(&dataset, 0.5 * mm, "reaches only 7 points");
     wb_dataset_release(&dataset);
 }
 
@@ -315,13 +308,10 @@ static void a_loading_that_begins_above_zero_is_told(void **state)
 {
     (void)state;
     struct wb_dataset dataset;
-    struct wb_curve curve;
-    const struct wb_dataset *const datasets[] = {&dataset};
     plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
     for (int i = 0; i < 34; i++)
         dataset.rows[i].phase = WB_PHASE_SLACK;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("no rows below 1.70 mm");
+    refuse(&dataset, 0.0, "no rows below 1.70 mm");
     wb_dataset_release(&dataset);
 }
 

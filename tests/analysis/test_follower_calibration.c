@@ -59,13 +59,6 @@ static struct wb_calibrate_settings quick_settings(void)
     return settings;
 }
 
-static enum wb_status calibrate_one(struct wb_calibrate_result *result,
-                                    const struct wb_dataset *dataset,
-                                    const struct wb_calibrate_settings *settings)
-{
-    return wb_calibrate_run(result, &dataset, 1, settings, NULL);
-}
-
 /* A dataset of the homogenised wire itself: rows in equal steps of the force. */
 static void homogenised_dataset(struct wb_dataset *dataset, const struct wb_test_info *info,
                                 const struct wb_material *material)
