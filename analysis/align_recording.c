@@ -212,20 +212,15 @@ static enum wb_status need_meta(struct wb_align *align, struct wb_recording *rec
     return status;
 }
 
-static enum wb_status load_rig(struct wb_align *align, struct wb_recording *recording)
+static enum wb_status load_rig_and_specimen(struct wb_align *align, struct wb_recording *recording)
 {
     char *text, origin[192];
     WB_TRY(need_meta(align, recording, "rig", &text, origin));
-    const enum wb_status status = wb_rig_parse(text, origin, &align->rig, align->why);
+    enum wb_status status = wb_rig_parse(text, origin, &align->rig, align->why);
     free(text);
-    return status;
-}
-
-static enum wb_status load_specimen(struct wb_align *align, struct wb_recording *recording)
-{
-    char *text, origin[192];
+    WB_TRY(status);
     WB_TRY(need_meta(align, recording, "specimen", &text, origin));
-    const enum wb_status status = wb_specimen_parse(text, origin, &align->specimen, align->why);
+    status = wb_specimen_parse(text, origin, &align->specimen, align->why);
     free(text);
     return status;
 }
@@ -282,8 +277,7 @@ static bool says_virtual(struct wb_recording *recording)
 
 static enum wb_status load_all(struct wb_align *align, struct wb_recording *recording)
 {
-    WB_TRY(load_rig(align, recording));
-    WB_TRY(load_specimen(align, recording));
+    WB_TRY(load_rig_and_specimen(align, recording));
     WB_TRY(load_wire(align, recording));
     align->is_virtual = align->rig.is_virtual || says_virtual(recording);
     align->gravity = align->rig.gravity;
