@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/curve_private.h"
 #include "analysis/fit.h"
 #include "base/units.h"
 
@@ -445,13 +444,6 @@ enum wb_status wb_curve_average_on(struct wb_curve *curve, const struct wb_datas
     return status;
 }
 
-enum wb_status wb_curve_average(struct wb_curve *curve, const struct wb_dataset *const *datasets,
-                                int n, double step)
-{
-    const struct wb_curve_grid grid = {.step = step};
-    return wb_curve_average_on(curve, datasets, n, &grid, NULL);
-}
-
 /* Points up to the largest deflection, those that rise above all before them. */
 static int rising_points(const struct wb_curve *curve, struct loading_point *points)
 {
@@ -516,16 +508,6 @@ void wb_curve_release(struct wb_curve *curve)
 double wb_curve_scale(const struct wb_curve *curve)
 {
     return curve->is_follower ? curve->max_deflection : curve->max_force;
-}
-
-double wb_curve_force(const struct wb_curve *curve, double deflection)
-{
-    const double position = deflection / curve->step;
-    if (curve->is_follower || !(position >= 0.0) || !(position <= (curve->n - 1) * (1.0 + 1e-12)))
-        return (double)NAN;
-    const int i = (int)fmin(floor(position), curve->n - 2);
-    const double part = position - i;
-    return (1.0 - part) * curve->force[i] + part * curve->force[i + 1];
 }
 
 double wb_curve_scatter(const struct wb_curve *curve)

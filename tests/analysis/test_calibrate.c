@@ -1,4 +1,3 @@
-#include "analysis/curve_private.h"
 #include "tests/analysis/beam_data.h"
 
 #include "analysis/calibrate.h"
@@ -43,7 +42,7 @@ static void e_and_sigma_y_of_the_closed_forms_are_near_the_truth(void **state)
         struct wb_curve curve;
         beam_dataset(&dataset, &info, &truth, 0.5 * mm, 12 * mm, 1.0);
         const struct wb_dataset *const datasets[] = {&dataset};
-        assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
+        assert_int_equal(curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
         assert_int_equal(wb_first_guess_run(&guess, &curve, &info, 0.05, 0.04, NULL), WB_OK);
         assert_close_relative(guess.youngs_modulus, truth.youngs_modulus, 0.007);
         assert_close_relative(guess.yield_stress, truth.yield_stress, 0.011);

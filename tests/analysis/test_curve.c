@@ -1,7 +1,5 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/curve_private.h"
-
 static const double mm = WB_MM;
 
 static double line(double x)
@@ -23,7 +21,7 @@ static double noise(uint64_t *state)
 
 static enum wb_status average(struct wb_curve *curve, const struct wb_dataset *dataset, double step)
 {
-    return wb_curve_average(curve, &dataset, 1, step);
+    return curve_average(curve, &dataset, 1, step);
 }
 
 static void assert_follows(const struct wb_curve *curve, double (*force)(double deflection))
@@ -56,9 +54,9 @@ static void a_single_curve_comes_back_on_the_grid(void **state)
         assert_close(curve.deviation[i], 0.0, 0.0);
         assert_close(curve.low[i], curve.high[i], 0.0);
     }
-    assert_close(wb_curve_force(&curve, 10.25 * mm), line(10.25 * mm), 1e-12);
-    assert_true(isnan(wb_curve_force(&curve, 53.6 * mm)));
-    assert_true(isnan(wb_curve_force(&curve, -0.1 * mm)));
+    assert_close(curve_force(&curve, 10.25 * mm), line(10.25 * mm), 1e-12);
+    assert_true(isnan(curve_force(&curve, 53.6 * mm)));
+    assert_true(isnan(curve_force(&curve, -0.1 * mm)));
     assert_close(wb_curve_scatter(&curve), 0.0, 0.0);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
@@ -113,7 +111,7 @@ static void mean_range_and_deviation_are_those_of_the_samples(void **state)
             dataset[i].rows[k].force *= factor[i];
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_curve_average(&curve, datasets, 3, 0.5 * mm), WB_OK);
+    assert_int_equal(curve_average(&curve, datasets, 3, 0.5 * mm), WB_OK);
     /* The shortest sample ends the average. */
     assert_close(curve.max_deflection, 40 * mm, 1e-12);
     const double mean = (0.9 + 1.0 + 1.25) / 3.0;
@@ -220,14 +218,14 @@ static void different_kinds_are_not_averaged(void **state)
     for (int i = 0; i < 2; i++)
         plain_dataset(&dataset[i], line, 0.1 * mm, 50 * mm);
     dataset[1].info.length = 0.1;
-    assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
     assert_message("different kinds");
     dataset[1].info.length = 0.085;
     strcpy(dataset[1].info.wire, "type2");
-    assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
     strcpy(dataset[1].info.wire, dataset[0].info.wire);
     dataset[1].info.counterweight = 0.0;
-    assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
     assert_message("tested differently");
     for (int i = 0; i < 2; i++)
         wb_dataset_release(&dataset[i]);
@@ -251,7 +249,7 @@ static void unusable_rows_are_refused_with_the_reason(void **state)
     refuse(&dataset, 0.0, "only 5 rows");
     dataset.n_rows = 0;
     assert_int_equal(average(&curve, &dataset, 0.0), WB_ERR_DATA);
-    assert_int_equal(wb_curve_average(&curve, NULL, 0, 0.0), WB_ERR_ARGUMENT);
+    assert_int_equal(curve_average(&curve, NULL, 0, 0.0), WB_ERR_ARGUMENT);
     wb_dataset_release(&dataset);
 }
 

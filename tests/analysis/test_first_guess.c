@@ -1,4 +1,3 @@
-#include "analysis/curve_private.h"
 #include "tests/analysis/beam_data.h"
 
 #include "analysis/first_guess_private.h"
@@ -85,7 +84,7 @@ static enum wb_status guess_of(struct wb_first_guess *guess, double (*force)(dou
     plain_dataset(&dataset, force, 0.1 * mm, last);
     dataset.info.length = 0.1;
     const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
+    assert_int_equal(curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
     const enum wb_status status =
         wb_first_guess_run(guess, &curve, &dataset.info, elastic_zone, yield_point, NULL);
     wb_curve_release(&curve);
