@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <glib.h>
 #include <jansson.h>
 
 #include "base/file.h"
@@ -148,6 +147,27 @@ static void put_boolean(struct wb_json *value, bool boolean)
     value->as.boolean = boolean;
 }
 
+/* RFC 3629: as few bytes as a character needs, no surrogates, none beyond U+10FFFF. */
+static bool is_utf8(const char *text)
+{
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        const unsigned first = *c++;
+        const int more = first < 0x80 ? 0 : first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
+        unsigned code = more == 0 ? first : first & (0x3fu >> more);
+        if (first >= 0xf5 || (first >= 0x80 && first < 0xc2))
+            return false;
+        for (int i = 0; i < more; i++) {
+            if ((*c & 0xc0) != 0x80)
+                return false;
+            code = code << 6 | (*c++ & 0x3fu);
+        }
+        if ((more == 2 && code < 0x800) || (more == 3 && code < 0x10000) || code > 0x10ffff ||
+            (code >= 0xd800 && code <= 0xdfff))
+            return false;
+    }
+    return true;
+}
+
 static void put_text(struct wb_json *value, const char *text)
 {
     if (!value || !text)
@@ -158,7 +178,7 @@ static void put_text(struct wb_json *value, const char *text)
         return;
     }
     /* Not UTF-8 (bytes from a device, say): keep what is ASCII. */
-    if (!g_utf8_validate(copy, -1, NULL)) {
+    if (!is_utf8(copy)) {
         for (char *c = copy; *c; c++) {
             if ((unsigned char)*c >= 0x80)
                 *c = '?';
