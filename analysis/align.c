@@ -129,8 +129,8 @@ static enum wb_status export_rows(struct wb_align *align)
         }
     }
     if (align->dataset->n_rows == 0)
-        return wb_fail(WB_ERR_DATA, "%s: nothing was recorded after the first cycle's start",
-                       align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: nothing was recorded after the first cycle's start", align->name);
     return WB_OK;
 }
 
@@ -196,17 +196,22 @@ static void release(struct wb_align *align)
 }
 
 enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_path,
-                            const struct wb_align_settings *settings)
+                            const struct wb_align_settings *settings, struct wb_reason *why)
 {
+    struct wb_reason lost = {.text = ""};
     memset(dataset, 0, sizeof *dataset);
-    WB_TRY(wb_setting_check(&wb_align_table, settings, NULL));
+    if (why)
+        *why = lost;
+    WB_TRY(wb_setting_check(&wb_align_table, settings, why));
     /* GSL's own handler aborts; its codes are looked at here. */
     gsl_set_error_handler_off();
     struct wb_align *const align = calloc(1, sizeof *align);
     if (!align)
-        return wb_fail(WB_ERR_MEMORY, "out of memory to align a recording");
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory to align a recording");
     enum wb_status status = wb_dataset_init(dataset);
     if (status == WB_OK) {
+        align->why = why;
+        align->lost = why ? &lost : NULL;
         align->dataset = dataset;
         align->settings = *settings;
         if (align->settings.row_rate == 0.0)
@@ -217,5 +222,9 @@ enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_pa
     free(align);
     if (status != WB_OK)
         wb_dataset_release(dataset);
+    if (status != WB_OK && lost.text[0])
+        wb_reason_set(why, "%s%s%s", lost.text, why->text[0] ? "; " : "", why->text);
+    else if (lost.text[0])
+        wb_error("%s", lost.text);
     return status;
 }

@@ -21,6 +21,7 @@
 #define WB_ANALYSIS_ALIGN_H
 
 #include "analysis/dataset.h"
+#include "base/reason.h"
 #include "base/setting.h"
 #include "base/status.h"
 
@@ -42,9 +43,12 @@ extern const struct wb_setting_table wb_align_table;
 void wb_align_default_settings(struct wb_align_settings *settings);
 
 /* Aligns one recording. The dataset's document lists everything that was done, and under "warnings"
- * (array of texts) what was warned of. WB_ERR_DATA, and the reason is logged, when no dataset can
- * be made of the recording (no tare, markers not found, ...). */
+ * (array of texts) what was warned of. WB_ERR_DATA when no dataset can be made of the recording (no
+ * tare, markers not found, ...). `why` receives why it failed, after what of a damaged recording
+ * could not be read, "; " between them. NULL: all that is logged where it is found. What could not
+ * be read of a recording that serves all the same is logged in either case. */
 WB_MUST_CHECK enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_path,
-                                          const struct wb_align_settings *settings);
+                                          const struct wb_align_settings *settings,
+                                          struct wb_reason *why);
 
 #endif

@@ -58,7 +58,7 @@ static enum wb_status find_largest(struct wb_align *align)
 {
     double *const readings = malloc(align->n_rows * sizeof *readings);
     if (!readings)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     for (size_t i = 0; i < align->n_rows; i++)
         readings[i] = align->rows[i].reading;
     wb_fit_sort(readings, align->n_rows);
@@ -70,15 +70,17 @@ static enum wb_status find_largest(struct wb_align *align)
                            : align->rig.load_cell.noise > 0.0 ? align->rig.load_cell.noise
                                                               : 1e-3 * fabs(align->largest);
     if (-low > fabs(align->largest) && -low > 10.0 * align->reading_noise)
-        return wb_fail(WB_ERR_DATA,
-                       "%s: the strand would push (readings down to %.1f mN below the tare): the "
-                       "sign of the rig's load_cell is reversed",
-                       align->name, -low / WB_MN);
+        return wb_fail_to(
+            align->why, WB_ERR_DATA,
+            "%s: the strand would push (readings down to %.1f mN below the tare): the "
+            "sign of the rig's load_cell is reversed",
+            align->name, -low / WB_MN);
     if (!(align->largest > 10.0 * align->reading_noise))
-        return wb_fail(WB_ERR_DATA,
-                       "%s: the load cell never rises above its noise (largest %.3f mN, noise %.3f "
-                       "mN): nothing pulls at it",
-                       align->name, align->largest / WB_MN, align->reading_noise / WB_MN);
+        return wb_fail_to(
+            align->why, WB_ERR_DATA,
+            "%s: the load cell never rises above its noise (largest %.3f mN, noise %.3f "
+            "mN): nothing pulls at it",
+            align->name, align->largest / WB_MN, align->reading_noise / WB_MN);
     return WB_OK;
 }
 
@@ -95,7 +97,7 @@ static enum wb_status find_taut_level(struct wb_align *align)
     double *const levels = malloc(align->n_rows * sizeof *levels);
     size_t n = 0;
     if (!levels)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     for (size_t i = 0; i < align->n_rows; i++) {
         if (align->rows[i].cycle == 1 && align->rows[i].reading > TAUT_PART * align->largest)
             levels[n++] = tautness(align, &align->rows[i]);
@@ -350,20 +352,21 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
     const double begin = align->rows[first].tip_y;
     struct wb_fit_line line;
     if (begin > FARTHEST_ZERO)
-        return wb_fail(WB_ERR_DATA,
-                       "%s: at the first loading the strand is taut only from %.2f mm on, too far "
-                       "from zero deflection: lower the tip's rest",
-                       align->name, begin / WB_MM);
+        return wb_fail_to(
+            align->why, WB_ERR_DATA,
+            "%s: at the first loading the strand is taut only from %.2f mm on, too far "
+            "from zero deflection: lower the tip's rest",
+            align->name, begin / WB_MM);
     double window = ZERO_WINDOW;
     size_t n = gather(align, first, fmax(begin, 0.0) + window, x, y);
     for (; n < LEAST_FIT_ROWS && window < 4.0 * ZERO_WINDOW; window *= 1.5)
         n = gather(align, first, fmax(begin, 0.0) + window, x, y);
     if (n < LEAST_FIT_ROWS || !wb_fit_line(x, y, n, &line) || !(line.slope > 0.0))
-        return wb_fail(WB_ERR_DATA,
-                       "%s: no force at zero deflection: %zu rows of the first loading lie near "
-                       "it, expected %d with a rising force (does the test pass zero slowly "
-                       "enough, and is the tip's marker seen there?)",
-                       align->name, n, LEAST_FIT_ROWS);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: no force at zero deflection: %zu rows of the first loading lie near "
+                          "it, expected %d with a rising force (does the test pass zero slowly "
+                          "enough, and is the tip's marker seen there?)",
+                          align->name, n, LEAST_FIT_ROWS);
     align->zero_force = line.value;
     align->zero_force_deviation = line.value_deviation;
     /* A wire that yielded before zero has a bent curve there, on which a line through one side
@@ -381,7 +384,8 @@ static enum wb_status fit_zero(struct wb_align *align, size_t first, double *x, 
                       begin / WB_MM);
     n = gather(align, first, begin + fmax(SLOPE_PART * align->specimen.length, ZERO_WINDOW), x, y);
     if (!wb_fit_line(x, y, n, &line))
-        return wb_fail(WB_ERR_DATA, "%s: no initial slope of force over deflection", align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no initial slope of force over deflection",
+                          align->name);
     align->stiffness = line.slope;
     align->stiffness_deviation = line.slope_deviation;
     return WB_OK;
@@ -486,11 +490,11 @@ enum wb_status wb_align_force(struct wb_align *align)
     describe_drift(align);
     set_tension(align);
     if (!find_taut(align, &settled))
-        return wb_fail(WB_ERR_DATA, "%s: the strand is never taut on the first loading",
-                       align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the strand is never taut on the first loading", align->name);
     double *const x = malloc(2 * align->n_rows * sizeof *x);
     if (!x)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     const enum wb_status status = fit_zero(align, settled, x, x + align->n_rows);
     free(x);
     WB_TRY(status);

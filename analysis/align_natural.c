@@ -100,15 +100,20 @@ static int mean_deviation(const struct wb_align *align, int marker, double u, do
     return n;
 }
 
+/* Of a marker's place on the wire. */
+static double own_error(const struct wb_specimen *specimen)
+{
+    return specimen->marker_offset_uncertainty > 0.0 ? specimen->marker_offset_uncertainty
+                                                     : DEFAULT_OFFSET_ERROR;
+}
+
 static void observe_markers(const struct wb_align *align, double weight, double stiffness,
                             struct observations *obs)
 {
     const struct wb_specimen *const specimen = &align->specimen;
     const int tip = specimen->n_markers - 1;
     const double length = specimen->length, bending = stiffness * pow(length, 3) / 3.0;
-    const double own = specimen->marker_offset_uncertainty > 0.0
-                           ? specimen->marker_offset_uncertainty
-                           : DEFAULT_OFFSET_ERROR;
+    const double own = own_error(specimen);
     obs->n_errors = tip + 2;
     for (int marker = 1; marker < tip; marker++) {
         const double u = specimen->markers[marker] / length, p = tip_shape(u);
@@ -139,7 +144,7 @@ static enum wb_status gather_loading(const struct wb_align *align, double carrie
     loading->n = 0;
     loading->y = malloc(2 * align->n_rows * sizeof *loading->y);
     if (!loading->y)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     loading->force = loading->y + align->n_rows;
     for (size_t i = 0; i < align->n_rows && align->rows[i].cycle == 1; i++) {
         const struct wb_align_row *const row = &align->rows[i];
@@ -227,9 +232,7 @@ static void observe_force(const struct wb_align *align, double bow, double path,
 {
     const int tip = align->specimen.n_markers - 1;
     const double length = align->specimen.length;
-    const double own = align->specimen.marker_offset_uncertainty > 0.0
-                           ? align->specimen.marker_offset_uncertainty
-                           : DEFAULT_OFFSET_ERROR;
+    const double own = own_error(&align->specimen);
     const double vertical =
         align->frame.up_from_motion ? length * align->frame.up_uncertainty : 0.0;
     const double force =

@@ -73,6 +73,8 @@ struct wb_align_zero {
 
 struct wb_align {
     struct wb_align_settings settings;
+    struct wb_reason *why;  /* receives why a step failed; NULL: that is logged */
+    struct wb_reason *lost; /* what the recording's reader tells; NULL: that is logged */
     struct wb_dataset *dataset;
     struct wb_json *corrections, *checks, *warnings; /* in the dataset's document */
     char name[128];                                  /* of the recording, without folder */
@@ -139,7 +141,8 @@ struct wb_align {
 struct wb_align_reading *wb_align_readings(const struct wb_align *align);
 struct wb_align_report_point *wb_align_reports(const struct wb_align *align);
 
-/* The steps of the alignment, in the order in which they are made. Each logs its failure. */
+/* The steps of the alignment, in the order in which they are made. Each tells align->why of its
+ * failure. */
 WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const char *path);
 WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_markers(struct wb_align *align);

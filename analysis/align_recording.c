@@ -94,7 +94,7 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
     };
     const enum wb_status status = wb_replay_run(recording, &align->rig, &sink, 0.0, &align->counts);
     if (align->out_of_memory)
-        return wb_fail(WB_ERR_MEMORY, "%s: out of memory", align->name);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "%s: out of memory", align->name);
     /* What was read before the database broke off can still serve. */
     if (status == WB_ERR_DATA) {
         if (wb_recording_is_complete(recording))
@@ -104,9 +104,11 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
         return status;
     }
     if (align->readings.n == 0)
-        return wb_fail(WB_ERR_DATA, "%s: no reading of a load cell in it", align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no reading of a load cell in it",
+                          align->name);
     if (align->cloud.n_frames == 0)
-        return wb_fail(WB_ERR_DATA, "%s: no frame of motion capture in it", align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no frame of motion capture in it",
+                          align->name);
     if (align->counts.damaged_chunks > 0) {
         align->is_cut_short = true;
         wb_align_warn(align, "%llu of %llu chunks %s damaged and left out",
@@ -137,7 +139,7 @@ static enum wb_status take_tare(struct wb_align *align, const struct wb_event *e
     struct wb_json *json;
     char origin[192];
     snprintf(origin, sizeof origin, "%s: event tare", align->name);
-    WB_TRY(wb_json_parse(&json, event->text, origin));
+    WB_TRY(wb_json_parse_with_reason(&json, event->text, origin, align->why));
     int64_t samples = 0;
     align->tare_deviation = (double)NAN;
     align->has_tare = wb_json_get_number(json, "force_N", &align->tare);
@@ -145,7 +147,7 @@ static enum wb_status take_tare(struct wb_align *align, const struct wb_event *e
     (void)wb_json_get_integer(json, "samples", &samples);
     wb_json_destroy(json);
     if (!align->has_tare)
-        return wb_fail(WB_ERR_DATA, "%s: no number force_N", origin);
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no number force_N", origin);
     align->tare_samples = samples > 1 && samples < 100000000 ? (long)samples : 1;
     align->tare_ns = event->t_ns;
     return WB_OK;
@@ -181,9 +183,9 @@ static enum wb_status load_events(struct wb_align *align, struct wb_recording *r
     else
         WB_TRY(status);
     if (!align->has_tare)
-        return wb_fail(WB_ERR_DATA,
-                       "%s: no tare: the load cell's zero is not known, so there is no force",
-                       align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: no tare: the load cell's zero is not known, so there is no force",
+                          align->name);
     /* From here on the reading of the unloaded cell. */
     align->tare -= wb_rig_tare_load(&align->rig);
     if (align->is_cut_short)
@@ -205,24 +207,20 @@ static enum wb_status need_meta(struct wb_align *align, struct wb_recording *rec
     const enum wb_status status = wb_recording_meta(recording, key, text);
     snprintf(origin, 192, "%s: %s", align->name, key);
     if (status == WB_ERR_NOT_FOUND)
-        return wb_fail(WB_ERR_DATA, "%s: the recording has no meta '%s'", align->name, key);
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: the recording has no meta '%s'",
+                          align->name, key);
     return status;
 }
 
-static enum wb_status load_rig(struct wb_align *align, struct wb_recording *recording)
+static enum wb_status load_rig_and_specimen(struct wb_align *align, struct wb_recording *recording)
 {
     char *text, origin[192];
     WB_TRY(need_meta(align, recording, "rig", &text, origin));
-    const enum wb_status status = wb_rig_parse(text, origin, &align->rig);
+    enum wb_status status = wb_rig_parse(text, origin, &align->rig, align->why);
     free(text);
-    return status;
-}
-
-static enum wb_status load_specimen(struct wb_align *align, struct wb_recording *recording)
-{
-    char *text, origin[192];
+    WB_TRY(status);
     WB_TRY(need_meta(align, recording, "specimen", &text, origin));
-    const enum wb_status status = wb_specimen_parse(text, origin, &align->specimen);
+    status = wb_specimen_parse(text, origin, &align->specimen, align->why);
     free(text);
     return status;
 }
@@ -235,14 +233,14 @@ static enum wb_status load_wire(struct wb_align *align, struct wb_recording *rec
     const enum wb_status found = wb_recording_meta(recording, "wire", &text);
     if (found == WB_OK) {
         snprintf(origin, sizeof origin, "%s: wire", align->name);
-        const enum wb_status status = wb_wire_parse(text, origin, &align->wire);
+        const enum wb_status status = wb_wire_parse(text, origin, &align->wire, align->why);
         free(text);
         return status;
     }
     if (found != WB_ERR_NOT_FOUND)
         return found;
-    WB_TRY(wb_file_find_fixture(path, "wires", align->specimen.wire, NULL));
-    return wb_wire_read(path, &align->wire);
+    WB_TRY(wb_file_find_named(path, "wires", align->specimen.wire, NULL, NULL, align->why));
+    return wb_wire_read(path, &align->wire, align->why);
 }
 
 /* Copies a meta text into the recording's entry; absent is left out. */
@@ -279,8 +277,7 @@ static bool says_virtual(struct wb_recording *recording)
 
 static enum wb_status load_all(struct wb_align *align, struct wb_recording *recording)
 {
-    WB_TRY(load_rig(align, recording));
-    WB_TRY(load_specimen(align, recording));
+    WB_TRY(load_rig_and_specimen(align, recording));
     WB_TRY(load_wire(align, recording));
     align->is_virtual = align->rig.is_virtual || says_virtual(recording);
     align->gravity = align->rig.gravity;
@@ -305,7 +302,7 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
     if (align->probes.n == 0)
         WB_TRY(wb_recording_each_clock(recording, take_clock_row, align));
     if (align->out_of_memory)
-        return wb_fail(WB_ERR_MEMORY, "%s: out of memory", align->name);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "%s: out of memory", align->name);
     return WB_OK;
 }
 
@@ -313,8 +310,9 @@ enum wb_status wb_align_load(struct wb_align *align, const char *path)
 {
     struct wb_recording *recording;
     snprintf(align->name, sizeof align->name, "%.120s", wb_file_name(path));
-    WB_TRY(wb_recording_sha256(path, align->sha256));
-    WB_TRY(wb_recording_open(&recording, path));
+    WB_TRY(wb_recording_sha256(path, align->sha256, align->why));
+    WB_TRY(wb_recording_open_with_reason(&recording, path, align->lost));
+    wb_recording_warn_cut_short(recording);
     const enum wb_status status = load_all(align, recording);
     const enum wb_status closed = wb_recording_close(recording);
     return status != WB_OK ? status : closed;
@@ -385,7 +383,8 @@ static void use_arrivals(struct wb_align *align)
                          "the network's jitter");
 }
 
-/* Line for the frames first..last-1: through the probes of that time where there are some. */
+/* Line for the frames first..last-1: through the probes of that time where there are some. Fails
+ * silently, for want of memory. */
 static enum wb_status fit_segment(struct wb_align *align, const struct stamps *stamps, size_t first,
                                   size_t last, struct wb_clock_line *line)
 {
@@ -398,7 +397,7 @@ static enum wb_status fit_segment(struct wb_align *align, const struct stamps *s
         size_t n = 0;
         const double margin = 10.0 * align->rig.time_scale;
         if (!used)
-            return wb_fail(WB_ERR_MEMORY, "out of memory for %zu probes", align->probes.n);
+            return WB_ERR_MEMORY;
         for (size_t i = 0; i < align->probes.n; i++) {
             if (all[i].t_device >= stamps->device[first] - margin &&
                 all[i].t_device <= stamps->device[last - 1] + margin)
@@ -446,7 +445,9 @@ static enum wb_status map_segments(struct wb_align *align, const struct stamps *
     for (size_t i = 0; i < n_segments; i++) {
         const size_t first = starts[i], last = i + 1 < n_segments ? starts[i + 1] : stamps->n;
         struct wb_clock_line line;
-        WB_TRY(fit_segment(align, stamps, first, last, &line));
+        const enum wb_status status = fit_segment(align, stamps, first, last, &line);
+        if (status != WB_OK)
+            return wb_fail_to(align->why, status, "out of memory for %zu stamps", last - first);
         for (size_t k = first; k < last; k++)
             align->frame_t[k] = bench_time(align, wb_clock_line_host_ns(&line, stamps->device[k]));
         describe_segment(align, list, last - first, &line);
@@ -493,7 +494,7 @@ static enum wb_status map_cameras(struct wb_align *align)
     align->frame_t = malloc((n + 1) * sizeof *align->frame_t);
     enum wb_status status = WB_OK;
     if (!stamps.device || !stamps.host_ns || !align->frame_t) {
-        status = wb_fail(WB_ERR_MEMORY, "out of memory for %zu frames", n);
+        status = wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu frames", n);
     } else if (!has_stamps) {
         use_arrivals(align);
     } else {
@@ -589,8 +590,8 @@ static enum wb_status map_load(struct wb_align *align)
         free(host_ns);
         free(number);
         if (status != WB_OK)
-            return wb_fail(status, "%s: the load cell's readings cannot be put on a clock",
-                           align->name);
+            return wb_fail_to(align->why, status,
+                              "%s: the load cell's readings cannot be put on a clock", align->name);
     }
     describe_load(align, polled, n_segments);
     align->filter_delay = align->rig.load_cell.filter_delay;
@@ -599,7 +600,8 @@ static enum wb_status map_load(struct wb_align *align)
         readings[i].t -= align->filter_delay;
     drop_invalid_readings(align);
     if (align->readings.n == 0)
-        return wb_fail(WB_ERR_DATA, "%s: no valid reading of the load cell in it", align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no valid reading of the load cell in it",
+                          align->name);
     return WB_OK;
 }
 
@@ -626,7 +628,8 @@ enum wb_status wb_align_times(struct wb_align *align)
     WB_TRY(map_load(align));
     map_stage(align);
     if (align->cloud.n_frames == 0)
-        return wb_fail(WB_ERR_DATA, "%s: no frame of motion capture with a time", align->name);
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no frame of motion capture with a time",
+                          align->name);
     const struct wb_align_correction correction = {
         .name = "filter delay",
         .unit = "ms",

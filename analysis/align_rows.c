@@ -78,8 +78,9 @@ enum wb_status wb_align_markers(struct wb_align *align)
         .noise = align->rig.mocap.marker_noise,
         .frame_period = typical_period(align),
     };
-    WB_TRY(wb_markers_track(&align->tracks, &align->cloud, &align->specimen, &settings));
-    if (wb_frame_is_reversed(&align->tracks, &align->cloud, up)) {
+    WB_TRY(
+        wb_markers_track(&align->tracks, &align->cloud, &align->specimen, &settings, align->why));
+    if (wb_frame_is_reversed(&align->tracks, up)) {
         if (!align->tracks.symmetric)
             wb_align_warn(align, "by their distances the markers are in the other order than by "
                                  "their motion (the clamp moves, the tip does not): markers_mm of "
@@ -87,8 +88,8 @@ enum wb_status wb_align_markers(struct wb_align *align)
         else
             wb_markers_reverse(&align->tracks);
     }
-    WB_TRY(wb_frame_fit(&align->frame, &align->tracks, &align->cloud, align->frame_t, CLAMP_WINDOW,
-                        up));
+    WB_TRY(
+        wb_frame_fit(&align->frame, &align->tracks, align->frame_t, CLAMP_WINDOW, up, align->why));
     if (align->frame.tilt > 5.0 * WB_DEGREE)
         wb_align_warn(align,
                       "the clamp's motion leans %.1f degrees from the server's %c axis: is "
@@ -104,15 +105,7 @@ enum wb_status wb_align_markers(struct wb_align *align)
 static size_t first_reading_at(const struct wb_align *align, double t)
 {
     const struct wb_align_reading *const readings = wb_align_readings(align);
-    size_t low = 0, high = align->readings.n;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (readings[middle].t < t)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return wb_fit_first_at(&readings->t, sizeof *readings, align->readings.n, t);
 }
 
 /* Reading less tare at bench time t: a local straight line over +-half seconds, or between the two
@@ -164,14 +157,13 @@ static void average_frames(const struct wb_align *align, size_t first, size_t la
     memset(means, 0, sizeof *means);
     for (size_t i = first; i < last; i++) {
         const double height = wb_frame_clamp_height(&align->frame, i);
-        if (!isfinite(height) ||
-            !wb_markers_position(&align->tracks, &align->cloud, i, n_markers - 1))
+        if (!isfinite(height) || !wb_markers_position(&align->tracks, i, n_markers - 1))
             continue;
         means->n_tip++;
         means->t += align->frame_t[i];
         means->height += height;
         for (int k = 0; k < n_markers; k++) {
-            const double *const p = wb_markers_position(&align->tracks, &align->cloud, i, k);
+            const double *const p = wb_markers_position(&align->tracks, i, k);
             double x, y;
             if (!p)
                 continue;
@@ -295,7 +287,7 @@ enum wb_status wb_align_rows(struct wb_align *align)
     const double half = fmax(0.5 / rate, 2.5 * period);
     align->rows = malloc((n_frames + 1) * sizeof *align->rows);
     if (!align->rows)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", n_frames);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", n_frames);
     for (size_t first = 0, last; first < n_frames; first = last) {
         const double bin = floor(align->frame_t[first] * rate);
         for (last = first + 1; last < n_frames; last++) {
@@ -308,9 +300,9 @@ enum wb_status wb_align_rows(struct wb_align *align)
             align->n_dropped_rows++;
     }
     if (align->n_rows < 20)
-        return wb_fail(WB_ERR_DATA,
-                       "%s: only %zu rows have tip, clamp and load cell at the same time",
-                       align->name, align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: only %zu rows have tip, clamp and load cell at the same time",
+                          align->name, align->n_rows);
     struct wb_align_row *const fitted = realloc(align->rows, align->n_rows * sizeof *align->rows);
     align->rows = fitted ? fitted : align->rows;
     zero_travel(align);
@@ -379,7 +371,7 @@ static enum wb_status measure_speed(struct wb_align *align)
     double *const speeds = malloc(align->n_rows * sizeof *speeds);
     size_t n = 0;
     if (!speeds)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu rows", align->n_rows);
     for (size_t i = 20; i < align->n_rows; i++) {
         const struct wb_align_row *const a = &align->rows[i - 20], *const b = &align->rows[i];
         if (b->phase == WB_PHASE_LOAD && a->cycle == b->cycle &&
@@ -396,8 +388,9 @@ enum wb_status wb_align_cycles(struct wb_align *align)
     double low, high;
     find_range(align, &low, &high);
     if (high - low < LEAST_TURN)
-        return wb_fail(WB_ERR_DATA, "%s: the clamp moved by %.2f mm only: this is no bending test",
-                       align->name, (high - low) / WB_MM);
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: the clamp moved by %.2f mm only: this is no bending test",
+                          align->name, (high - low) / WB_MM);
     cut_cycles(align, fmax(TURN_PART * (high - low), LEAST_TURN));
     if (align->n_cycle_starts > 0 && align->n_cycle_starts != align->n_cycles)
         wb_align_warn(align, "the recording tells %d cycles, the clamp's path has %d",
@@ -415,20 +408,12 @@ struct pair {
 static bool clamp_at(const struct wb_align *align, double t, double *height)
 {
     const double *const times = align->frame_t;
-    size_t low = 0, high = align->cloud.n_frames;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (times[middle] < t)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low == 0 || low == align->cloud.n_frames ||
-        times[low] - times[low - 1] > align->settings.longest_gap)
+    const size_t n = align->cloud.n_frames, next = wb_fit_first_at(times, sizeof *times, n, t);
+    if (next == 0 || next == n || times[next] - times[next - 1] > align->settings.longest_gap)
         return false;
-    const double part = (t - times[low - 1]) / (times[low] - times[low - 1]);
-    *height = (1.0 - part) * wb_frame_clamp_height(&align->frame, low - 1) +
-              part * wb_frame_clamp_height(&align->frame, low);
+    const double part = (t - times[next - 1]) / (times[next] - times[next - 1]);
+    *height = (1.0 - part) * wb_frame_clamp_height(&align->frame, next - 1) +
+              part * wb_frame_clamp_height(&align->frame, next);
     return isfinite(*height);
 }
 
@@ -663,7 +648,8 @@ enum wb_status wb_align_stage(struct wb_align *align)
     struct pair *const pairs = malloc((align->reports.n + 1) * sizeof *pairs);
     struct stage_fit fit = {0};
     if (!pairs)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu reports", align->reports.n);
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu reports",
+                          align->reports.n);
     const size_t n = make_pairs(align, pairs);
     const bool fitted = fit_stage(align, pairs, n, &fit);
     if (fitted) {

@@ -23,9 +23,8 @@ struct wb_bow_samples {
 
 /* Eqs. 10 and 11 on the mean of the curves computed with `material` for the samples, each with its
  * own natural shape. The bows change E by the factor of this modulus over the material's, and
- * sigma_Y likewise. WB_ERR_CONVERGENCE when a beam does not reach the end of
- * the grid; *evaluations is increased by the beam runs made. `why` receives why it failed; NULL:
- * that is logged. */
+ * sigma_Y likewise. WB_ERR_CONVERGENCE when a beam does not reach the end of the grid; *evaluations
+ * is increased by the beam runs made. `why` receives why it failed; NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_bow_correction_guess(struct wb_first_guess *guess,
                                                      const struct wb_bow_samples *samples,
                                                      const struct wb_material *material,

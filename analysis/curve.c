@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/curve_private.h"
+#include "analysis/fit.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "curve"
@@ -45,9 +45,7 @@ static bool is_first_loading(const struct wb_row *row)
     return row->cycle == 1 && row->phase == WB_PHASE_LOAD;
 }
 
-/* Rows of the first loading: up to the largest force of a follower test, and up to the largest
- * deflection that is wanted. */
-static size_t end_of_loading(const struct wb_dataset *dataset, double largest_deflection)
+size_t wb_curve_end_of_loading(const struct wb_dataset *dataset, double largest_deflection)
 {
     const double limit = largest_deflection > 0.0 ? largest_deflection * (1.0 + 1e-9) : HUGE_VAL;
     double force = -HUGE_VAL;
@@ -85,7 +83,7 @@ static enum wb_status extract_loading(struct loading *loading, const struct wb_d
     const char *const wire = dataset->info.wire;
     const int sample = dataset->info.sample;
     const bool follows = dataset->info.is_follower;
-    const size_t end = end_of_loading(dataset, grid->largest_deflection);
+    const size_t end = wb_curve_end_of_loading(dataset, grid->largest_deflection);
     double highest = -HUGE_VAL, lowest = HUGE_VAL;
     loading->n = 0;
     loading->points = malloc((end + 1) * sizeof *loading->points);
@@ -129,15 +127,7 @@ static void release_loading(struct loading *loading)
 /* Index of the first point at or above `at`; n when there is none. */
 static size_t first_at_or_above(const struct loading *loading, double at)
 {
-    size_t low = 0, high = loading->n;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (loading->points[middle].at < at)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return wb_fit_first_at(&loading->points->at, sizeof *loading->points, loading->n, at);
 }
 
 /* Straight line through the points around `centre` with triangular weights, taken at `centre`.
@@ -454,13 +444,6 @@ enum wb_status wb_curve_average_on(struct wb_curve *curve, const struct wb_datas
     return status;
 }
 
-enum wb_status wb_curve_average(struct wb_curve *curve, const struct wb_dataset *const *datasets,
-                                int n, double step)
-{
-    const struct wb_curve_grid grid = {.step = step};
-    return wb_curve_average_on(curve, datasets, n, &grid, NULL);
-}
-
 /* Points up to the largest deflection, those that rise above all before them. */
 static int rising_points(const struct wb_curve *curve, struct loading_point *points)
 {
@@ -525,16 +508,6 @@ void wb_curve_release(struct wb_curve *curve)
 double wb_curve_scale(const struct wb_curve *curve)
 {
     return curve->is_follower ? curve->max_deflection : curve->max_force;
-}
-
-double wb_curve_force(const struct wb_curve *curve, double deflection)
-{
-    const double position = deflection / curve->step;
-    if (curve->is_follower || !(position >= 0.0) || !(position <= (curve->n - 1) * (1.0 + 1e-12)))
-        return (double)NAN;
-    const int i = (int)fmin(floor(position), curve->n - 2);
-    const double part = position - i;
-    return (1.0 - part) * curve->force[i] + part * curve->force[i + 1];
 }
 
 double wb_curve_scatter(const struct wb_curve *curve)

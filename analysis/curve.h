@@ -65,6 +65,10 @@ double wb_curve_scale(const struct wb_curve *curve);
  * deviation, over wb_curve_scale(); 0 for one sample. */
 double wb_curve_scatter(const struct wb_curve *curve);
 
+/* How many rows there are up to the end of the first loading: up to the largest force of a follower
+ * test, and up to the largest deflection that is wanted (0: any). */
+size_t wb_curve_end_of_loading(const struct wb_dataset *dataset, double largest_deflection);
+
 /* Numbers datasets by kind in the order of their first appearance: group[i] from 0. Returns the
  * number of groups. */
 int wb_curve_group(const struct wb_dataset *const *datasets, int n, int *group);

@@ -51,8 +51,8 @@ static void set_values(struct wb_field_node *node, const double values[VALUES])
 
 /* --- the list --- */
 
-static enum wb_status add_field(struct wb_fields *fields, const char *state, double x, int n_faces,
-                                struct wb_field **field, struct wb_reason *why)
+enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x, int n_faces,
+                             struct wb_field **field, struct wb_reason *why)
 {
     if (strlen(state) >= sizeof fields->items->state || state[strcspn(state, ",\"\r\n")] != '\0' ||
         state[0] == '\0')
@@ -75,12 +75,6 @@ static enum wb_status add_field(struct wb_fields *fields, const char *state, dou
     fields->n++;
     *field = added;
     return WB_OK;
-}
-
-enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x, int n_faces,
-                             struct wb_field **field)
-{
-    return add_field(fields, state, x, n_faces, field, NULL);
 }
 
 void wb_fields_release(struct wb_fields *fields)
@@ -245,7 +239,7 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
             return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
                               "%s:%d: section: this field of state %s stood before",
                               reader->table.path, reader->table.line, row->state);
-        WB_TRY(add_field(fields, row->state, row->x, 1, &field, reader->table.why));
+        WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field, reader->table.why));
         reader->capacity = 1;
     } else if (expected == 0) {
         WB_TRY(add_face(reader, field));

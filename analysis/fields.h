@@ -40,9 +40,10 @@ struct wb_fields {
 };
 
 /* Appends a field with room for n_faces (at least 1), all zero; *field stays valid until the next
- * call. */
+ * call. `why` receives why it failed. NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_fields_add(struct wb_fields *fields, const char *state, double x,
-                                           int n_faces, struct wb_field **field);
+                                           int n_faces, struct wb_field **field,
+                                           struct wb_reason *why);
 void wb_fields_release(struct wb_fields *fields); /* accepts a zeroed one */
 
 /* The field of a state, longitudinal (x NaN) or of the cross section nearest to x; NULL: none. */

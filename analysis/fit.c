@@ -64,3 +64,16 @@ double wb_fit_median(double *values, size_t n)
     wb_fit_sort(values, n);
     return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
+
+size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at)
+{
+    size_t low = 0, high = n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (*(const double *)((const char *)values + middle * stride) < at)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}

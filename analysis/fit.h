@@ -1,5 +1,5 @@
-/* Straight lines and parabolas through measured points, and medians. GSL's error handler, which
- * aborts, must be off. */
+/* Straight lines and parabolas through measured points, medians, and places in sorted ones. GSL's
+ * error handler, which aborts, must be off. */
 #ifndef WB_ANALYSIS_FIT_H
 #define WB_ANALYSIS_FIT_H
 
@@ -24,5 +24,9 @@ void wb_fit_sort(double *values, size_t n);
 
 /* Sorts the values; NaN when n is 0. */
 double wb_fit_median(double *values, size_t n);
+
+/* Index of the first of n ascending values that is not below `at`; n when all are. Each lies
+ * `stride` bytes after the one before: in an array of structs, the struct's size. */
+size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at);
 
 #endif

@@ -64,12 +64,12 @@ static void principal(const struct scatter *scatter, double directions[3][3], do
 /* --- the clamp's motion --- */
 
 /* Range of a marker along a direction. */
-static double range_along(const struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
-                          int marker, const double *direction)
+static double range_along(const struct wb_marker_tracks *tracks, int marker,
+                          const double *direction)
 {
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (size_t frame = 0; frame < tracks->n_frames; frame++) {
-        const double *const p = wb_markers_position(tracks, cloud, frame, marker);
+        const double *const p = wb_markers_position(tracks, frame, marker);
         if (!p)
             continue;
         low = fmin(low, wb_vec3_dot(p, direction));
@@ -78,24 +78,23 @@ static double range_along(const struct wb_marker_tracks *tracks, const struct wb
     return high >= low ? high - low : 0.0;
 }
 
-bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
-                          const double server_up[3])
+bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const double server_up[3])
 {
-    const double first = range_along(tracks, cloud, 0, server_up);
-    const double last = range_along(tracks, cloud, tracks->n_markers - 1, server_up);
+    const double first = range_along(tracks, 0, server_up);
+    const double last = range_along(tracks, tracks->n_markers - 1, server_up);
     return last > LEAST_MOTION && last > first;
 }
 
 /* The vertical from the clamp's path. Positions are taken relative to the first seen one, for the
  * sums of squares to keep their digits. */
 static enum wb_status fit_motion(struct wb_bench_frame *frame,
-                                 const struct wb_marker_tracks *tracks,
-                                 const struct wb_point_cloud *cloud, const double *server_up)
+                                 const struct wb_marker_tracks *tracks, const double *server_up,
+                                 struct wb_reason *why)
 {
     struct scatter scatter = {0};
     const double *first = NULL;
     for (size_t i = 0; i < tracks->n_frames; i++) {
-        const double *const p = wb_markers_position(tracks, cloud, i, 0);
+        const double *const p = wb_markers_position(tracks, i, 0);
         if (!p)
             continue;
         first = first ? first : p;
@@ -103,11 +102,11 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
         add_point(&scatter, relative);
     }
     if (!first)
-        return wb_fail(WB_ERR_DATA, "the clamp's marker is not seen in any frame");
+        return wb_fail_to(why, WB_ERR_DATA, "the clamp's marker is not seen in any frame");
     double directions[3][3], spread[3];
     principal(&scatter, directions, spread);
     memcpy(frame->up, server_up, sizeof frame->up);
-    frame->motion = range_along(tracks, cloud, 0, directions[0]);
+    frame->motion = range_along(tracks, 0, directions[0]);
     frame->up_from_motion = frame->motion >= LEAST_MOTION;
     frame->straightness = frame->up_from_motion ? hypot(spread[1], spread[2]) : 0.0;
     frame->up_uncertainty =
@@ -126,7 +125,6 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
 /* The clamp marker's path. */
 struct path {
     const struct wb_marker_tracks *tracks;
-    const struct wb_point_cloud *cloud;
     const double *times; /* s, of the frames */
 };
 
@@ -136,7 +134,7 @@ static bool local_line(const struct path *path, size_t first, size_t last, doubl
 {
     double n = 0.0, sum_t = 0.0, sum_tt = 0.0, sum_p[3] = {0.0}, sum_tp[3] = {0.0};
     for (size_t i = first; i < last; i++) {
-        const double *const p = wb_markers_position(path->tracks, path->cloud, i, 0);
+        const double *const p = wb_markers_position(path->tracks, i, 0);
         if (!p)
             continue;
         const double dt = path->times[i] - t;
@@ -163,9 +161,9 @@ static bool local_line(const struct path *path, size_t first, size_t last, doubl
 }
 
 static void smooth_clamp(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
-                         const struct wb_point_cloud *cloud, const double *times, double window)
+                         const double *times, double window)
 {
-    const struct path path = {tracks, cloud, times};
+    const struct path path = {tracks, times};
     size_t first = 0, last = 0;
     for (size_t i = 0; i < tracks->n_frames; i++) {
         while (first < i && times[i] - times[first] > window)
@@ -190,11 +188,10 @@ static void relative_to_clamp(const struct wb_bench_frame *frame, size_t index, 
 
 /* Where a marker is from the clamp, in frame `index`; false when one of them is not seen. */
 static bool find_from_clamp(const struct wb_bench_frame *frame,
-                            const struct wb_marker_tracks *tracks,
-                            const struct wb_point_cloud *cloud, size_t index, int marker,
+                            const struct wb_marker_tracks *tracks, size_t index, int marker,
                             double *relative)
 {
-    const double *const p = wb_markers_position(tracks, cloud, index, marker);
+    const double *const p = wb_markers_position(tracks, index, marker);
     if (!p || !isfinite(frame->clamp[index][0]))
         return false;
     relative_to_clamp(frame, index, p, relative);
@@ -204,13 +201,13 @@ static bool find_from_clamp(const struct wb_bench_frame *frame,
 /* Horizontal direction of the largest spread of the markers' horizontal parts, pointing from the
  * clamp to the tip. */
 static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
-                                const struct wb_point_cloud *cloud)
+                                struct wb_reason *why)
 {
     struct scatter flat = {0}, full = {0};
     for (size_t i = 0; i < tracks->n_frames; i++) {
         for (int marker = 1; marker < tracks->n_markers; marker++) {
             double r[3];
-            if (!find_from_clamp(frame, tracks, cloud, i, marker, r))
+            if (!find_from_clamp(frame, tracks, i, marker, r))
                 continue;
             add_point(&full, r);
             const double height = wb_vec3_dot(r, frame->up);
@@ -220,7 +217,7 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
         }
     }
     if (flat.n < 3)
-        return wb_fail(WB_ERR_DATA, "too few markers are seen together with the clamp's");
+        return wb_fail_to(why, WB_ERR_DATA, "too few markers are seen together with the clamp's");
     double directions[3][3], spread[3];
     /* With one marker beside the clamp's there is no spread: its mean gives the direction. */
     if (tracks->n_markers > 2)
@@ -233,8 +230,9 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
         frame->along[k] = sign * (directions[0][k] - vertical * frame->up[k]);
     if (!(wb_vec3_normalise(frame->along) > 0.0) ||
         !(wb_vec3_dot(flat.sum, frame->along) / (double)flat.n > LEAST_SPREAD))
-        return wb_fail(WB_ERR_DATA, "the markers lie one above the other along the clamp's motion: "
-                                    "no bending plane (is the rig's mocap.up right?)");
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the markers lie one above the other along the clamp's motion: "
+                          "no bending plane (is the rig's mocap.up right?)");
     wb_vec3_cross(frame->along, frame->up, frame->normal);
     principal(&full, directions, spread);
     frame->plane_tilt = 0.0;
@@ -243,14 +241,13 @@ static enum wb_status fit_along(struct wb_bench_frame *frame, const struct wb_ma
     return WB_OK;
 }
 
-static void measure_planarity(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
-                              const struct wb_point_cloud *cloud)
+static void measure_planarity(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks)
 {
     double n = 0.0, sum = 0.0, squares = 0.0;
     for (size_t i = 0; i < tracks->n_frames; i++) {
         for (int marker = 1; marker < tracks->n_markers; marker++) {
             double r[3];
-            if (!find_from_clamp(frame, tracks, cloud, i, marker, r))
+            if (!find_from_clamp(frame, tracks, i, marker, r))
                 continue;
             const double z = wb_vec3_dot(r, frame->normal);
             n += 1.0;
@@ -262,22 +259,22 @@ static void measure_planarity(struct wb_bench_frame *frame, const struct wb_mark
 }
 
 enum wb_status wb_frame_fit(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
-                            const struct wb_point_cloud *cloud, const double *times, double window,
-                            const double server_up[3])
+                            const double *times, double window, const double server_up[3],
+                            struct wb_reason *why)
 {
     memset(frame, 0, sizeof *frame);
     struct wb_bench_frame fitted = {.n_frames = tracks->n_frames};
-    WB_TRY(fit_motion(&fitted, tracks, cloud, server_up));
+    WB_TRY(fit_motion(&fitted, tracks, server_up, why));
     fitted.clamp = malloc((tracks->n_frames + 1) * sizeof *fitted.clamp);
     if (!fitted.clamp)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu frames", tracks->n_frames);
-    smooth_clamp(&fitted, tracks, cloud, times, window);
-    const enum wb_status status = fit_along(&fitted, tracks, cloud);
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for %zu frames", tracks->n_frames);
+    smooth_clamp(&fitted, tracks, times, window);
+    const enum wb_status status = fit_along(&fitted, tracks, why);
     if (status != WB_OK) {
         free(fitted.clamp);
         return status;
     }
-    measure_planarity(&fitted, tracks, cloud);
+    measure_planarity(&fitted, tracks);
     *frame = fitted;
     return WB_OK;
 }

@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 #include "analysis/markers.h"
-#include "base/status.h"
+#include "base/reason.h"
 
 struct wb_bench_frame {
     double up[3], along[3], normal[3]; /* unit vectors y, x and x cross y, in server coordinates */
@@ -32,16 +32,15 @@ struct wb_bench_frame {
 /* True when the last marker moved along `server_up` (unit vector) more than the first: then the
  * order is the wrong way round, since the clamp moves and the tip hangs on the strand. False
  * also where neither moved 5 mm, and the order cannot be found. */
-bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
-                          const double server_up[3]);
+bool wb_frame_is_reversed(const struct wb_marker_tracks *tracks, const double server_up[3]);
 
 /* Fits the frame. `times` (s, ascending, one a frame) serve the smoothing of the clamp's path over
- * +-`window` seconds. WB_ERR_DATA, and the reason is logged, when the markers and the vertical
- * span no plane. */
+ * +-`window` seconds. WB_ERR_DATA when the markers and the vertical span no plane. `why` receives
+ * why it failed. NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_frame_fit(struct wb_bench_frame *frame,
                                           const struct wb_marker_tracks *tracks,
-                                          const struct wb_point_cloud *cloud, const double *times,
-                                          double window, const double server_up[3]);
+                                          const double *times, double window,
+                                          const double server_up[3], struct wb_reason *why);
 void wb_frame_release(struct wb_bench_frame *frame);
 
 /* Coordinates x, y (and z out of the plane; may be NULL) of a server point relative to the clamp's

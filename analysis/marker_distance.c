@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/curve.h"
+#include "analysis/fit.h"
+
 #define WB_LOG_DOMAIN "marker_distance"
 
 /* Most different arc lengths at which markers sit. */
@@ -19,38 +22,23 @@ struct gallery {
     bool is_follower;
 };
 
-/* Time at which the first loading ends: that of the largest force, of a follower test. */
+/* Time at which the first loading ends. */
 static double end_of_loading(const struct wb_dataset *dataset)
 {
-    double end = -HUGE_VAL, force = -HUGE_VAL;
-    for (size_t i = 0; i < dataset->n_rows; i++) {
-        const struct wb_row *const row = &dataset->rows[i];
-        if (row->cycle != 1 || row->phase != WB_PHASE_LOAD)
-            continue;
-        if (dataset->info.is_follower && !(row->force >= force))
-            continue;
-        force = row->force;
-        end = fmax(end, row->t);
-    }
-    return end;
+    const size_t n = wb_curve_end_of_loading(dataset, 0.0);
+    return n > 0 ? dataset->rows[n - 1].t : -HUGE_VAL;
 }
 
 /* Force at a time, straight between the rows; NaN outside. Rows come by ascending time. */
 static double force_at(const struct wb_dataset *dataset, double t)
 {
-    size_t low = 0, high = dataset->n_rows;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (dataset->rows[middle].t < t)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low < dataset->n_rows && dataset->rows[low].t == t)
-        return dataset->rows[low].force;
-    if (low == 0 || low == dataset->n_rows)
+    const size_t n = dataset->n_rows;
+    const size_t at = n > 0 ? wb_fit_first_at(&dataset->rows->t, sizeof *dataset->rows, n, t) : 0;
+    if (at < n && dataset->rows[at].t == t)
+        return dataset->rows[at].force;
+    if (at == 0 || at == n)
         return (double)NAN;
-    const struct wb_row *const a = &dataset->rows[low - 1], *const b = &dataset->rows[low];
+    const struct wb_row *const a = &dataset->rows[at - 1], *const b = &dataset->rows[at];
     return a->force + (b->force - a->force) * (t - a->t) / (b->t - a->t);
 }
 

@@ -64,7 +64,7 @@ enum wb_status wb_point_cloud_add(struct wb_point_cloud *cloud, const struct wb_
     cloud->frames = frames;
     cloud->points = points;
     if (!grown)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu frames", cloud->n_frames + 1);
+        return WB_ERR_MEMORY;
     struct wb_point_frame *const added = &cloud->frames[cloud->n_frames++];
     *added = (struct wb_point_frame){
         .t_ns = frame->t_ns,
@@ -473,18 +473,18 @@ static bool find_start(const struct tracker *tracker, int least, size_t *start, 
     return n_found > 0;
 }
 
-static enum wb_status refuse_start(const struct tracker *tracker)
+static enum wb_status refuse_start(const struct tracker *tracker, struct wb_reason *why)
 {
     const struct wb_point_cloud *const cloud = tracker->cloud;
     int most = 0;
     for (size_t i = 0; i < cloud->n_frames; i++)
         most = cloud->frames[i].n > most ? cloud->frames[i].n : most;
-    return wb_fail(WB_ERR_DATA,
-                   "markers not found: no frame of %zu shows at least %d of the %d markers, first "
-                   "and last among them, at the distances of markers_mm (a frame has at most %d "
-                   "points that are measurements)",
-                   cloud->n_frames, tracker->specimen->n_markers - 2, tracker->specimen->n_markers,
-                   most);
+    return wb_fail_to(
+        why, WB_ERR_DATA,
+        "markers not found: no frame of %zu shows at least %d of the %d markers, first "
+        "and last among them, at the distances of markers_mm (a frame has at most %d "
+        "points that are measurements)",
+        cloud->n_frames, tracker->specimen->n_markers - 2, tracker->specimen->n_markers, most);
 }
 
 /* Predictions at the start; of a marker that is missing there, between its neighbours. */
@@ -523,7 +523,7 @@ static void count_results(struct tracker *tracker)
     }
 }
 
-static enum wb_status track(struct tracker *tracker)
+static enum wb_status track(struct tracker *tracker, struct wb_reason *why)
 {
     const int n_markers = tracker->specimen->n_markers;
     int chosen[WB_SPECIMEN_MAX_MARKERS];
@@ -532,7 +532,7 @@ static enum wb_status track(struct tracker *tracker)
     for (int least = n_markers; !found && least >= n_markers - 2 && least >= 2; least--)
         found = find_start(tracker, least, &start, chosen);
     if (!found)
-        return refuse_start(tracker);
+        return refuse_start(tracker, why);
     tracker->tracks->start_frame = start;
     place(tracker, start, chosen);
     update(tracker, start, chosen);
@@ -547,10 +547,11 @@ static enum wb_status track(struct tracker *tracker)
 
 enum wb_status wb_markers_track(struct wb_marker_tracks *tracks, const struct wb_point_cloud *cloud,
                                 const struct wb_specimen *specimen,
-                                const struct wb_marker_settings *settings)
+                                const struct wb_marker_settings *settings, struct wb_reason *why)
 {
     memset(tracks, 0, sizeof *tracks);
     struct wb_marker_tracks made = {
+        .cloud = cloud,
         .n_markers = specimen->n_markers,
         .n_frames = cloud->n_frames,
         .symmetric = is_symmetric(specimen),
@@ -568,9 +569,9 @@ enum wb_status wb_markers_track(struct wb_marker_tracks *tracks, const struct wb
             fmin(tracker.smallest_spacing, specimen->markers[i] - specimen->markers[i - 1]);
     made.index = malloc((cloud->n_frames + 1) * (size_t)specimen->n_markers * sizeof *made.index);
     if (!made.index)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the markers of %zu frames",
-                       cloud->n_frames);
-    const enum wb_status status = track(&tracker);
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for the markers of %zu frames",
+                          cloud->n_frames);
+    const enum wb_status status = track(&tracker, why);
     if (status != WB_OK) {
         free(made.index);
         return status;
@@ -597,9 +598,8 @@ void wb_markers_reverse(struct wb_marker_tracks *tracks)
     }
 }
 
-const double *wb_markers_position(const struct wb_marker_tracks *tracks,
-                                  const struct wb_point_cloud *cloud, size_t frame, int marker)
+const double *wb_markers_position(const struct wb_marker_tracks *tracks, size_t frame, int marker)
 {
     const int32_t index = row_of(tracks, frame)[marker];
-    return index >= 0 ? cloud->points[index] : NULL;
+    return index >= 0 ? tracks->cloud->points[index] : NULL;
 }

@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 #include "daq/sample.h"
 #include "daq/specimen.h"
 
@@ -35,7 +35,7 @@ struct wb_point_cloud {
     uint64_t n_occluded, n_filled; /* left out: occluded, model-filled */
 };
 
-/* Adds a frame, without its occluded and model-filled markers. */
+/* Adds a frame, without its occluded and model-filled markers. WB_ERR_MEMORY is silent. */
 WB_MUST_CHECK enum wb_status wb_point_cloud_add(struct wb_point_cloud *cloud,
                                                 const struct wb_mocap_frame *frame);
 void wb_point_cloud_release(struct wb_point_cloud *cloud);
@@ -49,6 +49,7 @@ struct wb_marker_settings {
 
 /* The identified markers. */
 struct wb_marker_tracks {
+    const struct wb_point_cloud *cloud; /* they were found in; must live as long */
     int n_markers;
     size_t n_frames;
     /* (n_frames x n_markers) index into the cloud's points; -1: not seen in this frame */
@@ -61,19 +62,20 @@ struct wb_marker_tracks {
                            wire does not follow from distances and may have to be reversed */
 };
 
-/* Identifies the specimen's markers in every frame. WB_ERR_DATA with a message when no frame shows
- * a chain of at least all but two of them, the first and the last among these. */
+/* Identifies the specimen's markers in every frame. WB_ERR_DATA when no frame shows a chain of
+ * at least all but two of them, the first and the last among these. `why` receives why it failed.
+ * NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_markers_track(struct wb_marker_tracks *tracks,
                                               const struct wb_point_cloud *cloud,
                                               const struct wb_specimen *specimen,
-                                              const struct wb_marker_settings *settings);
+                                              const struct wb_marker_settings *settings,
+                                              struct wb_reason *why);
 void wb_marker_tracks_release(struct wb_marker_tracks *tracks);
 
 /* Turns the order round: the last marker becomes the first. */
 void wb_markers_reverse(struct wb_marker_tracks *tracks);
 
 /* Position of a marker in a frame, or NULL when it is not seen. */
-const double *wb_markers_position(const struct wb_marker_tracks *tracks,
-                                  const struct wb_point_cloud *cloud, size_t frame, int marker);
+const double *wb_markers_position(const struct wb_marker_tracks *tracks, size_t frame, int marker);
 
 #endif

@@ -236,7 +236,7 @@ enum wb_status wb_properties_read(const char *path, struct wb_properties *proper
         read.deviation[k] = (double)NAN;
     read.calibration_length = read.rms = (double)NAN;
     read.scatter_rms = read.residual_scatter_rms = (double)NAN;
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);
     if (status == WB_OK)

@@ -322,22 +322,15 @@ static enum wb_status write_figure(const struct wb_figure *figure, const char *f
     return wb_figure_write_pdf(figure, NULL, path);
 }
 
-static enum wb_status write_curve(const struct wb_dataset *dataset, const char *folder)
+static enum wb_status write_drawing(const struct wb_dataset *dataset, const char *folder,
+                                    enum wb_status (*draw)(struct wb_figure **out,
+                                                           const struct wb_dataset *dataset),
+                                    const char *name, bool with_pdf)
 {
     struct wb_figure *figure = NULL;
-    enum wb_status status = draw_curve(&figure, dataset);
+    enum wb_status status = draw(&figure, dataset);
     if (status == WB_OK)
-        status = write_figure(figure, folder, "force_deflection", true);
-    wb_figure_destroy(figure);
-    return status;
-}
-
-static enum wb_status write_shapes(const struct wb_dataset *dataset, const char *folder)
-{
-    struct wb_figure *figure = NULL;
-    enum wb_status status = draw_shapes(&figure, dataset);
-    if (status == WB_OK)
-        status = write_figure(figure, folder, "shapes", false);
+        status = write_figure(figure, folder, name, with_pdf);
     wb_figure_destroy(figure);
     return status;
 }
@@ -357,8 +350,8 @@ static enum wb_status write_summary(const struct wb_dataset *dataset, const char
 enum wb_status wb_quicklook_write(const struct wb_dataset *dataset, const char *folder, bool force)
 {
     WB_TRY(wb_dataset_write(dataset, folder, force));
-    WB_TRY(write_curve(dataset, folder));
+    WB_TRY(write_drawing(dataset, folder, draw_curve, "force_deflection", true));
     if (dataset->n_shape_rows > 0)
-        WB_TRY(write_shapes(dataset, folder));
+        WB_TRY(write_drawing(dataset, folder, draw_shapes, "shapes", false));
     return write_summary(dataset, folder);
 }

@@ -1,5 +1,6 @@
-/* Scatter between samples that their bows do not explain: of what is left of each sample's curve
- * when the prediction with that sample's own natural shape is subtracted. */
+/* The part of the scatter between samples that their bows do not explain. For each sample the curve
+ * predicted with its own natural shape is subtracted from the measured one; the scatter of these
+ * differences is what is left. */
 #ifndef WB_ANALYSIS_SCATTER_H
 #define WB_ANALYSIS_SCATTER_H
 
@@ -8,9 +9,10 @@
 #include "analysis/dataset.h"
 #include "base/status.h"
 
-/* Root mean square over the grid of the standard deviation of these differences over the samples
- * (n - 1), over the average's wb_curve_scale(). 0 with one sample; NaN when a prediction does not
- * converge over the whole of `curve`, the average of all. */
+/* At each point of the grid the standard deviation of these differences is taken over the samples
+ * (n - 1); *rms receives its root mean square over the grid, divided by wb_curve_scale() of
+ * `curve`, the average of all samples. 0 with one sample; NaN when a prediction does not converge
+ * over the whole of `curve`. */
 WB_MUST_CHECK enum wb_status wb_scatter_residual(double *rms,
                                                  const struct wb_dataset *const *datasets, int n,
                                                  const struct wb_curve *curve,

@@ -9,26 +9,29 @@
 static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
 static const double shortest_row = 1e-3; /* s */
 
-double wb_simulated_time(const double from[3], const double to[3])
+enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row,
+                                    const double *before, const double *tip,
+                                    const struct wb_simulated_shape *shape)
 {
-    const double way = hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
-    return fmax(way / stage_speed, shortest_row);
-}
-
-enum wb_status wb_simulated_add_shape(struct wb_dataset *dataset, double t, double deflection,
-                                      int n, const double *s, double (*place)[3])
-{
-    for (int k = 0; k < n; k++) {
-        const struct wb_shape_row shape = {
-            .t = t,
-            .deflection = deflection,
+    row.t = 0.0;
+    if (before) {
+        const double way = hypot(hypot(tip[0] - before[0], tip[1] - before[1]), tip[2] - before[2]);
+        row.t = dataset->rows[dataset->n_rows - 1].t + fmax(way / stage_speed, shortest_row);
+    }
+    row.stage = (double)NAN;
+    row.tip_x = tip[0];
+    WB_TRY(wb_dataset_add_row(dataset, &row));
+    for (int k = 0; k < shape->n; k++) {
+        const struct wb_shape_row marker = {
+            .t = row.t,
+            .deflection = row.deflection,
             .marker = k,
-            .s = s[k],
-            .x = place[k][0],
-            .y = place[k][1],
-            .z = place[k][2],
+            .s = shape->s[k],
+            .x = shape->place[k][0],
+            .y = shape->place[k][1],
+            .z = shape->place[k][2],
         };
-        WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
+        WB_TRY(wb_dataset_add_shape_row(dataset, &marker));
     }
     return WB_OK;
 }

@@ -29,14 +29,19 @@ WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
                                                const double *shape_s,
                                                const struct wb_simulated_origin *origin);
 
-/* Bench time, s, in which a free tip goes from one place to the next, m: at least 1 ms. */
-double wb_simulated_time(const double from[3], const double to[3]);
+/* A shape in space: n places (m) at the arc lengths s (m). */
+struct wb_simulated_shape {
+    int n;
+    const double *s;
+    double (*place)[3];
+};
 
-/* Appends the n places (m) of a shape in space, at bench time t (s) and a deflection (m), as those
- * of n markers at the arc lengths s (m). */
-WB_MUST_CHECK enum wb_status wb_simulated_add_shape(struct wb_dataset *dataset, double t,
-                                                    double deflection, int n, const double *s,
-                                                    double (*place)[3]);
+/* Appends a row of a free tip at that place (m), and its shape as that of n markers. Bench time
+ * goes on from the row before by the tip's way from `before` (NULL: of the first row), at least 1
+ * ms. The caller leaves time and tip_x to it. */
+WB_MUST_CHECK enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row,
+                                                  const double *before, const double *tip,
+                                                  const struct wb_simulated_shape *shape);
 
 /* dataset.json's `tool`: this program. */
 void wb_simulated_describe_tool(struct wb_json *document);

@@ -18,26 +18,23 @@ static const double poissons_ratio = 0.3; /* of the homogenised beam, as the pap
 
 static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_bundle_result *result)
 {
-    double t = 0.0;
-
     for (int i = 0; i < result->n_rows; i++) {
-        const struct wb_bundle_row *row = &result->rows[i];
-        if (i > 0)
-            t += wb_simulated_time(result->rows[i - 1].tip, row->tip);
+        const struct wb_bundle_row *const row = &result->rows[i];
+        const struct wb_simulated_shape shape = {
+            .n = result->n_shape,
+            .s = result->shape_s,
+            .place = result->shape + (size_t)i * (size_t)result->n_shape,
+        };
         const struct wb_row out = {
-            .t = t,
             .cycle = row->cycle,
             .phase = row->phase,
             .deflection = row->deflection,
             .tension = row->tension,
             .force = row->force,
-            .stage = (double)NAN,
-            .tip_x = row->tip[0],
             .tip_angle = row->tip_angle,
         };
-        WB_TRY(wb_dataset_add_row(dataset, &out));
-        WB_TRY(wb_simulated_add_shape(dataset, t, row->deflection, result->n_shape, result->shape_s,
-                                      result->shape + (size_t)i * (size_t)result->n_shape));
+        WB_TRY(wb_simulated_add_row(dataset, out, i > 0 ? result->rows[i - 1].tip : NULL, row->tip,
+                                    &shape));
     }
     return WB_OK;
 }

@@ -17,25 +17,23 @@ static const char *const kind_names[] = {
 
 static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_wire_run *run)
 {
-    double t = 0.0;
     for (int i = 0; i < run->n_rows; i++) {
         const struct wb_wire_row *const row = &run->rows[i];
-        if (i > 0)
-            t += wb_simulated_time(run->rows[i - 1].tip, row->tip);
+        const struct wb_simulated_shape shape = {
+            .n = run->n_shape,
+            .s = run->shape_s,
+            .place = run->shape + (size_t)i * (size_t)run->n_shape,
+        };
         const struct wb_row out = {
-            .t = t,
             .cycle = row->cycle,
             .phase = row->phase,
             .deflection = row->tip[1],
             .tension = row->tension,
             .force = row->force,
-            .stage = (double)NAN,
-            .tip_x = row->tip[0],
             .tip_angle = row->tip_angle,
         };
-        WB_TRY(wb_dataset_add_row(dataset, &out));
-        WB_TRY(wb_simulated_add_shape(dataset, t, row->tip[1], run->n_shape, run->shape_s,
-                                      run->shape + (size_t)i * (size_t)run->n_shape));
+        WB_TRY(wb_simulated_add_row(dataset, out, i > 0 ? run->rows[i - 1].tip : NULL, row->tip,
+                                    &shape));
     }
     return WB_OK;
 }

@@ -218,7 +218,7 @@ static enum wb_status check_last(const struct reader *reader)
     return wb_fail_to(
         reader->table.why, WB_ERR_FORMAT,
         "%s:%d: body %d ends with %d nodes: expected at least 2 stations of at least %d "
-        "nodes, all alike",
+        "nodes each, as many in every station",
         reader->table.path, reader->table.line, reader->surface->n - 1, reader->n_nodes, least);
 }
 
@@ -262,12 +262,12 @@ static enum wb_status take_row(struct reader *reader, const struct row *row)
     if (row->body == surface->n)
         WB_TRY(begin_body(reader, row));
     if (row->body != surface->n - 1)
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT, "%s:%d: body: %d after %d",
-                          reader->table.path, reader->table.line, row->body, surface->n - 1);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT, "%s:%d: body: expected %d next, not %d",
+                          reader->table.path, reader->table.line, surface->n, row->body);
     struct wb_surface_body *body = &surface->bodies[row->body];
     if (row->is_tape != body->is_tape || row->closed != body->closed)
         return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: kind: not that of the body's first row", reader->table.path,
+                          "%s:%d: kind: expected that of the body's first row", reader->table.path,
                           reader->table.line);
     if (row->station == 0) {
         body->n_around = row->node + 1;

@@ -11,8 +11,8 @@ struct wb_validate_points {
     double *angle; /* (n) rad; may be NULL */
 };
 
-/* As wb_validate_shape(), of a follower test under a force (N), whether curled up beyond the
- * largest deflection or not. */
+/* The shape of a follower test under a force (N), otherwise as wb_validate_shape(). The force may
+ * be one under which the wire has curled up and the deflection falls again. */
 WB_MUST_CHECK enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
                                                         const struct wb_test_info *info,
                                                         double force,

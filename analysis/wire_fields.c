@@ -115,7 +115,7 @@ static enum wb_status add_faces(struct wb_fields *fields, const struct solid *so
                                 int n)
 {
     struct wb_field *field;
-    WB_TRY(wb_fields_add(fields, state, x, n, &field));
+    WB_TRY(wb_fields_add(fields, state, x, n, &field, NULL));
     for (int f = 0; f < n; f++)
         WB_TRY(take_face(solid, &faces[f], &field->faces[f]));
     return WB_OK;
@@ -203,7 +203,7 @@ static enum wb_status add_rod_section(struct wb_fields *fields, const char *stat
     struct wb_field *field;
     int n;
     WB_TRY(wb_wire1d_section(rod, s, &fibres, &n));
-    const enum wb_status status = wb_fields_add(fields, state, s, n, &field);
+    const enum wb_status status = wb_fields_add(fields, state, s, n, &field, NULL);
     for (int f = 0; status == WB_OK && f < n; f++) {
         const struct wb_wire1d_fibre *const fibre = &fibres[f];
         take_fibre(fibre, &field->faces[f]);
@@ -281,7 +281,7 @@ static enum wb_status add_rod_slices(struct wb_fields *fields, const struct wb_w
         if (i == 0) {
             for (int f = 0; f < n; f++)
                 faces += is_next_to_plane(fibres, n, f);
-            status = wb_fields_add(fields, state, (double)NAN, n_slices * faces, &field);
+            status = wb_fields_add(fields, state, (double)NAN, n_slices * faces, &field, NULL);
         }
         if (status == WB_OK) {
             slice.n_faces = faces;

@@ -19,6 +19,7 @@ struct wb_config_node {
 };
 
 struct wb_config {
+    struct wb_reason *why; /* NULL: failures are logged */
     char *origin;
     yaml_document_t document;
     bool loaded;
@@ -34,7 +35,7 @@ static enum wb_status load(struct wb_config *config, const char *text)
 {
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser))
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", config->origin);
+        return wb_fail_to(config->why, WB_ERR_MEMORY, "out of memory reading '%s'", config->origin);
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, strlen(text));
     enum wb_status status = WB_OK;
     if (!yaml_parser_load(&parser, &config->document)) {
@@ -42,33 +43,36 @@ static enum wb_status load(struct wb_config *config, const char *text)
         /* libyaml's words for the commonest slip, a line without its colon. */
         const bool colon = strstr(what, "mapping values are not allowed") ||
                            strstr(what, "could not find expected ':'");
-        status =
-            wb_fail(WB_ERR_FORMAT, "%s:%zu: %s%s%s%s", config->origin, parser.problem_mark.line + 1,
-                    what, parser.context ? " " : "", parser.context ? parser.context : "",
-                    colon ? ": is a colon missing in the line before?" : "");
+        status = wb_fail_to(config->why, WB_ERR_FORMAT, "%s:%zu: %s%s%s%s", config->origin,
+                            parser.problem_mark.line + 1, what, parser.context ? " " : "",
+                            parser.context ? parser.context : "",
+                            colon ? ": is a colon missing in the line before?" : "");
     } else {
         config->loaded = true;
         if (!yaml_document_get_root_node(&config->document))
-            status = wb_fail(WB_ERR_FORMAT, "%s: the file is empty", config->origin);
+            status =
+                wb_fail_to(config->why, WB_ERR_FORMAT, "%s: the file is empty", config->origin);
     }
     yaml_parser_delete(&parser);
     return status;
 }
 
-enum wb_status wb_config_parse(struct wb_config **out, const char *text, const char *origin)
+enum wb_status wb_config_parse(struct wb_config **out, const char *text, const char *origin,
+                               struct wb_reason *why)
 {
     *out = NULL;
     struct wb_config *config = calloc(1, sizeof *config);
     if (!config)
-        return wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", origin);
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading '%s'", origin);
+    config->why = why;
     config->origin = strdup(origin);
     enum wb_status status =
-        config->origin ? load(config, text) : wb_fail(WB_ERR_MEMORY, "out of memory");
+        config->origin ? load(config, text) : wb_fail_to(why, WB_ERR_MEMORY, "out of memory");
     if (status == WB_OK) {
         const size_t n = (size_t)(config->document.nodes.top - config->document.nodes.start);
         config->nodes = calloc(n, sizeof *config->nodes);
         if (!config->nodes)
-            status = wb_fail(WB_ERR_MEMORY, "out of memory reading '%s'", origin);
+            status = wb_fail_to(why, WB_ERR_MEMORY, "out of memory reading '%s'", origin);
         for (size_t i = 0; config->nodes && i < n; i++)
             config->nodes[i] = (struct wb_config_node){config, config->document.nodes.start + i};
     }
@@ -80,17 +84,17 @@ enum wb_status wb_config_parse(struct wb_config **out, const char *text, const c
     return WB_OK;
 }
 
-enum wb_status wb_config_read(struct wb_config **out, const char *path)
+enum wb_status wb_config_read(struct wb_config **out, const char *path, struct wb_reason *why)
 {
     *out = NULL;
     char *text;
     size_t size;
-    WB_TRY(wb_file_read(path, &text, &size));
+    WB_TRY(wb_file_read_with_reason(path, &text, &size, why));
     enum wb_status status;
     if (strlen(text) != size)
-        status = wb_fail(WB_ERR_FORMAT, "'%s' is not a text file", path);
+        status = wb_fail_to(why, WB_ERR_FORMAT, "'%s' is not a text file", path);
     else
-        status = wb_config_parse(out, text, path);
+        status = wb_config_parse(out, text, path, why);
     free(text);
     return status;
 }
@@ -141,8 +145,9 @@ enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *k
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
     const struct wb_config_node *const named = key ? wb_config_find(node, key) : NULL;
-    return wb_fail(WB_ERR_FORMAT, "%s:%d: %s%s%s", wb_config_origin(node),
-                   wb_config_line(named ? named : node), key ? key : "", key ? ": " : "", message);
+    return wb_fail_to(node->config->why, WB_ERR_FORMAT, "%s:%d: %s%s%s", wb_config_origin(node),
+                      wb_config_line(named ? named : node), key ? key : "", key ? ": " : "",
+                      message);
 }
 
 const char *wb_config_scalar(const struct wb_config_node *node)

@@ -2,7 +2,7 @@
  * every error names file, line and key.
  *
  *     struct wb_config *config;
- *     WB_TRY(wb_config_read(&config, "rig.yaml"));
+ *     WB_TRY(wb_config_read(&config, "rig.yaml", NULL));
  *     const struct wb_config_key keys[] = {
  *         WB_CONFIG_NUMBER("length_mm", &length, WB_MM, 1.0, 1e4),
  *         WB_CONFIG_OPTIONAL_TEXT("notes", notes, ""),
@@ -19,17 +19,20 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 
 #define WB_COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
 struct wb_config;      /* one document, owned by the caller */
 struct wb_config_node; /* a map, sequence or scalar in it; owned by the document */
 
-/* Reads a file, or parses a text in which `origin` stands for the file in messages. */
-WB_MUST_CHECK enum wb_status wb_config_read(struct wb_config **out, const char *path);
+/* Reads a file, or parses a text in which `origin` stands for the file in messages. `why` receives
+ * why that, or later the reading of a node, is refused, and must live as long as the document;
+ * NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_config_read(struct wb_config **out, const char *path,
+                                            struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_config_parse(struct wb_config **out, const char *text,
-                                             const char *origin);
+                                             const char *origin, struct wb_reason *why);
 void wb_config_destroy(struct wb_config *config); /* accepts NULL */
 
 /* The top node. Its file name, and a node's line (from 1). */
@@ -146,7 +149,7 @@ const struct wb_config_node *wb_config_entry(const struct wb_config_node *map, i
 /* The value of the first entry `key` of a map; NULL when there is none or the node is not a map. */
 const struct wb_config_node *wb_config_find(const struct wb_config_node *map, const char *key);
 
-/* Logs "FILE:LINE: KEY: message" and evaluates to WB_ERR_FORMAT; `key` may be NULL. The line is
+/* Fails with "FILE:LINE: KEY: message" and WB_ERR_FORMAT; `key` may be NULL. The line is
  * that of the key where `node` is the map that holds it, else the node's. For checks that a table
  * cannot express. */
 WB_MUST_CHECK enum wb_status wb_config_refuse(const struct wb_config_node *node, const char *key,

@@ -185,14 +185,20 @@ enum wb_status wb_file_prepare_output(const char *path, bool force)
     return wb_file_make_folder(path);
 }
 
-enum wb_status wb_file_join(char path[WB_PATH], const char *folder, const char *name)
+static enum wb_status join(char path[WB_PATH], const char *folder, const char *name,
+                           struct wb_reason *why)
 {
     const bool alone = name[0] == '/' || folder[0] == '\0';
     const int length = alone ? snprintf(path, WB_PATH, "%s", name)
                              : snprintf(path, WB_PATH, "%s/%s", folder, name);
     if (length >= WB_PATH)
-        return wb_fail(WB_ERR_ARGUMENT, "path too long: '%s/%s'", folder, name);
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "path too long: '%s/%s'", folder, name);
     return WB_OK;
+}
+
+enum wb_status wb_file_join(char path[WB_PATH], const char *folder, const char *name)
+{
+    return join(path, folder, name, NULL);
 }
 
 void wb_file_folder(char folder[WB_PATH], const char *path)
@@ -236,11 +242,11 @@ static bool is_path(const char *name)
 enum wb_status wb_file_find_fixture(char path[WB_PATH], const char *kind, const char *name,
                                     const char *beside)
 {
-    return wb_file_find_named(path, kind, name, beside, NULL);
+    return wb_file_find_named(path, kind, name, beside, NULL, NULL);
 }
 
 enum wb_status wb_file_find_named(char path[WB_PATH], const char *kind, const char *name,
-                                  const char *beside, const char *named_in)
+                                  const char *beside, const char *named_in, struct wb_reason *why)
 {
     const char *const colon = named_in ? ": " : "";
     if (!named_in)
@@ -248,26 +254,26 @@ enum wb_status wb_file_find_named(char path[WB_PATH], const char *kind, const ch
     char candidate[WB_PATH];
     if (is_path(name)) {
         if (beside) {
-            WB_TRY(wb_file_join(path, beside, name));
+            WB_TRY(join(path, beside, name, why));
             if (wb_file_exists(path))
                 return WB_OK;
         }
-        WB_TRY(wb_file_join(path, "", name));
+        WB_TRY(join(path, "", name, why));
         if (wb_file_exists(path) || wb_file_find_data(path, name) == WB_OK)
             return WB_OK;
         const bool elsewhere = beside && strcmp(beside, ".") != 0;
-        return wb_fail(WB_ERR_NOT_FOUND, "%s%sno file '%s'%s%s%s", named_in, colon, name,
-                       elsewhere ? ", here or in '" : "", elsewhere ? beside : "",
-                       elsewhere ? "'" : "");
+        return wb_fail_to(why, WB_ERR_NOT_FOUND, "%s%sno file '%s'%s%s%s", named_in, colon, name,
+                          elsewhere ? ", here or in '" : "", elsewhere ? beside : "",
+                          elsewhere ? "'" : "");
     }
     if (snprintf(candidate, sizeof candidate, "fixtures/%s/%s.yaml", kind, name) >=
         (int)sizeof candidate)
-        return wb_fail(WB_ERR_ARGUMENT, "name too long: '%s'", name);
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "name too long: '%s'", name);
     if (wb_file_find_data(path, candidate) == WB_OK)
         return WB_OK;
-    return wb_fail(WB_ERR_NOT_FOUND,
-                   "%s%sno '%s' among the shipped %s (no %s); give a path to your own file",
-                   named_in, colon, name, kind, candidate);
+    return wb_fail_to(why, WB_ERR_NOT_FOUND,
+                      "%s%sno '%s' among the shipped %s (no %s); give a path to your own file",
+                      named_in, colon, name, kind, candidate);
 }
 
 static long read_holder(int descriptor)

@@ -60,10 +60,11 @@ WB_MUST_CHECK enum wb_status wb_file_find_fixture(char path[WB_PATH], const char
                                                   const char *name, const char *beside);
 
 /* The same, for a name that stands in a file: a failure's message begins with `named_in`, its file,
- * line and key ("specimen.yaml:1: wire"). */
+ * line and key ("specimen.yaml:1: wire"); NULL: with nothing. `why` receives the message. NULL: it
+ * is logged. */
 WB_MUST_CHECK enum wb_status wb_file_find_named(char path[WB_PATH], const char *kind,
                                                 const char *name, const char *beside,
-                                                const char *named_in);
+                                                const char *named_in, struct wb_reason *why);
 
 /* A lock file that one process holds at a time. The kernel lets go of it when the process ends,
  * however that happens, so a lock file left behind locks nothing. */

@@ -16,10 +16,11 @@ static void finish(GChecksum *checksum, char hex[WB_SHA256_TEXT])
     g_checksum_free(checksum);
 }
 
-enum wb_status wb_hash_descriptor(int descriptor, const char *name, char hex[WB_SHA256_TEXT])
+enum wb_status wb_hash_descriptor(int descriptor, const char *name, char hex[WB_SHA256_TEXT],
+                                  struct wb_reason *why)
 {
     if (lseek(descriptor, 0, SEEK_SET) < 0)
-        return wb_fail(WB_ERR_IO, "cannot read '%s': %s", name, strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", name, strerror(errno));
     GChecksum *checksum = g_checksum_new(G_CHECKSUM_SHA256);
     for (;;) {
         unsigned char block[65536];
@@ -28,7 +29,7 @@ enum wb_status wb_hash_descriptor(int descriptor, const char *name, char hex[WB_
             continue;
         if (n < 0) {
             g_checksum_free(checksum);
-            return wb_fail(WB_ERR_IO, "cannot read '%s': %s", name, strerror(errno));
+            return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", name, strerror(errno));
         }
         if (n == 0)
             break;
@@ -44,7 +45,7 @@ enum wb_status wb_hash_file(const char *path, char hex[WB_SHA256_TEXT])
     if (descriptor < 0)
         return wb_fail(errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO, "cannot open '%s': %s", path,
                        strerror(errno));
-    const enum wb_status status = wb_hash_descriptor(descriptor, path, hex);
+    const enum wb_status status = wb_hash_descriptor(descriptor, path, hex, NULL);
     close(descriptor);
     return status;
 }

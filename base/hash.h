@@ -4,16 +4,17 @@
 
 #include <stddef.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 
 /* Lower-case hex and a NUL. */
 #define WB_SHA256_TEXT 65
 
 /* Of a whole file; WB_ERR_NOT_FOUND or WB_ERR_IO with a message. */
 WB_MUST_CHECK enum wb_status wb_hash_file(const char *path, char hex[WB_SHA256_TEXT]);
-/* From an open descriptor, from its start to its end; the offset is left at the end. */
+/* From an open descriptor, from its start to its end; the offset is left at the end. `why` receives
+ * why it failed. NULL: that is logged. */
 WB_MUST_CHECK enum wb_status wb_hash_descriptor(int descriptor, const char *name,
-                                                char hex[WB_SHA256_TEXT]);
+                                                char hex[WB_SHA256_TEXT], struct wb_reason *why);
 /* Of bytes in memory. */
 void wb_hash_bytes(const void *bytes, size_t n, char hex[WB_SHA256_TEXT]);
 

@@ -147,11 +147,25 @@ static void put_boolean(struct wb_json *value, bool boolean)
     value->as.boolean = boolean;
 }
 
+/* RFC 3629: as few bytes as a character needs, no surrogates, none beyond U+10FFFF. */
 static bool is_utf8(const char *text)
 {
-    json_t *const quoted = json_string(text);
-    json_decref(quoted);
-    return quoted != NULL;
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        const unsigned first = *c++;
+        const int more = first < 0x80 ? 0 : first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
+        unsigned code = more == 0 ? first : first & (0x3fu >> more);
+        if (first >= 0xf5 || (first >= 0x80 && first < 0xc2))
+            return false;
+        for (int i = 0; i < more; i++) {
+            if ((*c & 0xc0) != 0x80)
+                return false;
+            code = code << 6 | (*c++ & 0x3fu);
+        }
+        if ((more == 2 && code < 0x800) || (more == 3 && code < 0x10000) || code > 0x10ffff ||
+            (code >= 0xd800 && code <= 0xdfff))
+            return false;
+    }
+    return true;
 }
 
 static void put_text(struct wb_json *value, const char *text)
@@ -374,8 +388,8 @@ static void put_parsed(struct wb_json *value, json_t *parsed)
     }
 }
 
-static enum wb_status parse(struct wb_json **root, const char *text, const char *origin,
-                            struct wb_reason *why)
+enum wb_status wb_json_parse_with_reason(struct wb_json **root, const char *text,
+                                         const char *origin, struct wb_reason *why)
 {
     *root = NULL;
     json_error_t error;
@@ -399,7 +413,7 @@ static enum wb_status parse(struct wb_json **root, const char *text, const char 
 
 enum wb_status wb_json_parse(struct wb_json **root, const char *text, const char *origin)
 {
-    return parse(root, text, origin, NULL);
+    return wb_json_parse_with_reason(root, text, origin, NULL);
 }
 
 enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
@@ -408,7 +422,7 @@ enum wb_status wb_json_read_with_reason(struct wb_json **root, const char *path,
     *root = NULL;
     char *text;
     WB_TRY(wb_file_read_with_reason(path, &text, NULL, why));
-    const enum wb_status status = parse(root, text, path, why);
+    const enum wb_status status = wb_json_parse_with_reason(root, text, path, why);
     free(text);
     return status;
 }

@@ -52,6 +52,8 @@ WB_MUST_CHECK enum wb_status wb_json_read_with_reason(struct wb_json **root, con
                                                       struct wb_reason *why);
 WB_MUST_CHECK enum wb_status wb_json_parse(struct wb_json **root, const char *text,
                                            const char *origin);
+WB_MUST_CHECK enum wb_status wb_json_parse_with_reason(struct wb_json **root, const char *text,
+                                                       const char *origin, struct wb_reason *why);
 
 /* Reading: each returns false and leaves the target when the member is missing or of another
  * kind. Text is owned by the document. */

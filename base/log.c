@@ -3,15 +3,12 @@
 #include <errno.h>
 #include <pthread.h>
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static wb_log_sink *current_sink;
 static void *sink_context;
 static enum wb_log_level threshold = WB_LOG_INFO;
-static _Thread_local wb_log_sink *thread_tap;
-static _Thread_local void *tap_context;
 static _Thread_local enum wb_log_level gravest = WB_LOG_ERROR;
 
 static void write_to_stderr(enum wb_log_level level, const char *domain, const char *message)
@@ -32,11 +29,8 @@ void wb_log(enum wb_log_level level, const char *domain, const char *format, ...
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
 
-    const bool is_grave = level <= WB_LOG_WARNING;
     if (level < gravest)
         level = gravest;
-    if (thread_tap && is_grave)
-        thread_tap(tap_context, level, domain, message);
     pthread_mutex_lock(&lock);
     if (level <= threshold) {
         if (current_sink)
@@ -54,12 +48,6 @@ void wb_log_set_sink(wb_log_sink *sink, void *context)
     current_sink = sink;
     sink_context = context;
     pthread_mutex_unlock(&lock);
-}
-
-void wb_log_set_tap(wb_log_sink *tap, void *context)
-{
-    thread_tap = tap;
-    tap_context = context;
 }
 
 enum wb_log_level wb_log_set_gravest(enum wb_log_level level)

@@ -30,14 +30,8 @@ void wb_log(enum wb_log_level level, const char *domain, const char *format, ...
 /* Replaces the sink; NULL restores stderr. `context` must outlive its use. */
 void wb_log_set_sink(wb_log_sink *sink, void *context);
 
-/* From now on `tap`, too, receives the errors and warnings of the calling thread, whatever the
- * threshold; NULL ends that. It is called before the sink, without a lock. A function that may fail
- * as a part of its work should rather take a reason (base/reason.h). */
-void wb_log_set_tap(wb_log_sink *tap, void *context);
-
-/* From now on graver messages of the calling thread are delivered as `level`, also to its tap,
- * which receives them all the same: for an attempt that may well fail. WB_LOG_ERROR ends that.
- * Returns the level that was set before. */
+/* From now on graver messages of the calling thread are delivered as `level`: for an attempt that
+ * may well fail. WB_LOG_ERROR ends that. Returns the level that was set before. */
 enum wb_log_level wb_log_set_gravest(enum wb_log_level level);
 
 /* Sets the highest level that is delivered; WB_LOG_INFO at start. */

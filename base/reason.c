@@ -38,7 +38,8 @@ void wb_reason_set(struct wb_reason *reason, const char *format, ...)
     keep(reason, message);
 }
 
-void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *format, ...)
+void wb_reason_tell(struct wb_reason *reason, bool also, const char *domain, const char *format,
+                    ...)
 {
     char message[MOST_MESSAGE];
     va_list arguments;
@@ -46,8 +47,10 @@ void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *fo
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    if (reason)
-        keep(reason, message);
-    else
+    if (!reason)
         wb_log(WB_LOG_ERROR, domain, "%s", message);
+    else if (also && reason->text[0])
+        wb_reason_set(reason, "%s; %s", reason->text, message);
+    else
+        keep(reason, message);
 }

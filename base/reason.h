@@ -8,6 +8,8 @@
 #ifndef WB_BASE_REASON_H
 #define WB_BASE_REASON_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 
 /* All zero: there is none. A text that does not fit is cut at the end of a UTF-8 character and ends
@@ -20,14 +22,19 @@ struct wb_reason {
 void wb_reason_set(struct wb_reason *reason, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Replaces the text of `reason`; logs an error of that domain where it is NULL. Called by
- * wb_fail_to(). */
-void wb_reason_tell(struct wb_reason *reason, const char *domain, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+/* Replaces the text of `reason`, or adds to it where that is wanted; logs an error of that domain
+ * where it is NULL. Called by the two below. */
+void wb_reason_tell(struct wb_reason *reason, bool also, const char *domain, const char *format,
+                    ...) __attribute__((format(printf, 4, 5)));
 
 /* Writes the message to `reason`, or logs it as wb_fail() does where that is NULL, and evaluates to
  * `status`. A macro, so that the compiler sees that the caller returns an error. */
 #define wb_fail_to(reason, status, ...)                                                            \
-    (wb_reason_tell((reason), WB_LOG_DOMAIN, __VA_ARGS__), (status))
+    (wb_reason_tell((reason), false, WB_LOG_DOMAIN, __VA_ARGS__), (status))
+
+/* The same for one of several failures that the caller can go on after: `reason` keeps what it says
+ * already, "; " between them. */
+#define wb_fail_also(reason, status, ...)                                                          \
+    (wb_reason_tell((reason), true, WB_LOG_DOMAIN, __VA_ARGS__), (status))
 
 #endif

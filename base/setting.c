@@ -20,6 +20,12 @@ static const void *look_at(const struct wb_setting *row, const void *settings)
     return (const char *)settings + row->offset;
 }
 
+/* Whether a list was given. */
+static bool *given_of(const struct wb_setting *row, void *settings)
+{
+    return (bool *)((char *)settings + row->given);
+}
+
 static double scale_of(const struct wb_setting *row)
 {
     return row->scale == 0.0 ? 1.0 : row->scale;
@@ -42,8 +48,9 @@ bool wb_setting_applies(const struct wb_setting *row, unsigned place)
 
 /* --- filling in --- */
 
-static void fill(const struct wb_setting *row, void *field)
+static void fill(const struct wb_setting *row, void *settings)
 {
+    void *const field = field_of(row, settings);
     switch (row->type) {
     case WB_SETTING_NUMBER:
         *(double *)field = row->fallback * scale_of(row);
@@ -63,6 +70,7 @@ static void fill(const struct wb_setting *row, void *field)
         break;
     case WB_SETTING_LIST:
         wb_setting_fill(row->members, field);
+        *given_of(row, settings) = false;
         break;
     }
 }
@@ -70,7 +78,7 @@ static void fill(const struct wb_setting *row, void *field)
 void wb_setting_fill(const struct wb_setting_table *table, void *settings)
 {
     for (size_t i = 0; i < table->n; i++)
-        fill(&table->rows[i], field_of(&table->rows[i], settings));
+        fill(&table->rows[i], settings);
 }
 
 /* "1e-6", as people write it. */
@@ -182,8 +190,8 @@ static bool parse_list(const struct wb_setting *row, const char *argument, void 
     char text[4 * WB_NUMBER_TEXT], what[WB_SETTING_VALUE];
     int n = 0;
     const int all = (int)row->members->n;
-    snprintf(text, sizeof text, "%s", argument);
-    for (char *part = text, *next; part; part = next) {
+    const bool fits = snprintf(text, sizeof text, "%s", argument) < (int)sizeof text;
+    for (char *part = fits ? text : NULL, *next; part; part = next) {
         next = strchr(part, separator_of(row));
         if (next)
             *next++ = '\0';
@@ -230,7 +238,7 @@ bool wb_setting_parse(const struct wb_setting *row, const char *argument, void *
     case WB_SETTING_LIST:
         if (!parse_list(row, argument, field, problem))
             return false;
-        *(bool *)((char *)settings + row->given) = true;
+        *given_of(row, settings) = true;
         return true;
     }
     return false;
@@ -272,16 +280,15 @@ size_t wb_setting_keys(const struct wb_setting_table *table, unsigned place, voi
     return n;
 }
 
-enum {
-    MOST_MEMBERS = 8
-};
-
 enum wb_status wb_setting_read_list(const struct wb_setting *row, const struct wb_config_node *node,
                                     void *settings)
 {
-    struct wb_config_key keys[MOST_MEMBERS];
+    struct wb_config_key keys[WB_SETTING_MEMBERS];
     char problem[WB_SETTING_PROBLEM];
     void *const members = field_of(row, settings);
+    if (row->members->n > WB_SETTING_MEMBERS)
+        return wb_config_refuse(node, row->name, "a list of %zu members, at most %d can be read",
+                                row->members->n, WB_SETTING_MEMBERS);
     const size_t all = wb_setting_keys(row->members, 0, members, keys);
     const bool is_alone = wb_config_scalar(node) != NULL;
     if (is_alone) {
@@ -295,7 +302,7 @@ enum wb_status wb_setting_read_list(const struct wb_setting *row, const struct w
                           : -1;
     if (wrong >= 0)
         return wb_config_refuse(node, row->members->rows[wrong].name, "%s", problem);
-    *(bool *)((char *)settings + row->given) = true;
+    *given_of(row, settings) = true;
     return WB_OK;
 }
 
@@ -309,25 +316,35 @@ double wb_setting_value(const struct wb_setting *row, const void *settings)
     return *(const int *)field;
 }
 
-enum wb_status wb_setting_check_row(const struct wb_setting *row, const void *settings,
-                                    struct wb_reason *why)
+/* What has no default must be in its range, but of a list, whose members may be left out. */
+static enum wb_status check_row(const struct wb_setting *row, bool has_default,
+                                const void *settings, struct wb_reason *why)
 {
     const void *const field = look_at(row, settings);
-    if (row->type == WB_SETTING_LIST)
-        return wb_setting_check(row->members, field, why);
+    if (row->type == WB_SETTING_LIST) {
+        for (size_t i = 0; i < row->members->n; i++)
+            WB_TRY(check_row(&row->members->rows[i], true, field, why));
+        return WB_OK;
+    }
     if ((row->type != WB_SETTING_NUMBER && row->type != WB_SETTING_INTEGER) || !has_range(row))
         return WB_OK;
     /* In SI: products with the scale keep the order of what was read in the row's unit. */
     const double scale = scale_of(row);
     const double value =
         row->type == WB_SETTING_NUMBER ? *(const double *)field : *(const int *)field;
-    if (value == row->fallback * scale ||
+    if ((has_default && value == row->fallback * scale) ||
         (value >= row->least * scale && value <= row->largest * scale))
         return WB_OK;
     char text[WB_NUMBER_TEXT], range[WB_SETTING_VALUE];
     wb_setting_range(row, range);
     return wb_fail_to(why, WB_ERR_ARGUMENT, "%s: %s is out of range, expected %s", row->name,
                       format_short(value / scale, text), range);
+}
+
+enum wb_status wb_setting_check_row(const struct wb_setting *row, const void *settings,
+                                    struct wb_reason *why)
+{
+    return check_row(row, !row->required, settings, why);
 }
 
 enum wb_status wb_setting_check(const struct wb_setting_table *table, const void *settings,
@@ -368,12 +385,20 @@ bool wb_setting_differs(const struct wb_setting *row, const void *settings)
     return wb_setting_value(row, settings) != row->fallback;
 }
 
+/* NULL: a borrowed text that there is not. */
 static const char *text_of(const struct wb_setting *row, const void *settings)
 {
     const void *const field = look_at(row, settings);
     if (row->type == WB_SETTING_CHOICE)
         return row->choices[*(const int *)field];
     return row->size > 0 ? field : *(const char *const *)field;
+}
+
+/* The same, and "" where there is none. */
+static const char *words_of(const struct wb_setting *row, const void *settings)
+{
+    const char *const text = text_of(row, settings);
+    return text ? text : "";
 }
 
 static void format_list(const struct wb_setting *row, const void *members,
@@ -403,7 +428,7 @@ void wb_setting_format(const struct wb_setting *row, const void *settings,
         break;
     case WB_SETTING_TEXT:
     case WB_SETTING_CHOICE:
-        snprintf(text, WB_SETTING_VALUE, "%s", text_of(row, settings));
+        snprintf(text, WB_SETTING_VALUE, "%s", words_of(row, settings));
         break;
     case WB_SETTING_LIST:
         format_list(row, look_at(row, settings), text);
@@ -469,7 +494,7 @@ bool wb_setting_is_same(const struct wb_setting *row, const void *settings,
     case WB_SETTING_TEXT:
     case WB_SETTING_CHOICE: {
         const char *stored = "";
-        const char *const wanted = text_of(row, settings);
+        const char *const wanted = words_of(row, settings);
         (void)wb_json_get_text(object, row->name, &stored);
         if (strcmp(stored, wanted) == 0)
             return true;
@@ -509,7 +534,7 @@ void wb_setting_identify(const struct wb_setting_table *table, const void *setti
             break;
         case WB_SETTING_TEXT:
         case WB_SETTING_CHOICE:
-            wb_text_append(text, "%s", text_of(row, settings) ? text_of(row, settings) : "");
+            wb_text_append(text, "%s", words_of(row, settings));
             break;
         case WB_SETTING_LIST:
             wb_setting_identify(row->members, field, text);

@@ -69,19 +69,20 @@ struct wb_setting_table {
     const struct wb_setting *rows;
     size_t n;
     size_t offset; /* of the rows' struct in a larger one */
-    const char
-        *otherwise; /* the default of all rows in words, in place of their own; may be NULL */
+    /* The default of all rows in words, in place of their own; may be NULL. */
+    const char *otherwise;
 };
 
 enum {
     WB_SETTING_PROBLEM = 320, /* bytes of a message */
-    WB_SETTING_VALUE = 128    /* bytes of a value as text */
+    WB_SETTING_VALUE = 128,   /* bytes of a value as text */
+    WB_SETTING_MEMBERS = 8    /* most members of a list */
 };
 
 /* Whether the row may be given at a place, one bit; all rows may where `place` is 0. */
 bool wb_setting_applies(const struct wb_setting *row, unsigned place);
 
-/* Fills in the defaults of all rows; of a text, none. */
+/* Fills in the defaults of all rows; of a text, none. A list counts as not given. */
 void wb_setting_fill(const struct wb_setting_table *table, void *settings);
 
 /* Reads an option's argument (NULL: of a boolean) into the field. False with a `problem` that says
@@ -99,7 +100,7 @@ WB_MUST_CHECK enum wb_status wb_setting_read_list(const struct wb_setting *row,
                                                   const struct wb_config_node *node,
                                                   void *settings);
 
-/* Checks a field, or a filled struct: numbers in their range, or as the default.
+/* Checks a field, or a filled struct: numbers in their range, or as the default where there is one.
  * WB_ERR_ARGUMENT, with the reason in `why`, or logged where that is NULL. */
 WB_MUST_CHECK enum wb_status wb_setting_check_row(const struct wb_setting *row,
                                                   const void *settings, struct wb_reason *why);

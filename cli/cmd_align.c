@@ -81,7 +81,7 @@ static enum wb_status run(const struct options *o, struct result *results, size_
         WB_TRY(choose_folder(o, results, i));
     for (size_t i = 0; i < (size_t)o->common.n && !wb_interrupted(); i++) {
         struct result *const result = &results[i];
-        WB_TRY(wb_align_run(&result->dataset, o->common.inputs[i], &o->settings));
+        WB_TRY(wb_align_run(&result->dataset, o->common.inputs[i], &o->settings, NULL));
         *n_done = i + 1;
         WB_TRY(wb_dataset_write(&result->dataset, result->folder, o->common.force));
     }

@@ -88,14 +88,14 @@ static enum wb_status gather(struct facts *facts, const char *path)
 {
     WB_TRY(wb_recording_open(&facts->recording, path));
     WB_TRY(wb_survey_run(facts->recording, true, &facts->survey));
-    if (wb_recording_sha256(path, facts->sha256) != WB_OK)
+    if (wb_recording_sha256(path, facts->sha256, NULL) != WB_OK)
         strcpy(facts->sha256, "");
     if (facts->survey.has_rig)
         facts->has_rig = wb_replay_rig(facts->recording, &facts->rig) == WB_OK;
     if (facts->survey.has_specimen) {
         char *text = meta(facts, "specimen");
-        facts->has_specimen =
-            text && wb_specimen_parse(text, "the recording's specimen", &facts->specimen) == WB_OK;
+        facts->has_specimen = text && wb_specimen_parse(text, "the recording's specimen",
+                                                        &facts->specimen, NULL) == WB_OK;
         free(text);
     }
     return WB_OK;

@@ -46,7 +46,7 @@ int wb_cmd_quicklook(int argc, char **argv)
     wb_command_parse(&argp, argc, argv, &options);
 
     wb_align_default_settings(&settings);
-    if (wb_align_run(&dataset, options.input, &settings) != WB_OK)
+    if (wb_align_run(&dataset, options.input, &settings, NULL) != WB_OK)
         return WB_EXIT_FAILED;
     const int code = deliver(&dataset, &options);
     wb_dataset_release(&dataset);

@@ -83,7 +83,7 @@ static enum wb_status look(const char *path, struct wb_survey *survey, char sha2
     WB_TRY(wb_recording_open(&recording, path));
     enum wb_status status = wb_survey_run(recording, false, survey);
     enum wb_status closed = wb_recording_close(recording);
-    if (status == WB_OK && wb_recording_sha256(path, sha256) != WB_OK)
+    if (status == WB_OK && wb_recording_sha256(path, sha256, NULL) != WB_OK)
         sha256[0] = '\0';
     return status != WB_OK ? status : closed;
 }

@@ -53,7 +53,7 @@ static enum wb_status set_wire(struct wb_recording *recording,
     wb_file_folder(folder, description->specimen_path);
     snprintf(named_in, sizeof named_in, "%s:%d: wire", description->specimen_path,
              description->specimen->wire_line);
-    WB_TRY(wb_file_find_named(path, "wires", description->specimen->wire, folder, named_in));
+    WB_TRY(wb_file_find_named(path, "wires", description->specimen->wire, folder, named_in, NULL));
     return set_text_file(recording, "wire", path);
 }
 

@@ -6,8 +6,6 @@
 
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "clock"
-
 #define BURST_NS WB_NS_PER_S
 #define LEAST_PROBE_SPAN 2.0 /* s */
 /* Within this time of the host a delay has passed and stamps are on time again. */
@@ -179,7 +177,7 @@ enum wb_status wb_clock_fit_probes(struct wb_clock_line *line, const struct wb_c
                                    .work = scratch ? scratch + n : NULL};
     enum wb_status status = WB_OK;
     if (!room.kept || !room.points || !scratch) {
-        status = wb_fail(WB_ERR_MEMORY, "out of memory for %zu clock probes", n);
+        status = WB_ERR_MEMORY;
     } else {
         size_t n_usable = 0;
         for (size_t i = 0; i < n; i++) {
@@ -254,7 +252,7 @@ enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *d
     if (!points || !lateness) {
         free(points);
         free(lateness);
-        return wb_fail(WB_ERR_MEMORY, "out of memory for %zu stamps", n);
+        return WB_ERR_MEMORY;
     }
     double mean_x = 0.0;
     for (size_t i = 0; i < n; i++) {

@@ -35,14 +35,16 @@ int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device);
 
 /* Line through probes (any order): the shortest round trip of each second, Huber's weights. With
  * fewer than three such bursts, or less than 2 s between the first and the last, the slope is
- * `nominal_slope` (1; 1/X for a rig that runs X times). WB_ERR_DATA, silent, without a probe. */
+ * `nominal_slope` (1; 1/X for a rig that runs X times). WB_ERR_DATA without a probe, or
+ * WB_ERR_MEMORY, both silent. */
 WB_MUST_CHECK enum wb_status wb_clock_fit_probes(struct wb_clock_line *line,
                                                  const struct wb_clock_probe *probes, size_t n,
                                                  double nominal_slope);
 
 /* The line below all points (device ascending, host arrival) with the least sum of distances: the
  * edge of their lower convex hull over the mean device time. The slope is `nominal_slope` when
- * the points span less than `least_span` of device time. WB_ERR_DATA, silent, without a point. */
+ * the points span less than `least_span` of device time. WB_ERR_DATA without a point, or
+ * WB_ERR_MEMORY, both silent. */
 WB_MUST_CHECK enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *device,
                                                    const int64_t *host_ns, size_t n,
                                                    double nominal_slope, double least_span);

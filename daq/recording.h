@@ -17,7 +17,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 #include "daq/driver.h"
 
 #define WB_RECORDING_SCHEMA 1
@@ -65,11 +65,16 @@ WB_MUST_CHECK enum wb_status wb_recording_close(struct wb_recording *recording);
  * a recording, or of a newer schema, is refused with the reason. A truncated or damaged database
  * is opened as far as SQLite can read it. */
 WB_MUST_CHECK enum wb_status wb_recording_open(struct wb_recording **out, const char *path);
-/* The same without the warning that a file is cut short, for one that is opened again. */
-WB_MUST_CHECK enum wb_status wb_recording_open_quietly(struct wb_recording **out, const char *path);
+/* The same without the warning that a file is cut short. `why` receives why opening fails and, as
+ * long as the recording is open, why reading does: table after table that breaks off, "; " between
+ * them. NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_recording_open_with_reason(struct wb_recording **out,
+                                                           const char *path, struct wb_reason *why);
+/* Logs that warning where it is due. */
+void wb_recording_warn_cut_short(const struct wb_recording *recording);
 /* True when the file is shorter than its own header says. This is logged once, on opening; tables
  * of such a file break off (WB_ERR_DATA) without further messages. For other files, each table that
- * breaks off is logged once. */
+ * breaks off is told once. */
 bool wb_recording_is_cut_short(const struct wb_recording *recording);
 
 /* False when the recording was not closed properly (crash, full disk) or the file is cut short. */
@@ -119,7 +124,7 @@ struct wb_clock_row {
 
 /* Visits all chunks in order of arrival (t_ns, then stream, then seq; ties in the order of
  * writing); events and clock rows are visited in order of time as well. A visitor returns a status:
- * anything but WB_OK ends the walk and is returned. WB_ERR_DATA (logged) when the database breaks
+ * anything but WB_OK ends the walk and is returned. WB_ERR_DATA (told) when the database breaks
  * off or rows cannot be read; everything else has been visited. */
 WB_MUST_CHECK enum wb_status
 wb_recording_each_chunk(struct wb_recording *recording,
@@ -141,7 +146,9 @@ wb_recording_each_meta(struct wb_recording *recording,
 
 /* SHA-256 of the uncompressed database as lower-case hex, 64 characters and a NUL. Of a recording
  * that was not closed: of the file followed by its write-ahead log (`-wal`); of a compressed one
- * that is cut short: of what can be decompressed. */
-WB_MUST_CHECK enum wb_status wb_recording_sha256(const char *path, char hex[65]);
+ * that is cut short: of what can be decompressed. `why` receives why it failed. NULL: that is
+ * logged. */
+WB_MUST_CHECK enum wb_status wb_recording_sha256(const char *path, char hex[65],
+                                                 struct wb_reason *why);
 
 #endif

@@ -23,21 +23,23 @@ bool wb_recording_is_zstd(const uint8_t *bytes, size_t n)
     return n >= sizeof magic && memcmp(bytes, magic, sizeof magic) == 0;
 }
 
-enum wb_status wb_recording_temporary(char *path, size_t size, int *descriptor)
+enum wb_status wb_recording_temporary(char *path, size_t size, int *descriptor,
+                                      struct wb_reason *why)
 {
     const char *folder = getenv("TMPDIR");
     if (!folder || !folder[0])
         folder = "/tmp";
     int n = snprintf(path, size, "%s/wirebench-XXXXXX", folder);
     if (n < 0 || (size_t)n >= size)
-        return wb_fail(WB_ERR_ARGUMENT, "the temporary folder's name is too long");
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "the temporary folder's name is too long");
     *descriptor = mkostemp(path, O_CLOEXEC);
     if (*descriptor < 0)
-        return wb_fail(WB_ERR_IO, "no temporary file in '%s': %s", folder, strerror(errno));
+        return wb_fail_to(why, WB_ERR_IO, "no temporary file in '%s': %s", folder, strerror(errno));
     return WB_OK;
 }
 
-static enum wb_status write_all(int to, const void *bytes, size_t n, const char *what)
+static enum wb_status write_all(int to, const void *bytes, size_t n, const char *what,
+                                struct wb_reason *why)
 {
     size_t done = 0;
     while (done < n) {
@@ -45,13 +47,15 @@ static enum wb_status write_all(int to, const void *bytes, size_t n, const char 
         if (put > 0)
             done += (size_t)put;
         else if (put == 0 || errno != EINTR)
-            return wb_fail(WB_ERR_IO, "cannot write %s: %s", what, strerror(put ? errno : ENOSPC));
+            return wb_fail_to(why, WB_ERR_IO, "cannot write %s: %s", what,
+                              strerror(put ? errno : ENOSPC));
     }
     return WB_OK;
 }
 
 /* One block of the compressed file; *n is 0 at its end. */
-static enum wb_status read_block(int from, void *block, size_t size, const char *path, size_t *n)
+static enum wb_status read_block(int from, void *block, size_t size, const char *path, size_t *n,
+                                 struct wb_reason *why)
 {
     for (;;) {
         ssize_t got = read(from, block, size);
@@ -60,7 +64,7 @@ static enum wb_status read_block(int from, void *block, size_t size, const char 
             return WB_OK;
         }
         if (errno != EINTR)
-            return wb_fail(WB_ERR_IO, "cannot read '%s': %s", path, strerror(errno));
+            return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", path, strerror(errno));
     }
 }
 
@@ -71,12 +75,12 @@ struct decompression {
 };
 
 static enum wb_status decompress_all(struct decompression *d, int from, int to, const char *path,
-                                     bool *whole)
+                                     bool *whole, struct wb_reason *why)
 {
     size_t left = 1; /* 0 once a frame is complete */
     for (;;) {
         ZSTD_inBuffer in = {.src = d->in};
-        WB_TRY(read_block(from, d->in, d->in_size, path, &in.size));
+        WB_TRY(read_block(from, d->in, d->in_size, path, &in.size, why));
         if (in.size == 0) {
             *whole = left == 0;
             return WB_OK;
@@ -86,7 +90,8 @@ static enum wb_status decompress_all(struct decompression *d, int from, int to, 
             left = ZSTD_decompressStream(d->stream, &out, &in);
             WB_TRY(write_all(to, d->out, out.pos,
                              "a decompressed recording to the temporary "
-                             "folder ($TMPDIR)"));
+                             "folder ($TMPDIR)",
+                             why));
             if (ZSTD_isError(left)) {
                 *whole = false;
                 return WB_OK;
@@ -95,7 +100,8 @@ static enum wb_status decompress_all(struct decompression *d, int from, int to, 
     }
 }
 
-enum wb_status wb_recording_decompress(int from, int to, const char *path, bool *whole)
+enum wb_status wb_recording_decompress(int from, int to, const char *path, bool *whole,
+                                       struct wb_reason *why)
 {
     struct decompression d = {.in_size = ZSTD_DStreamInSize(), .out_size = ZSTD_DStreamOutSize()};
     d.stream = ZSTD_createDStream();
@@ -103,22 +109,22 @@ enum wb_status wb_recording_decompress(int from, int to, const char *path, bool 
     d.out = malloc(d.out_size);
     enum wb_status status = WB_OK;
     if (!d.stream || !d.in || !d.out)
-        status = wb_fail(WB_ERR_MEMORY, "out of memory decompressing '%s'", path);
+        status = wb_fail_to(why, WB_ERR_MEMORY, "out of memory decompressing '%s'", path);
     else
-        status = decompress_all(&d, from, to, path, whole);
+        status = decompress_all(&d, from, to, path, whole, why);
     ZSTD_freeDStream(d.stream);
     free(d.in);
     free(d.out);
     return status;
 }
 
-static enum wb_status open_file(const char *path, int *descriptor)
+static enum wb_status open_file(const char *path, int *descriptor, struct wb_reason *why)
 {
     *descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (*descriptor >= 0)
         return WB_OK;
-    return wb_fail(errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO, "cannot read '%s': %s", path,
-                   strerror(errno));
+    return wb_fail_to(why, errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO, "cannot read '%s': %s",
+                      path, strerror(errno));
 }
 
 /* The log beside a recording that was not closed holds a part of it. */
@@ -129,50 +135,51 @@ static bool find_wal(const char *path, char wal[WB_PATH])
     return n > 0 && n < WB_PATH && stat(wal, &there) == 0 && there.st_size > 0;
 }
 
-static enum wb_status append_file(int to, const char *path)
+static enum wb_status append_file(int to, const char *path, struct wb_reason *why)
 {
     char *bytes = NULL;
     size_t size = 0;
-    WB_TRY(wb_file_read(path, &bytes, &size));
+    WB_TRY(wb_file_read_with_reason(path, &bytes, &size, why));
     enum wb_status status =
-        write_all(to, bytes, size, "a recording to the temporary folder ($TMPDIR)");
+        write_all(to, bytes, size, "a recording to the temporary folder ($TMPDIR)", why);
     free(bytes);
     return status;
 }
 
 /* The sum of what `from` (compressed) holds or, without it, of the file followed by its log. */
-static enum wb_status hash_whole(const char *path, int from, const char *wal, char hex[65])
+static enum wb_status hash_whole(const char *path, int from, const char *wal, char hex[65],
+                                 struct wb_reason *why)
 {
     char temporary[WB_PATH];
     int to = -1;
     bool whole = true;
-    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
+    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to, why));
     unlink(temporary);
-    enum wb_status status =
-        from >= 0 ? wb_recording_decompress(from, to, path, &whole) : append_file(to, path);
+    enum wb_status status = from >= 0 ? wb_recording_decompress(from, to, path, &whole, why)
+                                      : append_file(to, path, why);
     if (status == WB_OK && from < 0)
-        status = append_file(to, wal);
+        status = append_file(to, wal, why);
     /* Of one cut short what is there counts, as with one that is not compressed; opening tells. */
     if (status == WB_OK)
-        status = wb_hash_descriptor(to, path, hex);
+        status = wb_hash_descriptor(to, path, hex, why);
     close(to);
     return status;
 }
 
-enum wb_status wb_recording_sha256(const char *path, char hex[65])
+enum wb_status wb_recording_sha256(const char *path, char hex[65], struct wb_reason *why)
 {
     char wal[WB_PATH];
     if (find_wal(path, wal))
-        return hash_whole(path, -1, wal, hex);
+        return hash_whole(path, -1, wal, hex, why);
     int descriptor;
-    WB_TRY(open_file(path, &descriptor));
+    WB_TRY(open_file(path, &descriptor, why));
     uint8_t magic[4];
     ssize_t n = pread(descriptor, magic, sizeof magic, 0);
     enum wb_status status;
     if (n > 0 && wb_recording_is_zstd(magic, (size_t)n))
-        status = hash_whole(path, descriptor, NULL, hex);
+        status = hash_whole(path, descriptor, NULL, hex, why);
     else
-        status = wb_hash_descriptor(descriptor, path, hex);
+        status = wb_hash_descriptor(descriptor, path, hex, why);
     close(descriptor);
     return status;
 }
@@ -186,7 +193,7 @@ static enum wb_status write_compressed(const char *target, const void *bytes, si
     int to = mkostemp(temporary, O_CLOEXEC);
     if (to < 0)
         return wb_fail(WB_ERR_IO, "cannot write beside '%s': %s", target, strerror(errno));
-    enum wb_status status = write_all(to, bytes, size, target);
+    enum wb_status status = write_all(to, bytes, size, target, NULL);
     if (status == WB_OK && (fchmod(to, 0644) != 0 || fsync(to) != 0))
         status = wb_fail(WB_ERR_IO, "cannot write '%s': %s", target, strerror(errno));
     close(to);

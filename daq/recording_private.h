@@ -19,6 +19,7 @@
 struct wb_recording {
     sqlite3 *db;
     char *path;
+    struct wb_reason *why; /* of reading; NULL: it is logged */
     bool writing;
     /* Writing. */
     sqlite3_stmt *insert_chunk, *insert_event, *insert_clock, *insert_meta, *insert_stream;
@@ -55,7 +56,8 @@ uint32_t wb_recording_crc32(const void *bytes, size_t n);
 
 /* A new file in the temporary folder ($TMPDIR, else /tmp), open for reading and writing; `path`
  * receives its name, and the caller unlinks it. */
-WB_MUST_CHECK enum wb_status wb_recording_temporary(char *path, size_t size, int *descriptor);
+WB_MUST_CHECK enum wb_status wb_recording_temporary(char *path, size_t size, int *descriptor,
+                                                    struct wb_reason *why);
 
 /* True when the first bytes are those of zstd. */
 bool wb_recording_is_zstd(const uint8_t *bytes, size_t n);
@@ -63,7 +65,7 @@ bool wb_recording_is_zstd(const uint8_t *bytes, size_t n);
 /* Decompresses all of `from` into `to`. *whole is false when the compressed data breaks off or is
  * damaged: then what came before it is there. */
 WB_MUST_CHECK enum wb_status wb_recording_decompress(int from, int to, const char *path,
-                                                     bool *whole);
+                                                     bool *whole, struct wb_reason *why);
 
 /* Compresses a closed recording to `target` (.wbr.zst), written atomically; the same recording and
  * zstd release give the same bytes. WB_ERR_EXISTS when the target exists, WB_ERR_BUSY when the

@@ -31,18 +31,19 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
     ssize_t n = pread(descriptor, header, sizeof header, 0);
     struct stat there;
     if (n < 0 || fstat(descriptor, &there) != 0)
-        return wb_fail(WB_ERR_IO, "cannot read '%s': %s", recording->path, strerror(errno));
+        return wb_fail_also(recording->why, WB_ERR_IO, "cannot read '%s': %s", recording->path,
+                            strerror(errno));
     if (n < HEADER_BYTES || memcmp(header, "SQLite format 3", 16) != 0)
-        return wb_fail(WB_ERR_FORMAT, "'%s' is not a recording%s", recording->path,
-                       n == 0 ? ": the file is empty" : "");
+        return wb_fail_also(recording->why, WB_ERR_FORMAT, "'%s' is not a recording%s",
+                            recording->path, n == 0 ? ": the file is empty" : "");
     if (big_endian(header + 68) != WB_RECORDING_APPLICATION_ID)
-        return wb_fail(WB_ERR_FORMAT,
-                       "'%s' is not a recording: it is an SQLite database of another program",
-                       recording->path);
+        return wb_fail_also(recording->why, WB_ERR_FORMAT,
+                            "'%s' is not a recording: it is an SQLite database of another program",
+                            recording->path);
     uint32_t version = big_endian(header + 60);
     if (version > WB_RECORDING_SCHEMA)
-        return wb_fail(
-            WB_ERR_UNSUPPORTED,
+        return wb_fail_also(
+            recording->why, WB_ERR_UNSUPPORTED,
             "'%s' is of schema %u, and this program knows schemas up to %d only: use a newer "
             "wirebench",
             recording->path, version, WB_RECORDING_SCHEMA);
@@ -110,11 +111,11 @@ static int open_database(struct wb_recording *recording, const char *path, const
     return code;
 }
 
-static enum wb_status copy_file(const char *from, const char *to)
+static enum wb_status copy_file(const char *from, const char *to, struct wb_reason *why)
 {
     char *bytes = NULL;
     size_t size = 0;
-    WB_TRY(wb_file_read(from, &bytes, &size));
+    WB_TRY(wb_file_read_with_reason(from, &bytes, &size, why));
     enum wb_status status = wb_file_write(to, bytes, size);
     free(bytes);
     return status;
@@ -127,13 +128,13 @@ static enum wb_status open_copy(struct wb_recording *recording)
     char wal[WB_PATH], copy[WB_PATH], copy_of_wal[WB_PATH + 8], copy_of_shm[WB_PATH + 8];
     int descriptor = -1;
     snprintf(wal, sizeof wal, "%s-wal", recording->path);
-    WB_TRY(wb_recording_temporary(copy, sizeof copy, &descriptor));
+    WB_TRY(wb_recording_temporary(copy, sizeof copy, &descriptor, recording->why));
     close(descriptor);
     snprintf(copy_of_wal, sizeof copy_of_wal, "%s-wal", copy);
     snprintf(copy_of_shm, sizeof copy_of_shm, "%s-shm", copy);
-    enum wb_status status = copy_file(recording->path, copy);
+    enum wb_status status = copy_file(recording->path, copy, recording->why);
     if (status == WB_OK)
-        status = copy_file(wal, copy_of_wal);
+        status = copy_file(wal, copy_of_wal, recording->why);
     if (status == WB_OK) {
         int code = open_database(recording, copy, "mode=ro");
         if (code != SQLITE_OK)
@@ -167,9 +168,10 @@ static enum wb_status open_compressed(struct wb_recording *recording, int descri
     char temporary[WB_PATH];
     int to = -1;
     bool whole = true;
-    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to));
+    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to, recording->why));
     recording->compressed = true;
-    enum wb_status status = wb_recording_decompress(descriptor, to, recording->path, &whole);
+    enum wb_status status =
+        wb_recording_decompress(descriptor, to, recording->path, &whole, recording->why);
     if (status == WB_OK)
         status = check_header(recording, to);
     if (!whole)
@@ -203,8 +205,8 @@ static enum wb_status prepare(struct wb_recording *recording, const char *sql,
     if (code == SQLITE_OK)
         return WB_OK;
     if (code == SQLITE_ERROR)
-        return wb_fail(WB_ERR_DATA, "'%s' is damaged: %s", recording->path,
-                       sqlite3_errmsg(recording->db));
+        return wb_fail_also(recording->why, WB_ERR_DATA, "'%s' is damaged: %s", recording->path,
+                            sqlite3_errmsg(recording->db));
     return wb_recording_fail(recording, code, "read");
 }
 
@@ -232,8 +234,9 @@ static enum wb_status end_walk(struct wb_recording *recording, int code, int64_t
     /* That a file is cut short was said when it was opened, and every table is walked twice. */
     if (recording->shortened || !is_news(recording, table))
         return WB_ERR_DATA;
-    return wb_fail(WB_ERR_DATA, "'%s': table %s breaks off after %lld row%s: %s", recording->path,
-                   table, (long long)rows, rows == 1 ? "" : "s", why);
+    return wb_fail_also(recording->why, WB_ERR_DATA,
+                        "'%s': table %s breaks off after %lld row%s: %s", recording->path, table,
+                        (long long)rows, rows == 1 ? "" : "s", why);
 }
 
 static const char *text_of(sqlite3_stmt *statement, int column)
@@ -284,21 +287,25 @@ static enum wb_status read_streams(struct wb_recording *recording)
     return status;
 }
 
-static enum wb_status open_path(struct wb_recording **out, const char *path, bool quietly)
+enum wb_status wb_recording_open_with_reason(struct wb_recording **out, const char *path,
+                                             struct wb_reason *why)
 {
     *out = NULL;
     int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0)
-        return wb_fail(errno == ENOENT   ? WB_ERR_NOT_FOUND
-                       : errno == EACCES ? WB_ERR_PERMISSION
-                                         : WB_ERR_IO,
-                       "cannot open '%s': %s", path, strerror(errno));
+        return wb_fail_also(why,
+                            errno == ENOENT   ? WB_ERR_NOT_FOUND
+                            : errno == EACCES ? WB_ERR_PERMISSION
+                                              : WB_ERR_IO,
+                            "cannot open '%s': %s", path, strerror(errno));
     struct wb_recording *recording = calloc(1, sizeof *recording);
-    if (recording)
+    if (recording) {
+        recording->why = why;
         recording->path = strdup(path);
+    }
     enum wb_status status = WB_OK;
     if (!recording || !recording->path)
-        status = wb_fail(WB_ERR_MEMORY, "out of memory for '%s'", path);
+        status = wb_fail_also(why, WB_ERR_MEMORY, "out of memory for '%s'", path);
     if (status == WB_OK)
         status = open_any(recording, descriptor);
     close(descriptor);
@@ -309,10 +316,6 @@ static enum wb_status open_path(struct wb_recording **out, const char *path, boo
             wb_recording_release(recording);
         return status;
     }
-    if (recording->shortened && !quietly)
-        wb_warn("'%s' is cut short: %.1f of %.1f MB could be read; look for the original%s", path,
-                (double)recording->bytes_there * 1e-6, (double)recording->bytes_expected * 1e-6,
-                recording->compressed ? "" : " or its -wal");
     char *closed = NULL;
     recording->complete =
         wb_recording_meta(recording, "closed", &closed) == WB_OK && !recording->shortened;
@@ -321,14 +324,20 @@ static enum wb_status open_path(struct wb_recording **out, const char *path, boo
     return WB_OK;
 }
 
-enum wb_status wb_recording_open(struct wb_recording **out, const char *path)
+void wb_recording_warn_cut_short(const struct wb_recording *recording)
 {
-    return open_path(out, path, false);
+    if (recording->shortened)
+        wb_warn("'%s' is cut short: %.1f of %.1f MB could be read; look for the original%s",
+                recording->path, (double)recording->bytes_there * 1e-6,
+                (double)recording->bytes_expected * 1e-6,
+                recording->compressed ? "" : " or its -wal");
 }
 
-enum wb_status wb_recording_open_quietly(struct wb_recording **out, const char *path)
+enum wb_status wb_recording_open(struct wb_recording **out, const char *path)
 {
-    return open_path(out, path, true);
+    WB_TRY(wb_recording_open_with_reason(out, path, NULL));
+    wb_recording_warn_cut_short(*out);
+    return WB_OK;
 }
 
 bool wb_recording_is_cut_short(const struct wb_recording *recording)
@@ -362,6 +371,7 @@ const char *wb_recording_stream_settings(const struct wb_recording *recording, i
 struct meta_search {
     const char *key;
     char *value;
+    struct wb_reason *why;
 };
 
 static enum wb_status match_meta(void *context, const char *key, const char *value)
@@ -371,7 +381,9 @@ static enum wb_status match_meta(void *context, const char *key, const char *val
         return WB_OK;
     free(search->value);
     search->value = strdup(value);
-    return search->value ? WB_OK : wb_fail(WB_ERR_MEMORY, "out of memory for meta '%s'", key);
+    return search->value
+               ? WB_OK
+               : wb_fail_also(search->why, WB_ERR_MEMORY, "out of memory for meta '%s'", key);
 }
 
 /* Walks without the key's index: a damaged file has one table less to trust. */
@@ -397,7 +409,7 @@ static enum wb_status walk_meta(struct wb_recording *recording, const char *sql,
 
 enum wb_status wb_recording_meta(struct wb_recording *recording, const char *key, char **value)
 {
-    struct meta_search search = {.key = key};
+    struct meta_search search = {.key = key, .why = recording->why};
     enum wb_status status =
         walk_meta(recording, "SELECT key, value FROM meta NOT INDEXED", match_meta, &search);
     if (search.value && status != WB_ERR_MEMORY) {
@@ -443,13 +455,13 @@ static int compare_keys(const void *a, const void *b)
     return x->rowid < y->rowid ? -1 : x->rowid > y->rowid;
 }
 
-static enum wb_status append_key(struct keys *keys, const struct key *key)
+static enum wb_status append_key(struct keys *keys, const struct key *key, struct wb_reason *why)
 {
     if (keys->n == keys->capacity) {
         size_t capacity = keys->capacity ? 2 * keys->capacity : 1024;
         struct key *larger = realloc(keys->items, capacity * sizeof *larger);
         if (!larger)
-            return wb_fail(WB_ERR_MEMORY, "out of memory for %zu rows", capacity);
+            return wb_fail_also(why, WB_ERR_MEMORY, "out of memory for %zu rows", capacity);
         keys->items = larger;
         keys->capacity = capacity;
     }
@@ -479,7 +491,7 @@ static enum wb_status read_keys(struct wb_recording *recording, const char *tabl
             code = SQLITE_CORRUPT;
             break;
         }
-        status = append_key(keys, &key);
+        status = append_key(keys, &key, recording->why);
     }
     if (status == WB_OK)
         *end = end_walk(recording, code, (int64_t)keys->n, table);
@@ -535,8 +547,9 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
         if (status == WB_OK && end == WB_OK && n_lost > 0) {
             end = WB_ERR_DATA;
             if (!recording->shortened && is_news(recording, walk->table))
-                wb_error("'%s': %zu row%s of table %s cannot be read", recording->path, n_lost,
-                         n_lost == 1 ? "" : "s", walk->table);
+                end = wb_fail_also(recording->why, WB_ERR_DATA,
+                                   "'%s': %zu row%s of table %s cannot be read", recording->path,
+                                   n_lost, n_lost == 1 ? "" : "s", walk->table);
         }
     }
     free(keys.items);

@@ -36,27 +36,33 @@ enum wb_status wb_recording_fail(const struct wb_recording *recording, int code,
         error = errno;
     switch (code & 0xff) {
     case SQLITE_FULL:
-        return wb_fail(WB_ERR_IO, "'%s': cannot %s: the disk is full", path, doing);
+        return wb_fail_also(recording->why, WB_ERR_IO, "'%s': cannot %s: the disk is full", path,
+                            doing);
     case SQLITE_NOMEM:
-        return wb_fail(WB_ERR_MEMORY, "'%s': cannot %s: out of memory", path, doing);
+        return wb_fail_also(recording->why, WB_ERR_MEMORY, "'%s': cannot %s: out of memory", path,
+                            doing);
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
-        return wb_fail(WB_ERR_DATA, "'%s': cannot %s: the database is damaged", path, doing);
+        return wb_fail_also(recording->why, WB_ERR_DATA, "'%s': cannot %s: the database is damaged",
+                            path, doing);
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-        return wb_fail(WB_ERR_BUSY, "'%s': cannot %s: another program holds it", path, doing);
+        return wb_fail_also(recording->why, WB_ERR_BUSY,
+                            "'%s': cannot %s: another program holds it", path, doing);
     case SQLITE_READONLY:
     case SQLITE_PERM:
     case SQLITE_AUTH:
-        return wb_fail(WB_ERR_PERMISSION, "'%s': cannot %s: not allowed", path, doing);
+        return wb_fail_also(recording->why, WB_ERR_PERMISSION, "'%s': cannot %s: not allowed", path,
+                            doing);
     default:
         break;
     }
     if (error == EFBIG)
-        return wb_fail(WB_ERR_IO, "'%s': cannot %s: the largest file size allowed is reached", path,
-                       doing);
-    return wb_fail(WB_ERR_IO, "'%s': cannot %s: %s%s%s", path, doing, sqlite3_errstr(code),
-                   error ? ": " : "", error ? strerror(error) : "");
+        return wb_fail_also(recording->why, WB_ERR_IO,
+                            "'%s': cannot %s: the largest file size allowed is reached", path,
+                            doing);
+    return wb_fail_also(recording->why, WB_ERR_IO, "'%s': cannot %s: %s%s%s", path, doing,
+                        sqlite3_errstr(code), error ? ": " : "", error ? strerror(error) : "");
 }
 
 uint32_t wb_recording_crc32(const void *bytes, size_t n)
@@ -78,7 +84,8 @@ enum wb_status wb_recording_remember_stream(struct wb_recording *recording,
     char *copy = strdup(settings);
     if (!streams || !texts || !copy) {
         free(copy);
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the streams of '%s'", recording->path);
+        return wb_fail_also(recording->why, WB_ERR_MEMORY, "out of memory for the streams of '%s'",
+                            recording->path);
     }
     streams[n - 1] = *stream;
     texts[n - 1] = copy;

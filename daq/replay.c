@@ -220,7 +220,7 @@ enum wb_status wb_replay_rig(struct wb_recording *recording, struct wb_rig *rig)
         return wb_fail(WB_ERR_DATA, "the recording does not say which rig made it: without the "
                                     "rig its bytes cannot be decoded");
     WB_TRY(status);
-    status = wb_rig_parse(text, "the recording's rig", rig);
+    status = wb_rig_parse(text, "the recording's rig", rig, NULL);
     free(text);
     return status;
 }

@@ -417,16 +417,17 @@ enum wb_status wb_rig_read(const char *path, struct wb_rig *rig)
                        "no rig file '%s'; is `wirebench rig` running, and has it said ready?",
                        path);
     struct wb_rig read;
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     WB_TRY(take(config, &read));
     WB_TRY(check_virtual_ports(path, &read));
     *rig = read;
     return WB_OK;
 }
 
-enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig)
+enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig,
+                            struct wb_reason *why)
 {
     struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, origin));
+    WB_TRY(wb_config_parse(&config, text, origin, why));
     return take(config, rig);
 }

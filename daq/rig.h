@@ -50,7 +50,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 
 #define WB_RIG_TEXT 160
 #define WB_RIG_TOKENS 8
@@ -138,7 +138,9 @@ double wb_rig_tare_load(const struct wb_rig *rig);
 
 /* Reads a rig file; errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_rig_read(const char *path, struct wb_rig *rig);
-/* The same from text (a recording's meta); `origin` stands for the file in errors. */
-WB_MUST_CHECK enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig);
+/* The same from text (a recording's meta); `origin` stands for the file in errors,
+ * which go to `why`; NULL: to the log. */
+WB_MUST_CHECK enum wb_status wb_rig_parse(const char *text, const char *origin, struct wb_rig *rig,
+                                          struct wb_reason *why);
 
 #endif

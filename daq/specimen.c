@@ -67,13 +67,14 @@ static enum wb_status take(struct wb_config *config, struct wb_specimen *specime
 enum wb_status wb_specimen_read(const char *path, struct wb_specimen *specimen)
 {
     struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     return take(config, specimen);
 }
 
-enum wb_status wb_specimen_parse(const char *text, const char *origin, struct wb_specimen *specimen)
+enum wb_status wb_specimen_parse(const char *text, const char *origin, struct wb_specimen *specimen,
+                                 struct wb_reason *why)
 {
     struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, origin));
+    WB_TRY(wb_config_parse(&config, text, origin, why));
     return take(config, specimen);
 }

@@ -11,7 +11,7 @@
 #ifndef WB_DAQ_SPECIMEN_H
 #define WB_DAQ_SPECIMEN_H
 
-#include "base/status.h"
+#include "base/reason.h"
 
 #define WB_SPECIMEN_MAX_MARKERS 32
 
@@ -29,7 +29,9 @@ struct wb_specimen {
 /* Reads a specimen file, or the same from text (a recording's meta), where `origin` stands for the
  * file in errors. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_specimen_read(const char *path, struct wb_specimen *specimen);
+/* From text (a recording's meta); `origin` stands for the file in errors, which go to `why`; NULL:
+ * to the log. */
 WB_MUST_CHECK enum wb_status wb_specimen_parse(const char *text, const char *origin,
-                                               struct wb_specimen *specimen);
+                                               struct wb_specimen *specimen, struct wb_reason *why);
 
 #endif

@@ -12,19 +12,23 @@
 #include "tests/check.h"
 
 static struct {
-    char last[2048];  /* of any level */
-    char error[2048]; /* the last error */
-    int n;            /* of any level */
+    char last[2048];         /* of any level */
+    char error[2048];        /* the last error */
+    int n;                   /* of any level */
+    enum wb_log_level level; /* of the last */
+    char domain[32];
 } kept;
 
 static inline void keep_message(void *context, enum wb_log_level level, const char *domain,
                                 const char *message)
 {
-    (void)context, (void)domain;
+    (void)context;
     snprintf(kept.last, sizeof kept.last, "%s", message);
     if (level == WB_LOG_ERROR)
         snprintf(kept.error, sizeof kept.error, "%s", message);
     kept.n++;
+    kept.level = level;
+    snprintf(kept.domain, sizeof kept.domain, "%s", domain);
 }
 
 /* Forgets what was kept and keeps from now on. */

@@ -531,8 +531,11 @@ enum wb_status wb_contour_create(struct wb_contour *contour, int n_faces,
     memset(contour, 0, sizeof *contour);
     if (!(levels->low < levels->high) || !isfinite(levels->high - levels->low) || levels->n < 1 ||
         levels->n > 1000 || n_faces < 0 || n_faces > 100000)
-        return wb_fail(WB_ERR_ARGUMENT, "%d faces and %d levels from %g to %g cannot be drawn",
-                       n_faces, levels->n, levels->low, levels->high);
+        return wb_fail(
+            WB_ERR_ARGUMENT,
+            "%d faces and %d levels from %g to %g cannot be drawn: expected at most 100000 "
+            "faces, 1 to 1000 levels, and a range that rises",
+            n_faces, levels->n, levels->low, levels->high);
     struct work work = {.levels = levels};
     const enum wb_status status = find_regions(contour, &work, n_faces, faces);
     free(work.points);

@@ -35,7 +35,7 @@ enum wb_status wb_campaign_find(const struct wb_campaign *campaign,
     char named_in[WB_PATH + 32];
     snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(node),
              wb_config_line(wb_config_find(node, key)), key);
-    WB_TRY(wb_file_find_named(path, folder, name, campaign->folder, named_in));
+    WB_TRY(wb_file_find_named(path, folder, name, campaign->folder, named_in, NULL));
     const bool is_shipped = !strchr(name, '/') && !strstr(name, ".yaml");
     if (shown && is_shipped)
         snprintf(shown, 300, "fixtures/%s/%s.yaml", folder, name);
@@ -61,7 +61,7 @@ enum wb_status wb_campaign_open(struct wb_campaign *campaign, struct wb_config *
     WB_TRY(wb_hash_file(path, campaign->sha256));
     set_name(campaign->name, sizeof campaign->name, path);
     wb_file_folder(campaign->folder, path);
-    return wb_config_read(config, path);
+    return wb_config_read(config, path, NULL);
 }
 
 /* "recordings, comparison or bundles". */
@@ -82,7 +82,7 @@ enum wb_status wb_campaign_read_kind(int *kind, const char *path, const char *co
 {
     char expected[200];
     struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     const struct wb_config_node *const root = wb_config_root(config);
     const struct wb_config_node *const node = wb_config_find(root, "kind");
     const char *const text = node ? wb_config_scalar(node) : names[0];

@@ -1,6 +1,5 @@
 #include "analysis/report/reasons.h"
 
-#include <stdint.h>
 #include <string.h>
 
 #include "base/log.h"
@@ -52,23 +51,4 @@ void wb_reasons_warn(const struct wb_reasons *reasons, enum wb_status status,
     keep(reasons, status, why);
     if (why->text[0])
         wb_warn("%s: %s", reasons->name, wb_text_string(reasons->problem));
-}
-
-static void listen(void *context, enum wb_log_level level, const char *domain, const char *message)
-{
-    (void)domain;
-    if (level == WB_LOG_ERROR)
-        append(context, message);
-}
-
-void wb_reasons_listen(const struct wb_reasons *reasons)
-{
-    wb_log_set_tap(listen, (void *)(uintptr_t)reasons);
-}
-
-void wb_reasons_end(const struct wb_reasons *reasons, enum wb_status status)
-{
-    wb_log_set_tap(NULL, NULL);
-    if (status == WB_OK)
-        wb_text_release(reasons->problem);
 }

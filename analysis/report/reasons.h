@@ -21,11 +21,4 @@ void wb_reasons_fail(const struct wb_reasons *reasons, enum wb_status status,
 void wb_reasons_warn(const struct wb_reasons *reasons, enum wb_status status,
                      const struct wb_reason *why);
 
-/* Until the end, errors that the calling thread logs are appended to `problem`, "; " between them:
- * for functions that give no reason, those of alignments and of the sections and beams of fe/rod
- * and fe/trial. `reasons` must live as long. What was heard of a step that ended well is dropped.
- */
-void wb_reasons_listen(const struct wb_reasons *reasons);
-void wb_reasons_end(const struct wb_reasons *reasons, enum wb_status status);
-
 #endif

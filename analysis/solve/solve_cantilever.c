@@ -34,7 +34,7 @@ static enum wb_status prepare(void *context)
     char path[WB_PATH];
 
     WB_TRY(wb_file_find_fixture(path, "wires", o->wire, NULL));
-    WB_TRY(wb_wire_read(path, &run->wire));
+    WB_TRY(wb_wire_read(path, &run->wire, NULL));
     run->solve.name = run->wire.name;
     if (!run->wire.has_properties)
         return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);

@@ -106,7 +106,7 @@ enum wb_status wb_material_file_read(struct wb_material_file *file, const char *
 {
     struct wb_config *config;
     struct wb_material_file read = {0};
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);
     if (status == WB_OK)

@@ -24,7 +24,7 @@ enum wb_status wb_model_file_open(struct wb_model_file *file, const char *path)
 {
     *file = (struct wb_model_file){.path = path};
     wb_file_folder(file->folder, path);
-    WB_TRY(wb_config_read(&file->config, path));
+    WB_TRY(wb_config_read(&file->config, path, NULL));
     file->root = wb_config_root(file->config);
     return keep_text(file, path);
 }
@@ -62,7 +62,7 @@ enum wb_status wb_model_file_find(struct wb_model_file *file, const struct wb_co
     char named_in[WB_PATH + 64];
     snprintf(named_in, sizeof named_in, "%s:%d: %s", wb_config_origin(map),
              wb_config_line(wb_config_find(map, key)), key);
-    WB_TRY(wb_file_find_named(path, kind, name, file->folder, named_in));
+    WB_TRY(wb_file_find_named(path, kind, name, file->folder, named_in, NULL));
     return keep_text(file, path);
 }
 
@@ -71,7 +71,7 @@ enum wb_status wb_model_file_wire(struct wb_model_file *file, const struct wb_co
 {
     char path[WB_PATH];
     WB_TRY(wb_model_file_find(file, map, key, "wires", name, path));
-    return wb_wire_read(path, wire);
+    return wb_wire_read(path, wire, NULL);
 }
 
 enum wb_status wb_model_file_check_wire(const struct wb_config_node *map, const char *key,

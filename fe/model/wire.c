@@ -53,17 +53,18 @@ static enum wb_status take(struct wb_config *config, struct wb_wire *wire)
     return status;
 }
 
-enum wb_status wb_wire_read(const char *path, struct wb_wire *wire)
+enum wb_status wb_wire_read(const char *path, struct wb_wire *wire, struct wb_reason *why)
 {
     struct wb_config *config = NULL;
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, why));
     return take(config, wire);
 }
 
-enum wb_status wb_wire_parse(const char *text, const char *origin, struct wb_wire *wire)
+enum wb_status wb_wire_parse(const char *text, const char *origin, struct wb_wire *wire,
+                             struct wb_reason *why)
 {
     struct wb_config *config = NULL;
-    WB_TRY(wb_config_parse(&config, text, origin));
+    WB_TRY(wb_config_parse(&config, text, origin, why));
     return take(config, wire);
 }
 

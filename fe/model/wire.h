@@ -17,7 +17,7 @@
 
 #include <stdbool.h>
 
-#include "base/status.h"
+#include "base/reason.h"
 #include "fe/material/material.h"
 
 struct wb_wire {
@@ -30,12 +30,15 @@ struct wb_wire {
     struct wb_material material; /* WB_HARDENING_ISOTROPIC_POWER when has_properties */
 };
 
-/* Reads a wire file. Errors name file, line and key. */
-WB_MUST_CHECK enum wb_status wb_wire_read(const char *path, struct wb_wire *wire);
+/* Reads a wire file. Errors name file, line and key; they go to `why`, or to the log where that is
+ * NULL. */
+WB_MUST_CHECK enum wb_status wb_wire_read(const char *path, struct wb_wire *wire,
+                                          struct wb_reason *why);
 
-/* Parses a wire from YAML text (a recording's `meta`); `origin` stands for the file in errors. */
+/* Parses a wire from YAML text (a recording's `meta`); `origin` stands for the file in errors,
+ * which go to `why` as well. */
 WB_MUST_CHECK enum wb_status wb_wire_parse(const char *text, const char *origin,
-                                           struct wb_wire *wire);
+                                           struct wb_wire *wire, struct wb_reason *why);
 
 /* Second moment of area of the full circle, pi d^4 / 64, m4. */
 double wb_wire_second_moment(const struct wb_wire *wire);

@@ -6,7 +6,9 @@
 
 #include <stdlib.h>
 
+#include "analysis/calibrate.h"
 #include "analysis/computed.h"
+#include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "base/log.h"
 #include "base/units.h"
@@ -115,6 +117,52 @@ static inline void plain_dataset(struct wb_dataset *dataset, double (*force)(dou
         row.force = row.tension = force(row.deflection);
         assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
     }
+}
+
+/* Of a test or a group: messages are kept. */
+static inline int silence(void **state)
+{
+    (void)state;
+    keep_messages();
+    return 0;
+}
+
+/* Of a calibration that is fast. */
+static inline struct wb_calibrate_settings beam_settings(void)
+{
+    struct wb_calibrate_settings settings;
+    wb_calibrate_default_settings(&settings);
+    settings.yield_point = 0.04;
+    settings.n_elements = BEAM_ELEMENTS;
+    settings.step = 1.0 * WB_MM;
+    return settings;
+}
+
+static inline enum wb_status calibrate_one(struct wb_calibrate_result *result,
+                                           const struct wb_dataset *dataset,
+                                           const struct wb_calibrate_settings *settings)
+{
+    return wb_calibrate_run(result, &dataset, 1, settings, NULL);
+}
+
+/* wb_curve_average_on() with a deflection step only; failures are logged. */
+static inline enum wb_status
+curve_average(struct wb_curve *curve, const struct wb_dataset *const *datasets, int n, double step)
+{
+    const struct wb_curve_grid grid = {.step = step};
+    return wb_curve_average_on(curve, datasets, n, &grid, NULL);
+}
+
+/* Linear interpolation of the mean force at a deflection within 0..max_deflection; NaN outside, and
+ * for a follower's curve. */
+static inline double curve_force(const struct wb_curve *curve, double deflection)
+{
+    const double position = deflection / curve->step;
+    if (curve->is_follower || !(position >= 0.0) || !(position <= (curve->n - 1) * (1.0 + 1e-12)))
+        return (double)NAN;
+    const int i = (int)fmin(floor(position), curve->n - 2);
+    const double part = position - i;
+    return (1.0 - part) * curve->force[i] + part * curve->force[i + 1];
 }
 
 #endif

@@ -149,7 +149,8 @@ static inline void bent_add_section(const struct bent_wire *bent, struct wb_fiel
                                     const char *state, bool loaded, double x)
 {
     struct wb_field *field;
-    assert_int_equal(wb_fields_add(fields, state, x, 2 * BENT_RINGS * BENT_AROUND, &field), WB_OK);
+    assert_int_equal(wb_fields_add(fields, state, x, 2 * BENT_RINGS * BENT_AROUND, &field, NULL),
+                     WB_OK);
     const int n = bent_rings(bent, field->faces, 0, loaded, x);
     (void)bent_rings(bent, field->faces + n, 1, loaded, x);
 }
@@ -161,7 +162,8 @@ static inline void bent_add_long(const struct bent_wire *bent, struct wb_fields 
     const double out = 0.5 * bent->model->part[1].outer_diameter;
     struct wb_field *field;
     const int across = BENT_ACROSS + 2;
-    assert_int_equal(wb_fields_add(fields, state, (double)NAN, BENT_ALONG * across, &field), WB_OK);
+    assert_int_equal(wb_fields_add(fields, state, (double)NAN, BENT_ALONG * across, &field, NULL),
+                     WB_OK);
     for (int i = 0; i < BENT_ALONG * across; i++) {
         struct wb_field_face *const face = &field->faces[i];
         const int row = i % across;

@@ -276,7 +276,7 @@ static void assert_aligned(const struct plan *plan)
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
     record(plan, path);
-    if (wb_align_run(&dataset, path, &settings) != WB_OK)
+    if (wb_align_run(&dataset, path, &settings, NULL) != WB_OK)
         fail_msg("not aligned: %s", kept.last);
 
     double n = 0.0, level = 0.0, squares = 0.0, tension = 0.0, tension_squares = 0.0;
@@ -380,7 +380,7 @@ static void what_is_stated_of_downward_bows_holds(void **state)
         if (session.setup.truth.bow > 0.0)
             continue;
         record(&plan, path);
-        if (wb_align_run(&dataset, path, &settings) != WB_OK)
+        if (wb_align_run(&dataset, path, &settings, NULL) != WB_OK)
             fail_msg("%s, seed %d not aligned: %s", plan.specimen, seed, kept.last);
         const double off = wb_dataset_bow(&dataset.info) - session.setup.truth.bow;
         const double pull =

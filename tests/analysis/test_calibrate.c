@@ -1,4 +1,3 @@
-#include "analysis/curve_private.h"
 #include "tests/analysis/beam_data.h"
 
 #include "analysis/calibrate.h"
@@ -6,37 +5,13 @@
 
 static const double mm = WB_MM;
 
-static int silence(void **state)
-{
-    (void)state;
-    keep_messages();
-    return 0;
-}
-
-static struct wb_calibrate_settings quick_settings(void)
-{
-    struct wb_calibrate_settings settings;
-    wb_calibrate_default_settings(&settings);
-    settings.yield_point = 0.04;
-    settings.n_elements = BEAM_ELEMENTS;
-    settings.step = 1.0 * mm;
-    return settings;
-}
-
-static enum wb_status calibrate_one(struct wb_calibrate_result *result,
-                                    const struct wb_dataset *dataset,
-                                    const struct wb_calibrate_settings *settings)
-{
-    return wb_calibrate_run(result, &dataset, 1, settings, NULL);
-}
-
 static void k_and_n_come_back_when_e_and_sigma_y_are_given(void **state)
 {
     (void)state;
     for (int type = 0; type < 3; type++) {
         const struct wb_test_info info = beam_info(type, 0.085, 0.0);
         const struct wb_material truth = beam_material(type);
-        struct wb_calibrate_settings settings = quick_settings();
+        struct wb_calibrate_settings settings = beam_settings();
         struct wb_calibrate_result result;
         struct wb_dataset dataset;
         beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, 1.0);
@@ -67,7 +42,7 @@ static void e_and_sigma_y_of_the_closed_forms_are_near_the_truth(void **state)
         struct wb_curve curve;
         beam_dataset(&dataset, &info, &truth, 0.5 * mm, 12 * mm, 1.0);
         const struct wb_dataset *const datasets[] = {&dataset};
-        assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
+        assert_int_equal(curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
         assert_int_equal(wb_first_guess_run(&guess, &curve, &info, 0.05, 0.04, NULL), WB_OK);
         assert_close_relative(guess.youngs_modulus, truth.youngs_modulus, 0.007);
         assert_close_relative(guess.yield_stress, truth.yield_stress, 0.011);
@@ -81,7 +56,7 @@ static void the_whole_recipe_fits_its_own_model_class(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(2, 0.085, 0.0);
     const struct wb_material truth = beam_material(2);
-    const struct wb_calibrate_settings settings = quick_settings();
+    const struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result result;
     struct wb_dataset dataset;
     beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, 1.0);
@@ -116,7 +91,7 @@ static void the_natural_shape_is_part_of_the_model(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(0, 0.085, 3.0 * mm);
     const struct wb_material truth = beam_material(0);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result bowed, straight;
     struct wb_dataset dataset;
     beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, 1.0);
@@ -147,7 +122,7 @@ static void it_says_why_it_stopped(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(1, 0.085, 0.0);
     const struct wb_material truth = beam_material(1);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result result;
     struct wb_dataset dataset;
     int calls = 0;
@@ -189,7 +164,7 @@ static void a_wire_that_did_not_yield_is_refused(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(0, 0.085, 0.0);
     struct wb_material elastic = beam_material(0);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result result;
     struct wb_dataset dataset;
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
@@ -214,7 +189,7 @@ static void a_reason_travels_to_who_asked_for_it(void **state)
     const struct wb_test_info info = beam_info(0, 0.085, 0.0);
     const struct wb_material truth = beam_material(0);
     struct wb_material elastic = truth;
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result result;
     struct wb_dataset dataset;
     const struct wb_dataset *const datasets[] = {&dataset};
@@ -243,7 +218,7 @@ static void unusable_data_and_settings_are_refused(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(0, 0.085, 0.0);
     const struct wb_material truth = beam_material(0);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result result;
     struct wb_dataset dataset;
     beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, -1.0);
@@ -254,7 +229,7 @@ static void unusable_data_and_settings_are_refused(void **state)
     assert_message("no finite");
     settings.elastic_zone = 0.0;
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_ARGUMENT);
-    settings = quick_settings();
+    settings = beam_settings();
     settings.max_iterations = 0;
     assert_int_equal(calibrate_one(&result, &dataset, &settings), WB_ERR_ARGUMENT);
     wb_dataset_release(&dataset);
@@ -268,7 +243,7 @@ static void deviations_are_the_standard_errors_of_the_samples(void **state)
     const double factor[3] = {0.97, 1.01, 1.02};
     const struct wb_test_info info = beam_info(1, 0.085, 0.0);
     const struct wb_material truth = beam_material(1);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result result;
     struct wb_dataset dataset[3];
     const struct wb_dataset *datasets[3];
@@ -302,7 +277,7 @@ static void the_same_data_give_the_same_bits(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(2, 0.085, 1.0 * mm);
     const struct wb_material truth = beam_material(2);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result a, b;
     struct wb_dataset dataset;
     beam_dataset(&dataset, &info, &truth, 1.0 * mm, 53 * mm, 1.0);
@@ -323,7 +298,7 @@ static void the_bows_can_be_taken_out_of_e_and_the_yield_stress(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(1, 0.085, -3.0 * mm);
     const struct wb_material truth = beam_material(1);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_calibrate_result printed, corrected;
     struct wb_dataset dataset[2];
     const struct wb_dataset *const datasets[] = {&dataset[0], &dataset[1]};

@@ -1,7 +1,5 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/curve_private.h"
-
 static const double mm = WB_MM;
 
 static double line(double x)
@@ -14,18 +12,30 @@ static double parabola(double x)
     return 2.0 * x - 10.0 * x * x;
 }
 
-static int silence(void **state)
-{
-    (void)state;
-    keep_messages();
-    return 0;
-}
-
 /* Evenly spread numbers without a library: -1..1, mean 0, variance 1/3. */
 static double noise(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) / 4503599627370496.0 - 1.0;
+}
+
+static enum wb_status average(struct wb_curve *curve, const struct wb_dataset *dataset, double step)
+{
+    return curve_average(curve, &dataset, 1, step);
+}
+
+static void assert_follows(const struct wb_curve *curve, double (*force)(double deflection))
+{
+    for (int i = 0; i < curve->n; i++)
+        assert_close(curve->force[i], force(i * curve->step), 1e-12);
+}
+
+/* The loading is refused with that message. */
+static void refuse(const struct wb_dataset *dataset, double step, const char *message)
+{
+    struct wb_curve curve;
+    assert_int_equal(average(&curve, dataset, step), WB_ERR_DATA);
+    assert_message(message);
 }
 
 static void a_single_curve_comes_back_on_the_grid(void **state)
@@ -34,8 +44,7 @@ static void a_single_curve_comes_back_on_the_grid(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_OK);
+    assert_int_equal(average(&curve, &dataset, 0.0), WB_OK);
     assert_int_equal(curve.n, 107);
     assert_int_equal(curve.n_samples, 1);
     assert_close(curve.step, 0.5 * mm, 0.0);
@@ -45,9 +54,9 @@ static void a_single_curve_comes_back_on_the_grid(void **state)
         assert_close(curve.deviation[i], 0.0, 0.0);
         assert_close(curve.low[i], curve.high[i], 0.0);
     }
-    assert_close(wb_curve_force(&curve, 10.25 * mm), line(10.25 * mm), 1e-12);
-    assert_true(isnan(wb_curve_force(&curve, 53.6 * mm)));
-    assert_true(isnan(wb_curve_force(&curve, -0.1 * mm)));
+    assert_close(curve_force(&curve, 10.25 * mm), line(10.25 * mm), 1e-12);
+    assert_true(isnan(curve_force(&curve, 53.6 * mm)));
+    assert_true(isnan(curve_force(&curve, -0.1 * mm)));
     assert_close(wb_curve_scatter(&curve), 0.0, 0.0);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
@@ -60,8 +69,7 @@ static void loads_in_space_make_no_curve(void **state)
     struct wb_curve curve;
     plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
     dataset.info.is_general = true;
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
+    assert_int_equal(average(&curve, &dataset, 0.0), WB_ERR_DATA);
     wb_dataset_release(&dataset);
 }
 
@@ -71,11 +79,9 @@ static void rows_on_the_grid_are_taken_as_they_are(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, parabola, 0.5 * mm, 53 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
     assert_int_equal(curve.n, 107);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], parabola(i * curve.step), 1e-12);
+    assert_follows(&curve, parabola);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
 }
@@ -86,10 +92,8 @@ static void coarse_rows_are_interpolated(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, line, 1.0 * mm, 53 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], line(i * curve.step), 1e-12);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
+    assert_follows(&curve, line);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
 }
@@ -107,7 +111,7 @@ static void mean_range_and_deviation_are_those_of_the_samples(void **state)
             dataset[i].rows[k].force *= factor[i];
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_curve_average(&curve, datasets, 3, 0.5 * mm), WB_OK);
+    assert_int_equal(curve_average(&curve, datasets, 3, 0.5 * mm), WB_OK);
     /* The shortest sample ends the average. */
     assert_close(curve.max_deflection, 40 * mm, 1e-12);
     const double mean = (0.9 + 1.0 + 1.25) / 3.0;
@@ -139,8 +143,7 @@ static void noise_of_force_and_deflection_is_averaged_away_without_bias(void **s
         dataset.rows[i].force += force_noise * noise(&seed);
         dataset.rows[i].deflection += deflection_noise * noise(&seed);
     }
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
     double sum = 0.0, squares = 0.0;
     for (int i = 1; i < curve.n - 1; i++) {
         const double error = curve.force[i] - parabola(i * curve.step);
@@ -174,10 +177,8 @@ static void only_the_taut_first_loading_counts(void **state)
         const struct wb_row row = {.cycle = 1, .deflection = -0.5 * mm, .force = -0.001 * k};
         assert_int_equal(wb_dataset_add_row(&dataset, &row), WB_OK);
     }
-    const struct wb_dataset *const datasets[] = {&dataset};
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], line(i * curve.step), 1e-12);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
+    assert_follows(&curve, line);
     wb_curve_release(&curve);
     wb_dataset_release(&dataset);
 }
@@ -199,15 +200,12 @@ static void a_short_gap_is_bridged_and_a_long_one_refused(void **state)
     struct wb_dataset dataset;
     struct wb_curve curve;
     plain_dataset(&dataset, line, 0.05 * mm, 50 * mm);
-    const struct wb_dataset *const datasets[] = {&dataset};
     cut(&dataset, 20.01 * mm, 21.89 * mm);
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_OK);
-    for (int i = 0; i < curve.n; i++)
-        assert_close(curve.force[i], line(i * curve.step), 1e-12);
+    assert_int_equal(average(&curve, &dataset, 0.5 * mm), WB_OK);
+    assert_follows(&curve, line);
     wb_curve_release(&curve);
     cut(&dataset, 20.01 * mm, 22.14 * mm);
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_ERR_DATA);
-    assert_message("no rows of the first loading around 2");
+    refuse(&dataset, 0.5 * mm, "no rows of the first loading around 2");
     wb_dataset_release(&dataset);
 }
 
@@ -220,14 +218,14 @@ static void different_kinds_are_not_averaged(void **state)
     for (int i = 0; i < 2; i++)
         plain_dataset(&dataset[i], line, 0.1 * mm, 50 * mm);
     dataset[1].info.length = 0.1;
-    assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
     assert_message("different kinds");
     dataset[1].info.length = 0.085;
     strcpy(dataset[1].info.wire, "type2");
-    assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
     strcpy(dataset[1].info.wire, dataset[0].info.wire);
     dataset[1].info.counterweight = 0.0;
-    assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
     assert_message("tested differently");
     for (int i = 0; i < 2; i++)
         wb_dataset_release(&dataset[i]);
@@ -238,24 +236,20 @@ static void unusable_rows_are_refused_with_the_reason(void **state)
     (void)state;
     struct wb_dataset dataset;
     struct wb_curve curve;
-    const struct wb_dataset *const datasets[] = {&dataset};
     plain_dataset(&dataset, line, 0.1 * mm, 50 * mm);
     dataset.rows[100].force = (double)NAN;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("row 101 has no finite");
+    refuse(&dataset, 0.0, "row 101 has no finite");
     dataset.rows[100].force = 0.0;
     for (size_t i = 0; i < dataset.n_rows; i++)
         dataset.rows[i].deflection = -dataset.rows[i].deflection;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("reversed");
+    refuse(&dataset, 0.0, "reversed");
     dataset.n_rows = 5;
     for (size_t i = 0; i < dataset.n_rows; i++)
         dataset.rows[i].deflection = (double)i * mm;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("only 5 rows");
+    refuse(&dataset, 0.0, "only 5 rows");
     dataset.n_rows = 0;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_int_equal(wb_curve_average(&curve, datasets, 0, 0.0), WB_ERR_ARGUMENT);
+    assert_int_equal(average(&curve, &dataset, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, NULL, 0, 0.0), WB_ERR_ARGUMENT);
     wb_dataset_release(&dataset);
 }
 
@@ -263,11 +257,8 @@ static void a_loading_of_a_few_steps_is_refused(void **state)
 {
     (void)state;
     struct wb_dataset dataset;
-    struct wb_curve curve;
-    const struct wb_dataset *const datasets[] = {&dataset};
     plain_dataset(&dataset, line, 0.05 * mm, 3 * mm);
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.5 * mm), WB_ERR_DATA);
-    assert_message("reaches only 7 points");
+    refuse(&dataset, 0.5 * mm, "reaches only 7 points");
     wb_dataset_release(&dataset);
 }
 
@@ -315,13 +306,10 @@ static void a_loading_that_begins_above_zero_is_told(void **state)
 {
     (void)state;
     struct wb_dataset dataset;
-    struct wb_curve curve;
-    const struct wb_dataset *const datasets[] = {&dataset};
     plain_dataset(&dataset, line, 0.05 * mm, 53 * mm);
     for (int i = 0; i < 34; i++)
         dataset.rows[i].phase = WB_PHASE_SLACK;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_ERR_DATA);
-    assert_message("no rows below 1.70 mm");
+    refuse(&dataset, 0.0, "no rows below 1.70 mm");
     wb_dataset_release(&dataset);
 }
 

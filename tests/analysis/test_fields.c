@@ -32,13 +32,13 @@ static void make_fields(struct wb_fields *fields)
 {
     struct wb_field *field;
     *fields = (struct wb_fields){0};
-    assert_int_equal(wb_fields_add(fields, "unloaded", (double)NAN, 3, &field), WB_OK);
+    assert_int_equal(wb_fields_add(fields, "unloaded", (double)NAN, 3, &field, NULL), WB_OK);
     fill(field, 1.0);
-    assert_int_equal(wb_fields_add(fields, "unloaded", 3.26e-3, 2, &field), WB_OK);
+    assert_int_equal(wb_fields_add(fields, "unloaded", 3.26e-3, 2, &field, NULL), WB_OK);
     fill(field, 2.0);
-    assert_int_equal(wb_fields_add(fields, "unloaded", 50e-3, 1, &field), WB_OK);
+    assert_int_equal(wb_fields_add(fields, "unloaded", 50e-3, 1, &field, NULL), WB_OK);
     fill(field, 3.0);
-    assert_int_equal(wb_fields_add(fields, "loaded", (double)NAN, 5, &field), WB_OK);
+    assert_int_equal(wb_fields_add(fields, "loaded", (double)NAN, 5, &field, NULL), WB_OK);
     fill(field, 4.0);
 }
 
@@ -152,8 +152,8 @@ static void impossible_fields_are_refused(void **state)
                                         "a name of more than thirty-one bytes"};
     keep_messages();
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        assert_int_equal(wb_fields_add(&fields, names[i], 0.0, 1, &field), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_fields_add(&fields, "a", 0.0, 0, &field), WB_ERR_ARGUMENT);
+        assert_int_equal(wb_fields_add(&fields, names[i], 0.0, 1, &field, NULL), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_fields_add(&fields, "a", 0.0, 0, &field, NULL), WB_ERR_ARGUMENT);
 
     make_fields(&fields);
     fields.items[1].faces[1].node[5].axial = (double)NAN;

@@ -30,7 +30,7 @@ static void each_file(const char *pattern, size_t least, void (*look)(const char
 static void look_at_wire(const char *path)
 {
     struct wb_wire wire;
-    assert_int_equal(wb_wire_read(path, &wire), WB_OK);
+    assert_int_equal(wb_wire_read(path, &wire, NULL), WB_OK);
     assert_true(wire.has_properties);
     assert_true(strlen(wire.source) > 0);
     assert_true(wire.conductor_diameter < wire.outer_diameter);
@@ -59,7 +59,7 @@ static void published_yield_stresses_belong_to_four_percent(void **state)
         char path[WB_PATH];
         struct wb_wire wire;
         assert_int_equal(wb_file_find_fixture(path, "wires", rows[i].name, NULL), WB_OK);
-        assert_int_equal(wb_wire_read(path, &wire), WB_OK);
+        assert_int_equal(wb_wire_read(path, &wire, NULL), WB_OK);
         const double fraction = wire.material.yield_stress * rows[i].length /
                                 (1.5 * wire.material.youngs_modulus * wire.outer_diameter);
         assert_close(fraction, 0.040, 0.0005);
@@ -163,7 +163,7 @@ static void copper_and_pvc_make_the_8awg_wire(void **state)
     read_material("annealed-copper", &copper);
     read_material("pvc", &pvc);
     assert_int_equal(wb_file_find_fixture(path, "wires", "8awg", NULL), WB_OK);
-    assert_int_equal(wb_wire_read(path, &wire), WB_OK);
+    assert_int_equal(wb_wire_read(path, &wire, NULL), WB_OK);
     const double r = wire.conductor_diameter / wire.outer_diameter;
     const double I = r * r * r * r, A = r * r;
     assert_close_relative(copper.material.youngs_modulus * I +

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include "analysis/calibrate.h"
-#include "analysis/curve_private.h"
 #include "analysis/first_guess.h"
 #include "analysis/properties.h"
 #include "analysis/validate_private.h"
@@ -59,13 +58,6 @@ static struct wb_calibrate_settings quick_settings(void)
     return settings;
 }
 
-static enum wb_status calibrate_one(struct wb_calibrate_result *result,
-                                    const struct wb_dataset *dataset,
-                                    const struct wb_calibrate_settings *settings)
-{
-    return wb_calibrate_run(result, &dataset, 1, settings, NULL);
-}
-
 /* A dataset of the homogenised wire itself: rows in equal steps of the force. */
 static void homogenised_dataset(struct wb_dataset *dataset, const struct wb_test_info *info,
                                 const struct wb_material *material)
@@ -94,7 +86,7 @@ static void the_curve_is_deflection_at_the_rows_forces(void **state)
     (void)state;
     const struct wb_dataset *const datasets[] = {&composite};
     struct wb_curve curve;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_OK);
+    assert_int_equal(curve_average(&curve, datasets, 1, 0.0), WB_OK);
     assert_true(curve.is_follower);
     assert_int_equal(curve.n, STEPS + 1);
     assert_close_relative(curve.step, last_force / STEPS, 1e-12);
@@ -104,7 +96,7 @@ static void the_curve_is_deflection_at_the_rows_forces(void **state)
     assert_close(curve.max_deflection, composite.rows[41].deflection, 1e-12);
     assert_true(wb_curve_scale(&curve) == curve.max_deflection);
     /* It has no force at a deflection. */
-    assert_true(isnan(wb_curve_force(&curve, 1.0 * mm)));
+    assert_true(isnan(curve_force(&curve, 1.0 * mm)));
     wb_curve_release(&curve);
 
     /* Other steps are straight between the rows. */
@@ -124,7 +116,7 @@ static void what_comes_after_the_largest_force_or_deflection_is_left_out(void **
     const struct wb_dataset *const datasets[] = {&dataset};
     struct wb_curve whole, curve;
     follower_dataset(&dataset, &info, last_force, STEPS);
-    assert_int_equal(wb_curve_average(&whole, datasets, 1, 0.0), WB_OK);
+    assert_int_equal(curve_average(&whole, datasets, 1, 0.0), WB_OK);
     for (int i = 1; i <= 20; i++) {
         struct wb_row row = dataset.rows[STEPS];
         row.t += i;
@@ -132,7 +124,7 @@ static void what_comes_after_the_largest_force_or_deflection_is_left_out(void **
         row.deflection += 1.0 * mm * i;
         assert_int_equal(wb_dataset_add_row(&dataset, &row), WB_OK);
     }
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_OK);
+    assert_int_equal(curve_average(&curve, datasets, 1, 0.0), WB_OK);
     assert_int_equal(curve.n, whole.n);
     assert_memory_equal(curve.value, whole.value, (size_t)whole.n * sizeof *whole.value);
     wb_curve_release(&curve);
@@ -164,7 +156,7 @@ static void tests_of_both_kinds_are_not_averaged(void **state)
     const struct wb_dataset *const datasets[] = {&composite, &other, &composite};
     struct wb_curve curve;
     int group[3];
-    assert_int_equal(wb_curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
+    assert_int_equal(curve_average(&curve, datasets, 2, 0.0), WB_ERR_DATA);
     assert_message("under a follower force");
     assert_int_equal(wb_curve_group(datasets, 3, group), 2);
     assert_true(group[0] == 0 && group[1] == 1 && group[2] == 0);
@@ -180,7 +172,7 @@ static void turned_around_the_curve_is_what_the_deflection_control_finds(void **
     struct wb_curve curve, turned;
     bool reached;
     double force;
-    assert_int_equal(wb_curve_average(&curve, datasets, 1, 0.0), WB_OK);
+    assert_int_equal(curve_average(&curve, datasets, 1, 0.0), WB_OK);
     assert_int_equal(wb_computed_create(&computed, &composite.info, &material, &settings), WB_OK);
     /* Fine steps, of the homogenised wire. */
     curve.n = 200;

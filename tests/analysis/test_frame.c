@@ -56,7 +56,8 @@ static void film(const struct scene *scene)
         }
         assert_int_equal(wb_point_cloud_add(&cloud, &frame), WB_OK);
     }
-    tracks = (struct wb_marker_tracks){.n_markers = N, .n_frames = N_FRAMES, .index = indices};
+    tracks = (struct wb_marker_tracks){
+        .cloud = &cloud, .n_markers = N, .n_frames = N_FRAMES, .index = indices};
 }
 
 static struct scene tilted(void)
@@ -81,7 +82,7 @@ static void vertical_and_plane_are_found(void **state)
     struct wb_bench_frame frame;
     const struct scene scene = tilted();
     film(&scene);
-    assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
+    assert_int_equal(wb_frame_fit(&frame, &tracks, times, 0.1, server_up, NULL), WB_OK);
     assert_true(frame.up_from_motion);
     assert_close(wb_vec3_dot(frame.up, scene.up), 1.0, 1e-7);
     assert_close(wb_vec3_dot(frame.along, scene.along), 1.0, 1e-6);
@@ -103,10 +104,10 @@ static void coordinates_count_from_the_clamp(void **state)
     struct wb_bench_frame frame;
     struct scene scene = tilted();
     film(&scene);
-    assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
+    assert_int_equal(wb_frame_fit(&frame, &tracks, times, 0.1, server_up, NULL), WB_OK);
     double sum_x = 0.0, sum_y = 0.0, sum_z = 0.0;
     for (size_t f = 0; f < N_FRAMES; f++) {
-        const double *const tip = wb_markers_position(&tracks, &cloud, f, N - 1);
+        const double *const tip = wb_markers_position(&tracks, f, N - 1);
         double x, y, z;
         wb_frame_coordinates(&frame, f, tip, &x, &y, &z);
         const double true_y = scene.lift * (double)f / N_FRAMES;
@@ -144,7 +145,7 @@ static void the_clamp_is_not_extrapolated_into_a_loss(void **state)
         indices[f * N] = f >= 529 && f < 532 ? f * N : -1;
     for (int f = 900; f < 912; f++)
         indices[f * N] = -1;
-    assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
+    assert_int_equal(wb_frame_fit(&frame, &tracks, times, 0.1, server_up, NULL), WB_OK);
     for (size_t f = 0; f < N_FRAMES; f++) {
         const double height = wb_frame_clamp_height(&frame, f);
         n_none += !isfinite(height);
@@ -166,7 +167,7 @@ static void a_clamp_that_stands_still_leaves_the_servers_axis(void **state)
     struct scene scene = tilted();
     scene.motion = 0.0;
     film(&scene);
-    assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
+    assert_int_equal(wb_frame_fit(&frame, &tracks, times, 0.1, server_up, NULL), WB_OK);
     assert_false(frame.up_from_motion);
     assert_close(wb_vec3_dot(frame.up, server_up), 1.0, 1e-12);
     wb_frame_release(&frame);
@@ -178,15 +179,15 @@ static void the_end_that_moves_is_the_clamps(void **state)
     (void)state;
     struct scene scene = tilted();
     film(&scene);
-    assert_false(wb_frame_is_reversed(&tracks, &cloud, server_up));
+    assert_false(wb_frame_is_reversed(&tracks, server_up));
     wb_point_cloud_release(&cloud);
     scene.upside = true;
     film(&scene);
-    assert_true(wb_frame_is_reversed(&tracks, &cloud, server_up));
+    assert_true(wb_frame_is_reversed(&tracks, server_up));
     wb_point_cloud_release(&cloud);
     scene.motion = scene.lift = 0.0;
     film(&scene);
-    assert_false(wb_frame_is_reversed(&tracks, &cloud, server_up));
+    assert_false(wb_frame_is_reversed(&tracks, server_up));
     wb_point_cloud_release(&cloud);
 }
 
@@ -198,7 +199,7 @@ static void a_clamp_that_is_hidden_leaves_frames_out(void **state)
     film(&scene);
     for (int f = 500; f < 700; f++)
         indices[f * N] = -1;
-    assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, server_up), WB_OK);
+    assert_int_equal(wb_frame_fit(&frame, &tracks, times, 0.1, server_up, NULL), WB_OK);
     assert_true(isnan(wb_frame_clamp_height(&frame, 600)));
     assert_true(isfinite(wb_frame_clamp_height(&frame, 499)));
     assert_true(isnan(wb_frame_clamp_height(&frame, 505)));
@@ -225,7 +226,7 @@ static void markers_along_the_vertical_are_no_plane(void **state)
     scene.noise = 0.0;
     film(&scene);
     wb_log_set_sink(quiet, NULL);
-    assert_int_equal(wb_frame_fit(&frame, &tracks, &cloud, times, 0.1, scene.up), WB_ERR_DATA);
+    assert_int_equal(wb_frame_fit(&frame, &tracks, times, 0.1, scene.up, NULL), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
     wb_point_cloud_release(&cloud);
 }

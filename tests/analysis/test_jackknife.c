@@ -10,29 +10,12 @@ enum {
     MOST = 3
 };
 
-static int silence(void **state)
-{
-    (void)state;
-    keep_messages();
-    return 0;
-}
-
-static struct wb_calibrate_settings quick_settings(void)
-{
-    struct wb_calibrate_settings settings;
-    wb_calibrate_default_settings(&settings);
-    settings.yield_point = 0.04;
-    settings.n_elements = BEAM_ELEMENTS;
-    settings.step = 1.0 * mm;
-    return settings;
-}
-
 /* Deviations of samples whose K differ by these factors, E and sigma_Y being given. */
 static int run(double deviation[4], int n, const double strength[MOST], double last)
 {
     const struct wb_test_info info = beam_info(2, 0.085, 0.0);
     const struct wb_material truth = beam_material(2);
-    struct wb_calibrate_settings settings = quick_settings();
+    struct wb_calibrate_settings settings = beam_settings();
     struct wb_dataset dataset[MOST];
     const struct wb_dataset *datasets[MOST];
     struct wb_calibrate_result result = {.material = truth};
@@ -101,7 +84,7 @@ static void a_refusal_of_the_rest_is_a_warning_and_no_error(void **state)
     (void)state;
     const struct wb_test_info info = beam_info(2, 0.085, 0.0);
     const struct wb_material truth = beam_material(2);
-    const struct wb_calibrate_settings settings = quick_settings();
+    const struct wb_calibrate_settings settings = beam_settings();
     struct wb_dataset dataset[2];
     const struct wb_dataset *const datasets[] = {&dataset[0], &dataset[1]};
     struct wb_calibrate_result result = {.material = truth};

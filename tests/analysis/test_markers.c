@@ -130,7 +130,7 @@ static struct score run(const struct scene *scene, struct wb_marker_tracks *trac
     const struct wb_specimen specimen = specimen_of(scene->s, scene->n);
     const struct wb_marker_settings settings = {0};
     film(scene, &cloud, truth);
-    assert_int_equal(wb_markers_track(tracks, &cloud, &specimen, &settings), WB_OK);
+    assert_int_equal(wb_markers_track(tracks, &cloud, &specimen, &settings, NULL), WB_OK);
     struct score result = score(tracks, &cloud, truth, false);
     /* Equal spacings cannot tell the ends apart. */
     if (tracks->symmetric && result.right < result.wrong)
@@ -260,12 +260,12 @@ static void reversing_turns_the_order_round(void **state)
     const struct wb_marker_settings settings = {0};
     const struct scene scene = plain();
     film(&scene, &cloud, truth);
-    assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings), WB_OK);
-    const double *const first = wb_markers_position(&tracks, &cloud, 100, 0);
-    const double *const last = wb_markers_position(&tracks, &cloud, 100, N - 1);
+    assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings, NULL), WB_OK);
+    const double *const first = wb_markers_position(&tracks, 100, 0);
+    const double *const last = wb_markers_position(&tracks, 100, N - 1);
     wb_markers_reverse(&tracks);
-    assert_ptr_equal(wb_markers_position(&tracks, &cloud, 100, N - 1), first);
-    assert_ptr_equal(wb_markers_position(&tracks, &cloud, 100, 0), last);
+    assert_ptr_equal(wb_markers_position(&tracks, 100, N - 1), first);
+    assert_ptr_equal(wb_markers_position(&tracks, 100, 0), last);
     wb_marker_tracks_release(&tracks);
     wb_point_cloud_release(&cloud);
 }
@@ -297,7 +297,7 @@ static void no_chain_is_no_data(void **state)
     const struct wb_specimen specimen = specimen_of(arcs, N);
     const struct wb_marker_settings settings = {0};
     wb_log_set_sink(quiet, NULL);
-    assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings), WB_ERR_DATA);
+    assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings, NULL), WB_ERR_DATA);
     /* A dense random cloud: ends in time, and finds nothing. */
     for (int f = 0; f < 5; f++) {
         frame.n_markers = WB_MAX_MARKERS;
@@ -307,7 +307,7 @@ static void no_chain_is_no_data(void **state)
         }
         assert_int_equal(wb_point_cloud_add(&cloud, &frame), WB_OK);
     }
-    assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings), WB_ERR_DATA);
+    assert_int_equal(wb_markers_track(&tracks, &cloud, &specimen, &settings, NULL), WB_ERR_DATA);
     wb_log_set_sink(NULL, NULL);
     wb_point_cloud_release(&cloud);
 }

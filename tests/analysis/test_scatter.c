@@ -1,4 +1,3 @@
-#include "analysis/curve_private.h"
 #include "tests/analysis/beam_data.h"
 
 #include "analysis/scatter.h"
@@ -19,7 +18,7 @@ static double scatter_of(const double bow[3], const double factor[3], double *wh
         beam_dataset(&dataset[i], &info, &material, 1.0 * mm, 50 * mm, factor[i]);
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_curve_average(&curve, datasets, 3, 1.0 * mm), WB_OK);
+    assert_int_equal(curve_average(&curve, datasets, 3, 1.0 * mm), WB_OK);
     assert_int_equal(wb_scatter_residual(&rms, datasets, 3, &curve, &material, &settings), WB_OK);
     *whole = wb_curve_scatter(&curve);
     double one = -1.0;

@@ -8,13 +8,6 @@
 static const double mm = WB_MM;
 static const struct wb_calibrate_settings settings = {.step = 1e-3, .n_elements = BEAM_ELEMENTS};
 
-static int silence(void **state)
-{
-    (void)state;
-    keep_messages();
-    return 0;
-}
-
 static struct wb_properties true_properties(int type)
 {
     const struct wb_test_info info = beam_info(type, 0.085, 0.0);

@@ -1,32 +1,19 @@
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include "base/config.h"
 #include "base/units.h"
 
-static char last_message[2048];
-static int messages;
-
-static void remember(void *context, enum wb_log_level level, const char *domain,
-                     const char *message)
-{
-    (void)context, (void)level, (void)domain;
-    snprintf(last_message, sizeof last_message, "%s", message);
-    messages++;
-}
-
 static int set_up(void **state)
 {
     (void)state;
-    messages = 0;
-    last_message[0] = '\0';
-    wb_log_set_sink(remember, NULL);
+    keep_messages();
     return 0;
 }
 
 static int tear_down(void **state)
 {
     (void)state;
-    wb_log_set_sink(NULL, NULL);
+    release_messages();
     return 0;
 }
 
@@ -44,7 +31,7 @@ static enum wb_status read_sample(const char *text, struct sample *sample)
     static const char *const colours[] = {"red", "blue", NULL};
     *sample = (struct sample){.length = -1.0, .count = -1};
     struct wb_config *config;
-    WB_TRY(wb_config_parse(&config, text, "test.yaml"));
+    WB_TRY(wb_config_parse(&config, text, "test.yaml", NULL));
     const struct wb_config_key keys[] = {
         WB_CONFIG_NUMBER("length_mm", &sample->length, WB_MM, 1.0, 1000.0),
         {.name = "count",
@@ -80,7 +67,7 @@ static void values_become_si(void **state)
     assert_string_equal(sample.name, "abc");
     assert_int_equal(sample.colour, 1);
     assert_null(sample.list);
-    assert_int_equal(messages, 0);
+    assert_int_equal(kept.n, 0);
 }
 
 static void absent_optional_keys_leave_their_target(void **state)
@@ -118,11 +105,11 @@ static void errors_name_file_line_and_key(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct sample sample;
-        messages = 0;
+        kept.n = 0;
         assert_int_equal(read_sample(cases[i].text, &sample), WB_ERR_FORMAT);
-        assert_int_equal(messages, 1);
-        assert_non_null(strstr(last_message, cases[i].place));
-        assert_non_null(strstr(last_message, cases[i].reason));
+        assert_int_equal(kept.n, 1);
+        assert_non_null(strstr(kept.last, cases[i].place));
+        assert_non_null(strstr(kept.last, cases[i].reason));
     }
 }
 
@@ -134,14 +121,14 @@ static void lists_of_numbers_are_checked(void **state)
         .name = "markers_mm", .factor = WB_MM, .minimum = 0.0, .maximum = 100.0};
     double values[4];
     int n = 0;
-    assert_int_equal(wb_config_parse(&config, "[0, 14.2, 85]", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, "[0, 14.2, 85]", "test.yaml", NULL), WB_OK);
     assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 2, 4, values, &n), WB_OK);
     assert_int_equal(n, 3);
     assert_close(values[1], 0.0142, 1e-15);
     assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 2, 2, values, &n),
                      WB_ERR_FORMAT);
     wb_config_destroy(config);
-    assert_int_equal(wb_config_parse(&config, "[0, 200]", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, "[0, 200]", "test.yaml", NULL), WB_OK);
     assert_int_equal(wb_config_numbers(wb_config_root(config), &key, 1, 4, values, &n),
                      WB_ERR_FORMAT);
     wb_config_destroy(config);
@@ -151,7 +138,8 @@ static void checks_after_the_table_name_the_line_of_the_key(void **state)
 {
     (void)state;
     struct wb_config *config;
-    assert_int_equal(wb_config_parse(&config, "a: 1\nb:\n  c: 2\n  d: 3\n", "test.yaml"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, "a: 1\nb:\n  c: 2\n  d: 3\n", "test.yaml", NULL),
+                     WB_OK);
     const struct wb_config_node *const root = wb_config_root(config);
     const struct wb_config_node *const b = wb_config_find(root, "b");
     assert_non_null(b);
@@ -159,9 +147,9 @@ static void checks_after_the_table_name_the_line_of_the_key(void **state)
     assert_null(wb_config_find(wb_config_find(root, "a"), "a"));
     assert_string_equal(wb_config_scalar(wb_config_find(b, "d")), "3");
     assert_int_equal(wb_config_refuse(b, "d", "wrong"), WB_ERR_FORMAT);
-    assert_string_equal(last_message, "test.yaml:4: d: wrong");
+    assert_string_equal(kept.last, "test.yaml:4: d: wrong");
     assert_int_equal(wb_config_refuse(b, "absent", "missing"), WB_ERR_FORMAT);
-    assert_string_equal(last_message, "test.yaml:3: absent: missing");
+    assert_string_equal(kept.last, "test.yaml:3: absent: missing");
     wb_config_destroy(config);
 }
 
@@ -170,21 +158,21 @@ static void common_slips_are_told_how_to_be_mended(void **state)
     (void)state;
     struct sample sample;
     assert_int_equal(read_sample("length_mm: 85,5\n", &sample), WB_ERR_FORMAT);
-    assert_non_null(strstr(last_message, "write 85.5"));
+    assert_non_null(strstr(kept.last, "write 85.5"));
     assert_int_equal(read_sample("length_mm: 1,2,3\n", &sample), WB_ERR_FORMAT);
-    assert_null(strstr(last_message, "write"));
+    assert_null(strstr(kept.last, "write"));
     assert_int_equal(read_sample("length_mm 85\ncount: 1\n", &sample), WB_ERR_FORMAT);
-    assert_non_null(strstr(last_message, "is a colon missing in the line before?"));
+    assert_non_null(strstr(kept.last, "is a colon missing in the line before?"));
 }
 
 static void a_missing_file_is_named(void **state)
 {
     (void)state;
     struct wb_config *config;
-    assert_int_equal(wb_config_read(&config, "/no/such/file.yaml"), WB_ERR_NOT_FOUND);
+    assert_int_equal(wb_config_read(&config, "/no/such/file.yaml", NULL), WB_ERR_NOT_FOUND);
     assert_null(config);
-    assert_non_null(strstr(last_message, "/no/such/file.yaml"));
-    assert_int_equal(messages, 1);
+    assert_non_null(strstr(kept.last, "/no/such/file.yaml"));
+    assert_int_equal(kept.n, 1);
 }
 
 /* Not a proof, but it has found slips: mutations of a valid text never crash the reader. */
@@ -206,6 +194,24 @@ static void mangled_texts_never_crash(void **state)
     }
 }
 
+static void a_reason_takes_what_would_be_logged(void **state)
+{
+    (void)state;
+    struct wb_config *config;
+    struct wb_reason why = {.text = ""};
+    double length;
+    const struct wb_config_key keys[] = {WB_CONFIG_NUMBER("length_mm", &length, WB_MM, 1.0, 9.0)};
+    assert_int_equal(wb_config_read(&config, "/no/such/file.yaml", &why), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(why.text, "/no/such/file.yaml"));
+    assert_int_equal(wb_config_parse(&config, "", "test.yaml", &why), WB_ERR_FORMAT);
+    assert_string_equal(why.text, "test.yaml: the file is empty");
+    assert_int_equal(wb_config_parse(&config, "length_mm: 10", "test.yaml", &why), WB_OK);
+    assert_int_equal(wb_config_map(wb_config_root(config), keys, 1), WB_ERR_FORMAT);
+    assert_non_null(strstr(why.text, "test.yaml:1: length_mm: 10 is out of range"));
+    wb_config_destroy(config);
+    assert_int_equal(kept.n, 0);
+}
+
 #define fact(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -218,6 +224,7 @@ int main(void)
         fact(checks_after_the_table_name_the_line_of_the_key),
         fact(common_slips_are_told_how_to_be_mended),
         fact(a_missing_file_is_named),
+        fact(a_reason_takes_what_would_be_logged),
         fact(mangled_texts_never_crash),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

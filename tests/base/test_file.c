@@ -139,10 +139,10 @@ static void a_name_that_means_nothing_is_told_with_its_place(void **state)
     (void)state;
     char path[WB_PATH];
     wb_log_set_sink(remember, NULL);
-    assert_int_equal(wb_file_find_named(path, "wires", "type9", NULL, "s.yaml:3: wire"),
+    assert_int_equal(wb_file_find_named(path, "wires", "type9", NULL, "s.yaml:3: wire", NULL),
                      WB_ERR_NOT_FOUND);
     assert_ptr_equal(strstr(last_message, "s.yaml:3: wire: no 'type9'"), last_message);
-    assert_int_equal(wb_file_find_named(path, "wires", "my.yaml", "/no", "s.yaml:3: wire"),
+    assert_int_equal(wb_file_find_named(path, "wires", "my.yaml", "/no", "s.yaml:3: wire", NULL),
                      WB_ERR_NOT_FOUND);
     assert_string_equal(last_message, "s.yaml:3: wire: no file 'my.yaml', here or in '/no'");
     wb_log_set_sink(discard_message, NULL);

@@ -48,9 +48,14 @@ static void what_json_cannot_say_becomes_null_or_ascii(void **state)
     wb_json_set_number(root, "a", (double)NAN);
     wb_json_set_text(root, "b", NULL);
     wb_json_set_text(root, "c", "\xff!");
+    /* Half of a pair, more bytes than needed, beyond the last character; and characters. */
+    wb_json_set_text(root, "d", "\xed\xa0\x80 \xc0\xaf \xf4\x90\x80\x80");
+    wb_json_set_text(root, "e", "\xc3\xa9 \xf0\x9f\x98\x80 \xef\xbf\xbe");
     char *text;
     assert_int_equal(wb_json_format(root, &text), WB_OK);
-    assert_string_equal(text, "{\n  \"a\": null,\n  \"b\": null,\n  \"c\": \"?!\"\n}\n");
+    assert_string_equal(text, "{\n  \"a\": null,\n  \"b\": null,\n  \"c\": \"?!\",\n  "
+                              "\"d\": \"??? ?? ????\",\n  "
+                              "\"e\": \"\xc3\xa9 \xf0\x9f\x98\x80 \xef\xbf\xbe\"\n}\n");
     free(text);
     wb_json_destroy(root);
 }

@@ -1,27 +1,11 @@
 /* Reasons: texts that travel with a result, and the log where nobody asks for them. */
-#include "tests/check.h"
+#include "tests/messages.h"
 
 #include <string.h>
 
 #include "base/reason.h"
 
 #define WB_LOG_DOMAIN "test"
-
-struct seen {
-    int messages;
-    enum wb_log_level level;
-    char domain[32], message[256];
-};
-
-static void remember(void *context, enum wb_log_level level, const char *domain,
-                     const char *message)
-{
-    struct seen *seen = context;
-    seen->messages++;
-    seen->level = level;
-    snprintf(seen->domain, sizeof seen->domain, "%s", domain);
-    snprintf(seen->message, sizeof seen->message, "%s", message);
-}
 
 static enum wb_status refuse(struct wb_reason *reason, int number)
 {
@@ -31,26 +15,24 @@ static enum wb_status refuse(struct wb_reason *reason, int number)
 static void a_failure_goes_to_the_reason_and_not_to_the_log(void **state)
 {
     (void)state;
-    struct seen seen = {0};
     struct wb_reason reason = {.text = "of before"};
-    wb_log_set_sink(remember, &seen);
+    keep_messages();
     assert_int_equal(refuse(&reason, 7), WB_ERR_DATA);
-    wb_log_set_sink(NULL, NULL);
+    release_messages();
     assert_string_equal(reason.text, "number 7 refused");
-    assert_int_equal(seen.messages, 0);
+    assert_int_equal(kept.n, 0);
 }
 
 static void a_failure_without_a_reason_is_logged(void **state)
 {
     (void)state;
-    struct seen seen = {0};
-    wb_log_set_sink(remember, &seen);
+    keep_messages();
     assert_int_equal(refuse(NULL, 8), WB_ERR_DATA);
-    wb_log_set_sink(NULL, NULL);
-    assert_int_equal(seen.messages, 1);
-    assert_int_equal(seen.level, WB_LOG_ERROR);
-    assert_string_equal(seen.domain, "test");
-    assert_string_equal(seen.message, "number 8 refused");
+    release_messages();
+    assert_int_equal(kept.n, 1);
+    assert_int_equal(kept.level, WB_LOG_ERROR);
+    assert_string_equal(kept.domain, "test");
+    assert_string_equal(kept.last, "number 8 refused");
 }
 
 static void a_text_is_replaced_also_by_one_made_of_itself(void **state)
@@ -63,6 +45,28 @@ static void a_text_is_replaced_also_by_one_made_of_itself(void **state)
     assert_string_equal(reason.text, "of all: wire 1");
     wb_reason_set(&reason, "none");
     assert_string_equal(reason.text, "none");
+}
+
+static enum wb_status lose(struct wb_reason *reason, const char *table)
+{
+    return wb_fail_also(reason, WB_ERR_DATA, "table %s is lost", table);
+}
+
+static void one_failure_after_another_is_kept(void **state)
+{
+    (void)state;
+    struct wb_reason reason = {.text = ""};
+    keep_messages();
+    assert_int_equal(lose(&reason, "a"), WB_ERR_DATA);
+    assert_string_equal(reason.text, "table a is lost");
+    assert_int_equal(lose(&reason, "b"), WB_ERR_DATA);
+    assert_string_equal(reason.text, "table a is lost; table b is lost");
+    assert_int_equal(kept.n, 0);
+    assert_int_equal(lose(NULL, "c"), WB_ERR_DATA);
+    release_messages();
+    assert_int_equal(kept.n, 1);
+    assert_string_equal(kept.domain, "test");
+    assert_string_equal(kept.last, "table c is lost");
 }
 
 /* The last bytes that fit are "..."; a character of two bytes would lie across their begin. */
@@ -95,6 +99,7 @@ int main(void)
         cmocka_unit_test(a_failure_goes_to_the_reason_and_not_to_the_log),
         cmocka_unit_test(a_failure_without_a_reason_is_logged),
         cmocka_unit_test(a_text_is_replaced_also_by_one_made_of_itself),
+        cmocka_unit_test(one_failure_after_another_is_kept),
         cmocka_unit_test(a_long_text_is_cut_at_the_end_of_a_character),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

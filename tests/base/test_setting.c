@@ -132,7 +132,7 @@ static bool parse(struct example *example, const char *name, const char *argumen
 static void defaults_are_filled_in(void **unused)
 {
     (void)unused;
-    struct example e = {.name = "x", .path = "y", .is_off = true};
+    struct example e = {.name = "x", .path = "y", .is_off = true, .has_pair = true};
     wb_setting_fill(&table, &e);
     assert_close(e.length, 0.085, 0.0);
     assert_int_equal(e.count, 0);
@@ -140,6 +140,7 @@ static void defaults_are_filled_in(void **unused)
     assert_string_equal(e.name, "");
     assert_null(e.path);
     assert_int_equal(e.colour, 1);
+    assert_false(e.has_pair);
 }
 
 static void options_are_read(void **unused)
@@ -234,6 +235,37 @@ static void a_word_may_stand_for_0(void **unused)
     assert_string_equal(problem, "expected a number from 0.1 to 1e6 mm or none, not '0'");
 }
 
+/* Blanks end a number: 200 of them, cut off, would hide what follows. */
+static void long_lists_are_refused_and_not_cut(void **unused)
+{
+    (void)unused;
+    struct example e = {.has_pair = false};
+    char argument[240];
+    snprintf(argument, sizeof argument, "1,2%*sx", 200, "");
+    assert_false(parse(&e, "pair", argument));
+    assert_non_null(strstr(problem, "expected F or F,S, not '1,2 "));
+    assert_false(e.has_pair);
+}
+
+static void lists_of_too_many_members_are_refused(void **unused)
+{
+    (void)unused;
+    struct wb_setting nine[9], list = *find("pair");
+    const struct wb_setting_table members = {.rows = nine, .n = WB_COUNT(nine)};
+    struct wb_config *config;
+    struct example e;
+    wb_setting_fill(&table, &e);
+    for (size_t i = 0; i < WB_COUNT(nine); i++)
+        nine[i] = pair_rows[0];
+    list.members = &members;
+    assert_int_equal(wb_config_parse(&config, "{}", "text", NULL), WB_OK);
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_setting_read_list(&list, wb_config_root(config), &e), WB_ERR_FORMAT);
+    wb_log_set_sink(NULL, NULL);
+    assert_false(e.has_pair);
+    wb_config_destroy(config);
+}
+
 static enum wb_status read_text(struct example *example, const char *text, unsigned place)
 {
     struct wb_config_key keys[WB_COUNT(rows)];
@@ -242,7 +274,7 @@ static enum wb_status read_text(struct example *example, const char *text, unsig
     for (size_t i = 0; i < n; i++) /* text without an array is of options only */
         if (strcmp(keys[i].name, "path") == 0)
             keys[i] = keys[--n];
-    assert_int_equal(wb_config_parse(&config, text, "text"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, text, "text", NULL), WB_OK);
     const enum wb_status status = wb_config_map(wb_config_root(config), keys, n);
     wb_config_destroy(config);
     return status;
@@ -271,7 +303,7 @@ static void files_are_read_by_place(void **unused)
 static enum wb_status read_pair(struct example *example, const char *text)
 {
     struct wb_config *config;
-    assert_int_equal(wb_config_parse(&config, text, "text"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, text, "text", NULL), WB_OK);
     const enum wb_status status =
         wb_setting_read_list(find("pair"), wb_config_find(wb_config_root(config), "pair"), example);
     wb_config_destroy(config);
@@ -318,6 +350,41 @@ static void filled_structs_are_checked(void **unused)
     e.pair.second = 3.0;
     assert_int_equal(wb_setting_check(&table, &e, NULL), WB_ERR_ARGUMENT);
     wb_log_set_sink(NULL, NULL);
+}
+
+static void what_files_must_have_is_checked_at_zero_too(void **unused)
+{
+    (void)unused;
+    struct pair pair = {0.0, 0.0};
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_setting_check(&pair_table, &pair, NULL), WB_ERR_ARGUMENT);
+    wb_log_set_sink(NULL, NULL);
+    pair.second = 1.0;
+    assert_int_equal(wb_setting_check(&pair_table, &pair, NULL), WB_OK);
+    /* Of a list the second member may be left out. */
+    struct example e;
+    wb_setting_fill(&table, &e);
+    assert_true(parse(&e, "pair", "4"));
+    assert_int_equal(wb_setting_check(&table, &e, NULL), WB_OK);
+}
+
+static void a_text_that_there_is_not_is_empty(void **unused)
+{
+    (void)unused;
+    const struct example none = {.path = NULL}, some = {.path = "a"};
+    struct wb_json *const object = wb_json_create();
+    char text[WB_SETTING_VALUE] = "of before";
+    wb_setting_format(find("path"), &none, text);
+    assert_string_equal(text, "");
+    wb_setting_set_json(find("path"), &none, object);
+    const char *stored;
+    assert_non_null(wb_json_get(object, "path"));
+    assert_false(wb_json_get_text(object, "path", &stored)); /* null */
+    assert_true(wb_setting_is_same(find("path"), &none, object, problem));
+    assert_false(wb_setting_is_same(find("path"), &some, object, problem));
+    wb_setting_set_json(find("path"), &some, object);
+    assert_false(wb_setting_is_same(find("path"), &none, object, problem));
+    wb_json_destroy(object);
 }
 
 static void only_what_is_not_zero_is_given(void **unused)
@@ -458,9 +525,13 @@ int main(void)
         cmocka_unit_test(wrong_options_are_refused_and_change_nothing),
         cmocka_unit_test(lists_may_have_another_separator_and_need_all_members),
         cmocka_unit_test(a_word_may_stand_for_0),
+        cmocka_unit_test(long_lists_are_refused_and_not_cut),
+        cmocka_unit_test(lists_of_too_many_members_are_refused),
         cmocka_unit_test(files_are_read_by_place),
         cmocka_unit_test(lists_are_a_value_or_a_map),
         cmocka_unit_test(filled_structs_are_checked),
+        cmocka_unit_test(what_files_must_have_is_checked_at_zero_too),
+        cmocka_unit_test(a_text_that_there_is_not_is_empty),
         cmocka_unit_test(only_what_is_not_zero_is_given),
         cmocka_unit_test(only_what_is_not_the_default_differs),
         cmocka_unit_test(json_holds_what_is_compared),

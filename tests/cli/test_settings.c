@@ -207,7 +207,7 @@ static void campaigns_have_the_rows_ranges(void **unused)
             wb_calibrate_default_settings(&from_file);
             wb_calibrate_default_settings(&from_option);
             snprintf(text, sizeof text, "%.60s: %.60s\n", row->name, values[k].text);
-            assert_int_equal(wb_config_parse(&config, text, "settings"), WB_OK);
+            assert_int_equal(wb_config_parse(&config, text, "settings", NULL), WB_OK);
             keep_messages();
             const enum wb_status status =
                 wb_campaign_read_settings(wb_config_root(config), &from_file);

@@ -95,7 +95,7 @@ static inline void assert_replay_identical(const char *path, const struct sample
     const struct wb_sink sink = sample_log_sink(&again);
     assert_int_equal(wb_recording_open(&recording, path), WB_OK);
     assert_int_equal(wb_recording_meta(recording, "rig", &text), WB_OK);
-    assert_int_equal(wb_rig_parse(text, path, &rig), WB_OK);
+    assert_int_equal(wb_rig_parse(text, path, &rig, NULL), WB_OK);
     free(text);
     assert_int_equal(wb_replay_run(recording, &rig, &sink, 0.0, &counts), WB_OK);
     assert_int_equal(counts.damaged_chunks, 0);

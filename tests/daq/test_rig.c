@@ -68,7 +68,7 @@ static struct wb_rig parse(const char *text)
 {
     struct wb_rig rig;
     memset(&rig, 0xff, sizeof rig);
-    const enum wb_status status = wb_rig_parse(text, "bench.yaml", &rig);
+    const enum wb_status status = wb_rig_parse(text, "bench.yaml", &rig, NULL);
     if (status != WB_OK)
         fail_msg("refused: %s", kept.last);
     return rig;
@@ -178,7 +178,7 @@ static void a_tare_with_a_counterweight_needs_one(void **state)
     snprintf(text, sizeof text, "%s", edited("  sign: +1\n", "  tare: counterweight\n"));
     char *const at = strstr(text, "counterweight_g: 2.7");
     memcpy(at, "counterweight_g: 0.0", strlen("counterweight_g: 0.0"));
-    assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig), WB_ERR_FORMAT);
+    assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig, NULL), WB_ERR_FORMAT);
     assert_message("tare");
     assert_message("strand.counterweight_g");
 }
@@ -247,7 +247,7 @@ static void bad_files_are_refused_with_file_line_and_key(void **state)
         memset(&rig, 0x77, sizeof rig);
         before = rig;
         kept.n = 0;
-        assert_int_equal(wb_rig_parse(edited(cases[i].from, cases[i].to), "bench.yaml", &rig),
+        assert_int_equal(wb_rig_parse(edited(cases[i].from, cases[i].to), "bench.yaml", &rig, NULL),
                          WB_ERR_FORMAT);
         assert_message(cases[i].expected);
         assert_message("bench.yaml:");
@@ -306,7 +306,7 @@ static void checks_after_the_table_tell_the_line_of_their_key(void **state)
     for (const char *at = text; at < strstr(text, "sign: 2"); at++)
         line += *at == '\n';
     snprintf(place, sizeof place, "bench.yaml:%d: sign: expected +1 or -1", line);
-    assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig), WB_ERR_FORMAT);
+    assert_int_equal(wb_rig_parse(text, "bench.yaml", &rig, NULL), WB_ERR_FORMAT);
     assert_message(place);
 }
 

@@ -12,7 +12,7 @@ static void every_value_arrives_in_si(void **state)
 {
     (void)state;
     struct wb_specimen specimen;
-    assert_int_equal(wb_specimen_parse(good, "s.yaml", &specimen), WB_OK);
+    assert_int_equal(wb_specimen_parse(good, "s.yaml", &specimen, NULL), WB_OK);
     assert_string_equal(specimen.wire, "type1");
     assert_close_relative(specimen.length, 0.085, 1e-15);
     assert_int_equal(specimen.sample, 1);
@@ -51,7 +51,7 @@ static void bad_files_are_refused_with_the_reason(void **state)
         assert_non_null(at);
         snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, cases[i].to,
                  at + strlen(cases[i].from));
-        assert_int_equal(wb_specimen_parse(text, "s.yaml", &specimen), WB_ERR_FORMAT);
+        assert_int_equal(wb_specimen_parse(text, "s.yaml", &specimen, NULL), WB_ERR_FORMAT);
         assert_message(cases[i].expected);
     }
     wb_log_set_sink(NULL, NULL);

@@ -35,7 +35,7 @@ static inline void setup_bench(struct setup *setup, const char *specimen, uint64
     assert_int_equal(wb_specimen_read(path, &setup->specimen), WB_OK);
     snprintf(name, sizeof name, "fixtures/wires/%s.yaml", setup->specimen.wire);
     setup_path(path, name);
-    assert_int_equal(wb_wire_read(path, &setup->wire), WB_OK);
+    assert_int_equal(wb_wire_read(path, &setup->wire, NULL), WB_OK);
     setup_path(path, "fixtures/virtual/wires.yaml");
     assert_int_equal(wb_composite_read(path, setup->wire.name, &setup->composite), WB_OK);
     wb_truth_draw(&setup->truth, seed, &setup->rig, &setup->specimen);

@@ -33,7 +33,7 @@ static void the_paper_rig_keeps_all_but_its_addresses(void **state)
         assert_int_equal(wb_file_find_data(path, names[i]), WB_OK);
         assert_int_equal(wb_rig_read(path, &before), WB_OK);
         format(path, &text);
-        assert_int_equal(wb_rig_parse(wb_text_string(&text), "rig.yaml", &after), WB_OK);
+        assert_int_equal(wb_rig_parse(wb_text_string(&text), "rig.yaml", &after, NULL), WB_OK);
         assert_string_equal(after.load_cell.address, file.load_cell);
         assert_string_equal(after.mocap.address, file.mocap);
         assert_string_equal(after.stage.address, file.stage);
@@ -95,7 +95,7 @@ static void odd_texts_survive(void **state)
     assert_int_equal(wb_file_write(path, load, strlen(load)), WB_OK);
     assert_int_equal(wb_rig_read(path, &before), WB_OK);
     format(path, &text);
-    assert_int_equal(wb_rig_parse(wb_text_string(&text), "rig.yaml", &after), WB_OK);
+    assert_int_equal(wb_rig_parse(wb_text_string(&text), "rig.yaml", &after, NULL), WB_OK);
     assert_string_equal(after.load_cell.serial_number, before.load_cell.serial_number);
     assert_string_equal(after.load_cell.tare_command, before.load_cell.tare_command);
     assert_string_equal(after.load_cell.overload_tokens[0], "O,L");

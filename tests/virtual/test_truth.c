@@ -158,7 +158,7 @@ static void the_written_truth_is_yaml_with_all_it_is(void **state)
     setup_bench(&setup, "type1-L85-1", 3);
     wb_text_append(&text, "truth:\n");
     wb_truth_format(&setup.truth, setup.specimen.n_markers, &text);
-    assert_int_equal(wb_config_parse(&config, wb_text_string(&text), "truth"), WB_OK);
+    assert_int_equal(wb_config_parse(&config, wb_text_string(&text), "truth", NULL), WB_OK);
     const char *name;
     const struct wb_config_node *const map = wb_config_entry(wb_config_root(config), 0, &name);
     char source[32];

@@ -123,7 +123,7 @@ static int tune(const char *name)
     struct fit fit;
     struct wb_section section;
     if (wb_file_find_fixture(path, "wires", name, NULL) != WB_OK ||
-        wb_wire_read(path, &fit.wire) != WB_OK ||
+        wb_wire_read(path, &fit.wire, NULL) != WB_OK ||
         wb_section_init_circle(&section, fit.wire.outer_diameter, &fit.wire.material, 40) != WB_OK)
         return 1;
     const int failed = curve(&fit.wire, &section, fit.target);

@@ -67,7 +67,7 @@ enum wb_status wb_index_read(struct wb_index *index, const char *path)
 {
     memset(index, 0, sizeof *index);
     struct wb_config *config;
-    WB_TRY(wb_config_read(&config, path));
+    WB_TRY(wb_config_read(&config, path, NULL));
     const struct wb_config_node *list = wb_config_root(config);
     enum wb_status status = WB_OK;
     if (wb_config_length(list) < 0) {

@@ -212,7 +212,7 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
     char path[WB_PATH];
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     WB_TRY(wb_campaign_find(&campaign->head, node, "wire", "wires", name, path, NULL));
-    WB_TRY(wb_wire_read(path, &wire->product));
+    WB_TRY(wb_wire_read(path, &wire->product, NULL));
     if (!wire->label[0])
         snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);
     WB_TRY(read_reference(reference, wire));

@@ -50,11 +50,11 @@ static void read_meta(struct wb_recording *recording, const char *key, char *tex
 }
 
 /* What the recording says about bench and specimen. The truth of a virtual rig is not read. */
-static enum wb_status read_bench(struct wb_recordings_results_test *test)
+static enum wb_status read_bench(struct wb_recordings_results_test *test, struct wb_reason *why)
 {
     struct wb_recording *recording;
     /* Aligning opens it again and tells what is wrong with the file. */
-    WB_TRY(wb_recording_open_quietly(&recording, test->wanted->path));
+    WB_TRY(wb_recording_open_with_reason(&recording, test->wanted->path, why));
     char is_virtual[16] = "";
     read_meta(recording, "start_utc", test->start_utc, sizeof test->start_utc);
     read_meta(recording, "tool_revision", test->tool_revision, sizeof test->tool_revision);
@@ -64,11 +64,11 @@ static enum wb_status read_bench(struct wb_recordings_results_test *test)
     char *text = NULL;
     enum wb_status status = WB_OK;
     if (wb_recording_meta(recording, "rig", &text) == WB_OK)
-        status = wb_rig_parse(text, test->wanted->name, &test->rig);
+        status = wb_rig_parse(text, test->wanted->name, &test->rig, why);
     free(text);
     text = NULL;
     if (status == WB_OK && wb_recording_meta(recording, "specimen", &text) == WB_OK)
-        status = wb_specimen_parse(text, test->wanted->name, &test->specimen);
+        status = wb_specimen_parse(text, test->wanted->name, &test->specimen, why);
     free(text);
     test->is_virtual |= test->rig.is_virtual;
     const enum wb_status closed = wb_recording_close(recording);
@@ -76,29 +76,32 @@ static enum wb_status read_bench(struct wb_recordings_results_test *test)
 }
 
 static enum wb_status check_identity(const struct wb_recordings_results_test *test,
-                                     const struct wb_recordings_results_wire *wire, double length)
+                                     const struct wb_recordings_results_wire *wire, double length,
+                                     struct wb_reason *why)
 {
     const struct wb_test_info *const info = &test->dataset.info;
     if (test->wanted->sha256[0] && strcmp(test->wanted->sha256, test->sha256) != 0)
-        return wb_fail(WB_ERR_DATA, "'%s' is not the recording that the index lists (sha256 %s)",
-                       test->wanted->path, test->sha256);
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "'%s' is not the recording that the index lists (sha256 %s)",
+                          test->wanted->path, test->sha256);
     if (strcmp(info->wire, wire->wanted->product.name) != 0 ||
         !(fabs(info->length - length) < 1e-6))
-        return wb_fail(WB_ERR_DATA, "'%s' is of wire '%s' at %g mm, not '%s' at %g mm",
-                       test->wanted->path, info->wire, 1e3 * info->length,
-                       wire->wanted->product.name, 1e3 * length);
+        return wb_fail_to(why, WB_ERR_DATA, "'%s' is of wire '%s' at %g mm, not '%s' at %g mm",
+                          test->wanted->path, info->wire, 1e3 * info->length,
+                          wire->wanted->product.name, 1e3 * length);
     return WB_OK;
 }
 
 static enum wb_status align(struct wb_recordings_results_test *test,
-                            const struct wb_recordings_results_wire *wire, double length)
+                            const struct wb_recordings_results_wire *wire, double length,
+                            struct wb_reason *why)
 {
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
-    WB_TRY(wb_recording_sha256(test->wanted->path, test->sha256));
-    WB_TRY(read_bench(test));
-    WB_TRY(wb_align_run(&test->dataset, test->wanted->path, &settings));
-    const enum wb_status status = check_identity(test, wire, length);
+    WB_TRY(wb_recording_sha256(test->wanted->path, test->sha256, why));
+    WB_TRY(read_bench(test, why));
+    WB_TRY(wb_align_run(&test->dataset, test->wanted->path, &settings, why));
+    const enum wb_status status = check_identity(test, wire, length, why);
     if (status != WB_OK)
         wb_dataset_release(&test->dataset);
     return status;
@@ -111,13 +114,13 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
         wb_text_append(&test->problem, "%s", test->wanted->missing);
         return;
     }
-    const struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
-    wb_reasons_listen(&reasons);
-    const enum wb_status status = align(test, job->wire, campaign->length[job->purpose]);
-    wb_reasons_end(&reasons, status);
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = align(test, job->wire, campaign->length[job->purpose], &why);
     test->usable = status == WB_OK;
-    if (!test->usable && test->problem.length == 0)
-        wb_text_append(&test->problem, "%s", wb_status_text(status));
+    if (test->usable)
+        return;
+    const struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
+    wb_reasons_fail(&reasons, status, &why);
 }
 
 static int usable_datasets(const struct wb_recordings_results_tests *tests,
@@ -159,7 +162,6 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
     }
     const struct wb_reasons reasons = {&step->problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
-    wb_reasons_listen(&reasons);
     enum wb_status status = calibrates ? calibrate(campaign, wire, datasets, n, &why) : WB_OK;
     if (status == WB_OK) {
         status = wb_validate_run(&step->result, &wire->properties, datasets, n, &campaign->head.fit,
@@ -167,7 +169,6 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
         if (status != WB_OK && calibrates)
             wb_calibrate_result_release(&wire->calibration);
     }
-    wb_reasons_end(&reasons, status);
     free(datasets);
     if (status == WB_OK)
         return WB_RECORDINGS_DONE;

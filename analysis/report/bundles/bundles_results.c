@@ -211,9 +211,7 @@ static void fit_bundle(struct wb_bundles_results *results, int index)
     }
     const struct wb_reasons reasons = {&fit->problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
-    wb_reasons_listen(&reasons);
     const enum wb_status status = calibrate(fit, run, &campaign->head.fit, &why);
-    wb_reasons_end(&reasons, status);
     fit->state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         wb_reasons_fail(&reasons, status, &why);
@@ -226,9 +224,7 @@ static void compare_run(struct wb_bundles_result *result, const struct wb_bundle
     const struct wb_reasons reasons = {&result->simulation.problem, run->dataset.path,
                                        run->dataset.name};
     struct wb_reason why = {.text = ""};
-    wb_reasons_listen(&reasons);
     const enum wb_status status = wb_bundles_run_compare(result, run, fit, &why);
-    wb_reasons_end(&reasons, status);
     if (status == WB_OK)
         return;
     result->simulation.state = WB_SIMULATION_REFUSED;

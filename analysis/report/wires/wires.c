@@ -182,7 +182,7 @@ static enum wb_status read_printed(struct wb_wires *comparison, const struct wb_
     if (!wire[0])
         return WB_OK;
     WB_TRY(wb_campaign_find(&comparison->head, node, "wire", "wires", wire, path, NULL));
-    WB_TRY(wb_wire_read(path, &comparison->printed_wire));
+    WB_TRY(wb_wire_read(path, &comparison->printed_wire, NULL));
     if (!comparison->printed_wire.has_properties)
         return wb_config_refuse(node, "wire", "'%s' has no properties", wire);
     comparison->has_printed_wire = true;

@@ -130,9 +130,7 @@ static void fit(struct wb_wires_results *results)
     }
     const struct wb_reasons reasons = {&results->fit_problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
-    wb_reasons_listen(&reasons);
     const enum wb_status status = calibrate(results, run, &why);
-    wb_reasons_end(&reasons, status);
     results->fit_state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         wb_reasons_fail(&reasons, status, &why);

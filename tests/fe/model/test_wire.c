@@ -23,7 +23,7 @@ static void file_is_read_into_si_units(void **unused)
     char text[1024];
     struct wb_wire wire;
     snprintf(text, sizeof text, "%s%s", good, properties);
-    assert_int_equal(wb_wire_parse(text, "test", &wire), WB_OK);
+    assert_int_equal(wb_wire_parse(text, "test", &wire, NULL), WB_OK);
     assert_string_equal(wire.name, "sample");
     assert_close_relative(wire.conductor_diameter, 0.7e-3, 1e-15);
     assert_close_relative(wire.outer_diameter, 1.1e-3, 1e-15);
@@ -43,7 +43,7 @@ static void properties_may_be_missing(void **unused)
 {
     (void)unused;
     struct wb_wire wire;
-    assert_int_equal(wb_wire_parse(good, "test", &wire), WB_OK);
+    assert_int_equal(wb_wire_parse(good, "test", &wire, NULL), WB_OK);
     assert_false(wire.has_properties);
 }
 
@@ -72,7 +72,7 @@ static void bad_wires_are_refused_by_file_line_and_key(void **unused)
         snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, cases[i].instead,
                  at + strlen(cases[i].line));
         kept.n = 0;
-        assert_int_not_equal(wb_wire_parse(changed, "bad.yaml", &wire), WB_OK);
+        assert_int_not_equal(wb_wire_parse(changed, "bad.yaml", &wire, NULL), WB_OK);
         assert_int_equal(kept.n, 1);
         assert_message("bad.yaml");
         assert_message(cases[i].expected);
@@ -99,7 +99,7 @@ static void shipped_wires_are_the_papers(void **unused)
         struct wb_wire wire;
         snprintf(path, sizeof path, "%s/fixtures/wires/%s.yaml", source ? source : ".",
                  wires[i].name);
-        assert_int_equal(wb_wire_read(path, &wire), WB_OK);
+        assert_int_equal(wb_wire_read(path, &wire, NULL), WB_OK);
         assert_string_equal(wire.name, wires[i].name);
         assert_true(wire.has_properties);
         assert_close_relative(wire.material.youngs_modulus, wires[i].E, 1e-12);
@@ -109,7 +109,7 @@ static void shipped_wires_are_the_papers(void **unused)
     char path[4096];
     struct wb_wire wire;
     snprintf(path, sizeof path, "%s/fixtures/wires/8awg.yaml", source ? source : ".");
-    assert_int_equal(wb_wire_read(path, &wire), WB_OK);
+    assert_int_equal(wb_wire_read(path, &wire, NULL), WB_OK);
 }
 
 int main(void)

@@ -440,7 +440,7 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
     write_text("c.wbr", "this is no recording");
     write_text("synthetic.yaml", syn_wire);
     char sha256[65], index[1024];
-    assert_int_equal(wb_recording_sha256(in_folder("a.wbr"), sha256), WB_OK);
+    assert_int_equal(wb_recording_sha256(in_folder("a.wbr"), sha256, NULL), WB_OK);
     snprintf(index, sizeof index,
              "- {file: a.wbr, wire: synthetic, length_mm: 85, sample: 1, sha256: %s}\n"
              "- {file: b.wbr, wire: synthetic, length_mm: 85, sample: 2, sha256: %s}\n"
