@@ -1,0 +1,238 @@
+#include "fe/material/law.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "fe/material/hardening.h"
+
+#define WB_LOG_DOMAIN "law"
+
+/* How far Ludwik's overlay reaches: the larger of the two. */
+static const double reach_strain = 0.1;
+static const double reach_of_yield_strain = 50.0;
+
+/* Points of the curve between which the corners of Ludwik's overlay are sought. */
+enum {
+    CURVE_POINTS = 256
+};
+
+void wb_law_init_ludwik(struct wb_law *law, const struct wb_material *material)
+{
+    *law = (struct wb_law){
+        .form = WB_LAW_LUDWIK, .isotropic_share = 1.0, .material = *material, .n_parts = 0};
+}
+
+void wb_law_init_parallel(struct wb_law *law, const struct wb_law_part *parts, int n,
+                          double isotropic_share, double poissons_ratio)
+{
+    *law = (struct wb_law){
+        .form = WB_LAW_PARALLEL,
+        .isotropic_share = isotropic_share,
+        .material = {.hardening = WB_HARDENING_NONE_ELASTIC, .poissons_ratio = poissons_ratio},
+        .n_parts = n,
+    };
+    for (int i = 0; i < n && i < WB_LAW_MOST_PARTS; i++) {
+        law->parts[i] = parts[i];
+        law->material.youngs_modulus += parts[i].modulus;
+    }
+}
+
+bool wb_law_is_plain(const struct wb_law *law)
+{
+    return law->form == WB_LAW_LUDWIK && law->isotropic_share == 1.0;
+}
+
+static enum wb_status check_parts(const struct wb_law *law)
+{
+    if (law->n_parts < 1 || law->n_parts > WB_LAW_MOST_PARTS)
+        return wb_fail(WB_ERR_ARGUMENT, "%d parallel parts: expected 1 to %d", law->n_parts,
+                       WB_LAW_MOST_PARTS);
+    double before = 0.0, sum = 0.0;
+    for (int i = 0; i < law->n_parts; i++) {
+        const struct wb_law_part *const part = &law->parts[i];
+        if (!(isfinite(part->modulus) && part->modulus >= 0.0))
+            return wb_fail(WB_ERR_ARGUMENT, "part %d: modulus %g Pa: expected 0 or more", i + 1,
+                           part->modulus);
+        if (!(part->yield_strain > before))
+            return wb_fail(WB_ERR_ARGUMENT, "part %d: yield strain %g: expected more than %g",
+                           i + 1, part->yield_strain, before);
+        if (isinf(part->yield_strain) && i + 1 < law->n_parts)
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "part %d does not yield: expected that of the last part only", i + 1);
+        before = part->yield_strain;
+        sum += part->modulus;
+    }
+    if (!(sum > 0.0 && fabs(sum - law->material.youngs_modulus) <= 1e-9 * sum))
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "the parts' moduli add up to %g Pa and Young's modulus is %g Pa: expected "
+                       "the same number above 0",
+                       sum, law->material.youngs_modulus);
+    return WB_OK;
+}
+
+enum wb_status wb_law_check(const struct wb_law *law)
+{
+    if (!(law->isotropic_share >= 0.0 && law->isotropic_share <= 1.0))
+        return wb_fail(WB_ERR_ARGUMENT, "isotropic share %g: expected 0 to 1",
+                       law->isotropic_share);
+    if (law->form == WB_LAW_PARALLEL)
+        return check_parts(law);
+    if (!wb_hardening_law(&law->material)->growth)
+        return wb_fail(WB_ERR_ARGUMENT, "Ludwik's law needs a material whose yield stress grows");
+    char why[120];
+    if (!wb_hardening_is_possible(&law->material, why, sizeof why))
+        return wb_fail(WB_ERR_ARGUMENT, "%s", why);
+    if (law->isotropic_share < 1.0 && law->material.hardening_exponent > 1.0)
+        return wb_fail(WB_ERR_ARGUMENT,
+                       "hardening exponent %g: expected at most 1 with kinematic or mixed "
+                       "hardening, where a curve that steepens would give work back",
+                       law->material.hardening_exponent);
+    return WB_OK;
+}
+
+/* A point of Ludwik's curve. */
+struct point {
+    double strain, stress;
+};
+
+static struct point ludwik_point(const struct wb_material *m, double p)
+{
+    const double stress = m->yield_stress + wb_hardening_law(m)->growth(m, p);
+    return (struct point){p + stress / m->youngs_modulus, stress};
+}
+
+/* Plastic strain at which Ludwik's curve reaches a strain beyond yield. */
+static double plastic_strain(const struct wb_material *m, double strain)
+{
+    const double overstress = m->youngs_modulus * strain - m->yield_stress;
+    return wb_hardening_ratio(m, overstress) * overstress / m->youngs_modulus;
+}
+
+/* The corners: yield, the reach, and between them as many as there are parts left, closer where
+ * the curve bends more. With a distance h between corners a chord lies below the curve by h^2 F''
+ * / 12 in the mean; that is the same part of the stress in all intervals when sqrt(F'' / F) de is.
+ * Returns this part. */
+static double place_corners(const struct wb_material *m, struct point *corners, int n)
+{
+    const double yield_strain = m->yield_stress / m->youngs_modulus;
+    const double reach = fmax(reach_strain, reach_of_yield_strain * yield_strain);
+    const double last = plastic_strain(m, reach), first = 1e-6 * yield_strain;
+    struct point points[CURVE_POINTS];
+    double sum[CURVE_POINTS] = {0.0};
+
+    points[0] = (struct point){yield_strain, m->yield_stress};
+    double slope = m->youngs_modulus;
+    for (int i = 1; i < CURVE_POINTS; i++) {
+        const double share = (double)(i - 1) / (CURVE_POINTS - 2);
+        points[i] = ludwik_point(m, first * pow(last / first, share));
+        const double step = points[i].strain - points[i - 1].strain;
+        const double next = (points[i].stress - points[i - 1].stress) / step;
+        sum[i] = sum[i - 1] + sqrt(fmax(slope - next, 0.0) * step / points[i].stress);
+        slope = next;
+    }
+    int at = 1;
+    for (int k = 0; k < n; k++) {
+        const double wanted = sum[CURVE_POINTS - 1] * k / (n - 1);
+        while (at < CURVE_POINTS - 1 && sum[at] < wanted)
+            at++;
+        const double width = sum[at] - sum[at - 1];
+        const double share = width > 0.0 ? fmin(fmax((wanted - sum[at - 1]) / width, 0.0), 1.0) : 0;
+        const double strain =
+            points[at - 1].strain + share * (points[at].strain - points[at - 1].strain);
+        corners[k] = k == 0       ? points[0]
+                     : k == n - 1 ? points[CURVE_POINTS - 1]
+                                  : ludwik_point(m, plastic_strain(m, strain));
+    }
+    const double interval = sum[CURVE_POINTS - 1] / (n - 1);
+    return interval * interval / 12.0;
+}
+
+static void ludwik_overlay(const struct wb_law *law, struct wb_overlay *overlay)
+{
+    enum {
+        CORNERS = WB_LAW_LUDWIK_PARTS - 1
+    };
+    struct point corners[CORNERS];
+    double slope = law->material.youngs_modulus;
+
+    /* Raised by what the chords lie below the curve, so that they follow it in the mean. */
+    const double raised = 1.0 + place_corners(&law->material, corners, CORNERS);
+    for (int k = 1; k < CORNERS; k++)
+        corners[k].stress *= raised;
+    for (int k = 0; k < CORNERS; k++) {
+        double next;
+        if (k + 1 < CORNERS)
+            next = (corners[k + 1].stress - corners[k].stress) /
+                   (corners[k + 1].strain - corners[k].strain);
+        else
+            (void)wb_law_virgin_stress(law, corners[k].strain, &next);
+        next = fmin(k + 1 < CORNERS ? next : raised * next, slope);
+        overlay->modulus[k] = slope - next;
+        overlay->yield_strain[k] = corners[k].strain;
+        slope = next;
+    }
+    overlay->modulus[CORNERS] = slope;
+    overlay->yield_strain[CORNERS] = (double)INFINITY;
+    overlay->n = WB_LAW_LUDWIK_PARTS;
+}
+
+void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay)
+{
+    memset(overlay, 0, sizeof *overlay);
+    overlay->isotropic_share = law->isotropic_share;
+    if (law->form == WB_LAW_LUDWIK) {
+        ludwik_overlay(law, overlay);
+        return;
+    }
+    overlay->n = law->n_parts;
+    for (int i = 0; i < law->n_parts; i++) {
+        overlay->modulus[i] = law->parts[i].modulus;
+        overlay->yield_strain[i] = law->parts[i].yield_strain;
+    }
+}
+
+double wb_overlay_virgin_stress(const struct wb_overlay *overlay, double strain, double *tangent)
+{
+    double stress = 0.0, slope = 0.0;
+    for (int i = 0; i < overlay->n; i++) {
+        stress += overlay->modulus[i] * fmin(strain, overlay->yield_strain[i]);
+        slope += strain < overlay->yield_strain[i] ? overlay->modulus[i] : 0.0;
+    }
+    if (tangent)
+        *tangent = slope;
+    return stress;
+}
+
+double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tangent)
+{
+    if (law->form == WB_LAW_PARALLEL) {
+        struct wb_overlay overlay;
+        wb_law_overlay(law, &overlay);
+        return wb_overlay_virgin_stress(&overlay, strain, tangent);
+    }
+    const struct wb_material *const m = &law->material;
+    const double E = m->youngs_modulus, overstress = E * strain - m->yield_stress;
+    if (!(overstress > 0.0)) {
+        if (tangent)
+            *tangent = E;
+        return E * strain;
+    }
+    const double r = wb_hardening_ratio(m, overstress);
+    if (tangent) {
+        const double power_part = wb_hardening_exponent(m, r * overstress / E) * (1.0 - r);
+        *tangent = E * power_part / (r + power_part);
+    }
+    return m->yield_stress + (1.0 - r) * overstress;
+}
+
+const char *wb_law_form_name(enum wb_law_form form)
+{
+    return form == WB_LAW_LUDWIK ? "ludwik" : "parallel";
+}
+
+const char *wb_law_rule_name(const struct wb_law *law)
+{
+    return law->isotropic_share == 1.0   ? "isotropic"
+           : law->isotropic_share == 0.0 ? "kinematic"
+                                         : "mixed";
+}

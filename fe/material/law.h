@@ -1,0 +1,90 @@
+/* The law of a homogenised wire under bending: a virgin stress-strain curve and a hardening rule.
+ *
+ * Two forms of the curve, stress F(e) over total strain e >= 0:
+ *   - Ludwik's, the paper's eqs. 1 to 6: F = E e up to sigma_Y, then sigma_Y + K ep^n;
+ *   - parallel parts (Prandtl-Ishlinskii; Besseling's overlay): elastic-plastic parts that share
+ *     the strain, F = sum_i E_i min(e, e_i), of which the last may stay elastic (e_i infinite).
+ *
+ * The rule says what happens when the strain turns back. With isotropic hardening the wire yields
+ * again at the stress that it reached, in either direction. With kinematic hardening it yields
+ * earlier: every branch is the virgin curve at twice the size (Masing's rule), it returns to the
+ * point of its turn, and a closed loop is forgotten from there on. Mixed hardening has a share
+ * beta, `isotropic_share`, of the area with the first and the rest with the second, both with the
+ * same virgin curve; so beta leaves a first loading as it is.
+ *
+ * An overlay is what a section of either form computes with. Ludwik's curve becomes an overlay of
+ * WB_LAW_LUDWIK_PARTS parts, a chain of chords that follows the curve in the mean. With isotropic
+ * hardening alone Ludwik's law needs none: its material is computed exactly.
+ */
+#ifndef WB_FE_MATERIAL_LAW_H
+#define WB_FE_MATERIAL_LAW_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+#include "fe/material/material.h"
+
+enum wb_law_form {
+    WB_LAW_LUDWIK,
+    WB_LAW_PARALLEL
+};
+
+enum {
+    WB_LAW_MOST_PARTS = 12,   /* of a wire's file */
+    WB_LAW_LUDWIK_PARTS = 27, /* of Ludwik's curve; the last is elastic */
+    WB_OVERLAY_MOST_PARTS = 28
+};
+
+struct wb_law_part {
+    double modulus;      /* E_i, Pa, at least 0 */
+    double yield_strain; /* e_i, 1, ascending; INFINITY: elastic, only the last */
+};
+
+struct wb_law {
+    enum wb_law_form form;
+    double isotropic_share;      /* beta, 0 (kinematic) to 1 (isotropic) */
+    struct wb_material material; /* Ludwik: isotropic power law; parallel parts: elastic, with E the
+                                    sum of their moduli */
+    int n_parts;                 /* of parallel parts */
+    struct wb_law_part parts[WB_LAW_MOST_PARTS];
+};
+
+/* Parallel parts as a section computes with them. */
+struct wb_overlay {
+    int n;
+    double isotropic_share;
+    double modulus[WB_OVERLAY_MOST_PARTS];      /* Pa */
+    double yield_strain[WB_OVERLAY_MOST_PARTS]; /* 1, ascending */
+};
+
+/* Ludwik's law with isotropic hardening: the paper's. */
+void wb_law_init_ludwik(struct wb_law *law, const struct wb_material *material);
+
+/* Parallel parts; E becomes the sum of the moduli. */
+void wb_law_init_parallel(struct wb_law *law, const struct wb_law_part *parts, int n,
+                          double isotropic_share, double poissons_ratio);
+
+/* Whether it is Ludwik's with isotropic hardening alone, which its material says by itself. */
+bool wb_law_is_plain(const struct wb_law *law);
+
+/* WB_ERR_ARGUMENT for what makes no law: also for Ludwik's with n above 1 and a kinematic share,
+ * whose curve steepens behind the yield point: its parts would give work back. */
+WB_MUST_CHECK enum wb_status wb_law_check(const struct wb_law *law);
+
+/* The overlay of a law that wb_law_check() takes. Ludwik's ends at a strain of 0.1 or 50 times the
+ * yield strain, beyond which its stress goes on along the last slope. */
+void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay);
+
+/* F(e) of the law, Pa, at a strain e >= 0; *tangent (Pa, may be NULL) is its slope. Ludwik's is
+ * exact. */
+double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tangent);
+
+/* The same of an overlay. */
+double wb_overlay_virgin_stress(const struct wb_overlay *overlay, double strain, double *tangent);
+
+/* "ludwik" or "parallel"; "isotropic", "kinematic" or "mixed". */
+const char *wb_law_form_name(enum wb_law_form form);
+const char *wb_law_rule_name(const struct wb_law *law);
+
+#endif
