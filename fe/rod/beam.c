@@ -53,7 +53,8 @@ struct wb_beam {
 
 /* Integrates the natural curvature from the clamp into rotations and positions of the nodes, with
  * Simpson's rule on several intervals between neighbouring nodes. */
-static void lay_out(struct wb_beam *beam, const struct wb_beam_model *model)
+static void lay_out(struct wb_beam *beam, double (*natural_curvature)(void *, double),
+                    void *context)
 {
     enum {
         INTERVALS = 8
@@ -63,15 +64,15 @@ static void lay_out(struct wb_beam *beam, const struct wb_beam_model *model)
 
     beam->reference[0] = at;
     for (int i = 1; i < beam->n_nodes; i++) {
-        if (!model->natural_curvature) {
+        if (!natural_curvature) {
             beam->reference[i] = (struct wb_beam_node){0.5 * beam->element_length * i, 0.0, 0.0};
             continue;
         }
         for (int j = 0; j < INTERVALS; j++) {
             const double s = 0.5 * beam->element_length * (i - 1) + j * step;
-            const double k0 = model->natural_curvature(model->curvature_context, s);
-            const double k1 = model->natural_curvature(model->curvature_context, s + 0.5 * step);
-            const double k2 = model->natural_curvature(model->curvature_context, s + step);
+            const double k0 = natural_curvature(context, s);
+            const double k1 = natural_curvature(context, s + 0.5 * step);
+            const double k2 = natural_curvature(context, s + step);
             /* The rotation at half the step from the parabola through the three curvatures. */
             const double t1 = at.t + step * (5.0 * k0 + 8.0 * k1 - k2) / 24.0;
             const double t2 = at.t + step * (k0 + 4.0 * k1 + k2) / 6.0;
@@ -178,13 +179,12 @@ enum wb_status wb_beam_create(struct wb_beam **out, const struct wb_beam_model *
     }
 
     wb_rod_shape_init(&beam->shape, beam->element_length);
-    lay_out(beam, model);
-    measure_reference(beam);
-    if (!isfinite(beam->reference[beam->n_nodes - 1].x)) {
+    const enum wb_status bent =
+        wb_beam_set_curvature(beam, model->natural_curvature, model->curvature_context);
+    if (bent != WB_OK) {
         wb_beam_destroy(beam);
-        return wb_fail(WB_ERR_ARGUMENT, "the natural curvature is not finite everywhere");
+        return bent;
     }
-    wb_beam_reset(beam);
     *out = beam;
     return WB_OK;
 }
@@ -196,6 +196,17 @@ void wb_beam_destroy(struct wb_beam *beam)
     wb_fibres_destroy(beam->fibres);
     wb_memory_release(&beam->memory);
     free(beam);
+}
+
+enum wb_status wb_beam_set_curvature(struct wb_beam *beam,
+                                     double (*natural_curvature)(void *, double), void *context)
+{
+    lay_out(beam, natural_curvature, context);
+    measure_reference(beam);
+    wb_beam_reset(beam);
+    if (!isfinite(beam->reference[beam->n_nodes - 1].x))
+        return wb_fail(WB_ERR_ARGUMENT, "the natural curvature is not finite everywhere");
+    return WB_OK;
 }
 
 static void copy_nodes(const struct wb_beam *beam, struct wb_beam_node *to,
@@ -226,6 +237,14 @@ void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *mater
     wb_fibres_set_materials(beam->fibres, materials);
     for (int g = 0; g < beam->n_elements * POINTS; g++)
         beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
+}
+
+enum wb_status wb_beam_set_overlay(struct wb_beam *beam, const struct wb_overlay *overlay)
+{
+    WB_TRY(wb_fibres_set_overlay(beam->fibres, overlay));
+    for (int g = 0; g < beam->n_elements * POINTS; g++)
+        beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
+    return WB_OK;
 }
 
 static void subtract_load(struct wb_beam *beam, double factor)

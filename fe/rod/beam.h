@@ -45,6 +45,16 @@ void wb_beam_reset(struct wb_beam *beam);
 /* Exchanges the section's materials, as many as the section has. */
 void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *materials);
 
+/* The same with the overlay of a section that has one, for one of at most as many parts. */
+WB_MUST_CHECK enum wb_status wb_beam_set_overlay(struct wb_beam *beam,
+                                                 const struct wb_overlay *overlay);
+
+/* Exchanges the natural curvature (1/m over arc length; NULL: straight) and resets the beam.
+ * WB_ERR_ARGUMENT where it is not finite. */
+WB_MUST_CHECK enum wb_status
+wb_beam_set_curvature(struct wb_beam *beam,
+                      double (*natural_curvature)(void *context, double arc_length), void *context);
+
 /* Resultants and unbalanced forces of the trial state under `load_factor` times the distributed
  * load. */
 void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_balance *balance);

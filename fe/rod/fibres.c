@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "fe/linear/processor.h"
 #include "fe/material/hardening.h"
+#include "fe/material/law.h"
 #include "fe/rod/fibres_private.h"
 
 #define WB_LOG_DOMAIN "fibres"
@@ -41,6 +42,10 @@ struct wb_fibres {
     double EA, ES, EI;                 /* elastic N = EA eps + ES kappa, M = ES eps + EI kappa */
     double shear_ratio;                /* the section's shear stiffness over the fibres' sum */
     double shear_stiffness;
+    struct wb_overlay *overlay; /* of a section that has one; owned; its fibres are of one batch */
+    int overlay_capacity;       /* parts that the history has room for */
+    const struct wb_point_law *point_laws; /* (n_materials) of a section that has them; borrowed */
+    int point_history;                     /* rows of the history that the largest needs */
     void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *rows,
                     double *rows_after, struct wb_fibres_response *response);
     struct wb_memory memory; /* of all arrays */
@@ -80,6 +85,42 @@ static double shear_sum(const struct wb_fibres *f)
     return sum;
 }
 
+/* Rows of the history: of an overlay the plastic strain of each part, and three of the share with
+ * isotropic hardening. */
+static int history_rows(const struct wb_fibres *f)
+{
+    if (f->overlay)
+        return f->overlay_capacity + HISTORY_ROWS;
+    return f->point_laws ? f->point_history : HISTORY_ROWS;
+}
+
+static double overlay_modulus(const struct wb_overlay *overlay)
+{
+    double sum = 0.0;
+    for (int i = 0; i < overlay->n; i++)
+        sum += overlay->modulus[i];
+    return sum;
+}
+
+enum wb_status wb_fibres_set_overlay(struct wb_fibres *f, const struct wb_overlay *overlay)
+{
+    if (!f->overlay || overlay->n > f->overlay_capacity)
+        return wb_fail(WB_ERR_ARGUMENT, "an overlay of %d parts: the section has room for %d",
+                       overlay->n, f->overlay ? f->overlay_capacity : 0);
+    *f->overlay = *overlay;
+    const struct wb_material elastic = {
+        .hardening = WB_HARDENING_NONE_ELASTIC,
+        .youngs_modulus = overlay_modulus(overlay),
+        .poissons_ratio = f->materials[0].poissons_ratio,
+    };
+    wb_fibres_set_materials(f, &elastic);
+    f->yield_strain = overlay->yield_strain[0];
+    for (int i = 0; i < f->n; i++)
+        f->virgin[(f->overlay_capacity + 2) * f->n + i] =
+            elastic.youngs_modulus * overlay->yield_strain[0];
+    return WB_OK;
+}
+
 void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *materials)
 {
     memcpy(f->materials, materials, (size_t)f->n_materials * sizeof *materials);
@@ -96,7 +137,8 @@ void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *mate
             f->EA += EA;
             f->ES -= EA * f->y[i];
             f->EI += EA * f->y[i] * f->y[i];
-            f->virgin[2 * f->n + i] = law->growth ? m->yield_stress : 0.0;
+            if (!f->point_laws)
+                f->virgin[2 * f->n + i] = law->growth ? m->yield_stress : 0.0;
         }
         if (law->yields)
             f->yield_strain = fmin(f->yield_strain, m->yield_stress / m->youngs_modulus);
@@ -116,7 +158,7 @@ void wb_fibres_destroy(struct wb_fibres *f)
 
 size_t wb_fibres_history_size(const struct wb_fibres *fibres)
 {
-    return HISTORY_HEAD + HISTORY_ROWS * (size_t)fibres->n;
+    return HISTORY_HEAD + (size_t)history_rows(fibres) * (size_t)fibres->n;
 }
 
 double wb_fibres_axial_stiffness(const struct wb_fibres *fibres)
@@ -352,13 +394,142 @@ static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct stra
     response->D22 = add_lanes(D22);
 }
 
+/* The share of an overlay with isotropic hardening: the stress is the virgin curve's at the strain
+ * e = |trial| / E + p at which a first loading would have come as far. The third row is the stress
+ * reached so far. */
+static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_overlay *o, double E,
+                                                              lanes strain, const struct rows *h)
+{
+    const lanes plastic = load(h->plastic), p0 = load(h->accumulated), yield = load(h->third);
+    const lanes trial = E * (strain - plastic);
+    const lanes size = absolute(trial);
+    const masks yields = size - yield > on_surface * yield;
+    const lanes virgin = size * (1.0 / E) + p0;
+    lanes reached = {0}, tangent = {0};
+
+    for (int i = 0; i < o->n; i++) {
+        const lanes corner = o->yield_strain[i] + (lanes){0};
+        const masks below = virgin < corner;
+        const lanes modulus = o->modulus[i] + (lanes){0};
+        reached += modulus * select_lanes(below, virgin, corner);
+        tangent += select_lanes(below, modulus, (lanes){0});
+    }
+    const lanes p = virgin - reached * (1.0 / E);
+    store(h->plastic_after, select_lanes(yields, plastic + with_sign(p - p0, trial), plastic));
+    store(h->accumulated_after, select_lanes(yields, p, p0));
+    store(h->third_after, select_lanes(yields, reached, yield));
+    return (struct answer){select_lanes(yields, with_sign(reached, trial), trial),
+                           select_lanes(yields, tangent, E + (lanes){0})};
+}
+
+/* The share with kinematic hardening: each part is elastic up to its yield strain and perfectly
+ * plastic beyond; a row of the history is its plastic strain. */
+static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fibres *f, int at,
+                                                             lanes strain, const double *rows,
+                                                             double *rows_after)
+{
+    const struct wb_overlay *const o = f->overlay;
+    struct answer answer = {{0}, {0}};
+
+    for (int i = 0; i < o->n; i++) {
+        const lanes elastic = strain - load(rows + i * f->n + at);
+        const lanes most = o->yield_strain[i] + (lanes){0};
+        const lanes modulus = o->modulus[i] + (lanes){0};
+        const masks stays = absolute(elastic) < most;
+        const lanes kept = select_lanes(stays, elastic, with_sign(most, elastic));
+        answer.stress += modulus * kept;
+        answer.tangent += select_lanes(stays, modulus, (lanes){0});
+        store(rows_after + i * f->n + at,
+              select_lanes(stays, load(rows + i * f->n + at), strain - kept));
+    }
+    return answer;
+}
+
+static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct strains strains,
+                                             const double *rows, double *rows_after,
+                                             struct wb_fibres_response *response)
+{
+    const double eps = strains.eps, kappa = strains.kappa;
+    const double beta = f->overlay->isotropic_share, E = f->materials[0].youngs_modulus;
+    const double *const grown = rows + f->overlay_capacity * f->n;
+    double *const grown_after = rows_after + f->overlay_capacity * f->n;
+    lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
+
+    for (int i = 0; i < f->n; i += LANES) {
+        const struct rows h = {
+            .plastic = grown + i,
+            .accumulated = grown + f->n + i,
+            .third = grown + 2 * f->n + i,
+            .plastic_after = grown_after + i,
+            .accumulated_after = grown_after + f->n + i,
+            .third_after = grown_after + 2 * f->n + i,
+        };
+        const lanes y = load(f->y + i), area = load(f->area + i);
+        const lanes strain = eps - y * kappa;
+        lanes force = {0}, stiffness = {0};
+        if (beta < 1.0) {
+            const struct answer moving = respond_overlay_moving(f, i, strain, rows, rows_after);
+            force += (1.0 - beta) * moving.stress * area;
+            stiffness += (1.0 - beta) * moving.tangent * area;
+        }
+        if (beta > 0.0) {
+            const struct answer growing = respond_overlay_growing(f->overlay, E, strain, &h);
+            force += beta * growing.stress * area;
+            stiffness += beta * growing.tangent * area;
+        }
+        N += force;
+        M -= force * y;
+        D11 += stiffness;
+        D12 -= stiffness * y;
+        D22 += stiffness * y * y;
+    }
+    response->N = add_lanes(N);
+    response->M = add_lanes(M);
+    response->D11 = add_lanes(D11);
+    response->D12 = add_lanes(D12);
+    response->D22 = add_lanes(D22);
+}
+
+/* One fibre after the other: the history of a fibre is contiguous. */
+static void respond_points(const struct wb_fibres *f, double eps, double kappa, const double *rows,
+                           double *rows_after, struct wb_fibres_response *response)
+{
+    *response = (struct wb_fibres_response){0};
+    for (int b = 0; b < f->n_materials; b++) {
+        const struct wb_point_law *const law = &f->point_laws[f->batches[b].material];
+        for (int i = f->batches[b].begin; i < f->batches[b].end; i++) {
+            const double y = f->y[i], area = f->area[i];
+            double stress = 0.0, tangent = 0.0;
+            if (area > 0.0)
+                law->respond(law->context, eps - y * kappa, rows + f->point_history * i,
+                             rows_after + f->point_history * i, &stress, &tangent);
+            response->N += stress * area;
+            response->M -= stress * area * y;
+            response->D11 += tangent * area;
+            response->D12 -= tangent * area * y;
+            response->D22 += tangent * area * y * y;
+        }
+    }
+}
+
+/* A section's own kind. */
+static WB_ALWAYS_INLINE void respond_any(const struct wb_fibres *f, struct strains strains,
+                                         const double *rows, double *rows_after,
+                                         struct wb_fibres_response *response)
+{
+    if (f->overlay)
+        respond_overlay(f, strains, rows, rows_after, response);
+    else
+        respond_rows(f, strains, rows, rows_after, response);
+}
+
 /* The same function, compiled for what the processor has. No variant contracts a * b + c, so all
  * give the same bits. */
 static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
                              const double *rows, double *rows_after,
                              struct wb_fibres_response *response)
 {
-    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_any(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
 #ifdef WB_HAS_X86_VARIANTS
@@ -366,20 +537,24 @@ WB_AVX2 static void respond_avx2(const struct wb_fibres *f, double eps, double k
                                  const double *rows, double *rows_after,
                                  struct wb_fibres_response *response)
 {
-    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_any(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 
 WB_AVX512 static void respond_avx512(const struct wb_fibres *f, double eps, double kappa,
                                      const double *rows, double *rows_after,
                                      struct wb_fibres_response *response)
 {
-    respond_rows(f, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_any(f, (struct strains){eps, kappa}, rows, rows_after, response);
 }
 #endif
 
 static void choose_fastest(struct wb_fibres *fibres)
 {
     fibres->respond = respond_portably;
+    if (fibres->point_laws) {
+        fibres->respond = respond_points;
+        return;
+    }
 #ifdef WB_HAS_X86_VARIANTS
     if (wb_processor_has_avx512())
         fibres->respond = respond_avx512;
@@ -407,9 +582,18 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
     const size_t count = (size_t)n, materials = (size_t)section->n_materials;
     f->n = n;
     f->n_materials = section->n_materials;
+    if (section->overlay) {
+        f->overlay_capacity = section->overlay->n;
+        f->overlay = wb_memory_take(&f->memory, 1, sizeof *f->overlay);
+    }
+    f->point_laws = section->point_laws;
+    for (int m = 0; f->point_laws && m < section->n_materials; m++)
+        f->point_history = f->point_laws[m].n_history > f->point_history
+                               ? f->point_laws[m].n_history
+                               : f->point_history;
     f->y = wb_memory_take(&f->memory, count, sizeof *f->y);
     f->area = wb_memory_take(&f->memory, count, sizeof *f->area);
-    f->virgin = wb_memory_take(&f->memory, HISTORY_ROWS * count, sizeof *f->virgin);
+    f->virgin = wb_memory_take(&f->memory, (size_t)history_rows(f) * count, sizeof *f->virgin);
     f->batches = wb_memory_take(&f->memory, materials, sizeof *f->batches);
     f->materials = wb_memory_take(&f->memory, materials, sizeof *f->materials);
     f->tables = wb_memory_take(&f->memory, materials, sizeof *f->tables);
@@ -421,7 +605,17 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
     sort_fibres(f, section);
     choose_fastest(f);
     f->shear_ratio = 1.0;
-    wb_fibres_set_materials(f, section->materials);
+    if (section->overlay) {
+        f->materials[0] = section->materials[0];
+        if (wb_fibres_set_overlay(f, section->overlay) != WB_OK) {
+            wb_fibres_destroy(f);
+            return WB_ERR_ARGUMENT;
+        }
+    } else {
+        wb_fibres_set_materials(f, section->materials);
+    }
+    if (f->point_laws)
+        f->yield_strain = 0.0;
     f->shear_ratio = section->shear_stiffness / f->shear_stiffness;
     f->shear_stiffness = section->shear_stiffness;
     *out = f;

@@ -160,11 +160,29 @@ enum wb_status wb_section_init_circle(struct wb_section *section, double diamete
     return wb_section_add_ring(section, 0.0, diameter, material, 1.0, n);
 }
 
+enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
+                                   const struct wb_law *law, int n)
+{
+    wb_section_init_empty(section);
+    WB_TRY(wb_law_check(law));
+    WB_TRY(wb_section_init_circle(section, diameter, &law->material, n));
+    if (wb_law_is_plain(law))
+        return WB_OK;
+    section->overlay = calloc(1, sizeof *section->overlay);
+    if (!section->overlay) {
+        wb_section_release(section);
+        return wb_fail(WB_ERR_MEMORY, "no memory for an overlay");
+    }
+    wb_law_overlay(law, section->overlay);
+    return WB_OK;
+}
+
 void wb_section_release(struct wb_section *section)
 {
     if (!section)
         return;
     free(section->fibres);
     free(section->materials);
+    free(section->overlay);
     *section = (struct wb_section){0};
 }

@@ -9,6 +9,7 @@
 #define WB_FE_ROD_SECTION_H
 
 #include "base/status.h"
+#include "fe/material/law.h"
 #include "fe/material/material.h"
 
 struct wb_fibre {
@@ -17,17 +18,38 @@ struct wb_fibre {
     int material; /* index into the section's materials */
 };
 
+/* A stress-strain law that a section borrows, for wires richer than the laws of
+ * fe/material/hardening.h: the virtual rig's. It is asked fibre by fibre, which is slow. */
+struct wb_point_law {
+    int n_history; /* doubles of a point; all zero is the virgin state */
+    /* Stress (Pa) and its slope at a strain, from the history `before`; `after` receives the
+     * history if the step is accepted. Pure. */
+    void (*respond)(const void *context, double strain, const double *before, double *after,
+                    double *stress, double *tangent);
+    const void *context;
+};
+
 struct wb_section {
     int n_fibres;
     struct wb_fibre *fibres; /* (n_fibres), owned */
     int n_materials;
     struct wb_material *materials; /* (n_materials), owned */
     double shear_stiffness;        /* G A k, N, elastic */
+    /* NULL: the fibres have their materials' own laws. Else all fibres have this one, and the only
+     * material says their shear stiffness; owned. */
+    struct wb_overlay *overlay;
+    /* NULL, or a law for each material instead of the material's own, which then says the elastic
+     * stiffness; (n_materials), borrowed. */
+    const struct wb_point_law *point_laws;
 };
 
 /* Solid circle of one material with n strips (0: 20). */
 WB_MUST_CHECK enum wb_status wb_section_init_circle(struct wb_section *section, double diameter,
                                                     const struct wb_material *material, int n);
+
+/* Solid circle of a law with n strips (0: 20); WB_ERR_ARGUMENT for what makes no law. */
+WB_MUST_CHECK enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
+                                                 const struct wb_law *law, int n);
 
 /* An empty section to be filled with wb_section_add_ring(); shear stiffness starts at zero and
  * grows with each part. */

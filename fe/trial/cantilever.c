@@ -165,6 +165,27 @@ void wb_cantilever_reset(struct wb_cantilever *cantilever)
     cantilever->loads = cantilever->state.loads;
 }
 
+enum wb_status wb_cantilever_set_law(struct wb_cantilever *cantilever, const struct wb_law *law)
+{
+    WB_TRY(wb_law_check(law));
+    if (wb_law_is_plain(law)) {
+        wb_cantilever_set_materials(cantilever, &law->material);
+        return WB_OK;
+    }
+    struct wb_overlay overlay;
+    wb_law_overlay(law, &overlay);
+    return wb_beam_set_overlay(cantilever->beam, &overlay);
+}
+
+enum wb_status wb_cantilever_set_curvature(struct wb_cantilever *cantilever,
+                                           double (*natural_curvature)(void *, double),
+                                           void *context)
+{
+    WB_TRY(wb_beam_set_curvature(cantilever->beam, natural_curvature, context));
+    wb_cantilever_reset(cantilever);
+    return WB_OK;
+}
+
 void wb_cantilever_set_materials(struct wb_cantilever *cantilever,
                                  const struct wb_material *materials)
 {

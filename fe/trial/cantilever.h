@@ -19,6 +19,7 @@
 #include <stdbool.h>
 
 #include "base/status.h"
+#include "fe/material/law.h"
 #include "fe/material/material.h"
 #include "fe/rod/section.h"
 
@@ -99,6 +100,17 @@ void wb_cantilever_reset(struct wb_cantilever *cantilever);
  * nothing about the state: reset first. */
 void wb_cantilever_set_materials(struct wb_cantilever *cantilever,
                                  const struct wb_material *materials);
+
+/* Exchanges the law of a section made by wb_section_init_law(), for one of the same kind: plain, or
+ * an overlay of at most as many parts. WB_ERR_ARGUMENT otherwise. Reset first. */
+WB_MUST_CHECK enum wb_status wb_cantilever_set_law(struct wb_cantilever *cantilever,
+                                                   const struct wb_law *law);
+
+/* Exchanges the natural curvature and resets; see wb_cantilever_model. */
+WB_MUST_CHECK enum wb_status
+wb_cantilever_set_curvature(struct wb_cantilever *cantilever,
+                            double (*natural_curvature)(void *context, double arc_length),
+                            void *context);
 
 /* Moves to the equilibrium at `target`, from wherever the state is, in one step or in as many
  * sub-steps as convergence needs. The first move also applies weight and counterweight. Tip loads
