@@ -167,9 +167,11 @@ static void describe_rows(struct wb_align *align)
                       n_gaps == 1 ? "" : "s", longest);
 }
 
-static enum wb_status run(struct wb_align *align, const char *path)
+static enum wb_status run(struct wb_align *align,
+                          enum wb_status (*load)(struct wb_align *, const void *),
+                          const void *context)
 {
-    WB_TRY(wb_align_load(align, path));
+    WB_TRY(load(align, context));
     WB_TRY(wb_align_times(align));
     WB_TRY(wb_align_markers(align));
     WB_TRY(wb_align_rows(align));
@@ -195,8 +197,21 @@ static void release(struct wb_align *align)
     wb_frame_release(&align->frame);
 }
 
+static enum wb_status load_recording(struct wb_align *align, const void *path)
+{
+    return wb_align_load(align, path);
+}
+
 enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_path,
                             const struct wb_align_settings *settings, struct wb_reason *why)
+{
+    return wb_align_run_from(dataset, settings, load_recording, recording_path, why);
+}
+
+enum wb_status wb_align_run_from(struct wb_dataset *dataset,
+                                 const struct wb_align_settings *settings,
+                                 enum wb_status (*load)(struct wb_align *, const void *),
+                                 const void *context, struct wb_reason *why)
 {
     struct wb_reason lost = {.text = ""};
     memset(dataset, 0, sizeof *dataset);
@@ -216,7 +231,7 @@ enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_pa
         align->settings = *settings;
         if (align->settings.row_rate == 0.0)
             align->settings.row_rate = DEFAULT_ROW_RATE;
-        status = run(align, recording_path);
+        status = run(align, load, context);
         release(align);
     }
     free(align);

@@ -152,6 +152,13 @@ WB_MUST_CHECK enum wb_status wb_align_stage(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_force(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_natural(struct wb_align *align);
 
+/* wb_align_run() from another source: `load` does what wb_align_load() does. Tests make specimens
+ * by it without a recording. */
+WB_MUST_CHECK enum wb_status
+wb_align_run_from(struct wb_dataset *dataset, const struct wb_align_settings *settings,
+                  enum wb_status (*load)(struct wb_align *align, const void *context),
+                  const void *context, struct wb_reason *why);
+
 /* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
  * vertical over the wire's length. */
 double wb_align_level_uncertainty(const struct wb_align *align);

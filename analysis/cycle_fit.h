@@ -1,0 +1,93 @@
+/* A law fitted to the first cycle of one specimen, loading and unloading together.
+ *
+ * Least squares (GSL multifit_nlinear, Powell's dogleg) on the tension of both branches and
+ * the places of the markers. Free are the law's numbers and two of the specimen: the angle by
+ * which it is bent by nature and the level of zero deflection. Each marker sits a constant distance
+ * off the axis, which is eliminated (variable projection). Points far off are weighted down
+ * (Huber) and counted.
+ *
+ * Loading alone leaves E and the hardening rule open: a wire that yields early and hardens bends up
+ * like one that is soft. The way back tells them apart.
+ */
+#ifndef WB_ANALYSIS_CYCLE_FIT_H
+#define WB_ANALYSIS_CYCLE_FIT_H
+
+#include <stdbool.h>
+
+#include "analysis/cycle_data.h"
+#include "base/reason.h"
+#include "base/status.h"
+#include "fe/material/law.h"
+
+/* Laws that may be fitted, the simplest first. */
+enum wb_candidate {
+    WB_CANDIDATE_LUDWIK_ISOTROPIC,
+    WB_CANDIDATE_LUDWIK_KINEMATIC,
+    WB_CANDIDATE_LUDWIK_MIXED,
+    WB_CANDIDATE_PARALLEL_KINEMATIC,
+    WB_CANDIDATE_PARALLEL_MIXED,
+    WB_CANDIDATES
+};
+
+/* "Ludwik, isotropic", ... */
+const char *wb_candidate_name(enum wb_candidate candidate);
+
+enum {
+    WB_FIT_PARTS = 7,     /* parallel parts, the last elastic */
+    WB_FIT_MOST_LAW = 8,  /* free numbers of a law */
+    WB_FIT_MOST_FREE = 10 /* and of the specimen */
+};
+
+struct wb_cycle_fit_settings {
+    double force_noise;   /* N: weight of a point is one over the larger of this, */
+    double force_share;   /* and of this part of the largest force */
+    double place_noise;   /* m, of a marker's place */
+    double offset_prior;  /* m: standard deviation of a marker's constant offset, */
+    double level_prior;   /* m: of the level of zero deflection, */
+    double modulus_prior; /* 1: of the second difference of ln(modulus) of parallel parts */
+    int n_elements;       /* while searching */
+    int n_final_elements; /* of the last run */
+    int n_fibres;         /* over the diameter */
+    int max_iterations;
+};
+void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
+
+/* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain at the first
+ * point of the data to that at the last, where the elastic part's would stand. */
+struct wb_cycle_grid {
+    double first_strain, last_strain;
+};
+
+struct wb_cycle_fit {
+    enum wb_candidate candidate;
+    struct wb_law law;
+    double bow_angle, bow_angle_error; /* rad */
+    double level;                      /* m */
+    bool is_converged;                 /* else the iterations ran out */
+    bool is_at_bound;                  /* an exponent or a share at the end of its range */
+    double misfit;                     /* RMS of the force residuals over the largest force, */
+    double loading_misfit, unloading_misfit; /* of either branch; NaN: none */
+    double place_rms;                        /* m, after the markers' offsets; NaN without places */
+    double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
+                                                 specimen's own residuals; NaN of parallel parts */
+    double clamp_curvature;                   /* 1/m, largest */
+    double first_curvature;                   /* 1/m, at the first point */
+    int n_free;                               /* numbers fitted */
+    int n_outliers;                           /* points weighted by less than half */
+    int runs, iterations;
+    double cpu_s;
+    /* (data->n_points) computed tension of the last run, N; owned; NULL where it failed */
+    double *tension;
+};
+
+/* Fits one candidate. `start` gives a law near by (Ludwik's), from which all start; `grid` is used
+ * by parallel parts. Without a way back only WB_CANDIDATE_LUDWIK_ISOTROPIC can be fitted.
+ * WB_ERR_CONVERGENCE where the beam cannot compute the start; `why` receives it, NULL: logged. */
+WB_MUST_CHECK enum wb_status
+wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
+                 enum wb_candidate candidate, const struct wb_law *start,
+                 const struct wb_cycle_grid *grid, const struct wb_cycle_fit_settings *settings,
+                 struct wb_reason *why);
+void wb_cycle_fit_release(struct wb_cycle_fit *fit); /* accepts a zeroed one */
+
+#endif

@@ -1,0 +1,250 @@
+#include "tests/analysis/fast_rig.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/align.h"
+#include "analysis/align_private.h"
+#include "base/file.h"
+#include "base/units.h"
+#include "fe/rod/fibres.h"
+#include "fixtures/virtual/live_wire.h"
+#include "fixtures/virtual/sim_cell.h"
+#include "fixtures/virtual/sim_mocap.h"
+
+#define WB_LOG_DOMAIN "test"
+
+static const double tare_time = 2.5, speed = 1.0 * WB_MM, turn_pause = 0.2, end_pause = 2.0;
+static const int strips = 12;
+
+void fast_rig_init(struct fast_rig *fast, int type, double length, uint64_t seed)
+{
+    char path[WB_PATH], name[128];
+    memset(fast, 0, sizeof *fast);
+    snprintf(name, sizeof name, "fixtures/specimens/type%d-L85-1.yaml", type);
+    bool good = wb_file_find_data(path, "fixtures/rigs/paper.yaml") == WB_OK &&
+                wb_rig_read(path, &fast->rig) == WB_OK && wb_file_find_data(path, name) == WB_OK &&
+                wb_specimen_read(path, &fast->specimen) == WB_OK;
+    snprintf(name, sizeof name, "fixtures/wires/type%d.yaml", type);
+    good = good && wb_file_find_data(path, name) == WB_OK &&
+           wb_wire_read(path, &fast->wire, NULL) == WB_OK &&
+           wb_file_find_data(path, "fixtures/virtual/wires.yaml") == WB_OK &&
+           wb_composite_read(path, fast->wire.name, &fast->composite) == WB_OK;
+    if (!good) {
+        fprintf(stderr, "the fixtures of type %d cannot be read\n", type);
+        abort();
+    }
+    for (int i = 0; i < fast->specimen.n_markers; i++)
+        fast->specimen.markers[i] *= length / fast->specimen.length;
+    fast->specimen.length = length;
+    fast->rig.is_virtual = true;
+    fast->rig.stage.speed = speed;
+    fast->cycles = 1;
+    fast->travel = 53.0 * WB_MM;
+    fast->every_frame = 6;
+    fast->noise = 1.0;
+    wb_truth_draw(&fast->truth, seed, &fast->rig, &fast->specimen);
+}
+
+/* Travel of the stage at a time, down and back in cycles from the end of the tare on. */
+static double travel_at(const struct fast_rig *fast, double t)
+{
+    const double way = fast->travel / speed;
+    const double period = 2.0 * way + turn_pause + end_pause;
+    const double since = t - tare_time;
+    if (since < 0.0 || since >= fast->cycles * period)
+        return 0.0;
+    const double phase = fmod(since, period);
+    if (phase < way)
+        return phase * speed;
+    if (phase < way + turn_pause)
+        return fast->travel;
+    return fmax(0.0, fast->travel - (phase - way - turn_pause) * speed);
+}
+
+struct bench {
+    const struct fast_rig *fast;
+    struct wb_truth truth;
+    struct wb_live_wire *wire;
+    struct wb_live_wire_view view;
+    struct wb_sim_cell cell;
+    struct wb_sim_mocap mocap;
+    struct wb_natnet_frame frame;
+    double tare_sum;
+    long tare_n;
+};
+
+static bool add_item(struct wb_align_list *list, const void *item, size_t size)
+{
+    if (list->n == list->capacity) {
+        const size_t capacity = list->capacity ? 2 * list->capacity : 4096;
+        void *const more = realloc(list->items, capacity * size);
+        if (!more)
+            return false;
+        list->items = more;
+        list->capacity = capacity;
+    }
+    memcpy((char *)list->items + list->n++ * size, item, size);
+    return true;
+}
+
+/* Stamps of the host: whole nanoseconds from an hour on. */
+static int64_t stamp(double t)
+{
+    return INT64_C(3600000000000) + (int64_t)(t * 1e9);
+}
+
+static enum wb_status read_cell(struct bench *bench, struct wb_align *align, uint64_t k, double t)
+{
+    static char line[512];
+    wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
+    wb_sim_cell_read(&bench->cell, k, t, bench->view.tension);
+    (void)wb_sim_cell_take(&bench->cell, line, sizeof line);
+    const struct wb_align_reading reading = {.t_ns = stamp(t), .force = bench->cell.reading};
+    if (t > 0.5 && t < tare_time) {
+        bench->tare_sum += reading.force;
+        bench->tare_n++;
+    }
+    return add_item(&align->readings, &reading, sizeof reading) ? WB_OK : WB_ERR_MEMORY;
+}
+
+static enum wb_status take_frame(struct bench *bench, struct wb_align *align, uint64_t k, double t)
+{
+    wb_live_wire_move(bench->wire, travel_at(bench->fast, t), &bench->view);
+    wb_sim_mocap_frame(&bench->mocap, k, &bench->view, &bench->frame);
+    bench->frame.mocap.t_ns = stamp(t);
+    bench->frame.mocap.t_device = t;
+    bench->frame.mocap.camera_mid_exposure = 0;
+    return wb_point_cloud_add(&align->cloud, &bench->frame.mocap);
+}
+
+static enum wb_status run_bench(struct bench *bench, struct wb_align *align)
+{
+    const struct fast_rig *const fast = bench->fast;
+    const double way = fast->travel / speed;
+    const double end = tare_time + fast->cycles * (2.0 * way + turn_pause + end_pause) + 0.5;
+    const uint64_t every = (uint64_t)fast->every_frame;
+    uint64_t frame = every - 1, reading = 0, report = 0;
+    for (;;) {
+        const double t_frame = (double)(frame + 1) / bench->truth.frame_rate;
+        const double t_reading = wb_sim_cell_time(&bench->cell, reading);
+        const double t_report = 0.2 * (double)(report + 1);
+        const double t = fmin(t_report, fmin(t_frame, t_reading));
+        if (t > end)
+            return WB_OK;
+        if (t == t_reading) {
+            WB_TRY(read_cell(bench, align, reading++, t));
+        } else if (t == t_frame) {
+            WB_TRY(take_frame(bench, align, frame, t));
+            frame += every;
+        } else {
+            const struct wb_align_report_point point = {.t_ns = stamp(t),
+                                                        .travel = travel_at(fast, t)};
+            if (!add_item(&align->reports, &point, sizeof point))
+                return WB_ERR_MEMORY;
+            report++;
+        }
+    }
+}
+
+static enum wb_status load(struct wb_align *align, const void *context)
+{
+    const struct fast_rig *const fast = context;
+    const struct wb_natnet_version version = {3, 0};
+    struct bench *const bench = calloc(1, sizeof *bench);
+    if (!bench)
+        return WB_ERR_MEMORY;
+    bench->fast = fast;
+    bench->truth = fast->truth;
+    bench->truth.cell_noise *= fast->noise;
+    bench->truth.marker_noise *= fast->noise;
+    snprintf(align->name, sizeof align->name, "seed %llu", (unsigned long long)fast->truth.seed);
+    align->rig = fast->rig;
+    align->specimen = fast->specimen;
+    align->wire = fast->wire;
+    align->is_virtual = true;
+    align->gravity = fast->rig.gravity;
+    wb_align_describe(align);
+    const struct wb_live_wire_parts parts = {&bench->truth, &fast->composite, &fast->wire,
+                                             &fast->rig, &fast->specimen};
+    const struct wb_live_wire_settings settings = {.variant = fast->variant, .n_strips = strips};
+    enum wb_status status = wb_live_wire_create(&bench->wire, &parts, &settings);
+    if (status == WB_OK)
+        status = wb_sim_cell_init(&bench->cell, &bench->truth, &fast->rig);
+    if (status == WB_OK) {
+        wb_sim_mocap_init(&bench->mocap, &bench->truth, fast->rig.mocap.up,
+                          fast->specimen.n_markers, version);
+        status = run_bench(bench, align);
+    }
+    if (status == WB_OK && wb_live_wire_failures(bench->wire) > 0)
+        status = wb_fail(WB_ERR_CONVERGENCE, "%s: the wire of the fast rig did not converge",
+                         align->name);
+    align->has_tare = align->has_start = true;
+    align->tare = bench->tare_sum / (double)bench->tare_n;
+    align->tare_deviation = bench->truth.cell_noise;
+    align->tare_samples = bench->tare_n;
+    align->tare_ns = stamp(tare_time);
+    align->start_ns = stamp(tare_time);
+    align->n_cycle_starts = fast->cycles;
+    wb_live_wire_destroy(bench->wire);
+    free(bench);
+    return status;
+}
+
+enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb_dataset *dataset)
+{
+    struct wb_align_settings settings;
+    wb_align_default_settings(&settings);
+    return wb_align_run_from(dataset, &settings, load, fast, NULL);
+}
+
+void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature, double *moment,
+                    double *rigidity, double *residual_curvature)
+{
+    struct wb_composite_laws laws = {.time_step = 0.0};
+    struct wb_section section;
+    struct wb_fibres *fibres;
+    struct wb_fibres_response response;
+    if (wb_composite_build_variant(&fast->composite, fast->variant, &fast->wire,
+                                   fast->truth.stiffness_factor, fast->truth.yield_factor, strips,
+                                   &laws, &section) != WB_OK ||
+        wb_fibres_create(&fibres, &section) != WB_OK)
+        abort();
+    const size_t size = wb_fibres_history_size(fibres);
+    double *before = calloc(2 * size, sizeof *before),
+           *after = before + size, *const memory = before;
+    if (!before)
+        abort();
+    if (rigidity)
+        *rigidity = wb_fibres_bending_stiffness(fibres);
+    /* The clamp's curvature grows about evenly in time. */
+    double at = 0.0;
+    for (int i = 0; i < n; i++) {
+        laws.time_step = fast->travel / speed * (curvature[i] - at) / curvature[n - 1];
+        wb_fibres_respond(fibres, 0.0, curvature[i], before, after, &response);
+        if (moment)
+            moment[i] = response.M;
+        double *const old = before;
+        before = after;
+        after = old;
+        at = curvature[i];
+    }
+    if (residual_curvature) {
+        double low = 0.0, high = at;
+        laws.time_step = 0.0;
+        for (int i = 0; i < 60; i++) {
+            const double middle = 0.5 * (low + high);
+            wb_fibres_respond(fibres, 0.0, middle, before, after, &response);
+            if (response.M > 0.0)
+                high = middle;
+            else
+                low = middle;
+        }
+        *residual_curvature = 0.5 * (low + high);
+    }
+    free(memory);
+    wb_fibres_destroy(fibres);
+    wb_section_release(&section);
+}

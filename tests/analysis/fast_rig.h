@@ -1,0 +1,43 @@
+/* Specimens of the virtual rig without clocks: the same wire, instruments, noise and alignment as
+ * a recording of the rig, but computed one after the other as fast as they can be.
+ */
+#ifndef WB_TESTS_ANALYSIS_FAST_RIG_H
+#define WB_TESTS_ANALYSIS_FAST_RIG_H
+
+#include <stdint.h>
+
+#include "analysis/dataset.h"
+#include "base/status.h"
+#include "daq/rig.h"
+#include "daq/specimen.h"
+#include "fe/model/wire.h"
+#include "fixtures/virtual/composite.h"
+#include "fixtures/virtual/truth.h"
+
+/* One specimen's test. */
+struct fast_rig {
+    struct wb_rig rig;
+    struct wb_specimen specimen;
+    struct wb_wire wire;
+    struct wb_composite composite;
+    enum wb_composite_variant variant;
+    struct wb_truth truth;
+    int cycles;
+    double travel;   /* m */
+    int every_frame; /* of the cameras' is taken; 6: as many frames as the dataset has rows */
+    double noise;    /* factor on the noise of the cell and of the markers; 1 */
+};
+
+/* The paper's bench, a type (1 to 3), a length (m), a seed; one cycle of 53 mm. */
+void fast_rig_init(struct fast_rig *fast, int type, double length, uint64_t seed);
+
+/* The dataset of its test. */
+WB_MUST_CHECK enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb_dataset *dataset);
+
+/* The true section of the specimen: bending moment of a first loading (N m) at n ascending
+ * curvatures (1/m), reached at the speed of the test; the elastic flexural rigidity (N m2); what
+ * curvature is left when the moment is let go from the last. Any may be NULL. */
+void fast_rig_truth(const struct fast_rig *fast, int n, const double *curvature, double *moment,
+                    double *rigidity, double *residual_curvature);
+
+#endif
