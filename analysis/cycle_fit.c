@@ -33,7 +33,9 @@ static const double huber_limit = 2.5;
 /* It has arrived when the next step changes no number by more than this, or the sum of squares by
  * less than this part. */
 static const double arrived = 2e-4;
-static const double settled_sum = 1e-5;
+static const double settled_sum = 1e-4;
+/* A gain of an iteration below this part is too slow for a fit that is far off. */
+static const double slow_gain = 0.1;
 /* Residual of a run that does not reach its end: far above any other. */
 static const double lost_residual = 1e4;
 
@@ -314,6 +316,16 @@ static void set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
     free(sizes);
 }
 
+/* RMS of the force residuals over the largest force. */
+static double force_misfit(const struct problem *p, const gsl_vector *f)
+{
+    const int n = p->data->n_points;
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum += gsl_vector_get(f, (size_t)i) * gsl_vector_get(f, (size_t)i) / p->weight[i];
+    return sqrt(sum / n) * p->force_scale / p->data->max_force;
+}
+
 /* Iterates to the end; false when the iterations ran out. */
 static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *iterations)
 {
@@ -332,6 +344,9 @@ static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *i
             largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
         if (largest < arrived || before - now < settled_sum * now)
             return true;
+        if (before - now < slow_gain * now && force_misfit(p, w->f) > p->settings->hopeless &&
+            p->settings->hopeless > 0.0)
+            return false;
         before = now;
     }
     return false;
@@ -450,7 +465,8 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
         if (p->status != WB_OK)
             return p->status;
         set_weights(p, w->f, &fit->n_outliers);
-        if (pass > 0 ? fit->n_outliers == before : fit->n_outliers == 0)
+        if (!fit->is_converged ||
+            (pass > 0 ? fit->n_outliers == before : fit->n_outliers == 0))
             break;
         memcpy(zero, w->x->data, (size_t)p->n_free * sizeof *zero);
         if (gsl_multifit_nlinear_init(&x.vector, &fdf, w) != GSL_SUCCESS)

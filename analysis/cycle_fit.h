@@ -49,6 +49,7 @@ struct wb_cycle_fit_settings {
     int n_final_elements; /* of the last run */
     int n_fibres;         /* over the diameter */
     int max_iterations;
+    double hopeless; /* a fit whose misfit stays above this is ended early; 0: none is */
 };
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
 

@@ -1,0 +1,28 @@
+/* What a law says of a wire's section under pure bending: the numbers that users take away. */
+#ifndef WB_ANALYSIS_BENDING_H
+#define WB_ANALYSIS_BENDING_H
+
+#include "base/status.h"
+#include "fe/material/law.h"
+
+struct wb_bending {
+    double flexural_rigidity; /* EI of the virgin section, N m2 */
+    double springback;        /* residual over largest curvature: bent to the largest and let go, 1 */
+    double loop_energy;       /* J/m lost each time: from the largest curvature straight and back */
+};
+
+/* Of a solid circle, up to `largest` (1/m, above 0). Moments (N m) of a first loading at n curvatures
+ * (1/m, at least 0). Fails only without memory. */
+WB_MUST_CHECK enum wb_status wb_bending_describe(const struct wb_law *law, double diameter,
+                                                 double largest, struct wb_bending *bending);
+WB_MUST_CHECK enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int n,
+                                                const double *curvature, double *moment);
+
+/* Ludwik's law with isotropic hardening that bends like `law` on a first loading: E, sigma_Y, K and
+ * n by least squares on ln M at curvatures up to `largest`. What it says of the way back is
+ * another rule's. *misfit is the root mean square of the relative differences of M. */
+WB_MUST_CHECK enum wb_status wb_bending_ludwik(const struct wb_law *law, double diameter,
+                                               double largest, struct wb_material *equivalent,
+                                               double *misfit);
+
+#endif
