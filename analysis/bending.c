@@ -15,7 +15,7 @@
 
 enum {
     STRIPS = 100,
-    LOOP_STEPS = 200,   /* from straight to bent */
+    LOOP_STEPS = 200, /* from straight to bent */
     EQUIVALENT_POINTS = 40,
     EQUIVALENT_FREE = 4
 };
@@ -175,8 +175,7 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
     const double E = law->material.youngs_modulus;
     int yields = 0;
     while (yields < EQUIVALENT_POINTS - 1 &&
-           e->moment[yields] / e->curvature[yields] >
-               0.9 * e->moment[0] / e->curvature[0])
+           e->moment[yields] / e->curvature[yields] > 0.9 * e->moment[0] / e->curvature[0])
         yields++;
     const double last_strain = R * e->curvature[EQUIVALENT_POINTS - 1];
     double start[EQUIVALENT_FREE] = {
@@ -202,9 +201,8 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
 enum wb_status wb_bending_ludwik(const struct wb_law *law, double diameter, double largest,
                                  struct wb_material *equivalent, double *misfit)
 {
-    struct equivalent e = {.diameter = diameter,
-                           .poissons_ratio = law->material.poissons_ratio,
-                           .status = WB_OK};
+    struct equivalent e = {
+        .diameter = diameter, .poissons_ratio = law->material.poissons_ratio, .status = WB_OK};
     for (int i = 0; i < EQUIVALENT_POINTS; i++)
         e.curvature[i] =
             largest * pow(first_of_equivalent, 1.0 - (double)i / (EQUIVALENT_POINTS - 1));

@@ -7,12 +7,12 @@
 
 struct wb_bending {
     double flexural_rigidity; /* EI of the virgin section, N m2 */
-    double springback;        /* residual over largest curvature: bent to the largest and let go, 1 */
-    double loop_energy;       /* J/m lost each time: from the largest curvature straight and back */
+    double springback;  /* residual over largest curvature: bent to the largest and let go, 1 */
+    double loop_energy; /* J/m lost each time: from the largest curvature straight and back */
 };
 
-/* Of a solid circle, up to `largest` (1/m, above 0). Moments (N m) of a first loading at n curvatures
- * (1/m, at least 0). Fails only without memory. */
+/* Of a solid circle, up to `largest` (1/m, above 0). Moments (N m) of a first loading at n
+ * curvatures (1/m, at least 0). Fails only without memory. */
 WB_MUST_CHECK enum wb_status wb_bending_describe(const struct wb_law *law, double diameter,
                                                  double largest, struct wb_bending *bending);
 WB_MUST_CHECK enum wb_status wb_bending_moments(const struct wb_law *law, double diameter, int n,

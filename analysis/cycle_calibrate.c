@@ -105,6 +105,17 @@ static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate 
     return status;
 }
 
+static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *member)
+{
+    const struct wb_cycle_fit *best = NULL;
+    for (int c = WB_CANDIDATE_LUDWIK_ISOTROPIC; c <= WB_CANDIDATE_LUDWIK_MIXED; c++) {
+        const struct wb_cycle_answer *const answer = &member->answers[c];
+        if (answer->is_fitted && (!best || answer->fit.misfit < best->misfit))
+            best = &answer->fit;
+    }
+    return best;
+}
+
 /* Ludwik's candidates: kinematic first, which most wires are nearest to. */
 static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct wb_dataset *dataset,
                                   const struct wb_cycle_calibrate_settings *settings)
@@ -117,20 +128,13 @@ static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct w
     WB_TRY(first_law(dataset, &start, &member->why));
     if (member->data.n_loading == member->data.n_points)
         return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, &settings->fit);
-    for (size_t i = 0; i < sizeof order / sizeof order[0]; i++)
-        WB_TRY(fit_one(member, order[i], &start, &none, &settings->fit));
-    return WB_OK;
-}
-
-static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *member)
-{
-    const struct wb_cycle_fit *best = NULL;
-    for (int c = WB_CANDIDATE_LUDWIK_ISOTROPIC; c <= WB_CANDIDATE_LUDWIK_MIXED; c++) {
-        const struct wb_cycle_answer *const answer = &member->answers[c];
-        if (answer->is_fitted && (!best || answer->fit.misfit < best->misfit))
-            best = &answer->fit;
+    for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
+        const struct wb_cycle_fit *const near = best_ludwik(member);
+        const bool is_mixed = order[i] == WB_CANDIDATE_LUDWIK_MIXED;
+        WB_TRY(fit_one(member, order[i], is_mixed && near ? &near->law : &start, &none,
+                       &settings->fit));
     }
-    return best;
+    return WB_OK;
 }
 
 static enum wb_status fit_parallels(struct wb_cycle_member *member,
@@ -190,9 +194,9 @@ static void *work_on(void *context)
     for (int i = take_next(work); i >= 0; i = take_next(work)) {
         struct wb_cycle_member *const member = &work->calibration->members[i];
         const double begin = thread_time();
-        const enum wb_status status =
-            work->grid ? fit_parallels(member, work->grid, work->settings)
-                       : fit_ludwiks(member, work->datasets[i], work->settings);
+        const enum wb_status status = work->grid
+                                          ? fit_parallels(member, work->grid, work->settings)
+                                          : fit_ludwiks(member, work->datasets[i], work->settings);
         member->cpu_s += thread_time() - begin;
         finish_one(work, status);
     }
@@ -336,8 +340,8 @@ static void choose(struct wb_cycle_calibration *calibration)
         rank->is_rejected = !(rank->f_ratio <= rank->f_limit);
         rank->counts = ratio <= counts_up_to;
         const double best_dof = freedom(calibration, best);
-        const bool like_best = ratio * ratio * best_dof / dof <=
-                               gsl_cdf_fdist_Qinv(f_level, dof, best_dof);
+        const bool like_best =
+            ratio * ratio * best_dof / dof <= gsl_cdf_fdist_Qinv(f_level, dof, best_dof);
         if (!rank->is_rejected &&
             (simplest < 0 || rank->candidate < calibration->ranked[simplest].candidate))
             simplest = i;
@@ -346,8 +350,7 @@ static void choose(struct wb_cycle_calibration *calibration)
     }
     const int chosen = simplest >= 0 ? simplest : alike >= 0 ? alike : 0;
     calibration->chosen = calibration->ranked[chosen].candidate;
-    calibration->is_supported =
-        calibration->has_unloading && best->misfit <= largest_supported;
+    calibration->is_supported = calibration->has_unloading && best->misfit <= largest_supported;
 }
 
 /* Numbers of a specimen that are averaged. */
@@ -381,8 +384,7 @@ static void average(const struct wb_cycle_calibration *calibration, enum wb_cand
     const int n = calibration->n_members;
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < n; i++) {
-        const double x =
-            log(number_of(&calibration->members[i].answers[candidate], number));
+        const double x = log(number_of(&calibration->members[i].answers[candidate], number));
         sum += x;
         squares += x * x;
     }
@@ -453,7 +455,8 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
 static void average_law(struct wb_cycle_calibration *calibration)
 {
     const int n = calibration->n_members;
-    const struct wb_law *const first = &calibration->members[0].answers[calibration->chosen].fit.law;
+    const struct wb_law *const first =
+        &calibration->members[0].answers[calibration->chosen].fit.law;
     double share = 0.0, E = 0.0, yield = 0.0, hardening = 0.0, exponent = 0.0;
     double moduli[WB_LAW_MOST_PARTS] = {0.0};
     /* K goes with n; the stress that hardening adds at this plastic strain does not. */
@@ -469,8 +472,7 @@ static void average_law(struct wb_cycle_calibration *calibration)
             const struct wb_material *const m = &law->material;
             E += log(m->youngs_modulus) / n;
             yield += log(m->yield_stress) / n;
-            hardening +=
-                log(m->strength_coefficient * pow(plastic, m->hardening_exponent)) / n;
+            hardening += log(m->strength_coefficient * pow(plastic, m->hardening_exponent)) / n;
             exponent += log(m->hardening_exponent) / n;
         }
     }
@@ -508,8 +510,8 @@ static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)
         member->ludwik = law->material;
         member->ludwik_misfit = 0.0;
         if (law->form == WB_LAW_PARALLEL)
-            WB_TRY(wb_bending_ludwik(law, diameter, largest, &member->ludwik,
-                                     &member->ludwik_misfit));
+            WB_TRY(
+                wb_bending_ludwik(law, diameter, largest, &member->ludwik, &member->ludwik_misfit));
     }
     return WB_OK;
 }

@@ -1,8 +1,8 @@
 /* Calibration of one wire on whole cycles: which law and which hardening rule the specimens
  * support, and what it says with which certainty.
  *
- * Each specimen is fitted by itself with each candidate (analysis/cycle_fit.h). A candidate's misfit
- * is the root mean square of the force residuals of both ways over F_max, pooled over the
+ * Each specimen is fitted by itself with each candidate (analysis/cycle_fit.h). A candidate's
+ * misfit is the root mean square of the force residuals of both ways over F_max, pooled over the
  * specimens. Chosen is the simplest that an F-test against the repeat noise of the readings does
  * not reject; where all are rejected, the simplest that the same test does not tell from the best.
  *
@@ -72,7 +72,7 @@ struct wb_cycle_calibration {
     int n_members;
     struct wb_cycle_member *members; /* (n_members), owned */
     bool has_unloading;
-    double repeat_noise; /* of a point, over F_max */
+    double repeat_noise;                        /* of a point, over F_max */
     struct wb_cycle_rank ranked[WB_CANDIDATES]; /* best first; those not fitted last */
     int n_ranked;
     enum wb_candidate chosen;
@@ -81,8 +81,9 @@ struct wb_cycle_calibration {
     struct wb_estimate rigidity, springback, loop_energy; /* N m2, 1, J/m */
     double curvature[WB_CYCLE_MOMENTS];
     struct wb_estimate moment[WB_CYCLE_MOMENTS];
-    struct wb_law law;         /* means over the specimens */
-    struct wb_material ludwik; /* its equivalent; the law itself where that is Ludwik's, isotropic */
+    struct wb_law law; /* means over the specimens */
+    struct wb_material
+        ludwik; /* its equivalent; the law itself where that is Ludwik's, isotropic */
     double ludwik_misfit;
     bool is_strength_identifiable, is_exponent_identifiable; /* K, n of a Ludwik law */
     double ln_strength_error, exponent_error;                /* largest of the specimens' */
@@ -94,9 +95,9 @@ struct wb_cycle_calibration {
 struct wb_cycle_calibrate_settings {
     struct wb_cycle_data_settings data;
     struct wb_cycle_fit_settings fit;
-    double pooled_deviation;        /* s of ln(EI) pooled over other wires; 0: of these specimens */
-    int pooled_degrees;             /* its degrees of freedom */
-    int threads;                    /* 0: as many as there are processors */
+    double pooled_deviation; /* s of ln(EI) pooled over other wires; 0: of these specimens */
+    int pooled_degrees;      /* its degrees of freedom */
+    int threads;             /* 0: as many as there are processors */
     bool (*progress)(void *context, int done, int all); /* NULL; false stops */
     void *progress_context;
 };

@@ -24,6 +24,8 @@ static const double largest_exponent = 1.5;           /* isotropic */
 static const double largest_kinematic_exponent = 1.0; /* beyond, work would come from nowhere */
 /* A logistic number beyond this is at its bound. */
 static const double at_bound = 4.6; /* 1 % of the range */
+/* Where the share of mixed hardening starts from a law with a pure rule. */
+static const double pure_start = 1.5;
 /* Weak prior of logistic numbers, so that one that the data do not know stays finite. */
 static const double logistic_prior = 4.0;
 /* Steps of the differences that give the slopes, in units of the free numbers' scales. */
@@ -36,6 +38,7 @@ static const double arrived = 2e-4;
 static const double settled_sum = 1e-4;
 /* A gain of an iteration below this part is too slow for a fit that is far off. */
 static const double slow_gain = 0.1;
+static const int first_judged = 3;
 /* Residual of a run that does not reach its end: far above any other. */
 static const double lost_residual = 1e4;
 
@@ -176,8 +179,11 @@ static void start_from(struct problem *p, const struct wb_law *law)
             stress = next_stress;
         }
     }
+    /* From the side of the pure rule that was nearer. */
     if (c->is_mixed)
-        p->start[p->n_law - 1] = 0.0;
+        p->start[p->n_law - 1] = law->isotropic_share == 1.0   ? pure_start
+                                 : law->isotropic_share == 0.0 ? -pure_start
+                                                               : 0.0;
     for (int i = 0; i < p->n_law; i++)
         p->scale[i] = 1.0;
     p->start[p->n_law] = p->data->info.n_natural_shape > 0 ? p->data->info.natural_shape[0] : 0.0;
@@ -344,8 +350,8 @@ static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *i
             largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
         if (largest < arrived || before - now < settled_sum * now)
             return true;
-        if (before - now < slow_gain * now && force_misfit(p, w->f) > p->settings->hopeless &&
-            p->settings->hopeless > 0.0)
+        if (i >= first_judged && before - now < slow_gain * now &&
+            force_misfit(p, w->f) > p->settings->hopeless && p->settings->hopeless > 0.0)
             return false;
         before = now;
     }
@@ -465,8 +471,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
         if (p->status != WB_OK)
             return p->status;
         set_weights(p, w->f, &fit->n_outliers);
-        if (!fit->is_converged ||
-            (pass > 0 ? fit->n_outliers == before : fit->n_outliers == 0))
+        if (!fit->is_converged || (pass > 0 ? fit->n_outliers == before : fit->n_outliers == 0))
             break;
         memcpy(zero, w->x->data, (size_t)p->n_free * sizeof *zero);
         if (gsl_multifit_nlinear_init(&x.vector, &fdf, w) != GSL_SUCCESS)

@@ -4,10 +4,12 @@
 
 #include "base/config.h"
 #include "base/units.h"
+#include "fe/material/law_file.h"
 
 static enum wb_status read_properties(const struct wb_config_node *node, struct wb_wire *wire)
 {
     struct wb_material *m = &wire->material;
+    const struct wb_config_node *law = NULL;
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_TEXT("source", wire->source),
         WB_CONFIG_NUMBER("youngs_modulus_MPa", &m->youngs_modulus, WB_MPA, 1e-3, 1e7),
@@ -15,10 +17,12 @@ static enum wb_status read_properties(const struct wb_config_node *node, struct 
         WB_CONFIG_NUMBER("yield_stress_MPa", &m->yield_stress, WB_MPA, 1e-6, 1e6),
         WB_CONFIG_NUMBER("strength_coefficient_MPa", &m->strength_coefficient, WB_MPA, 0.0, 1e9),
         WB_CONFIG_NUMBER("hardening_exponent", &m->hardening_exponent, 1.0, 1e-3, 2.0),
+        WB_CONFIG_OPTIONAL_NODE("law", &law),
     };
 
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
     m->hardening = WB_HARDENING_ISOTROPIC_POWER;
+    WB_TRY(wb_law_file_read(law, m, &wire->law));
     wire->has_properties = true;
     return WB_OK;
 }

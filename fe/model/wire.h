@@ -11,6 +11,7 @@
  *       yield_stress_MPa: 3.90
  *       strength_coefficient_MPa: 3222
  *       hardening_exponent: 0.99
+ *       law: {...}                # optional: parallel parts, a hardening rule; law_file.h
  */
 #ifndef WB_FE_MODEL_WIRE_H
 #define WB_FE_MODEL_WIRE_H
@@ -18,6 +19,7 @@
 #include <stdbool.h>
 
 #include "base/reason.h"
+#include "fe/material/law.h"
 #include "fe/material/material.h"
 
 struct wb_wire {
@@ -28,6 +30,7 @@ struct wb_wire {
     bool has_properties;         /* the file gave `properties` */
     char source[160];            /* where the properties come from */
     struct wb_material material; /* WB_HARDENING_ISOTROPIC_POWER when has_properties */
+    struct wb_law law;           /* the same, unless the file has a law of its own beside it */
 };
 
 /* Reads a wire file. Errors name file, line and key; they go to `why`, or to the log where that is

@@ -1,0 +1,30 @@
+/* The `law` block of a wire's properties, in wire files and in PROPERTIES.yaml:
+ *
+ *     law:
+ *       form: parallel         # or ludwik: of the four numbers beside the block
+ *       hardening: mixed       # isotropic, kinematic or mixed
+ *       isotropic_share: 0.3   # of mixed hardening
+ *       parts:                 # of parallel parts, by ascending yield strain
+ *         - {modulus_MPa: 2600, yield_strain: 0.00012}
+ *         - {modulus_MPa: 350}   # without it the last stays elastic
+ *
+ * Without the block the law is Ludwik's with isotropic hardening. The four numbers beside a block
+ * of parallel parts are their equivalent for solvers that know Ludwik's law alone.
+ */
+#ifndef WB_FE_MATERIAL_LAW_FILE_H
+#define WB_FE_MATERIAL_LAW_FILE_H
+
+#include "base/config.h"
+#include "base/status.h"
+#include "base/text.h"
+#include "fe/material/law.h"
+
+/* Reads the block `node`; NULL: there is none. `ludwik` has the four numbers and Poisson's ratio.
+ * Errors name file, line and key. */
+WB_MUST_CHECK enum wb_status wb_law_file_read(const struct wb_config_node *node,
+                                              const struct wb_material *ludwik, struct wb_law *law);
+
+/* Appends the block, nothing for Ludwik's with isotropic hardening. It reads back the same. */
+void wb_law_file_append(struct wb_text *text, const struct wb_law *law);
+
+#endif
