@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "base/units.h"
+#include "fixtures/virtual/composite.h"
 
 #define STAGE_AT(member) offsetof(struct wb_stage_options, member)
 #define RIG_AT(member) offsetof(struct wb_rig_options, member)
@@ -121,6 +122,13 @@ static const struct wb_setting rig_rows[] = {
      .separator = '.',
      .members = &version_table,
      .given = RIG_AT(has_version)},
+    {.name = "wire_law",
+     .type = WB_SETTING_CHOICE,
+     .offset = RIG_AT(bench.variant),
+     .choices = wb_composite_variant_names,
+     .option = "wire-law",
+     .argument = "NAME",
+     .help = "What the wire is made of, to try a calibration on"},
     {.name = "lost_steps",
      .type = WB_SETTING_LIST,
      .offset = RIG_AT(bench),

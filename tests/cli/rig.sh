@@ -54,7 +54,7 @@ refused() { # CODE WORDS OPTIONS...: one message with these words, this exit cod
 # Two at once, each with ports of its own, and truths that differ.
 start one --seed 1
 one=$process
-start two --seed 2 --natnet-version 4.1 --time-scale 5 --lost-steps 0.8@20
+start two --seed 2 --natnet-version 4.1 --time-scale 5 --lost-steps 0.8@20 --wire-law mixed
 for name in one two; do
     file=$folder/$name/deep/rig.yaml
     grep -q '^name: "virtual rig' "$file" || fail "$name: the name does not say virtual rig"
@@ -63,6 +63,7 @@ for name in one two; do
 done
 grep -q '^time_scale: 5$' "$folder/two/deep/rig.yaml" || fail "two: no time scale"
 grep -q 'lost_steps_mm: 0.8$' "$folder/two/deep/rig.yaml" || fail "two: no lost steps"
+grep -q 'wire_law: mixed$' "$folder/two/deep/rig.yaml" || fail "two: no law of the wire"
 [ "$(cat "$folder"/*/deep/rig.yaml | grep -oE '"(pty|udp):[^"]+"' | sort -u | wc -l)" = 6 ] ||
     fail "ports are shared"
 [ "$(cat "$folder"/*/deep/rig.yaml | grep 'bow_mm' | sort -u | wc -l)" = 2 ] ||
@@ -99,6 +100,8 @@ refused 2 'name a rig file' --specimen "$specimen" --run "$folder/refused"
 refused 2 'no --specimen' "$rig" --run "$folder/refused"
 refused 2 'no folder' "$rig" --specimen "$specimen"
 refused 2 'one rig file at a time' "$rig" "$rig" --specimen "$specimen" --run "$folder/refused"
+refused 2 "expected kinematic, isotropic, mixed, sharp, backstresses or relaxing" "$rig" \
+    --specimen "$specimen" --run "$folder/refused" --wire-law rubber
 refused 2 'seed' "$rig" --specimen "$specimen" --run "$folder/refused" --seed x
 refused 2 'expected M.N, not' "$rig" --specimen "$specimen" --run "$folder/refused" \
     --natnet-version 3

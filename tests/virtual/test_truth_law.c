@@ -144,7 +144,7 @@ static void the_variants_differ_on_the_way_back_only_where_they_should(void **un
         wb_fibres_destroy(fibres);
         wb_section_release(&section);
         print_message("    %-12s M(30 /m) = %.2f N mm, back at 15 /m %.2f\n",
-                      wb_composite_variant_name(variant), up[variant] * 1e3, back[variant] * 1e3);
+                      wb_composite_variant_names[variant], up[variant] * 1e3, back[variant] * 1e3);
     }
     const double M = up[WB_COMPOSITE_KINEMATIC];
     assert_close_relative(up[WB_COMPOSITE_ISOTROPIC], M, 1e-9);
