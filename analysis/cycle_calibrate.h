@@ -21,6 +21,7 @@
 #include "analysis/cycle_fit.h"
 #include "analysis/dataset.h"
 #include "base/reason.h"
+#include "base/setting.h"
 #include "base/status.h"
 
 enum {
@@ -101,7 +102,16 @@ struct wb_cycle_calibrate_settings {
     bool (*progress)(void *context, int done, int all); /* NULL; false stops */
     void *progress_context;
 };
+/* Their rows, but progress; the tables' offsets count from the struct. */
+enum {
+    WB_CYCLE_CALIBRATE_TABLES = 3
+};
+extern const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLES];
 void wb_cycle_calibrate_default_settings(struct wb_cycle_calibrate_settings *settings);
+
+/* Appends "name value, name value ..." of all rows, in the rows' units. */
+void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *settings,
+                                      struct wb_text *text);
 
 /* Calibrates on n datasets of one wire. The same data twice, another wire's, or none that can be
  * fitted: WB_ERR_DATA. `why` receives the reason; NULL: it is logged. */
