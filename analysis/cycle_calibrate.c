@@ -30,7 +30,6 @@ static const double f_level = 0.01, coverage = 0.95;
 static const double hopeless_ratio = 4.0, hopeless_least = 5e-3;
 /* When K and n get digits. */
 static const double largest_ln_strength_error = 0.10, largest_exponent_error = 0.03;
-static const double smallest_travel = 0.35;
 static const double wanted_precision = 0.05;
 
 enum {
@@ -326,7 +325,7 @@ static void find_repeat_noise(struct wb_cycle_calibration *calibration, double *
         for (int k = 0; k < data->n_points; k++) {
             const double d = data->points[k].deviation / data->max_force;
             sum += d * d;
-            *degrees += data->points[k].n_rows - 2;
+            *degrees += fmax(0.0, data->points[k].n_rows - 2);
             n++;
         }
     }
@@ -592,7 +591,7 @@ static void judge_identifiability(struct wb_cycle_calibration *calibration)
         calibration->travel_share =
             fmin(calibration->travel_share, member->data.top / member->data.info.length);
     }
-    const bool enough = calibration->travel_share >= smallest_travel && !at_bound;
+    const bool enough = calibration->travel_share >= WB_CYCLE_SMALLEST_TRAVEL && !at_bound;
     calibration->is_strength_identifiable =
         enough && calibration->ln_strength_error <= largest_ln_strength_error;
     calibration->is_exponent_identifiable =
@@ -740,4 +739,23 @@ void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration)
     }
     free(calibration->members);
     *calibration = (struct wb_cycle_calibration){.members = NULL};
+}
+
+double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration)
+{
+    const double length = calibration->members[0].data.info.length;
+    for (int i = 1; i < calibration->n_members; i++) {
+        if (calibration->members[i].data.info.length != length)
+            return (double)NAN;
+    }
+    return length;
+}
+
+bool wb_cycle_calibrate_is_converged(const struct wb_cycle_calibration *calibration)
+{
+    for (int i = 0; i < calibration->n_members; i++) {
+        if (!calibration->members[i].answers[calibration->chosen].fit.is_converged)
+            return false;
+    }
+    return true;
 }

@@ -28,6 +28,9 @@ enum {
     WB_CYCLE_MOMENTS = 5
 };
 
+/* Deflection over length that K and n need. */
+#define WB_CYCLE_SMALLEST_TRAVEL 0.35
+
 /* Parts of the largest curvature at which the moment is reported. */
 extern const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS];
 
@@ -120,5 +123,11 @@ wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
                        const struct wb_dataset *const *datasets, int n,
                        const struct wb_cycle_calibrate_settings *settings, struct wb_reason *why);
 void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration);
+
+/* The specimens' length, m; NaN where it is not the same. */
+double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration);
+
+/* Whether the chosen law's fit converged for all specimens. */
+bool wb_cycle_calibrate_is_converged(const struct wb_cycle_calibration *calibration);
 
 #endif

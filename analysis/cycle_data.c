@@ -226,8 +226,16 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
         while (end < rows->n && sense * (rows->smooth[end] - first) < done)
             end++;
         struct wb_cycle_point point = {.is_unloading = unloading};
-        const size_t kept =
+        size_t kept =
             mean_of(rows, begin, end, &point.deflection, &point.tension, &point.deviation);
+        if (kept == 0 && dataset->info.is_simulation && end > begin) {
+            /* Computed rows are exact: one is as good as many. */
+            const size_t middle = begin + (end - begin) / 2;
+            point.deflection = rows->x[middle];
+            point.tension = rows->y[middle];
+            point.deviation = 0.0;
+            kept = end - begin;
+        }
         if (kept == 0)
             continue;
         if (unloading && point.tension < s->smallest_tension)

@@ -6,7 +6,8 @@
  * says how the wire is bent by nature. A point is the value at the middle of a bin of a straight
  * line through the rows of the bin; rows far off the line are left out and counted. The first
  * loading begins half a step above zero; the unloading begins a step below the turn, where the
- * change of direction is past, and ends where the strand is about to become slack.
+ * change of direction is past, and ends where the strand is about to become slack. A bin of a
+ * simulation with few rows, which have no noise, is told by its middle one.
  */
 #ifndef WB_ANALYSIS_CYCLE_DATA_H
 #define WB_ANALYSIS_CYCLE_DATA_H
