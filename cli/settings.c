@@ -139,6 +139,8 @@ static void take(struct line *line, struct argp_state *state, const struct entry
     }
     if (!wb_setting_parse(entry->row, argument, (char *)line->input + entry->offset, problem))
         argp_error(state, "--%s: %s", entry->row->option, problem);
+    else if (line->command->note)
+        line->command->note(line->input, entry->row);
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)

@@ -28,6 +28,8 @@ struct wb_settings_command {
     /* Names of the places by bit, NULL-terminated: options of another one are refused by their
      * names. NULL: they are unknown. */
     const char *const *places;
+    /* Is told of each option of a row that was given; NULL: nobody is. */
+    void (*note)(void *input, const struct wb_setting *row);
 };
 
 /* Parses as wb_command_parse() does. */
