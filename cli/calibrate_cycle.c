@@ -55,7 +55,20 @@ static void print_estimate(const struct wb_cycle_calibration *c, const char *nam
     printf("\n");
 }
 
-static void print_numbers(const struct wb_cycle_calibration *c)
+static void print_meaning(const struct wb_cycle_calibration *c,
+                          const struct wb_cycle_calibrate_settings *settings)
+{
+    printf("intervals: 95 %% for the mean over the specimens");
+    if (settings->pooled_degrees > 0)
+        printf(", by a deviation pooled over several wires, %g with %d degrees of freedom",
+               settings->pooled_deviation, settings->pooled_degrees);
+    printf("\ncandidates: range over the laws with a misfit of at most twice the best\n");
+    if (c->n_members == 1 && !isfinite(c->rigidity.low))
+        printf("one specimen: no interval for the product\n");
+}
+
+static void print_numbers(const struct wb_cycle_calibration *c,
+                          const struct wb_cycle_calibrate_settings *settings)
 {
     char name[64], curvature[NUMBER];
     print_estimate(c, "EI", &c->rigidity, N_MM2, "N mm2");
@@ -69,10 +82,7 @@ static void print_numbers(const struct wb_cycle_calibration *c)
     } else {
         printf("no springback and no loop energy: the tests have no way back\n");
     }
-    printf("intervals: 95 %% for the mean over the specimens; candidates: range over the laws "
-           "with a misfit of at most twice the best\n");
-    if (c->n_members == 1 && !isfinite(c->rigidity.low))
-        printf("one specimen: no interval for the product\n");
+    print_meaning(c, settings);
     printf("largest curvature that all specimens reached: %s 1/m; beyond it the law is not "
            "measured\n",
            format(c->largest_curvature, curvature));
@@ -220,7 +230,7 @@ void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle)
            info->is_virtual      ? ", virtual rig"
            : info->is_simulation ? ", simulation"
                                  : "");
-    print_numbers(c);
+    print_numbers(c, &cycle->settings);
     print_rule(c);
     print_law(c);
     print_specimens(c);

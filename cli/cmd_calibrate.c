@@ -54,8 +54,12 @@ static const struct argp_option other_options[] = {
 static const struct wb_settings_source sources[] = {
     {.tables = wb_cycle_calibrate_tables,
      .n_tables = WB_CYCLE_CALIBRATE_TABLES,
-     .offset = offsetof(struct options, cycle.settings)},
-    {.tables = &wb_calibrate_table, .n_tables = 1, .offset = offsetof(struct options, settings)},
+     .offset = offsetof(struct options, cycle.settings),
+     .title = "Settings of --method cycle:"},
+    {.tables = &wb_calibrate_table,
+     .n_tables = 1,
+     .offset = offsetof(struct options, settings),
+     .title = "Settings of --method paper:"},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -93,8 +97,7 @@ static const struct argp argp = {
            "specimen. With --method paper: E by eq. 10, the yield stress by eq. 11, K and n by "
            "Nelder-Mead on the averaged first loading, with the beam under the test's own "
            "loading.\v"
-           "--elastic-zone to --largest-deflection-mm belong to --method paper, the settings above "
-           "them to --method cycle. Misfits and errors are over F_max, the largest force, or over "
+           "Misfits and errors are over F_max, the largest force, or over "
            "the largest deflection of tests with a follower force. Exit code 3: the data do not "
            "support the hardening rule, a search did not come to its end, or it was stopped; the "
            "properties are written.",
@@ -367,6 +370,16 @@ static bool has_foreign_option(const struct options *o)
     return o->of[other] != NULL;
 }
 
+/* A pooled deviation without its degrees of freedom would do nothing. */
+static bool has_half_a_pool(const struct options *o)
+{
+    const struct wb_cycle_calibrate_settings *const s = &o->cycle.settings;
+    const bool has_half = (s->pooled_deviation > 0.0) != (s->pooled_degrees > 0);
+    if (has_half)
+        wb_error("--pooled-deviation and --pooled-degrees go together");
+    return has_half;
+}
+
 static enum wb_status begin(struct options *o)
 {
     if (o->common.output && !o->common.force && wb_file_exists(o->common.output))
@@ -380,7 +393,7 @@ static int run(struct options *o)
     if (status != WB_OK)
         return wb_command_exit(status);
     choose_method(o);
-    if (has_foreign_option(o))
+    if (has_foreign_option(o) || has_half_a_pool(o))
         return WB_EXIT_USAGE;
     return o->method == PAPER ? run_paper(o) : run_cycle(o);
 }

@@ -15,8 +15,9 @@
 struct wb_settings_source {
     const struct wb_setting_table *tables;
     size_t n_tables;
-    size_t offset;    /* in the input, of what the tables' offsets count from */
-    unsigned applies; /* bits of the places of rows that name none; 0: all */
+    size_t offset;     /* in the input, of what the tables' offsets count from */
+    unsigned applies;  /* bits of the places of rows that name none; 0: all */
+    const char *title; /* of their own part of --help; NULL: they stand among all others */
 };
 
 struct wb_settings_command {

@@ -284,6 +284,7 @@ static void what_is_wrong_is_refused_by_line_and_key(void **state)
         {"largest_curvature_1_m: 29", "largest_curvature_1_m: 29 1/m", "largest_curvature_1_m"},
         {"springback_ratio: {value: 0.27", "springback_ratio: {value: 1.27", "value"},
         {"springback_ratio: {value", "springback_ratio: {colour", "colour"},
+        {"\n    curvature_1_m: 29", "\n    curvature_1_m: 1", "curvature_1_m"},
         {"tested: true", "tested: maybe", "tested"},
         {"\n  - sample: 2", "\n  - sample: -2", "sample"},
         {"\n    bow_mm: ", "\n    bow_mm: nan #", "bow_mm"},

@@ -167,6 +167,9 @@ expect 2 '--elastic-zone is for --method paper' "$wirebench" calibrate cycle --e
 expect 2 '--bow-corrected is for --method paper' "$wirebench" calibrate cycle --bow-corrected
 expect 2 '--force-share is for --method cycle' \
     "$wirebench" calibrate cycle --method paper --force-share 0.01
+expect 2 'go together' "$wirebench" calibrate cycle --pooled-deviation 0.03
+expect 0 'pooled over several wires, 0.03 with 12 degrees' \
+    "$wirebench" calibrate cycle --pooled-deviation 0.03 --pooled-degrees 12
 expect 2 'expected cycle or paper' "$wirebench" calibrate cycle --method print
 
 # Tests with a follower force keep the paper's method.
