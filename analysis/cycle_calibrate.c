@@ -80,7 +80,8 @@ const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLE
 void wb_cycle_calibrate_default_settings(struct wb_cycle_calibrate_settings *settings)
 {
     *settings = (struct wb_cycle_calibrate_settings){.threads = 0};
-    for (int t = 0; t < WB_CYCLE_CALIBRATE_TABLES; t++)
+    wb_cycle_fit_default_settings(&settings->fit);
+    for (int t = 1; t < WB_CYCLE_CALIBRATE_TABLES; t++)
         wb_setting_fill(&wb_cycle_calibrate_tables[t],
                         (char *)settings + wb_cycle_calibrate_tables[t].offset);
 }

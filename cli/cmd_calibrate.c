@@ -99,8 +99,8 @@ static const struct argp argp = {
            "loading.\v"
            "Misfits and errors are over F_max, the largest force, or over "
            "the largest deflection of tests with a follower force. Exit code 3: the data do not "
-           "support the hardening rule, a search did not come to its end, or it was stopped; the "
-           "properties are written.",
+           "support the hardening rule, or a search did not come to its end; the properties are "
+           "written.",
 };
 
 static bool report_beam_runs(void *context, int evaluation, double error, double size)
