@@ -43,7 +43,9 @@ static enum wb_status fit(const struct wb_cycle_calibration *calibration,
     struct wb_reason why = {""};
     if (start->form == WB_LAW_PARALLEL) {
         const double ratio = start->parts[1].yield_strain / start->parts[0].yield_strain;
-        grid.first_strain = start->parts[0].yield_strain;
+        /* As the calibration would space them: strains go with the inverse square of the length. */
+        const double longer = data->info.length / calibration->members[0].data.info.length;
+        grid.first_strain = start->parts[0].yield_strain / (longer * longer);
         grid.last_strain = grid.first_strain * pow(ratio, start->n_parts - 1);
     }
     enum wb_status status =

@@ -3,7 +3,8 @@
  * told apart, in percent per percent.
  *
  * It is found by fitting the chosen law to one specimen again, with the reading or the length
- * changed by a small part. The diameter is exact: stress and strain are derived from moment and
+ * changed by a small part; with parallel parts, whose first moduli are loosely known, to some
+ * tenths. The diameter is exact: stress and strain are derived from moment and
  * curvature, so EI and M(kappa) stay, and E goes with the inverse fourth power of the diameter.
  */
 #ifndef WB_ANALYSIS_CYCLE_SENSITIVITY_H

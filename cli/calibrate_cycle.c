@@ -209,7 +209,7 @@ static void print_shared(const struct wb_calibrate_cycle *cycle)
         printf("  %-24s", wb_cycle_shared_name((enum wb_cycle_shared)i));
         for (int k = 0; k < 4; k++) {
             if (isfinite(values[k]))
-                printf(" %*.2f", k == 3 ? 10 : 8, values[k] == 0.0 ? 0.0 : values[k]);
+                printf(" %*.1f", k == 3 ? 10 : 8, values[k] == 0.0 ? 0.0 : values[k]);
             else
                 printf(" %*s", k == 3 ? 10 : 8, "-");
         }
