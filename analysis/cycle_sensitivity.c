@@ -50,7 +50,7 @@ static enum wb_status fit(const struct wb_cycle_calibration *calibration,
     }
     enum wb_status status =
         wb_cycle_fit_run(&found, data, calibration->chosen, start, &grid, &settings->fit, &why);
-    *is_fitted = status == WB_OK;
+    *is_fitted = status == WB_OK && found.is_converged;
     if (status == WB_ERR_CONVERGENCE)
         return WB_OK;
     if (status == WB_OK)
