@@ -198,16 +198,36 @@ static enum wb_status find_equivalent(struct equivalent *e, const struct wb_law 
     return e->status;
 }
 
+static void choose_curvatures(double largest, double curvature[EQUIVALENT_POINTS])
+{
+    for (int i = 0; i < EQUIVALENT_POINTS; i++)
+        curvature[i] =
+            largest * pow(first_of_equivalent, 1.0 - (double)i / (EQUIVALENT_POINTS - 1));
+}
+
 enum wb_status wb_bending_ludwik(const struct wb_law *law, double diameter, double largest,
                                  struct wb_material *equivalent, double *misfit)
 {
     struct equivalent e = {
         .diameter = diameter, .poissons_ratio = law->material.poissons_ratio, .status = WB_OK};
-    for (int i = 0; i < EQUIVALENT_POINTS; i++)
-        e.curvature[i] =
-            largest * pow(first_of_equivalent, 1.0 - (double)i / (EQUIVALENT_POINTS - 1));
+    choose_curvatures(largest, e.curvature);
     WB_TRY(wb_bending_moments(law, diameter, EQUIVALENT_POINTS, e.curvature, e.moment));
     WB_TRY(find_equivalent(&e, law, misfit));
     *equivalent = e.material;
+    return WB_OK;
+}
+
+enum wb_status wb_bending_compare(const struct wb_law *law, const struct wb_material *material,
+                                  double diameter, double largest, double *difference)
+{
+    double curvature[EQUIVALENT_POINTS], moment[EQUIVALENT_POINTS], other[EQUIVALENT_POINTS];
+    struct wb_law ludwik;
+    wb_law_init_ludwik(&ludwik, material);
+    choose_curvatures(largest, curvature);
+    WB_TRY(wb_bending_moments(law, diameter, EQUIVALENT_POINTS, curvature, moment));
+    WB_TRY(wb_bending_moments(&ludwik, diameter, EQUIVALENT_POINTS, curvature, other));
+    *difference = 0.0;
+    for (int i = 0; i < EQUIVALENT_POINTS; i++)
+        *difference = fmax(*difference, fabs(other[i] / moment[i] - 1.0));
     return WB_OK;
 }

@@ -25,4 +25,10 @@ WB_MUST_CHECK enum wb_status wb_bending_ludwik(const struct wb_law *law, double 
                                                double largest, struct wb_material *equivalent,
                                                double *misfit);
 
+/* How far Ludwik's law with isotropic hardening of `material` is from `law` on a first loading:
+ * the largest relative difference of M from 1 % of the largest curvature on. */
+WB_MUST_CHECK enum wb_status wb_bending_compare(const struct wb_law *law,
+                                                const struct wb_material *material, double diameter,
+                                                double largest, double *difference);
+
 #endif

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -29,7 +30,6 @@ static const double f_level = 0.01, coverage = 0.95;
 static const double hopeless_ratio = 4.0, hopeless_least = 5e-3;
 /* When K and n get digits. */
 static const double largest_ln_strength_error = 0.10, largest_exponent_error = 0.03;
-static const double smallest_travel = 0.35;
 static const double wanted_precision = 0.05;
 
 enum {
@@ -37,10 +37,70 @@ enum {
     MOST_SPECIMENS_NEEDED = 1000
 };
 
+static const struct wb_setting rows[] = {
+    {.name = "pooled_deviation",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, pooled_deviation),
+     .least = 1e-4,
+     .largest = 1.0,
+     .otherwise = "of these specimens",
+     .option = "pooled-deviation",
+     .argument = "S",
+     .help = "Standard deviation of ln(EI) between specimens, pooled over several wires"},
+    {.name = "pooled_degrees",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, pooled_degrees),
+     .least = 1,
+     .largest = 100000,
+     .otherwise = "none",
+     .option = "pooled-degrees",
+     .argument = "N",
+     .help = "Degrees of freedom of --pooled-deviation"},
+    {.name = "threads",
+     .type = WB_SETTING_INTEGER,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, threads),
+     .least = 1,
+     .largest = MOST_THREADS,
+     .otherwise = "as many as processors",
+     .option = "threads",
+     .argument = "N",
+     .help = "Threads to compute on"},
+};
+
+const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLES] = {
+    {.rows = wb_cycle_fit_rows,
+     .n = WB_CYCLE_FIT_ROWS,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, fit)},
+    {.rows = wb_cycle_data_rows,
+     .n = WB_CYCLE_DATA_ROWS,
+     .offset = offsetof(struct wb_cycle_calibrate_settings, data)},
+    {.rows = rows, .n = WB_COUNT(rows)},
+};
+
 void wb_cycle_calibrate_default_settings(struct wb_cycle_calibrate_settings *settings)
 {
     *settings = (struct wb_cycle_calibrate_settings){.threads = 0};
     wb_cycle_fit_default_settings(&settings->fit);
+    for (int t = 1; t < WB_CYCLE_CALIBRATE_TABLES; t++)
+        wb_setting_fill(&wb_cycle_calibrate_tables[t],
+                        (char *)settings + wb_cycle_calibrate_tables[t].offset);
+}
+
+void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *settings,
+                                      struct wb_text *text)
+{
+    for (int t = 0; t < WB_CYCLE_CALIBRATE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_cycle_calibrate_tables[t];
+        for (size_t i = 0; i < table->n; i++) {
+            const struct wb_setting *const row = &table->rows[i];
+            const char *const at = (const char *)settings + table->offset;
+            char value[WB_SETTING_VALUE];
+            wb_setting_format(row, at, value);
+            wb_text_append(text, "%s%s %s", t + (int)i > 0 ? ", " : "", row->name,
+                           row->otherwise && !wb_setting_is_given(row, at) ? row->otherwise
+                                                                           : value);
+        }
+    }
 }
 
 /* --- one specimen --- */
@@ -256,17 +316,17 @@ static struct wb_cycle_grid find_grid(const struct wb_cycle_calibration *calibra
     return grid;
 }
 
-static void find_repeat_noise(struct wb_cycle_calibration *calibration, double *rows)
+static void find_repeat_noise(struct wb_cycle_calibration *calibration, double *degrees)
 {
     double sum = 0.0;
     int n = 0;
-    *rows = 0.0;
+    *degrees = 0.0;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_data *const data = &calibration->members[i].data;
         for (int k = 0; k < data->n_points; k++) {
             const double d = data->points[k].deviation / data->max_force;
             sum += d * d;
-            *rows += data->points[k].n_rows - 2;
+            *degrees += fmax(0.0, data->points[k].n_rows - 2);
             n++;
         }
     }
@@ -317,8 +377,8 @@ static int by_misfit(const void *a, const void *b)
 /* Ranks the candidates and chooses one. */
 static void choose(struct wb_cycle_calibration *calibration)
 {
-    double rows;
-    find_repeat_noise(calibration, &rows);
+    double degrees;
+    find_repeat_noise(calibration, &degrees);
     calibration->n_ranked = 0;
     for (int c = 0; c < WB_CANDIDATES; c++) {
         struct wb_cycle_rank *const rank = &calibration->ranked[c];
@@ -336,7 +396,7 @@ static void choose(struct wb_cycle_calibration *calibration)
         const double noise = rank->misfit / calibration->repeat_noise;
         const double corrected = count_points(calibration) / dof;
         rank->f_ratio = noise * noise * corrected;
-        rank->f_limit = gsl_cdf_fdist_Qinv(f_level, dof, fmax(1.0, rows));
+        rank->f_limit = gsl_cdf_fdist_Qinv(f_level, dof, fmax(1.0, degrees));
         rank->is_rejected = !(rank->f_ratio <= rank->f_limit);
         rank->counts = ratio <= counts_up_to;
         const double best_dof = freedom(calibration, best);
@@ -532,7 +592,7 @@ static void judge_identifiability(struct wb_cycle_calibration *calibration)
         calibration->travel_share =
             fmin(calibration->travel_share, member->data.top / member->data.info.length);
     }
-    const bool enough = calibration->travel_share >= smallest_travel && !at_bound;
+    const bool enough = calibration->travel_share >= WB_CYCLE_SMALLEST_TRAVEL && !at_bound;
     calibration->is_strength_identifiable =
         enough && calibration->ln_strength_error <= largest_ln_strength_error;
     calibration->is_exponent_identifiable =
@@ -680,4 +740,23 @@ void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration)
     }
     free(calibration->members);
     *calibration = (struct wb_cycle_calibration){.members = NULL};
+}
+
+double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration)
+{
+    const double length = calibration->members[0].data.info.length;
+    for (int i = 1; i < calibration->n_members; i++) {
+        if (calibration->members[i].data.info.length != length)
+            return (double)NAN;
+    }
+    return length;
+}
+
+bool wb_cycle_calibrate_is_converged(const struct wb_cycle_calibration *calibration)
+{
+    for (int i = 0; i < calibration->n_members; i++) {
+        if (!calibration->members[i].answers[calibration->chosen].fit.is_converged)
+            return false;
+    }
+    return true;
 }

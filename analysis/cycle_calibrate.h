@@ -21,11 +21,15 @@
 #include "analysis/cycle_fit.h"
 #include "analysis/dataset.h"
 #include "base/reason.h"
+#include "base/setting.h"
 #include "base/status.h"
 
 enum {
     WB_CYCLE_MOMENTS = 5
 };
+
+/* Deflection over length that K and n need. */
+#define WB_CYCLE_SMALLEST_TRAVEL 0.35
 
 /* Parts of the largest curvature at which the moment is reported. */
 extern const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS];
@@ -101,7 +105,16 @@ struct wb_cycle_calibrate_settings {
     bool (*progress)(void *context, int done, int all); /* NULL; false stops */
     void *progress_context;
 };
+/* Their rows, but progress; the tables' offsets count from the struct. */
+enum {
+    WB_CYCLE_CALIBRATE_TABLES = 3
+};
+extern const struct wb_setting_table wb_cycle_calibrate_tables[WB_CYCLE_CALIBRATE_TABLES];
 void wb_cycle_calibrate_default_settings(struct wb_cycle_calibrate_settings *settings);
+
+/* Appends "name value, name value ..." of all rows, in the rows' units. */
+void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *settings,
+                                      struct wb_text *text);
 
 /* Calibrates on n datasets of one wire. The same data twice, another wire's, or none that can be
  * fitted: WB_ERR_DATA. `why` receives the reason; NULL: it is logged. */
@@ -110,5 +123,11 @@ wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
                        const struct wb_dataset *const *datasets, int n,
                        const struct wb_cycle_calibrate_settings *settings, struct wb_reason *why);
 void wb_cycle_calibrate_release(struct wb_cycle_calibration *calibration);
+
+/* The specimens' length, m; NaN where it is not the same. */
+double wb_cycle_calibrate_length(const struct wb_cycle_calibration *calibration);
+
+/* Whether the chosen law's fit converged for all specimens. */
+bool wb_cycle_calibrate_is_converged(const struct wb_cycle_calibration *calibration);
 
 #endif

@@ -1,7 +1,9 @@
 #include "analysis/cycle_data.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/fit.h"
 #include "base/units.h"
@@ -17,6 +19,75 @@ enum {
 
 /* Rows farther from the line than this many standard deviations of the others are left out. */
 static const double far_off = 4.5;
+
+const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
+    {.name = "data_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, step),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 20.0,
+     .fallback = 1.0,
+     .option = "data-step-mm",
+     .argument = "H",
+     .help = "Deflection step of the points"},
+    {.name = "fine_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, fine_step),
+     .scale = WB_MM,
+     .least = 0.05,
+     .largest = 20.0,
+     .fallback = 0.5,
+     .option = "fine-step-mm",
+     .argument = "H",
+     .help = "Step of the first points of either way"},
+    {.name = "fine_reach_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, fine_reach),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 1e3,
+     .fallback = 4.0,
+     .option = "fine-reach-mm",
+     .argument = "D",
+     .help = "How far the fine step goes"},
+    {.name = "turn_distance_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, turn_distance),
+     .scale = WB_MM,
+     .least = 0.01,
+     .largest = 100.0,
+     .fallback = 0.5,
+     .option = "turn-distance-mm",
+     .argument = "D",
+     .help = "Distance below the turn where the way back begins"},
+    {.name = "smallest_tension_mN",
+     .unit = "mN",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, smallest_tension),
+     .scale = 1e-3,
+     .least = 1e-3,
+     .largest = 1e6,
+     .fallback = 2.5,
+     .option = "smallest-tension-mn",
+     .argument = "F",
+     .help = "Tension at which the way back ends"},
+    {.name = "marker_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_cycle_data_settings, marker_step),
+     .scale = WB_MM,
+     .least = 0.1,
+     .largest = 1e3,
+     .fallback = 4.0,
+     .option = "marker-step-mm",
+     .argument = "H",
+     .help = "Deflection step of the markers' places"},
+};
 
 /* Rows of a way in their order; room for all of a test's. */
 struct rows {
@@ -155,8 +226,16 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
         while (end < rows->n && sense * (rows->smooth[end] - first) < done)
             end++;
         struct wb_cycle_point point = {.is_unloading = unloading};
-        const size_t kept =
+        size_t kept =
             mean_of(rows, begin, end, &point.deflection, &point.tension, &point.deviation);
+        if (kept == 0 && dataset->info.is_simulation && end > begin) {
+            /* Computed rows are exact: one is as good as many. */
+            const size_t middle = begin + (end - begin) / 2;
+            point.deflection = rows->x[middle];
+            point.tension = rows->y[middle];
+            point.deviation = 0.0;
+            kept = end - begin;
+        }
         if (kept == 0)
             continue;
         if (unloading && point.tension < s->smallest_tension)
@@ -284,18 +363,25 @@ static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dat
     data->n_markers = n;
 }
 
+/* What is given, and the default of what is 0. */
+static struct wb_cycle_data_settings filled(const struct wb_cycle_data_settings *given)
+{
+    const struct wb_setting_table table = {.rows = wb_cycle_data_rows, .n = WB_CYCLE_DATA_ROWS};
+    struct wb_cycle_data_settings all;
+    wb_setting_fill(&table, &all);
+    for (size_t i = 0; i < table.n; i++) {
+        const size_t at = table.rows[i].offset;
+        if (wb_setting_is_given(&table.rows[i], given))
+            memcpy((char *)&all + at, (const char *)given + at, sizeof(double));
+    }
+    return all;
+}
+
 static enum wb_status take(struct wb_cycle_data *data, const struct wb_dataset *dataset,
                            struct rows *rows, const struct wb_cycle_data_settings *given,
                            struct wb_reason *why)
 {
-    const struct wb_cycle_data_settings s = {
-        .step = given->step > 0.0 ? given->step : 1.0 * WB_MM,
-        .fine_step = given->fine_step > 0.0 ? given->fine_step : 0.5 * WB_MM,
-        .fine_reach = given->fine_reach > 0.0 ? given->fine_reach : 4.0 * WB_MM,
-        .turn_distance = given->turn_distance > 0.0 ? given->turn_distance : 0.5 * WB_MM,
-        .smallest_tension = given->smallest_tension > 0.0 ? given->smallest_tension : 2.5e-3,
-        .marker_step = given->marker_step > 0.0 ? given->marker_step : 4.0 * WB_MM,
-    };
+    const struct wb_cycle_data_settings s = filled(given);
     const char *const wire = data->info.wire;
 
     data->top = turn_of(dataset);

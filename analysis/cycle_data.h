@@ -6,7 +6,8 @@
  * says how the wire is bent by nature. A point is the value at the middle of a bin of a straight
  * line through the rows of the bin; rows far off the line are left out and counted. The first
  * loading begins half a step above zero; the unloading begins a step below the turn, where the
- * change of direction is past, and ends where the strand is about to become slack.
+ * change of direction is past, and ends where the strand is about to become slack. A bin of a
+ * simulation with few rows, which have no noise, is told by its middle one.
  */
 #ifndef WB_ANALYSIS_CYCLE_DATA_H
 #define WB_ANALYSIS_CYCLE_DATA_H
@@ -15,6 +16,7 @@
 
 #include "analysis/dataset.h"
 #include "base/reason.h"
+#include "base/setting.h"
 #include "base/status.h"
 
 struct wb_cycle_point {
@@ -47,13 +49,19 @@ struct wb_cycle_data {
 };
 
 struct wb_cycle_data_settings {
-    double step;             /* m between points; 0: 1 mm; */
+    double step;             /* m between points; 0: 1 mm */
     double fine_step;        /* m, of the first points of either way; 0: 0.5 mm */
     double fine_reach;       /* m: how far they go; 0: 4 mm */
     double turn_distance;    /* m below the turn where the way back begins; 0: 0.5 mm */
     double smallest_tension; /* N: where the way back ends; 0: 2.5 mN */
     double marker_step;      /* m of deflection between places; 0: 4 mm */
 };
+
+/* Rows of the settings, with range and default. */
+enum {
+    WB_CYCLE_DATA_ROWS = 6
+};
+extern const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS];
 
 /* Takes them from the first cycle. WB_ERR_DATA for a test whose first cycle makes too few points,
  * or with a follower force. Without a way back, n_loading is n_points. `settings` NULL: defaults.

@@ -1,6 +1,7 @@
 #include "analysis/cycle_fit.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -62,20 +63,116 @@ const char *wb_candidate_name(enum wb_candidate candidate)
     return candidates[candidate].name;
 }
 
+#define AT(field) offsetof(struct wb_cycle_fit_settings, field)
+
+const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS] = {
+    {.name = "force_noise_mN",
+     .unit = "mN",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(force_noise),
+     .scale = 1e-3,
+     .least = 1e-6,
+     .largest = 1e6,
+     .fallback = 0.03,
+     .option = "force-noise-mn",
+     .argument = "F",
+     .help = "Noise of a force: a point weighs one over the larger of this and of --force-share"},
+    {.name = "force_share",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(force_share),
+     .least = 1e-6,
+     .largest = 1.0,
+     .fallback = 2e-3,
+     .option = "force-share",
+     .argument = "R",
+     .help = "The same as a part of the largest force"},
+    {.name = "marker_noise_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(place_noise),
+     .scale = WB_MM,
+     .least = 1e-4,
+     .largest = 1e6,
+     .fallback = 0.1,
+     .option = "marker-noise-mm",
+     .argument = "D",
+     .help = "Noise of a marker's place"},
+    {.name = "marker_offset_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(offset_prior),
+     .scale = WB_MM,
+     .least = 1e-4,
+     .largest = 100.0,
+     .fallback = 0.07,
+     .option = "marker-offset-mm",
+     .argument = "D",
+     .help = "Prior of a marker's constant distance from the axis"},
+    {.name = "level_prior_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(level_prior),
+     .scale = WB_MM,
+     .least = 1e-4,
+     .largest = 100.0,
+     .fallback = 0.1,
+     .option = "level-prior-mm",
+     .argument = "D",
+     .help = "Prior of the level of zero deflection"},
+    {.name = "modulus_prior",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(modulus_prior),
+     .least = 1e-2,
+     .largest = 1e3,
+     .fallback = 2.0,
+     .option = "modulus-prior",
+     .argument = "X",
+     .help = "Prior of the second differences of the logarithms of parallel parts' moduli"},
+    {.name = "search_elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(n_elements),
+     .least = 4,
+     .largest = 500,
+     .fallback = 12,
+     .option = "search-elements",
+     .argument = "N",
+     .help = "Beam elements of the search"},
+    {.name = "final_elements",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(n_final_elements),
+     .least = 4,
+     .largest = 500,
+     .fallback = 50,
+     .option = "final-elements",
+     .argument = "N",
+     .help = "Beam elements of the last run"},
+    {.name = "section_fibres",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(n_fibres),
+     .least = 4,
+     .largest = 1000,
+     .fallback = 20,
+     .option = "section-fibres",
+     .argument = "N",
+     .help = "Fibres over the diameter"},
+    {.name = "fit_iterations",
+     .type = WB_SETTING_INTEGER,
+     .offset = AT(max_iterations),
+     .least = 1,
+     .largest = 10000,
+     .fallback = 40,
+     .option = "fit-iterations",
+     .argument = "N",
+     .help = "Most iterations of a fit"},
+};
+
+#undef AT
+
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings)
 {
-    *settings = (struct wb_cycle_fit_settings){
-        .force_noise = 0.03e-3,
-        .force_share = 2e-3,
-        .place_noise = 0.1 * WB_MM,
-        .offset_prior = 0.07 * WB_MM,
-        .level_prior = 0.1 * WB_MM,
-        .modulus_prior = 2.0,
-        .n_elements = 12,
-        .n_final_elements = 50,
-        .n_fibres = 20,
-        .max_iterations = 40,
-    };
+    const struct wb_setting_table table = {.rows = wb_cycle_fit_rows, .n = WB_CYCLE_FIT_ROWS};
+    *settings = (struct wb_cycle_fit_settings){.hopeless = 0.0};
+    wb_setting_fill(&table, settings);
 }
 
 struct problem {

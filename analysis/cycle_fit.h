@@ -16,6 +16,7 @@
 
 #include "analysis/cycle_data.h"
 #include "base/reason.h"
+#include "base/setting.h"
 #include "base/status.h"
 #include "fe/material/law.h"
 
@@ -51,6 +52,11 @@ struct wb_cycle_fit_settings {
     int max_iterations;
     double hopeless; /* a fit whose misfit stays above this is ended early; 0: none is */
 };
+/* Rows of all but `hopeless`, with range and default. */
+enum {
+    WB_CYCLE_FIT_ROWS = 10
+};
+extern const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS];
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
 
 /* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain at the first

@@ -7,11 +7,15 @@
 /* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m. */
 static const double N_MM2 = 1e-6, N_MM = 1e-3, MILLI = 1e-3;
 
-static void put_estimate(struct wb_json *object, const struct wb_estimate *e, double unit)
+/* Where the data refute the rule, only the range over the candidates is given. */
+static void put_estimate(struct wb_json *object, const struct wb_cycle_calibration *c,
+                         const char *name, const struct wb_estimate *e, double unit)
 {
-    wb_json_set_number(object, "value", e->value / unit);
-    wb_json_set_number(object, "low", e->low / unit);
-    wb_json_set_number(object, "high", e->high / unit);
+    const bool only_range = c->has_unloading && !c->is_supported;
+    const double unknown = (double)NAN;
+    wb_json_set_number(object, name, only_range ? unknown : e->value / unit);
+    wb_json_set_number(object, "low", only_range ? unknown : e->low / unit);
+    wb_json_set_number(object, "high", only_range ? unknown : e->high / unit);
     wb_json_set_number(object, "candidates_low", e->candidates_low / unit);
     wb_json_set_number(object, "candidates_high", e->candidates_high / unit);
 }
@@ -66,7 +70,8 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
         wb_json_set_boolean(item, "rejected", rank->is_rejected);
         wb_json_set_boolean(item, "counts", rank->counts);
         wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / N_MM2);
-        wb_json_set_number(item, "springback_ratio", rank->springback.value);
+        wb_json_set_number(item, "springback_ratio",
+                           c->has_unloading ? rank->springback.value : (double)NAN);
     }
 }
 
@@ -81,7 +86,8 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         wb_json_set_number(item, "length_mm", member->data.info.length / WB_MM);
         wb_json_set_number(item, "flexural_rigidity_N_mm2",
                            answer->bending.flexural_rigidity / N_MM2);
-        wb_json_set_number(item, "springback_ratio", answer->bending.springback);
+        wb_json_set_number(item, "springback_ratio",
+                           c->has_unloading ? answer->bending.springback : (double)NAN);
         wb_json_set_number(item, "bow_mm", 0.5 * fit->bow_angle * member->data.info.length / WB_MM);
         wb_json_set_number(item, "bow_uncertainty_mm",
                            0.5 * fit->bow_angle_error * member->data.info.length / WB_MM);
@@ -101,17 +107,20 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
 
 void wb_cycle_json_put(struct wb_json *object, const struct wb_cycle_calibration *c)
 {
-    put_estimate(wb_json_set_object(object, "flexural_rigidity_N_mm2"), &c->rigidity, N_MM2);
-    put_estimate(wb_json_set_object(object, "springback_ratio"), &c->springback, 1.0);
-    put_estimate(wb_json_set_object(object, "loop_energy_mJ_per_m"), &c->loop_energy, MILLI);
+    const double unknown = (double)NAN;
+    const struct wb_estimate untested = {unknown, unknown, unknown, unknown, unknown, unknown};
+    put_estimate(wb_json_set_object(object, "flexural_rigidity_N_mm2"), c, "value", &c->rigidity,
+                 N_MM2);
+    put_estimate(wb_json_set_object(object, "springback_ratio"), c, "value",
+                 c->has_unloading ? &c->springback : &untested, 1.0);
+    put_estimate(wb_json_set_object(object, "loop_energy_mJ_per_m"), c, "value",
+                 c->has_unloading ? &c->loop_energy : &untested, MILLI);
     wb_json_set_number(object, "largest_curvature_1_m", c->largest_curvature);
     struct wb_json *const moments = wb_json_set_array(object, "moment_curvature");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
         struct wb_json *const item = wb_json_append_object(moments);
         wb_json_set_number(item, "curvature_1_m", c->curvature[k]);
-        wb_json_set_number(item, "moment_N_mm", c->moment[k].value / N_MM);
-        wb_json_set_number(item, "low", c->moment[k].low / N_MM);
-        wb_json_set_number(item, "high", c->moment[k].high / N_MM);
+        put_estimate(item, c, "moment_N_mm", &c->moment[k], N_MM);
     }
     put_rule(wb_json_set_object(object, "hardening_rule"), c);
     put_law(wb_json_set_object(object, "law"), &c->law);

@@ -1,7 +1,9 @@
 /* wirebench calibrate: datasets to properties. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/calibrate.h"
 #include "analysis/properties.h"
@@ -9,38 +11,99 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
+#include "cli/calibrate_cycle.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/settings.h"
 
 #define WB_LOG_DOMAIN "calibrate"
 
+enum method {
+    CYCLE,
+    PAPER,
+    METHODS
+};
+
+static const char *const methods[] = {"cycle", "paper"};
+
 struct options {
     struct wb_command_common common;
     struct wb_datasets datasets;
-    struct wb_calibrate_settings settings;
+    enum method method;
+    bool names_method;                     /* it was given */
+    const struct wb_setting *of[METHODS];  /* the first option of either method that was given */
+    struct wb_calibrate_settings settings; /* of the paper's method */
+    struct wb_calibrate_cycle cycle;
+};
+
+enum {
+    KEY_METHOD = WB_KEY_OWN
 };
 
 static const struct argp_option other_options[] = {
+    {"method", KEY_METHOD, "METHOD", 0,
+     "cycle: a law and its hardening rule on loading and unloading; paper: E, sigma_Y, K and n on "
+     "the averaged loading (cycle; tests with a follower force: paper)",
+     0},
     {"output", 'o', "PROPERTIES.yaml", 0, "Write the properties here", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
-static const struct argp argp = {
-    .options = other_options,
-    .parser = wb_command_parse_only_common,
-    .args_doc = "DATASET...",
-    .doc = "Calibrates the 1D elastoplastic beam on the averaged first loading of datasets of one "
-           "wire and length: E by eq. 10, the yield stress by eq. 11, K and n by Nelder-Mead with "
-           "the beam under the test's own loading.\v"
-           "Errors are over F_max, the largest force of the measured average, or over the largest "
-           "deflection of tests with a follower force. Exit code 3: the iterations ran out or it "
-           "was stopped; the best so far is written.",
+static const struct wb_settings_source sources[] = {
+    {.tables = wb_cycle_calibrate_tables,
+     .n_tables = WB_CYCLE_CALIBRATE_TABLES,
+     .offset = offsetof(struct options, cycle.settings),
+     .title = "Settings of --method cycle:"},
+    {.tables = &wb_calibrate_table,
+     .n_tables = 1,
+     .offset = offsetof(struct options, settings),
+     .title = "Settings of --method paper:"},
 };
 
-static bool report_progress(void *context, int evaluation, double error, double size)
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    if (key != KEY_METHOD)
+        return wb_command_parse_common(key, argument, state, &o->common);
+    for (int m = 0; m < METHODS; m++) {
+        if (strcmp(argument, methods[m]) == 0) {
+            o->method = m;
+            o->names_method = true;
+            return 0;
+        }
+    }
+    argp_error(state, "--method: expected cycle or paper, not '%s'", argument);
+    return 0;
+}
+
+static void note_option(void *input, const struct wb_setting *row)
+{
+    struct options *const o = input;
+    const bool is_papers =
+        row >= wb_calibrate_table.rows && row < wb_calibrate_table.rows + wb_calibrate_table.n;
+    const enum method method = is_papers ? PAPER : CYCLE;
+    if (!o->of[method])
+        o->of[method] = row;
+}
+
+static const struct argp argp = {
+    .options = other_options,
+    .parser = parse,
+    .args_doc = "DATASET...",
+    .doc = "Calibrates a law of bending on datasets of one wire: flexural rigidity, moments, "
+           "springback and the hardening rule from the first loading and unloading of each "
+           "specimen. With --method paper: E by eq. 10, the yield stress by eq. 11, K and n by "
+           "Nelder-Mead on the averaged first loading, with the beam under the test's own "
+           "loading.\v"
+           "Misfits and errors are over F_max, the largest force, or over "
+           "the largest deflection of tests with a follower force. Exit code 3: the data do not "
+           "support the hardening rule, or a search did not come to its end; the properties are "
+           "written.",
+};
+
+static bool report_beam_runs(void *context, int evaluation, double error, double size)
 {
     char note[64];
     snprintf(note, sizeof note, "error %.2e, simplex %.1e", error, size);
@@ -123,23 +186,13 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     return wb_command_print_json(root);
 }
 
-/* How many decimals show so many significant digits of a value without an exponent. */
-static int decimals(double value, int digits)
-{
-    const double size = fabs(value);
-    if (!(size > 1e-9) || !(size < 1e15))
-        return 0;
-    const int n = digits - 1 - (int)floor(log10(size));
-    return n < 0 ? 0 : n;
-}
-
 static void print_value(const char *name, double value, double deviation, const char *unit)
 {
     if (isfinite(deviation)) {
-        const int n = decimals(deviation, 2);
+        const int n = wb_calibrate_cycle_decimals(deviation, 2);
         printf("%-8s %10.*f +- %-8.*f %s\n", name, n, value, n, deviation, unit);
     } else {
-        printf("%-8s %10.*f %s\n", name, decimals(value, 5), value, unit);
+        printf("%-8s %10.*f %s\n", name, wb_calibrate_cycle_decimals(value, 5), value, unit);
     }
 }
 
@@ -163,7 +216,7 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     print_value("E", r->material.youngs_modulus / WB_MPA, r->deviation[0] / WB_MPA, "MPa");
     print_value("sigma_Y", r->material.yield_stress / WB_MPA, r->deviation[1] / WB_MPA, "MPa");
     const double strength = r->material.strength_coefficient / WB_MPA;
-    printf("%-8s %10.*f", "K", decimals(strength, 5), strength);
+    printf("%-8s %10.*f", "K", wb_calibrate_cycle_decimals(strength, 5), strength);
     if (isfinite(r->deviation[2]))
         printf(" */ %-8.3g", exp(r->deviation[2]));
     printf(" MPa\n");
@@ -192,13 +245,10 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
                r->scatter_rms, r->residual_scatter_rms);
 }
 
-static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *result)
+static enum wb_status calibrate_by_paper(struct options *o, struct wb_calibrate_result *result)
 {
     struct wb_progress progress;
-    if (o->common.output && !o->common.force && wb_file_exists(o->common.output))
-        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
-    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs, o->common.n));
-    o->settings.progress = report_progress;
+    o->settings.progress = report_beam_runs;
     o->settings.progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "beam runs", 0.0);
     const enum wb_status status =
@@ -207,7 +257,7 @@ static enum wb_status calibrate(struct options *o, struct wb_calibrate_result *r
     return status;
 }
 
-static int deliver(const struct options *o, const struct wb_calibrate_result *result)
+static int deliver_paper(const struct options *o, const struct wb_calibrate_result *result)
 {
     if (o->common.output) {
         const enum wb_status status = wb_properties_write(
@@ -228,18 +278,141 @@ static int deliver(const struct options *o, const struct wb_calibrate_result *re
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
+static int run_paper(struct options *o)
+{
+    struct wb_calibrate_result result = {0};
+    const enum wb_status status = calibrate_by_paper(o, &result);
+    const int code = status == WB_OK ? deliver_paper(o, &result) : wb_command_exit(status);
+    wb_calibrate_result_release(&result);
+    return code;
+}
+
+/* --- whole cycles --- */
+
+static bool report_specimens(void *context, int done, int all)
+{
+    (void)all;
+    wb_progress_update(context, done, NULL);
+    return !wb_interrupted();
+}
+
+static enum wb_status calibrate_on_cycles(struct options *o)
+{
+    struct wb_cycle_calibrate_settings *const settings = &o->cycle.settings;
+    struct wb_progress progress;
+    settings->progress = report_specimens;
+    settings->progress_context = &progress;
+    wb_progress_start(&progress, "calibrate", "fits", 2.0 * o->datasets.n);
+    const enum wb_status status = wb_cycle_calibrate_run(
+        &o->cycle.calibration, o->datasets.pointers, o->datasets.n, settings, NULL);
+    wb_progress_finish(&progress);
+    WB_TRY(status);
+    return wb_cycle_sensitivity_find(&o->cycle.calibration, settings, o->cycle.sensitivities);
+}
+
+static int deliver_cycle(const struct options *o)
+{
+    const struct wb_cycle_calibration *const c = &o->cycle.calibration;
+    if (o->common.output) {
+        const enum wb_status status =
+            wb_properties_write_cycle(o->common.output, c, &o->cycle.settings, o->common.inputs,
+                                      o->common.n, o->common.force);
+        if (status != WB_OK)
+            return wb_command_exit(status);
+    }
+    if (o->common.json) {
+        const int code = wb_calibrate_cycle_print_json(&o->cycle);
+        if (code != WB_EXIT_OK)
+            return code;
+    } else {
+        wb_calibrate_cycle_print(&o->cycle);
+    }
+    const bool is_refuted = c->has_unloading && !c->is_supported;
+    const bool is_converged = wb_cycle_calibrate_is_converged(c);
+    if (is_refuted)
+        wb_warn("wire '%s': hardening rule not supported by the data: no candidate follows loading "
+                "and unloading within 0.5 %% of F_max",
+                c->members[0].data.info.wire);
+    if (!is_converged)
+        wb_warn("wire '%s': the iterations ran out for a specimen (--fit-iterations)",
+                c->members[0].data.info.wire);
+    return is_refuted || !is_converged ? WB_EXIT_INCOMPLETE : WB_EXIT_OK;
+}
+
+static int run_cycle(struct options *o)
+{
+    const enum wb_status status = calibrate_on_cycles(o);
+    const int code = status == WB_OK ? deliver_cycle(o) : wb_command_exit(status);
+    wb_cycle_calibrate_release(&o->cycle.calibration);
+    return code;
+}
+
+/* --- which of them --- */
+
+static void choose_method(struct options *o)
+{
+    for (int i = 0; i < o->datasets.n && !o->names_method; i++) {
+        if (!o->datasets.items[i].info.is_follower)
+            continue;
+        o->method = PAPER;
+        wb_info("a follower force: calibrated by the paper's method");
+        return;
+    }
+}
+
+/* Options of the other method would do nothing. */
+static bool has_foreign_option(const struct options *o)
+{
+    const enum method other = o->method == PAPER ? CYCLE : PAPER;
+    if (o->of[other])
+        wb_error("--%s is for --method %s: these datasets are calibrated by --method %s",
+                 o->of[other]->option, methods[other], methods[o->method]);
+    return o->of[other] != NULL;
+}
+
+/* A pooled deviation without its degrees of freedom would do nothing. */
+static bool has_half_a_pool(const struct options *o)
+{
+    const struct wb_cycle_calibrate_settings *const s = &o->cycle.settings;
+    const bool has_half = (s->pooled_deviation > 0.0) != (s->pooled_degrees > 0);
+    if (has_half)
+        wb_error("--pooled-deviation and --pooled-degrees go together");
+    return has_half;
+}
+
+static enum wb_status begin(struct options *o)
+{
+    if (o->common.output && !o->common.force && wb_file_exists(o->common.output))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
+    return wb_datasets_read(&o->datasets, o->common.inputs, o->common.n);
+}
+
+static int run(struct options *o)
+{
+    const enum wb_status status = begin(o);
+    if (status != WB_OK)
+        return wb_command_exit(status);
+    choose_method(o);
+    if (has_foreign_option(o) || has_half_a_pool(o))
+        return WB_EXIT_USAGE;
+    return o->method == PAPER ? run_paper(o) : run_cycle(o);
+}
+
 int wb_cmd_calibrate(int argc, char **argv)
 {
+    static const struct wb_settings_command command = {
+        .argp = &argp,
+        .sources = sources,
+        .n_sources = WB_COUNT(sources),
+        .place = WB_CALIBRATE_COMMAND,
+        .note = note_option,
+    };
     struct options options = {.common = {.noun = "at least one dataset", .least = 1}};
-    struct wb_calibrate_result result = {0};
     wb_calibrate_default_settings(&options.settings);
-    wb_settings_parse_table(&argp, &wb_calibrate_table, &options.settings, WB_CALIBRATE_COMMAND,
-                            argc, argv, &options);
+    wb_cycle_calibrate_default_settings(&options.cycle.settings);
+    wb_settings_parse(&command, argc, argv, &options);
     wb_interrupt_install();
-
-    const enum wb_status status = calibrate(&options, &result);
-    const int code = status == WB_OK ? deliver(&options, &result) : wb_command_exit(status);
-    wb_calibrate_result_release(&result);
+    const int code = run(&options);
     wb_datasets_release(&options.datasets);
     wb_command_release(&options.common);
     return code;

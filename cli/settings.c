@@ -26,7 +26,7 @@ struct line {
     void *input;
     size_t n;
     struct entry *entries;       /* (n) */
-    struct argp_option *options; /* those of the entries, then the command's own */
+    struct argp_option *options; /* the command's own, then those of the entries */
     char **help;                 /* (n) */
     const char *first;           /* argument */
 };
@@ -35,6 +35,12 @@ static bool is_taken(const struct line *line, const struct entry *entry)
 {
     const unsigned place = line->command->place;
     return place == 0 || entry->applies == 0 || (entry->applies & place) != 0;
+}
+
+/* Number of a source's part of --help. */
+static int group_of(const struct line *line, const struct wb_settings_source *source)
+{
+    return source->title ? 1 + (int)(source - line->command->sources) : 0;
 }
 
 static void add_entry(struct line *line, const struct wb_settings_source *source,
@@ -59,6 +65,7 @@ static void add_entry(struct line *line, const struct wb_settings_source *source
         .arg = row->type == WB_SETTING_BOOLEAN ? NULL : row->argument,
         .flags = shows ? 0 : OPTION_HIDDEN,
         .doc = help.bytes,
+        .group = group_of(line, source),
     };
     line->n++;
 }
@@ -83,7 +90,7 @@ static void begin(struct line *line, const struct wb_settings_command *command, 
         .command = command,
         .input = input,
         .entries = calloc(most + 1, sizeof *line->entries),
-        .options = calloc(most + n_own + 1, sizeof *line->options),
+        .options = calloc(most + n_own + command->n_sources + 1, sizeof *line->options),
         .help = calloc(most + 1, sizeof *line->help),
     };
     if (!line->entries || !line->options || !line->help) {
@@ -97,7 +104,15 @@ static void begin(struct line *line, const struct wb_settings_command *command, 
                 if (source->tables[t].rows[i].option)
                     add_entry(line, source, &source->tables[t], &source->tables[t].rows[i]);
     }
-    memcpy(&line->options[line->n], own, n_own * sizeof *own);
+    /* An option without a part of its own joins that of the option before it. */
+    memmove(&line->options[n_own], line->options, line->n * sizeof *line->options);
+    memcpy(line->options, own, n_own * sizeof *own);
+    struct argp_option *title = &line->options[line->n + n_own];
+    for (size_t s = 0; s < command->n_sources; s++) {
+        const struct wb_settings_source *const source = &command->sources[s];
+        if (source->title)
+            *title++ = (struct argp_option){.doc = source->title, .group = group_of(line, source)};
+    }
 }
 
 static void end(struct line *line)
@@ -139,6 +154,8 @@ static void take(struct line *line, struct argp_state *state, const struct entry
     }
     if (!wb_setting_parse(entry->row, argument, (char *)line->input + entry->offset, problem))
         argp_error(state, "--%s: %s", entry->row->option, problem);
+    else if (line->command->note)
+        line->command->note(line->input, entry->row);
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)

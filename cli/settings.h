@@ -15,8 +15,9 @@
 struct wb_settings_source {
     const struct wb_setting_table *tables;
     size_t n_tables;
-    size_t offset;    /* in the input, of what the tables' offsets count from */
-    unsigned applies; /* bits of the places of rows that name none; 0: all */
+    size_t offset;     /* in the input, of what the tables' offsets count from */
+    unsigned applies;  /* bits of the places of rows that name none; 0: all */
+    const char *title; /* of their own part of --help; NULL: they stand among all others */
 };
 
 struct wb_settings_command {
@@ -28,6 +29,8 @@ struct wb_settings_command {
     /* Names of the places by bit, NULL-terminated: options of another one are refused by their
      * names. NULL: they are unknown. */
     const char *const *places;
+    /* Is told of each option of a row that was given; NULL: nobody is. */
+    void (*note)(void *input, const struct wb_setting *row);
 };
 
 /* Parses as wb_command_parse() does. */

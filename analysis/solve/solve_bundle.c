@@ -6,6 +6,7 @@
 #include "analysis/simulated_bundle.h"
 #include "analysis/solve/bundle_states.h"
 #include "analysis/solve/solve_kind.h"
+#include "analysis/solve/solve_law.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"
@@ -46,6 +47,8 @@ static enum wb_status prepare(void *context)
     WB_TRY(wb_file_find_fixture(path, "bundles", s->model, NULL));
     WB_TRY(wb_bundle_model_read(&run->model, path));
     run->solve.name = run->model.name;
+    for (int i = 0; i < run->model.n_types && is_first(); i++)
+        WB_TRY(wb_solve_law_tell(&run->model.type[i]));
     WB_TRY(wb_bundle_override_apply(&s->override, &run->model));
     run->mesh = wb_bundle_model_mesh(&run->model, run->model.run.mesh);
     run->states = (struct wb_bundle_states){

@@ -5,6 +5,7 @@
 
 #include "analysis/simulated.h"
 #include "analysis/solve/solve_kind.h"
+#include "analysis/solve/solve_law.h"
 #include "analysis/wire_fields.h"
 #include "base/file.h"
 #include "base/interrupt.h"
@@ -39,6 +40,8 @@ static enum wb_status prepare(void *context)
     WB_TRY(wb_file_find_fixture(path, "models", run->solve.settings->model, NULL));
     WB_TRY(wb_wire_model_read(&run->model, path));
     run->solve.name = run->model.name;
+    if (run->model.is_homogenised)
+        WB_TRY(wb_solve_law_tell(&run->model.wire));
     return wb_wire_run_init(&run->run, &run->model, MARKERS);
 }
 

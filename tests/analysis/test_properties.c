@@ -84,6 +84,9 @@ static void what_was_written_is_read(void **state)
     assert_close_relative(read.residual_scatter_rms, 0.018, tiny);
     assert_int_equal(read.n_samples, 3);
     assert_true(read.is_virtual);
+    assert_true(wb_law_is_plain(&read.law) && wb_law_is_plain(&written.law));
+    assert_close_relative(read.law.material.youngs_modulus, written.law.material.youngs_modulus,
+                          tiny);
 }
 
 static void the_file_says_virtual_rig_and_how_it_was_made(void **state)
@@ -130,6 +133,14 @@ static void a_file_by_hand_needs_the_properties_only(void **state)
     assert_close_relative(read.material.strength_coefficient, 500e6, 1e-15);
     assert_true(isnan(read.rms) && isnan(read.calibration_length));
     assert_false(read.is_virtual);
+    /* Its law is the paper's, and no more is known of it. */
+    assert_true(wb_law_is_plain(&read.law));
+    assert_close_relative(read.law.material.strength_coefficient, 500e6, 1e-15);
+    assert_true(isnan(read.largest_curvature) && isnan(read.rigidity.value));
+    assert_true(isnan(read.springback.candidates_low) && isnan(read.ludwik_misfit));
+    assert_int_equal(read.n_specimens, 0);
+    assert_int_equal(read.n_moments, 0);
+    assert_false(read.is_rule_tested || read.is_rule_supported);
 }
 
 static void an_existing_file_is_kept_without_force(void **state)

@@ -20,6 +20,7 @@ static struct wb_properties true_properties(int type)
         .residual_scatter_rms = (double)NAN,
     };
     strcpy(properties.wire, info.wire);
+    wb_law_init_ludwik(&properties.law, &properties.material);
     return properties;
 }
 

@@ -45,11 +45,12 @@ solve() {
     "$wirebench" solve cantilever --wire type3 --deflection-mm 53 --strand-mm 760 --weight \
         --points 106 "$@" || fail "solve $*"
 }
-quick="--yield-point 0.04 --elements 12 --step-mm 1 --no-restart"
+quick="--method paper --yield-point 0.04 --elements 12 --step-mm 1 --no-restart"
 
 solve --length-mm 85 -o L85
 solve --length-mm 100 -o L100
 solve --length-mm 85 --law elastic -o elastic
+solve --length-mm 85 --cycles 1 -o cycle
 
 # shellcheck disable=SC2086
 {
@@ -110,6 +111,104 @@ expect 2 "no command 'xyz'" "$wirebench" xyz
 grep -q '^one sample: no uncertainty$' said || fail "one sample: $(cat said)"
 grep -qE '^(E|sigma_Y|K|n) .*e[-+]' said && fail "exponents: $(cat said)"
 "$wirebench" calibrate --help | grep -q 'Mandatory or optional' && fail 'argp speaks of long options'
+
+# Whole cycles: the wire is Ludwik's with isotropic hardening, and that is what is found.
+expect 0 'law: Ludwik, isotropic; hardening rule supported' \
+    "$wirebench" calibrate cycle --threads 2 -o cycle.yaml
+within "$(number cycle.yaml youngs_modulus_MPa)" 4515 4540
+within "$(number cycle.yaml yield_stress_MPa)" 4.47 4.57
+within "$(number cycle.yaml strength_coefficient_MPa)" 1300 1350
+within "$(number cycle.yaml hardening_exponent)" 0.89 0.91
+within "$(number cycle.yaml rms)" 0 5e-4
+within "$(number cycle.yaml largest_curvature_1_m)" 30 32
+grep -q '^method: cycle$' cycle.yaml || fail 'the properties do not say their method'
+grep -q '^law:' cycle.yaml && fail 'a law beside the four numbers that say it'
+expect 0 'elastoplastic' "$wirebench" validate cycle.yaml L85
+"$wirebench" calibrate cycle >said || fail 'calibrate cycle'
+for line in '^EI  *85[0-9]\.[0-9] N mm2' '^M at .* 1/m .* N mm' '^springback' '^loop energy' \
+    '^one specimen: no interval' '^Ludwik, kinematic .* not in the ranges' '^  K  *13[0-9][0-9] MPa' \
+    'gain of the load cell  *1\.0' 'free length  *[23]\.' 'diameter  *0.0  *-4.0' '^settings: force_noise_mN 0.03, '; do
+    grep -q "$line" said || fail "no line '$line': $(cat said)"
+done
+grep -qE '^(EI|M|springback|loop) .*[0-9]e[-+]' said && fail "exponents: $(cat said)"
+[ "$(grep -n '^EI' said | cut -d: -f1)" -eq 2 ] || fail 'EI does not come first'
+"$wirebench" calibrate cycle --json >cycle.json || fail 'calibrate --json of cycles'
+for key in flexural_rigidity_N_mm2 springback_ratio moment_curvature hardening_rule specimens \
+    shared_sensitivities settings; do
+    grep -q "^  \"$key\": [{[]" cycle.json || fail "no $key in the JSON object"
+done
+within "$(number cycle.json data_step_mm)" 1 1
+within "$(number cycle.json length_mm)" 85 85
+
+# Loading alone: Ludwik's law, no springback.
+expect 0 'hardening rule untested' "$wirebench" calibrate L85
+"$wirebench" calibrate L85 -o loading.yaml >said || fail 'calibrate L85'
+grep -q '^springback' said && fail 'springback without a way back'
+grep -q 'tested: false' loading.yaml || fail 'a rule that was not tested'
+grep -q 'springback' loading.yaml && fail 'springback without a way back in the properties'
+expect 0 '2 specimens' "$wirebench" calibrate L85 L100
+expect 1 'hold the same readings' "$wirebench" calibrate cycle cycle
+
+# A travel that is too short for K and n.
+"$wirebench" solve cantilever --wire type3 --deflection-mm 15 --strand-mm 760 --weight --points 60 \
+    --length-mm 85 -o short || fail 'solve short'
+expect 0 'not identifiable with these data; deflect to 30 mm or more' "$wirebench" calibrate short
+
+# A rule that no candidate follows: the range alone, exit code 3, and the properties are written.
+awk -F, -v OFS=, '$3 == "unload" { $5 = $5 * (1 + 0.05 * sin($4 / 2)) } { print }' \
+    cycle/force_deflection.csv >table && cp -r cycle odd && cp table odd/force_deflection.csv
+expect 3 'hardening rule not supported by the data' "$wirebench" calibrate odd -o odd.yaml
+grep -q 'supported: false' odd.yaml || fail 'odd.yaml does not say that the rule is not supported'
+grep -qE '^flexural_rigidity_N_mm2: \{candidates_low' odd.yaml || fail 'more than a range is given'
+expect 3 'the iterations ran out' "$wirebench" calibrate cycle --fit-iterations 1
+
+# Settings belong to one method.
+expect 2 '--elastic-zone is for --method paper' "$wirebench" calibrate cycle --elastic-zone 0.05
+expect 2 '--bow-corrected is for --method paper' "$wirebench" calibrate cycle --bow-corrected
+expect 2 '--force-share is for --method cycle' \
+    "$wirebench" calibrate cycle --method paper --force-share 0.01
+expect 2 'go together' "$wirebench" calibrate cycle --pooled-deviation 0.03
+expect 0 'pooled over several wires, 0.03 with 12 degrees' \
+    "$wirebench" calibrate cycle --pooled-deviation 0.03 --pooled-degrees 12
+expect 2 'expected cycle or paper' "$wirebench" calibrate cycle --method print
+
+# Tests with a follower force keep the paper's method.
+cat >rod.yaml <<END
+name: rod
+title: a follower force
+wire: type3
+length_mm: 85
+law: elastoplastic
+clamp: plane
+gravity: [0, 0, 0]
+mesh: {elements_along: 30, section_density: 1}
+history:
+  - {name: pushed, follower_N: [0, 0.3, 0], rows: 40}
+END
+"$wirebench" solve wire1d ./rod.yaml -o follower >/dev/null || fail 'solve wire1d'
+expect 0 "a follower force: calibrated by the paper's method" \
+    "$wirebench" calibrate follower --elements 20 --no-restart
+
+# A wire of parallel parts is solved by the four numbers beside them, and that is said.
+cat >parts.yaml <<END
+name: parts
+conductor_diameter_mm: 1
+outer_diameter_mm: 1.4
+density_g_cm3: 4.97
+properties:
+  youngs_modulus_MPa: 4000
+  poissons_ratio: 0.39
+  yield_stress_MPa: 4.5
+  strength_coefficient_MPa: 1300
+  hardening_exponent: 0.9
+  law:
+    form: parallel
+    hardening: kinematic
+    parts: [{modulus_MPa: 2900, yield_strain: 0.001}, {modulus_MPa: 1600}]
+END
+sed -i 's/^wire: .*/wire: .\/parts.yaml/; s/follower_N: .*, rows: 40/deflection_mm: 5, rows: 5/' rod.yaml
+expect 0 'the four numbers are the Ludwik equivalent of a law of parallel parts; loading within' \
+    "$wirebench" solve wire1d ./rod.yaml
 
 [ $failures -eq 0 ] && echo 'all as expected'
 exit $((failures > 0))

@@ -19,7 +19,7 @@ expect_figures 31
 forbid "$folder|$root/"
 
 # What a user calibrates is what the report has of the first bundle.
-"$wirebench" calibrate "$root/simulations/7-type3" --yield-point 0.04 --step-mm 0.5 \
+"$wirebench" calibrate "$root/simulations/7-type3" --method paper --yield-point 0.04 --step-mm 0.5 \
     -o "$folder/beam.yaml" >/dev/null 2>&1 || fail 'calibrate'
 for key in youngs_modulus_MPa yield_stress_MPa strength_coefficient_MPa hardening_exponent; do
     own=$(sed -n "s/^$key: //p" "$folder/beam.yaml")

@@ -8,6 +8,7 @@
 
 #include "analysis/align.h"
 #include "analysis/calibrate.h"
+#include "analysis/cycle_calibrate.h"
 #include "analysis/report/campaign.h"
 #include "analysis/solve/solve_settings.h"
 #include "base/file.h"
@@ -32,6 +33,7 @@ static const struct command {
     {"replay", "none.wbr", "replay", &wb_bench_options_replay, 1, 0},
     {"align", "none.wbr -o none", "align", &wb_align_table, 1, 0},
     {"calibrate", "none", "calibrate", &wb_calibrate_table, 1, WB_CALIBRATE_COMMAND},
+    {"calibrate", "none", "calibrate", wb_cycle_calibrate_tables, WB_CYCLE_CALIBRATE_TABLES, 0},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
     {"solve cantilever", "--wire ./none --length-mm 1 --deflection-mm 1", "solve",
      &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},

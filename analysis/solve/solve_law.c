@@ -1,0 +1,42 @@
+#include "analysis/solve/solve_law.h"
+
+#include <math.h>
+
+#include "analysis/bending.h"
+#include "base/log.h"
+
+#define WB_LOG_DOMAIN "solve"
+
+/* Up to where parallel parts were measured: where the next one would yield. */
+static double last_strain(const struct wb_law *law)
+{
+    double last = 0.0, before = 0.0;
+    for (int i = 0; i < law->n_parts; i++) {
+        if (!isfinite(law->parts[i].yield_strain))
+            break;
+        before = last;
+        last = law->parts[i].yield_strain;
+    }
+    return before > 0.0 ? last * last / before : last;
+}
+
+enum wb_status wb_solve_law_tell(const struct wb_wire *wire)
+{
+    const struct wb_law *const law = &wire->law;
+    const double strain = last_strain(law);
+    double difference;
+    if (!wire->has_properties || wb_law_is_plain(law))
+        return WB_OK;
+    if (law->form == WB_LAW_LUDWIK || !(strain > 0.0)) {
+        wb_info("wire %s has a law with %s hardening: computed with its four numbers and isotropic "
+                "hardening; loading is the same, the way back is not",
+                wire->name, wb_law_rule_name(law));
+        return WB_OK;
+    }
+    WB_TRY(wb_bending_compare(law, &wire->material, wire->outer_diameter,
+                              strain / (0.5 * wire->outer_diameter), &difference));
+    wb_info("wire %s: the four numbers are the Ludwik equivalent of a law of parallel parts; "
+            "loading within %.2g %%, the way back is not the law's",
+            wire->name, 100.0 * difference);
+    return WB_OK;
+}

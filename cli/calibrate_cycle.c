@@ -1,0 +1,268 @@
+#include "cli/calibrate_cycle.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "analysis/cycle_json.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "cli/command.h"
+
+/* N mm2 in one N m2; N mm in one N m; mJ/m in one J/m; parts in one percent. */
+static const double N_MM2 = 1e-6, N_MM = 1e-3, MILLI = 1e-3, PERCENT = 1e-2;
+
+enum {
+    NUMBER = 32 /* bytes of a number as text */
+};
+
+int wb_calibrate_cycle_decimals(double value, int digits)
+{
+    const double size = fabs(value);
+    if (!(size > 1e-9) || !(size < 1e15))
+        return 0;
+    const int n = digits - 1 - (int)floor(log10(size));
+    return n < 0 ? 0 : n;
+}
+
+/* Four digits, or "-" where there is no number. */
+static const char *format(double value, char text[NUMBER])
+{
+    if (isfinite(value))
+        snprintf(text, NUMBER, "%.*f", wb_calibrate_cycle_decimals(value, 4), value);
+    else
+        snprintf(text, NUMBER, "-");
+    return text;
+}
+
+static void print_range(const char *of, double low, double high)
+{
+    char a[NUMBER], b[NUMBER];
+    if (isfinite(low) && isfinite(high))
+        printf("%s %s to %s", of, format(low, a), format(high, b));
+}
+
+/* Value, interval, range; of a rule that the data do not support only the range. */
+static void print_estimate(const struct wb_cycle_calibration *c, const char *name,
+                           const struct wb_estimate *e, double unit, const char *unit_name)
+{
+    char value[NUMBER];
+    const bool only_range = c->has_unloading && !c->is_supported;
+    printf("%-28s %9s%s%-5s", name, only_range ? "" : format(e->value / unit, value),
+           unit_name[0] ? " " : "", unit_name);
+    if (!only_range)
+        print_range("  interval", e->low / unit, e->high / unit);
+    print_range("  candidates", e->candidates_low / unit, e->candidates_high / unit);
+    printf("\n");
+}
+
+static void print_meaning(const struct wb_cycle_calibration *c,
+                          const struct wb_cycle_calibrate_settings *settings)
+{
+    printf("intervals: 95 %% for the mean over the specimens");
+    if (settings->pooled_degrees > 0)
+        printf(", by a deviation pooled over several wires, %g with %d degrees of freedom",
+               settings->pooled_deviation, settings->pooled_degrees);
+    printf("\ncandidates: range over the laws with a misfit of at most twice the best\n");
+    if (c->n_members == 1 && !isfinite(c->rigidity.low))
+        printf("one specimen: no interval for the product\n");
+}
+
+static void print_numbers(const struct wb_cycle_calibration *c,
+                          const struct wb_cycle_calibrate_settings *settings)
+{
+    char name[64], curvature[NUMBER];
+    print_estimate(c, "EI", &c->rigidity, N_MM2, "N mm2");
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
+        snprintf(name, sizeof name, "M at %s 1/m", format(c->curvature[k], curvature));
+        print_estimate(c, name, &c->moment[k], N_MM, "N mm");
+    }
+    if (c->has_unloading) {
+        print_estimate(c, "springback, of a curvature", &c->springback, 1.0, "");
+        print_estimate(c, "loop energy", &c->loop_energy, MILLI, "mJ/m");
+    } else {
+        printf("no springback and no loop energy: the tests have no way back\n");
+    }
+    print_meaning(c, settings);
+    printf("largest curvature that all specimens reached: %s 1/m; beyond it the law is not "
+           "measured\n",
+           format(c->largest_curvature, curvature));
+}
+
+static void print_rule(const struct wb_cycle_calibration *c)
+{
+    char limit[NUMBER];
+    printf("law: %s; hardening rule %s\n", wb_candidate_name(c->chosen),
+           !c->has_unloading ? "untested: the tests have no way back"
+           : c->is_supported ? "supported"
+                             : "not supported by the data: the best misfit is above 0.5 % of "
+                               "F_max");
+    if (!c->has_unloading)
+        printf("loading alone does not tell EI from early yield: EI may be 25 %% low\n");
+    printf("%-28s %8s %9s %9s %12s %10s\n", "candidate", "misfit %", "F", "F limit", "EI N mm2",
+           "springback");
+    for (int i = 0; i < c->n_ranked; i++) {
+        const struct wb_cycle_rank *const rank = &c->ranked[i];
+        char ratio[NUMBER], rigidity[NUMBER], springback[NUMBER];
+        printf("%-28s %8.3f %9s %9s %12s %10s%s%s\n", wb_candidate_name(rank->candidate),
+               rank->misfit / PERCENT, format(rank->f_ratio, ratio), format(rank->f_limit, limit),
+               format(rank->rigidity.value / N_MM2, rigidity),
+               c->has_unloading ? format(rank->springback.value, springback) : "-",
+               rank->candidate == c->chosen ? "  chosen" : "",
+               rank->counts ? "" : "  not in the ranges");
+    }
+    printf("F: square of the misfit over the repeat noise of the readings, %.3f %% of F_max\n",
+           c->repeat_noise / PERCENT);
+}
+
+/* What would tell K and n. */
+static void print_remedy(const struct wb_cycle_calibration *c)
+{
+    const double length = c->members[0].data.info.length / WB_MM;
+    if (c->travel_share < WB_CYCLE_SMALLEST_TRAVEL)
+        printf("; deflect to %.0f mm or more (%g of the length), not %.0f mm",
+               ceil(WB_CYCLE_SMALLEST_TRAVEL * length), WB_CYCLE_SMALLEST_TRAVEL,
+               c->travel_share * length);
+    else if (!c->has_unloading)
+        printf("; record the way back");
+    else
+        printf("; a larger deflection tells more");
+    printf("\n");
+}
+
+static void print_ludwik_number(const struct wb_cycle_calibration *c, const char *name,
+                                bool is_identifiable, double value, const char *unit)
+{
+    char text[NUMBER];
+    if (is_identifiable) {
+        printf("  %-8s %10s %s\n", name, format(value, text), unit);
+        return;
+    }
+    printf("  %-8s not identifiable with these data", name);
+    print_remedy(c);
+}
+
+static void print_law(const struct wb_cycle_calibration *c)
+{
+    const struct wb_law *const law = &c->law;
+    char a[NUMBER], b[NUMBER];
+    printf("%s law, %s hardening", law->form == WB_LAW_LUDWIK ? "Ludwik's" : "parallel parts'",
+           wb_law_rule_name(law));
+    if (law->isotropic_share > 0.0 && law->isotropic_share < 1.0)
+        printf(", isotropic share %.2f", law->isotropic_share);
+    printf(", over the outer diameter\n  %-8s %10s MPa\n", "E",
+           format(law->material.youngs_modulus / WB_MPA, a));
+    if (law->form == WB_LAW_LUDWIK) {
+        const struct wb_material *const m = &law->material;
+        printf("  %-8s %10s MPa\n", "sigma_Y", format(m->yield_stress / WB_MPA, a));
+        print_ludwik_number(c, "K", c->is_strength_identifiable, m->strength_coefficient / WB_MPA,
+                            "MPa");
+        print_ludwik_number(c, "n", c->is_exponent_identifiable, m->hardening_exponent, "");
+    }
+    for (int i = 0; i < law->n_parts; i++) {
+        const struct wb_law_part *const part = &law->parts[i];
+        printf("  part %-3d %10s MPa", i + 1, format(part->modulus / WB_MPA, a));
+        if (isfinite(part->yield_strain))
+            printf(", yields at a strain of %s %%\n", format(part->yield_strain / PERCENT, b));
+        else
+            printf(", elastic\n");
+    }
+    if (wb_law_is_plain(law))
+        return;
+    printf("Ludwik equivalent, isotropic, of the first loading (misfit %.2f %% of M; its way back "
+           "is not the wire's)\n",
+           c->ludwik_misfit / PERCENT);
+    printf("  E %s MPa,", format(c->ludwik.youngs_modulus / WB_MPA, a));
+    printf(" sigma_Y %s MPa,", format(c->ludwik.yield_stress / WB_MPA, a));
+    printf(" K %s MPa,", format(c->ludwik.strength_coefficient / WB_MPA, a));
+    printf(" n %s\n", format(c->ludwik.hardening_exponent, a));
+}
+
+static void print_specimens(const struct wb_cycle_calibration *c)
+{
+    printf("%-9s %6s %14s %9s %9s %9s %10s %9s\n", "specimen", "L mm", "bow mm", "level mm",
+           "misfit %", "EI N mm2", "springback", "outliers");
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
+        const struct wb_cycle_fit *const fit = &answer->fit;
+        const double length = member->data.info.length / WB_MM;
+        char rigidity[NUMBER], springback[NUMBER];
+        printf(
+            "%-9d %6g %6.2f +- %4.2f %9.2f %9.3f %9s %10s %9d%s%s\n", member->sample, length,
+            0.5 * fit->bow_angle * length, 0.5 * fit->bow_angle_error * length, fit->level / WB_MM,
+            fit->misfit / PERCENT, format(answer->bending.flexural_rigidity / N_MM2, rigidity),
+            c->has_unloading ? format(answer->bending.springback, springback) : "-",
+            fit->n_outliers + member->data.n_outliers,
+            fit->is_converged ? "" : "  did not converge", fit->is_at_bound ? "  at a bound" : "");
+    }
+    if (c->specimens_for_5_percent > 0)
+        printf("specimens needed for EI within +-5 %%: %d\n", c->specimens_for_5_percent);
+}
+
+static void print_shared(const struct wb_calibrate_cycle *cycle)
+{
+    printf("shared by all specimens and in no interval, %% per %%:\n");
+    printf("  %-24s %8s %8s %8s %10s\n", "", "EI", "E", "M", "springback");
+    for (int i = 0; i < WB_SHARED; i++) {
+        const struct wb_cycle_sensitivity *const s = &cycle->sensitivities[i];
+        const double values[] = {s->rigidity, s->modulus, s->moment, s->springback};
+        printf("  %-24s", wb_cycle_shared_name((enum wb_cycle_shared)i));
+        for (int k = 0; k < 4; k++) {
+            if (isfinite(values[k]))
+                printf(" %*.1f", k == 3 ? 10 : 8, values[k] == 0.0 ? 0.0 : values[k]);
+            else
+                printf(" %*s", k == 3 ? 10 : 8, "-");
+        }
+        printf("\n");
+    }
+}
+
+void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    struct wb_text settings = {0};
+    const double length = wb_cycle_calibrate_length(c);
+    printf("wire %s, ", info->wire);
+    if (isfinite(length))
+        printf("L = %g mm, ", length / WB_MM);
+    printf("%d specimen%s, first cycle%s\n", c->n_members, c->n_members == 1 ? "" : "s",
+           info->is_virtual      ? ", virtual rig"
+           : info->is_simulation ? ", simulation"
+                                 : "");
+    print_numbers(c, &cycle->settings);
+    print_rule(c);
+    print_law(c);
+    print_specimens(c);
+    print_shared(cycle);
+    wb_cycle_calibrate_settings_text(&cycle->settings, &settings);
+    printf("settings: %s\n", wb_text_string(&settings));
+    wb_text_release(&settings);
+}
+
+static void put_settings(struct wb_json *object, const struct wb_cycle_calibrate_settings *settings)
+{
+    for (int t = 0; t < WB_CYCLE_CALIBRATE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_cycle_calibrate_tables[t];
+        for (size_t i = 0; i < table->n; i++)
+            wb_setting_set_json(&table->rows[i], (const char *)settings + table->offset, object);
+    }
+}
+
+int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "wire", info->wire);
+    wb_json_set_text(root, "method", "cycle");
+    wb_json_set_number(root, "length_mm", wb_cycle_calibrate_length(c) / WB_MM);
+    wb_json_set_integer(root, "samples", c->n_members);
+    wb_json_set_boolean(root, "virtual_rig", info->is_virtual);
+    wb_json_set_boolean(root, "simulation", info->is_simulation);
+    wb_cycle_json_put(root, c);
+    wb_cycle_sensitivity_put(wb_json_set_array(root, "shared_sensitivities"), cycle->sensitivities);
+    put_settings(wb_json_set_object(root, "settings"), &cycle->settings);
+    wb_json_set_number(root, "cpu_s", c->cpu_s);
+    return wb_command_print_json(root);
+}

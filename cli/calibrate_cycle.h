@@ -1,0 +1,22 @@
+/* What `wirebench calibrate` prints of a calibration on whole cycles. */
+#ifndef WB_CLI_CALIBRATE_CYCLE_H
+#define WB_CLI_CALIBRATE_CYCLE_H
+
+#include "analysis/cycle_calibrate.h"
+#include "analysis/cycle_sensitivity.h"
+
+struct wb_calibrate_cycle {
+    struct wb_cycle_calibrate_settings settings;
+    struct wb_cycle_calibration calibration;
+    struct wb_cycle_sensitivity sensitivities[WB_SHARED];
+};
+
+/* How many decimals show so many significant digits of a value without an exponent. */
+int wb_calibrate_cycle_decimals(double value, int digits);
+
+void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle);
+
+/* Returns an exit code. */
+int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle);
+
+#endif
