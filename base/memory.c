@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 
 void *wb_memory_keep(struct wb_memory *memory, void *block)
@@ -24,7 +25,8 @@ void *wb_memory_keep(struct wb_memory *memory, void *block)
 
 void *wb_memory_take(struct wb_memory *memory, size_t count, size_t size)
 {
-    return wb_memory_keep(memory, calloc(count > 0 ? count : 1, size));
+    const bool fits = size == 0 || count <= SIZE_MAX / size;
+    return wb_memory_keep(memory, fits ? calloc(count > 0 ? count : 1, size) : NULL);
 }
 
 void wb_memory_release(struct wb_memory *memory)

@@ -32,9 +32,9 @@ static struct wb_bundle_fields make_fields(const struct body_sizes *s)
 {
     struct wb_bundle_fields f = {.n_bodies = 2};
     f.n_points = (s->outline + 1 + s->ring) * s->stations;
-    f.bodies = calloc(2, sizeof *f.bodies);
-    f.position = calloc((size_t)f.n_points, sizeof *f.position);
-    f.von_mises = calloc((size_t)f.n_points, sizeof *f.von_mises);
+    f.bodies = wb_memory_take(&f.memory, 2, sizeof *f.bodies);
+    f.position = wb_memory_take(&f.memory, (size_t)f.n_points, sizeof *f.position);
+    f.von_mises = wb_memory_take(&f.memory, (size_t)f.n_points, sizeof *f.von_mises);
     assert_true(f.bodies && f.position && f.von_mises);
     f.bodies[0] = (struct wb_bundle_fields_body){.closed = true,
                                                  .n_nodes = s->outline + 1,
@@ -45,7 +45,7 @@ static struct wb_bundle_fields make_fields(const struct body_sizes *s)
                                                  .n_nodes = s->ring,
                                                  .n_stations = s->stations,
                                                  .first = (s->outline + 1) * s->stations};
-    f.bodies[0].outline = calloc((size_t)s->outline, sizeof(int));
+    f.bodies[0].outline = wb_memory_take(&f.memory, (size_t)s->outline, sizeof(int));
     assert_non_null(f.bodies[0].outline);
     for (int k = 0; k < s->outline; k++)
         f.bodies[0].outline[k] = s->outline - k; /* node 0 lies inside */

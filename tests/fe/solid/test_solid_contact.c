@@ -85,7 +85,7 @@ static struct stack *stack_begin(const double up[3], const double across[3], dou
     add_block(s, true);
     const int n = s->mesh.n_elements / 2;
     s->mesh.n_pairs = n;
-    s->mesh.pair = calloc((size_t)n, sizeof *s->mesh.pair);
+    s->mesh.pair = wb_memory_take(&s->mesh.memory, (size_t)n, sizeof *s->mesh.pair);
     s->supports = calloc(3 * (size_t)s->mesh.n_nodes, sizeof *s->supports);
     s->force = calloc((size_t)s->mesh.n_nodes, sizeof *s->force);
     assert_true(s->mesh.pair && s->supports && s->force);
