@@ -320,7 +320,6 @@ enum wb_status wb_cycle_check_data(struct wb_cycle_remarks *remarks,
 /* --- fits --- */
 
 struct specimen {
-    const struct wb_cycle_calibration *calibration;
     const struct wb_cycle_member *member;
     const struct wb_cycle_data *data;
     const struct wb_dataset *dataset;
@@ -390,9 +389,8 @@ static void check_travel(struct wb_cycle_remarks *remarks, const struct specimen
         return;
     say(remarks, share < short_travel ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
         "wire '%s', sample %d: the travel ends at %.1f mm, %.2f of the length: EI may be used "
-        "(within some 10 %%), K "
-        "and n are not identifiable, and beyond a curvature of %.1f /m the law is not known; "
-        "expected %.2f of the length: a travel of %.0f mm would mend it",
+        "(to some 15 %%), K and n are not identifiable, and beyond a curvature of %.1f /m the law "
+        "is not known; expected %.2f of the length: a travel of %.0f mm would mend it",
         s->wire, s->sample, s->data->top / WB_MM, share, s->fit->clamp_curvature, full_travel,
         ceil(full_travel * length / WB_MM));
 }
@@ -620,7 +618,6 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_member *const member = &calibration->members[i];
         const struct specimen specimen = {
-            .calibration = calibration,
             .member = member,
             .data = &member->data,
             .dataset = datasets[i],
