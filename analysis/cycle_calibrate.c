@@ -11,8 +11,8 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 
-#include "analysis/curve.h"
 #include "analysis/first_guess.h"
+#include "analysis/first_guess_private.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "calibrate"
@@ -21,6 +21,9 @@ const double wb_cycle_moment_parts[WB_CYCLE_MOMENTS] = {0.05, 0.1, 0.3, 0.6, 1.0
 
 /* Deflection over length at which eqs. 10 and 11 give the law from which all fits start. */
 static const double elastic_zone = 0.05;
+/* Deflection over length from there on in which the slope past yield is taken, and the smallest
+ * exponent made of it. */
+static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
 /* Candidates count up to this many times the best misfit; a rule is supported up to this one. */
 static const double counts_up_to = 2.0;
 static const double largest_supported = 5e-3;
@@ -105,29 +108,54 @@ void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *
 
 /* --- one specimen --- */
 
-/* The law from which fits start: the closed forms of the paper. */
-static enum wb_status first_law(const struct wb_dataset *dataset, struct wb_law *law,
-                                struct wb_reason *why)
+/* The loading's tension beyond that at zero deflection, by a line through its points from one
+ * deflection to another; at least three, or as many as there are. */
+static double loading_line(const struct wb_cycle_data *data, double from, double to, double *slope)
 {
-    const struct wb_dataset *const list[1] = {dataset};
-    struct wb_first_guess guess;
-    struct wb_curve curve;
-    WB_TRY(wb_curve_average_on(&curve, list, 1, NULL, why));
-    const enum wb_status status =
-        wb_first_guess_run(&guess, &curve, &dataset->info, elastic_zone, elastic_zone, why);
-    wb_curve_release(&curve);
-    if (status != WB_OK)
-        return status;
+    int begin = 0, end = data->n_loading;
+    while (begin < end - 3 && data->points[begin].deflection < from)
+        begin++;
+    while (end > begin + 3 && data->points[end - 1].deflection > to)
+        end--;
+    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+    for (int i = begin; i < end; i++) {
+        x += data->points[i].deflection / (end - begin);
+        y += (data->points[i].tension - data->zero_tension) / (end - begin);
+    }
+    for (int i = begin; i < end; i++) {
+        const double dx = data->points[i].deflection - x;
+        xx += dx * dx;
+        xy += dx * (data->points[i].tension - data->zero_tension - y);
+    }
+    *slope = xy / xx;
+    return y + *slope * (0.5 * (from + to) - x);
+}
+
+/* The law from which fits start: the closed forms of the paper on the points, from which outliers
+ * have gone. It refuses nothing: a poor start is found by the fit. */
+static void first_law(const struct wb_cycle_data *data, struct wb_law *law)
+{
+    const double length = data->info.length, diameter = data->info.outer_diameter;
+    const double at = fmin(elastic_zone * length, 0.7 * data->top);
+    double slope;
+    double force = loading_line(data, 0.75 * at, 1.25 * at, &slope);
+    if (!(force > 0.0))
+        force = data->max_force * at / data->top;
+    (void)loading_line(data, at, at + slope_zone * length, &slope);
+    const double E = wb_first_guess_modulus(force, at, length, diameter);
+    const double yield = wb_first_guess_stress(force, length, diameter);
+    const double tangent = wb_first_guess_stress(slope, length, diameter) /
+                           wb_first_guess_strain(1.0, length, diameter);
+    const double n = fmin(fmax(tangent / E, smallest_first_exponent), 1.0);
     const struct wb_material material = {
         .hardening = WB_HARDENING_ISOTROPIC_POWER,
-        .youngs_modulus = guess.youngs_modulus,
-        .poissons_ratio = dataset->info.poissons_ratio,
-        .yield_stress = guess.yield_stress,
-        .strength_coefficient = guess.strength_coefficient,
-        .hardening_exponent = guess.hardening_exponent,
+        .youngs_modulus = E,
+        .poissons_ratio = data->info.poissons_ratio,
+        .yield_stress = yield,
+        .strength_coefficient = wb_first_guess_strength(E, yield, n),
+        .hardening_exponent = n,
     };
     wb_law_init_ludwik(law, &material);
-    return WB_OK;
 }
 
 /* The curvature that the first point's deflection makes of a straight wire, times the radius. */
@@ -185,7 +213,7 @@ static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct w
     const struct wb_cycle_grid none = {0.0, 0.0};
     struct wb_law start;
     WB_TRY(wb_cycle_data_take(&member->data, dataset, &settings->data, &member->why));
-    WB_TRY(first_law(dataset, &start, &member->why));
+    first_law(&member->data, &start);
     if (member->data.n_loading == member->data.n_points)
         return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, &settings->fit);
     for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {

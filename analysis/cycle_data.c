@@ -19,6 +19,10 @@ enum {
 
 /* Rows farther from the line than this many standard deviations of the others are left out. */
 static const double far_off = 4.5;
+/* A single row can be so far off that it tilts the line and hides behind it. Rows this many
+ * standard deviations off a line by medians, which none of them tilts, never enter; the medians of
+ * a few rows are rough, hence the wide berth. */
+static const double out_of_bounds = 15.0;
 
 const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS] = {
     {.name = "data_step_mm",
@@ -111,6 +115,26 @@ static bool take_memory(struct rows *rows, size_t most)
     return memory;
 }
 
+/* A line by medians: the slope of rows half the stretch apart, then the height. Returns the median
+ * distance of rows from it, as a standard deviation. */
+static double rough_line(struct rows *rows, size_t begin, size_t end, struct wb_fit_line *line)
+{
+    const size_t n = end - begin, half = n / 2;
+    size_t pairs = 0;
+    for (size_t i = begin; i + half < end; i++) {
+        const double dx = rows->x[i + half] - rows->x[i];
+        if (dx != 0.0)
+            rows->sorted[pairs++] = (rows->y[i + half] - rows->y[i]) / dx;
+    }
+    line->slope = pairs > 0 ? wb_fit_median(rows->sorted, pairs) : 0.0;
+    for (size_t i = begin; i < end; i++)
+        rows->sorted[i - begin] = rows->y[i] - line->slope * rows->x[i];
+    line->value = wb_fit_median(rows->sorted, n);
+    for (size_t i = begin; i < end; i++)
+        rows->sorted[i - begin] = fabs(rows->y[i] - line->slope * rows->x[i] - line->value);
+    return 1.4826 * wb_fit_median(rows->sorted, n);
+}
+
 /* Rows from `begin` to `end` without those far off a straight line of y over x. Their means belong
  * together whatever the noise of x is, which would make a line's value at a given x too flat.
  * Returns how many are left; *error is that of the mean of y for the mean of x. */
@@ -121,13 +145,17 @@ static size_t mean_of(struct rows *rows, size_t begin, size_t end, double *x, do
     double mean_x = 0.0, mean_y = 0.0;
     size_t kept = 0;
 
+    if (end < begin + FEWEST_ROWS)
+        return 0;
     for (int pass = 0; pass < 3; pass++) {
-        double typical = (double)INFINITY;
-        if (pass > 0) {
+        double limit;
+        if (pass == 0) {
+            limit = out_of_bounds * rough_line(rows, begin, end, &line);
+        } else {
             for (size_t i = begin; i < end; i++)
                 rows->sorted[i - begin] =
                     fabs(rows->y[i] - mean_y - line.slope * (rows->x[i] - mean_x) - line.value);
-            typical = 1.4826 * wb_fit_median(rows->sorted, end - begin);
+            limit = far_off * 1.4826 * wb_fit_median(rows->sorted, end - begin);
         }
         double sum_x = 0.0, sum_y = 0.0;
         const double center_x = mean_x, center_y = mean_y;
@@ -135,7 +163,7 @@ static size_t mean_of(struct rows *rows, size_t begin, size_t end, double *x, do
         for (size_t i = begin; i < end; i++) {
             const double off =
                 rows->y[i] - center_y - line.slope * (rows->x[i] - center_x) - line.value;
-            if (fabs(off) > far_off * typical)
+            if (fabs(off) > limit)
                 continue;
             rows->line_x[kept] = rows->x[i];
             rows->line_y[kept++] = rows->y[i];
