@@ -38,7 +38,7 @@
 enum {
     NODES = 401, /* along the wire */
     TERMS = 3,
-    CURVE_TERMS = 5, /* of the mean curve */
+    CURVE_TERMS = 6, /* of the mean curve */
     PASSES = 3,
     SETTLING = 4, /* iterations until b is taken */
     MOST_MARKERS = 64,
@@ -62,6 +62,8 @@ static const double prior_places = 6.0;
 /* States whose tip is off zero deflection by no more than this part of the length show the natural
  * shape. */
 static const double near_zero = 0.047;
+/* What the law may change of such a shape, as a part of how far its tip is bent. */
+static const double law_share = 0.01;
 /* A state's places come from frames within this distance of its deflection (cycle_data.c). */
 static const double frame_reach = 1.6 * WB_MM;
 /* How far the polynomial's form is off, as a part of the curvature: see docs/theory.md. */
@@ -275,28 +277,31 @@ static bool fit_state(struct fitting *f, int begin, int end)
 }
 
 /* How far each marker is off the axis of a wire with the natural shape, from the states next to
- * zero deflection: whatever the wire's law, the shape there is the natural one, bent by a force at
- * the tip. What the natural shape has beside the terms that are known of it goes with this too. */
+ * zero deflection: the shape there is the natural one, bent by a force at the tip as far as its
+ * height says, which depends little on the law. What the natural shape has beside the terms that
+ * are known of it goes with this too. A simulation's places are on the axis. */
 static void find_offsets(struct fitting *f)
 {
     const struct wb_cycle_data *const data = f->data;
-    const double length = f->info->length;
-    double sum[MOST_MARKERS] = {0.0};
-    int n[MOST_MARKERS] = {0};
+    const double length = f->info->length, bow = natural_height(f->info, 1.0);
+    double sum[MOST_MARKERS] = {0.0}, weights[MOST_MARKERS];
+    if (f->info->is_simulation)
+        return;
+    for (int i = 0; i < data->n_markers; i++)
+        weights[i] = 1.0 / (offset_deviation * offset_deviation);
     for (int i = 0; i < data->n_places; i++) {
         const struct wb_cycle_place *const place = &data->places[i];
         const double height = data->points[place->point].deflection - f->level;
-        const double u = place->s / length, bow = natural_height(f->info, 1.0);
+        const double u = place->s / length, bend = height - bow;
         if (data->points[place->point].is_unloading || fabs(height) > near_zero * length)
             break;
+        const double weight = 1.0 / (pow(place_deviation, 2) + pow(law_share * bend, 2));
         sum[place->marker] +=
-            place->y - natural_height(f->info, u) - (height - bow) * 0.5 * u * u * (3.0 - u);
-        n[place->marker]++;
+            weight * (place->y - natural_height(f->info, u) - bend * 0.5 * u * u * (3.0 - u));
+        weights[place->marker] += weight;
     }
-    for (int i = 0; i < data->n_markers; i++) {
-        if (n[i] > 0)
-            f->offsets[i] = sum[i] / (n[i] + pow(place_deviation / offset_deviation, 2));
-    }
+    for (int i = 0; i < data->n_markers; i++)
+        f->offsets[i] = sum[i] / weights[i];
 }
 
 /* Next to the turn there are frames on one side only, and the places are carried on along a line
