@@ -25,6 +25,8 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
     properties->outer_diameter = result->info.outer_diameter;
     properties->mass_per_length = result->info.mass_per_length;
     properties->material = result->material;
+    wb_law_init_ludwik(&properties->law, &properties->material);
+    properties->largest_curvature = (double)NAN;
     memcpy(properties->deviation, result->deviation, sizeof properties->deviation);
     properties->calibration_length = result->info.length;
     properties->rms = result->rms;
@@ -234,11 +236,12 @@ enum wb_status wb_properties_read(const char *path, struct wb_properties *proper
     struct wb_properties read = {0};
     for (int k = 0; k < 4; k++)
         read.deviation[k] = (double)NAN;
-    read.calibration_length = read.rms = (double)NAN;
+    read.calibration_length = read.rms = read.largest_curvature = (double)NAN;
     read.scatter_rms = read.residual_scatter_rms = (double)NAN;
     WB_TRY(wb_config_read(&config, path, NULL));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);
+    wb_law_init_ludwik(&read.law, &read.material);
     if (status == WB_OK)
         *properties = read;
     return status;

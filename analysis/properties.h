@@ -19,12 +19,15 @@
 
 #include "analysis/calibrate.h"
 #include "base/status.h"
+#include "fe/material/law.h"
 
 struct wb_properties {
     char wire[64];
     double outer_diameter;  /* m */
     double mass_per_length; /* kg/m */
     struct wb_material material;
+    struct wb_law law;        /* the same, unless the properties have a law of their own */
+    double largest_curvature; /* 1/m, up to which the law is known; NaN unknown */
     double deviation[4];       /* of E, sigma_Y, ln K, n in SI; NaN unknown */
     double calibration_length; /* m; NaN when not from calibrate */
     double rms;                /* of the calibration, 1; NaN unknown */
