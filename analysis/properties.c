@@ -26,7 +26,7 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
     properties->mass_per_length = result->info.mass_per_length;
     properties->material = result->material;
     wb_law_init_ludwik(&properties->law, &properties->material);
-    properties->largest_curvature = (double)NAN;
+    properties->largest_curvature = properties->stiffness_deviation = (double)NAN;
     memcpy(properties->deviation, result->deviation, sizeof properties->deviation);
     properties->calibration_length = result->info.length;
     properties->rms = result->rms;
@@ -237,7 +237,7 @@ enum wb_status wb_properties_read(const char *path, struct wb_properties *proper
     for (int k = 0; k < 4; k++)
         read.deviation[k] = (double)NAN;
     read.calibration_length = read.rms = read.largest_curvature = (double)NAN;
-    read.scatter_rms = read.residual_scatter_rms = (double)NAN;
+    read.scatter_rms = read.residual_scatter_rms = read.stiffness_deviation = (double)NAN;
     WB_TRY(wb_config_read(&config, path, NULL));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);

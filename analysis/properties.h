@@ -26,15 +26,17 @@ struct wb_properties {
     double outer_diameter;  /* m */
     double mass_per_length; /* kg/m */
     struct wb_material material;
-    struct wb_law law;        /* the same, unless the properties have a law of their own */
-    double largest_curvature; /* 1/m, up to which the law is known; NaN unknown */
+    struct wb_law law;         /* the same, unless the properties have a law of their own */
+    double largest_curvature;  /* 1/m, up to which the law is known; NaN unknown */
     double deviation[4];       /* of E, sigma_Y, ln K, n in SI; NaN unknown */
     double calibration_length; /* m; NaN when not from calibrate */
     double rms;                /* of the calibration, 1; NaN unknown */
     double scatter_rms,
-        residual_scatter_rms; /* of the calibration's samples, over F_max (a follower
-                                 test's largest deflection), 1; NaN unknown */
-    int n_samples;            /* of the calibration; 0 unknown */
+        residual_scatter_rms;   /* of the calibration's samples, over F_max (a follower
+                                   test's largest deflection), 1; NaN unknown */
+    double stiffness_deviation; /* standard deviation of ln(EI) over the calibration's samples; NaN
+                                   unknown */
+    int n_samples;              /* of the calibration; 0 unknown */
     bool is_virtual;
 };
 
