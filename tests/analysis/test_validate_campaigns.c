@@ -84,9 +84,11 @@ static void fit_nominal(struct wb_properties *properties)
     wb_dataset_release(&dataset);
 }
 
-static void validate(const struct wb_properties *properties, int campaign,
+/* False where the beginning of a test is lost, which is refused. */
+static bool validate(const struct wb_properties *properties, int campaign,
                      struct wb_validate_result *result)
 {
+    struct wb_reason why = {.text = ""};
     struct wb_dataset dataset[SPECIMENS];
     const struct wb_dataset *datasets[SPECIMENS];
     for (int i = 0; i < SPECIMENS; i++) {
@@ -97,9 +99,12 @@ static void validate(const struct wb_properties *properties, int campaign,
         dataset[i].info.sample = i + 1;
         datasets[i] = &dataset[i];
     }
-    assert_int_equal(wb_validate_run(result, properties, datasets, SPECIMENS, NULL, NULL), WB_OK);
+    const enum wb_status status =
+        wb_validate_run(result, properties, datasets, SPECIMENS, NULL, &why);
+    assert_true(status == WB_OK || status == WB_ERR_DATA);
     for (int i = 0; i < SPECIMENS; i++)
         wb_dataset_release(&dataset[i]);
+    return status == WB_OK;
 }
 
 static void perfect_model_is_beyond_its_bound_in_one_of_twenty(void **state)
@@ -107,11 +112,15 @@ static void perfect_model_is_beyond_its_bound_in_one_of_twenty(void **state)
     (void)state;
     struct wb_properties properties;
     double squares = 0.0, expected = 0.0, unloading = 0.0, left = 0.0, energy = 0.0;
-    int beyond = 0;
+    int beyond = 0, done = 0;
+    wb_log_set_threshold(WB_LOG_ERROR); /* seeds have gaps and odd bows */
     fit_nominal(&properties);
-    for (int k = 0; k < CAMPAIGNS; k++) {
+    for (int k = 0; done < CAMPAIGNS; k++) {
         struct wb_validate_result result;
-        validate(&properties, k, &result);
+        assert_true(k < 2 * CAMPAIGNS);
+        if (!validate(&properties, k, &result))
+            continue;
+        done++;
         const struct wb_validate_cycles *const cycles = &result.cycles;
         beyond += result.elastoplastic.rms > result.expected_rms_95;
         squares += pow(result.elastoplastic.rms, 2) / CAMPAIGNS;
