@@ -206,10 +206,10 @@ static enum wb_status allocate_line(struct line *line, size_t most)
 static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, int cycle,
                       int n_cycles, enum wb_phase phase, struct line *line)
 {
+    /* Not dashed: noise of the deflection would make dashes of all lengths. */
     const struct wb_figure_style style = {
         .colour = wb_palette_sequence(cycle - 1, n_cycles),
-        .width = 1.2,
-        .dash = phase == WB_PHASE_LOAD ? WB_DASH_SOLID : WB_DASH_DASHED,
+        .width = phase == WB_PHASE_LOAD ? 1.6 : 0.7,
     };
     char label[64];
     const double longest = wb_dataset_gap(dataset);
