@@ -19,12 +19,4 @@ WB_MUST_CHECK enum wb_status wb_scatter_residual(double *rms,
                                                  const struct wb_material *material,
                                                  const struct wb_computed_settings *settings);
 
-/* The same, and *amplitude, the standard deviation over the samples of ln a: a is the factor on the
- * predicted curve of a sample that comes nearest to its measured one (least squares). */
-WB_MUST_CHECK enum wb_status wb_scatter_find(double *rms, double *amplitude,
-                                             const struct wb_dataset *const *datasets, int n,
-                                             const struct wb_curve *curve,
-                                             const struct wb_material *material,
-                                             const struct wb_computed_settings *settings);
-
 #endif

@@ -105,15 +105,9 @@ static struct wb_law stiffer(const struct wb_law *law, double factor)
     return scaled;
 }
 
-/* dF/d ln k of the computed curve over F_max: its root mean square, and its projection on the curve
- * itself, which is d ln a/d ln k of the factor a on it. NaN where the beam does not reach its end.
- */
-struct sensitivity {
-    double rms, amplitude;
-};
-
-static enum wb_status find_sensitivity(struct sensitivity *sensitivity,
-                                       const struct wb_validate_result *result,
+/* G of validate.h: root mean square of dF/d ln k over F_max; NaN where the beam does not reach the
+ * end of the curve. */
+static enum wb_status find_sensitivity(double *G, const struct wb_validate_result *result,
                                        const struct wb_law *law,
                                        const struct wb_computed_settings *how)
 {
@@ -137,41 +131,35 @@ static enum wb_status find_sensitivity(struct sensitivity *sensitivity,
         }
         complete = complete && reached == curve->n;
     }
-    double product = 0.0, square = 0.0;
-    for (int i = 0; complete && i < curve->n; i++) {
-        const double slope = (value[curve->n + i] - value[i]) / (2.0 * SMALL);
-        product += slope * result->elastoplastic.value[i];
-        square += result->elastoplastic.value[i] * result->elastoplastic.value[i];
-        value[i] = slope / wb_curve_scale(curve);
-    }
-    *sensitivity = (struct sensitivity){(double)NAN, (double)NAN};
-    if (status == WB_OK && complete && square > 0.0)
-        *sensitivity = (struct sensitivity){wb_errors_rms(curve->n, value), product / square};
+    for (int i = 0; status == WB_OK && complete && i < curve->n; i++)
+        value[i] = (value[curve->n + i] - value[i]) / (2.0 * SMALL * wb_curve_scale(curve));
+    *G = status == WB_OK && complete ? wb_errors_rms(curve->n, value) : (double)NAN;
     free(value);
     return status;
 }
 
-/* s of ln k of the calibration's specimens; NaN unknown. Files without it have the scatter of
- * their curves over F_max, which is s times a G that changes little with the length. */
-static double calibrated_deviation(const struct wb_properties *properties, double G)
+/* s of specimens whose curves scatter so. What the model makes of bows that the specimens do not
+ * have is in the residual scatter alone, so that the smaller counts. */
+static double deviation_of(double scatter, double residual_scatter, double G)
 {
-    const double least = fmin(properties->scatter_rms, properties->residual_scatter_rms);
-    return isfinite(properties->stiffness_deviation) ? properties->stiffness_deviation : least / G;
+    return isfinite(scatter) ? fmin(scatter, residual_scatter) / G : (double)NAN;
 }
 
-/* What scatter between specimens makes of a perfect model's error; see validate.h. */
+/* What scatter between specimens makes of a perfect model's error; see validate.h. Properties that
+ * do not say how much the calibration's specimens differ in stiffness say how much their curves do,
+ * and G changes little with the length. */
 static void judge_scatter(struct wb_validate_result *result, const struct wb_properties *properties,
-                          double amplitude, const struct sensitivity *sensitivity)
+                          double G)
 {
     const int n = result->curve.n_samples, m = properties->n_samples;
-    const double calibrated = calibrated_deviation(properties, sensitivity->rms);
-    /* Bows that the samples do not have would make scatter: theirs cannot be more than the curves'.
-     */
-    const double own = fmin(amplitude / fabs(sensitivity->amplitude),
-                            wb_curve_scatter(&result->curve) / sensitivity->rms);
+    result->scatter_rms = wb_curve_scatter(&result->curve);
+    const double own = deviation_of(result->scatter_rms, result->residual_scatter_rms, G);
+    const double calibrated =
+        isfinite(properties->stiffness_deviation)
+            ? properties->stiffness_deviation
+            : deviation_of(properties->scatter_rms, properties->residual_scatter_rms, G);
     double squares = 0.0;
     int degrees = 0;
-    result->scatter_rms = wb_curve_scatter(&result->curve);
     result->stiffness_deviation = (double)NAN;
     result->expected_rms = result->expected_rms_95 = result->scatter_share = (double)NAN;
     if (n > 1 && isfinite(own)) {
@@ -187,7 +175,7 @@ static void judge_scatter(struct wb_validate_result *result, const struct wb_pro
     result->stiffness_degrees = degrees;
     result->stiffness_deviation = sqrt(squares / degrees);
     result->expected_rms =
-        result->stiffness_deviation * sqrt(1.0 / n + (m > 0 ? 1.0 / m : 0.0)) * sensitivity->rms;
+        result->stiffness_deviation * sqrt(1.0 / n + (m > 0 ? 1.0 / m : 0.0)) * G;
     result->expected_rms_95 = gsl_cdf_tdist_Pinv(0.975, degrees) * result->expected_rms;
     const double rms = result->elastoplastic.rms;
     if (rms > 0.0)
@@ -248,8 +236,7 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
                                              settings->n_fibres, why, overlay_of(properties)};
     struct wb_computed *computed;
     struct wb_marker_distance distance;
-    struct sensitivity sensitivity;
-    double amplitude;
+    double G;
     WB_TRY(wb_computed_create(&computed, &result->info, material, &how));
     const struct wb_curve *const curve = &result->curve;
     const struct wb_marker_distance_range range = {
@@ -262,12 +249,12 @@ static enum wb_status validate_curve(struct wb_validate_result *result,
         status = wb_marker_distance_find(&distance, computed, material, datasets, n, &range);
     wb_computed_destroy(computed);
     if (status == WB_OK)
-        status = wb_scatter_find(&result->residual_scatter_rms, &amplitude, datasets, n, curve,
-                                 material, &how);
+        status =
+            wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve, material, &how);
     if (status == WB_OK)
-        status = find_sensitivity(&sensitivity, result, &properties->law, &how);
+        status = find_sensitivity(&G, result, &properties->law, &how);
     WB_TRY(status);
-    judge_scatter(result, properties, amplitude, &sensitivity);
+    judge_scatter(result, properties, G);
     result->shape_rms = distance.rms;
     result->shape_max = distance.largest;
     result->n_shape_points = distance.n_points;
@@ -361,15 +348,21 @@ static void put_rows(struct wb_text *text, const struct wb_validate_result *resu
     }
 }
 
+/* The wire's name without what would break a table. */
+static void plain_name(char *name, size_t size, const struct wb_validate_result *result)
+{
+    snprintf(name, size, "%s", result->info.wire);
+    for (char *c = name; *c; c++) {
+        if ((unsigned char)*c < 0x20 || *c == ',')
+            *c = ' ';
+    }
+}
+
 /* The first line: whose data they are. */
 static void put_origin(struct wb_text *text, const struct wb_validate_result *result)
 {
     char wire[sizeof result->info.wire];
-    snprintf(wire, sizeof wire, "%s", result->info.wire);
-    for (char *c = wire; *c; c++) {
-        if ((unsigned char)*c < 0x20)
-            *c = ' ';
-    }
+    plain_name(wire, sizeof wire, result);
     wb_text_append(text, "# %swire %s, L = %g mm, %d %s, wirebench %s (%s)\n",
                    result->info.is_virtual      ? "virtual rig, "
                    : result->info.is_simulation ? "simulation, "
@@ -415,7 +408,9 @@ enum wb_status wb_validate_write_unloading(const struct wb_validate_result *resu
 static void put_score(struct wb_text *text, const struct wb_validate_result *result,
                       const char *score, const double values[3], const char *unit)
 {
-    wb_text_append(text, "%s,%g,%s,", result->info.wire, result->info.length / WB_MM, score);
+    char wire[sizeof result->info.wire];
+    plain_name(wire, sizeof wire, result);
+    wb_text_append(text, "%s,%g,%s,", wire, result->info.length / WB_MM, score);
     for (int i = 0; i < 3; i++)
         put_field(text, values[i], ',');
     wb_text_append(text, "%s\n", unit);

@@ -11,12 +11,13 @@
  *     RMS = |d| G,  G = RMS over the grid of dF/d ln k, over F_max.
  *
  * G is found with moduli and stresses of the law all a little larger and smaller. s is pooled over
- * these specimens (the factor on each one's computed curve that comes nearest to its measured one)
- * and the calibration's, with as many degrees of freedom v; so the RMS of a perfect model is beyond
+ * these specimens (s G is the smaller of scatter and residual scatter, which hold all else that
+ * tells specimens apart as well) and the calibration's, with v degrees of freedom; so the RMS of a
+ * perfect model is beyond
  *
  *     RMS95 = t_0.975(v) s (1/n + 1/m)^(1/2) G
  *
- * in one of twenty validations, whatever s is. Noise and what the bows leave come on top. */
+ * in one of twenty validations, whatever s is. */
 #ifndef WB_ANALYSIS_VALIDATE_H
 #define WB_ANALYSIS_VALIDATE_H
 

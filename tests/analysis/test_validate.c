@@ -118,7 +118,7 @@ static void scatter_explains_what_the_average_of_few_cannot(void **state)
     assert_close_relative(result.scatter_rms / result.elastoplastic.rms, 0.0361 / 0.02, 0.01);
     assert_int_equal(result.stiffness_degrees, 2);
     assert_close_relative(result.stiffness_deviation, 0.0358, 0.05);
-    assert_close_relative(result.expected_rms, result.residual_scatter_rms / sqrt(3.0), 0.02);
+    assert_close_relative(result.expected_rms, result.residual_scatter_rms / sqrt(3.0), 1e-9);
     assert_close_relative(result.expected_rms_95, t2 * result.expected_rms, 1e-6);
     assert_close_relative(result.scatter_share, 1.0, 1e-9);
     const double own = result.stiffness_deviation;
