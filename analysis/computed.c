@@ -16,6 +16,7 @@ struct wb_computed {
     double zero;  /* N, vertical force at zero deflection; 0 of a follower test */
     double begin; /* what a curve begins with: no force, or a follower test's deflection, m */
     struct wb_reason *why;
+    const struct wb_law *law; /* NULL: the runs' materials */
 };
 
 enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test_info *info,
@@ -35,8 +36,12 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
             "wire '%s': the test has a follower force and a strand: expected one of them",
             info->wire);
     }
-    enum wb_status status = wb_section_init_circle(&computed->section, info->outer_diameter,
-                                                   material, settings->n_fibres);
+    computed->law = settings->law;
+    enum wb_status status = settings->law
+                                ? wb_section_init_law(&computed->section, info->outer_diameter,
+                                                      settings->law, settings->n_fibres)
+                                : wb_section_init_circle(&computed->section, info->outer_diameter,
+                                                         material, settings->n_fibres);
     if (status == WB_OK) {
         struct wb_cantilever_model model;
         wb_cantilever_default_model(&model);
@@ -95,7 +100,10 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
     struct wb_cantilever_point point;
     double force;
     wb_cantilever_reset(computed->cantilever);
-    wb_cantilever_set_materials(computed->cantilever, material);
+    if (computed->law)
+        WB_TRY(wb_cantilever_set_law(computed->cantilever, computed->law));
+    else
+        wb_cantilever_set_materials(computed->cantilever, material);
     WB_TRY(move(computed, follows ? WB_CONTROL_FOLLOWER_FORCE : WB_CONTROL_DEFLECTION, 0.0, &point,
                 &force, reached));
     if (*reached && point.slack)

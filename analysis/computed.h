@@ -15,6 +15,7 @@
 #include "analysis/dataset.h"
 #include "base/reason.h"
 #include "base/status.h"
+#include "fe/material/law.h"
 #include "fe/material/material.h"
 
 struct wb_computed; /* opaque */
@@ -24,6 +25,9 @@ struct wb_computed_settings {
     int n_elements;        /* 0: 50 */
     int n_fibres;          /* 0: 20 */
     struct wb_reason *why; /* why a run failed is written here; NULL (default): logged */
+    /* Borrowed while the beam lives; NULL: runs compute with their materials. Otherwise with this
+     * law, whose material they are then given. */
+    const struct wb_law *law;
 };
 
 /* For one test; `material` gives the shear stiffness (E and nu) and may be exchanged by each run.

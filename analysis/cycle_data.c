@@ -188,9 +188,9 @@ static size_t mean_of(struct rows *rows, size_t begin, size_t end, double *x, do
     return kept;
 }
 
-static bool is_on_way(const struct wb_row *row, bool unloading)
+static bool is_on_way(const struct wb_row *row, int cycle, bool unloading)
 {
-    return row->cycle == 1 && row->phase == (unloading ? WB_PHASE_UNLOAD : WB_PHASE_LOAD) &&
+    return row->cycle == cycle && row->phase == (unloading ? WB_PHASE_UNLOAD : WB_PHASE_LOAD) &&
            isfinite(row->deflection) && isfinite(row->tension);
 }
 
@@ -206,14 +206,14 @@ static double slope_of(const struct rows *rows)
 }
 
 /* Takes the rows of a way and smooths their deflection over half a fine step. */
-static void gather(struct rows *rows, const struct wb_dataset *dataset, bool unloading,
+static void gather(struct rows *rows, const struct wb_dataset *dataset, int cycle, bool unloading,
                    double fine_step)
 {
     double low = (double)INFINITY, high = -(double)INFINITY;
     rows->n = 0;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        if (!is_on_way(row, unloading))
+        if (!is_on_way(row, cycle, unloading))
             continue;
         rows->x[rows->n] = row->deflection;
         rows->y[rows->n++] = row->tension;
@@ -242,7 +242,7 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
     double done = 0.0, step = s->fine_step;
     size_t begin = 0;
 
-    gather(rows, dataset, unloading, s->fine_step);
+    gather(rows, dataset, s->cycle, unloading, s->fine_step);
     while (data->n_points < MOST_POINTS) {
         step = done < s->fine_reach - 1e-9 ? s->fine_step : s->step;
         if (done + step > fabs(last - first) + 1e-9)
@@ -254,16 +254,8 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
         while (end < rows->n && sense * (rows->smooth[end] - first) < done)
             end++;
         struct wb_cycle_point point = {.is_unloading = unloading};
-        size_t kept =
+        const size_t kept =
             mean_of(rows, begin, end, &point.deflection, &point.tension, &point.deviation);
-        if (kept == 0 && dataset->info.is_simulation && end > begin) {
-            /* Computed rows are exact: one is as good as many. */
-            const size_t middle = begin + (end - begin) / 2;
-            point.deflection = rows->x[middle];
-            point.tension = rows->y[middle];
-            point.deviation = 0.0;
-            kept = end - begin;
-        }
         if (kept == 0)
             continue;
         if (unloading && point.tension < s->smallest_tension)
@@ -275,11 +267,30 @@ static void take_points(struct wb_cycle_data *data, const struct wb_dataset *dat
     }
 }
 
-static double turn_of(const struct wb_dataset *dataset)
+/* The same of a simulation: each row is a point. Without a strand its force may push. */
+static void take_rows(struct wb_cycle_data *data, const struct wb_dataset *dataset,
+                      struct rows *rows, const struct wb_cycle_data_settings *s, double first,
+                      double last)
+{
+    const bool unloading = last < first;
+    const double least = fmin(first, last) + (unloading ? 0.0 : 0.5 * s->fine_step);
+    (void)rows;
+    for (size_t i = 0; i < dataset->n_rows && data->n_points < MOST_POINTS; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (is_on_way(row, s->cycle, unloading) && row->deflection >= least - 1e-9 &&
+            row->deflection <= fmax(first, last) + 1e-9)
+            data->points[data->n_points++] = (struct wb_cycle_point){.deflection = row->deflection,
+                                                                     .tension = row->tension,
+                                                                     .is_unloading = unloading,
+                                                                     .n_rows = 1};
+    }
+}
+
+static double turn_of(const struct wb_dataset *dataset, int cycle)
 {
     double top = -HUGE_VAL;
     for (size_t i = 0; i < dataset->n_rows; i++) {
-        if (is_on_way(&dataset->rows[i], false))
+        if (is_on_way(&dataset->rows[i], cycle, false))
             top = fmax(top, dataset->rows[i].deflection);
     }
     return top;
@@ -294,7 +305,8 @@ static double tension_at_zero(const struct wb_dataset *dataset)
      * strand hangs straight down and the two are the same. */
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        if (!is_on_way(row, false) || !isfinite(row->force) || !(fabs(row->deflection) < 2 * WB_MM))
+        if (!is_on_way(row, 1, false) || !isfinite(row->force) ||
+            !(fabs(row->deflection) < 2 * WB_MM))
             continue;
         sum += row->tension - row->force;
         n++;
@@ -340,7 +352,7 @@ static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dat
     /* The time of the turn tells the frames of the way back. */
     double turn = (double)INFINITY;
     for (size_t i = 0; i < dataset->n_rows; i++) {
-        if (is_on_way(&dataset->rows[i], true)) {
+        if (is_on_way(&dataset->rows[i], 1, true)) {
             turn = dataset->rows[i].t;
             break;
         }
@@ -409,19 +421,27 @@ static enum wb_status take(struct wb_cycle_data *data, const struct wb_dataset *
                            struct rows *rows, const struct wb_cycle_data_settings *given,
                            struct wb_reason *why)
 {
-    const struct wb_cycle_data_settings s = filled(given);
+    struct wb_cycle_data_settings s = filled(given);
+    s.cycle = given->cycle > 0 ? given->cycle : 1;
     const char *const wire = data->info.wire;
 
-    data->top = turn_of(dataset);
+    data->top = turn_of(dataset, s.cycle);
+    if (!(data->top > 0.0))
+        return wb_fail_to(why, WB_ERR_DATA, "wire '%s', sample %d: cycle %d has no loading", wire,
+                          data->info.sample, s.cycle);
     data->zero_tension = tension_at_zero(dataset);
-    take_points(data, dataset, rows, &s, 0.0, data->top);
+    void (*const way)(struct wb_cycle_data *, const struct wb_dataset *, struct rows *,
+                      const struct wb_cycle_data_settings *, double, double) =
+        data->info.is_simulation ? take_rows : take_points;
+    way(data, dataset, rows, &s, 0.0, data->top);
     data->n_loading = data->n_points;
     if (data->n_loading < FEWEST_POINTS)
         return wb_fail_to(why, WB_ERR_DATA,
-                          "wire '%s', sample %d: the first loading makes %d points of %g mm: "
+                          "wire '%s', sample %d: the loading of cycle %d makes %d points of %g mm: "
                           "expected at least %d",
-                          wire, data->info.sample, data->n_loading, s.step / WB_MM, FEWEST_POINTS);
-    take_points(data, dataset, rows, &s, data->top - s.turn_distance, 0.0);
+                          wire, data->info.sample, s.cycle, data->n_loading, s.step / WB_MM,
+                          FEWEST_POINTS);
+    way(data, dataset, rows, &s, data->top - s.turn_distance, 0.0);
     if (data->n_points - data->n_loading < FEWEST_POINTS)
         data->n_points = data->n_loading;
     for (int i = 0; i < data->n_points; i++)
@@ -432,7 +452,8 @@ static enum wb_status take(struct wb_cycle_data *data, const struct wb_dataset *
                           "expected a loading",
                           wire, data->info.sample);
     data->residual_deflection = residual_of(data);
-    take_places(data, dataset, rows, &s);
+    if (s.cycle == 1)
+        take_places(data, dataset, rows, &s);
     return WB_OK;
 }
 

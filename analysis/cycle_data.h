@@ -1,13 +1,13 @@
-/* What the first cycle of a test says of one specimen, as few points without most of the noise:
- * tension over deflection on the way up and back, and the places of the markers between clamp and
- * tip.
+/* What a cycle of a test, the first unless asked otherwise, says of one specimen, as few points
+ * without most of the noise: tension over deflection on the way up and back, and the places of the
+ * markers between clamp and tip.
  *
  * The tension is as measured, weights included, not zeroed at zero deflection: its absolute size
  * says how the wire is bent by nature. A point is the value at the middle of a bin of a straight
  * line through the rows of the bin; rows far off the line are left out and counted. The first
  * loading begins half a step above zero; the unloading begins a step below the turn, where the
- * change of direction is past, and ends where the strand is about to become slack. A bin of a
- * simulation with few rows, which have no noise, is told by its middle one.
+ * change of direction is past, and ends where the strand is about to become slack. Of a simulation,
+ * which has no noise, every row is a point.
  */
 #ifndef WB_ANALYSIS_CYCLE_DATA_H
 #define WB_ANALYSIS_CYCLE_DATA_H
@@ -39,7 +39,7 @@ struct wb_cycle_data {
     int n_points, n_loading;       /* the loading's points come first, upwards; then downwards */
     struct wb_cycle_point *points; /* owned */
     int n_places, n_markers;
-    struct wb_cycle_place *places; /* owned */
+    struct wb_cycle_place *places; /* owned; of the first cycle only */
     double top;                    /* m: deflection of the turn */
     double max_force;              /* N: largest tension less that at zero deflection */
     double zero_tension;           /* N: that at zero deflection on the first loading */
@@ -49,6 +49,7 @@ struct wb_cycle_data {
 };
 
 struct wb_cycle_data_settings {
+    int cycle;               /* from 1; 0: 1 */
     double step;             /* m between points; 0: 1 mm */
     double fine_step;        /* m, of the first points of either way; 0: 0.5 mm */
     double fine_reach;       /* m: how far they go; 0: 4 mm */
@@ -63,9 +64,9 @@ enum {
 };
 extern const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS];
 
-/* Takes them from the first cycle. WB_ERR_DATA for a test whose first cycle makes too few points,
- * or with a follower force. Without a way back, n_loading is n_points. `settings` NULL: defaults.
- * `why` receives the reason; NULL: it is logged. */
+/* Takes them from a cycle. WB_ERR_DATA for a test whose cycle makes too few points, or with a
+ * follower force. Without a way back, n_loading is n_points. `settings` NULL: defaults. `why`
+ * receives the reason; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_cycle_data_take(struct wb_cycle_data *data,
                                                 const struct wb_dataset *dataset,
                                                 const struct wb_cycle_data_settings *settings,

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <gsl/gsl_cdf.h>
+
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -35,6 +37,7 @@ static void make_unknown(struct wb_properties *properties)
     properties->calibration_length = properties->rms = (double)NAN;
     properties->scatter_rms = properties->residual_scatter_rms = (double)NAN;
     properties->ludwik_misfit = properties->largest_curvature = (double)NAN;
+    properties->stiffness_deviation = (double)NAN;
     properties->rigidity = properties->springback = unknown_estimate;
 }
 
@@ -95,6 +98,18 @@ static double misfit_of_chosen(const struct wb_cycle_calibration *calibration)
     return (double)NAN;
 }
 
+/* How far specimens differ, from the interval of a moment well within the data: EI carries more of
+ * the fits' own noise. */
+static void find_deviation(struct wb_properties *properties)
+{
+    const int n = properties->n_samples, at = properties->n_moments / 2;
+    if (n < 2 || properties->n_moments < 1)
+        return;
+    const struct wb_estimate *const moment = &properties->moment[at];
+    properties->stiffness_deviation =
+        0.5 * log(moment->high / moment->low) * sqrt(n) / gsl_cdf_tdist_Qinv(0.025, n - 1);
+}
+
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties)
 {
@@ -121,6 +136,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
         properties->curvature[k] = calibration->curvature[k];
         properties->moment[k] = known(calibration, &calibration->moment[k]);
     }
+    find_deviation(properties);
     const int n = calibration->n_members;
     properties->n_specimens = n < WB_PROPERTIES_MOST_SPECIMENS ? n : WB_PROPERTIES_MOST_SPECIMENS;
     for (int i = 0; i < properties->n_specimens; i++)
@@ -624,6 +640,8 @@ enum wb_status wb_properties_read(const char *path, struct wb_properties *proper
     WB_TRY(wb_config_read(&config, path, NULL));
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);
+    find_deviation(&read);
+    wb_law_init_ludwik(&read.law, &read.material);
     if (status == WB_OK)
         *properties = read;
     return status;

@@ -61,9 +61,11 @@ struct wb_properties {
     double calibration_length; /* m; NaN when not from calibrate */
     double rms;                /* of the calibration, 1; NaN unknown */
     double scatter_rms,
-        residual_scatter_rms; /* of the calibration's samples, over F_max (a follower
-                                 test's largest deflection), 1; NaN unknown */
-    int n_samples;            /* of the calibration; 0 unknown */
+        residual_scatter_rms;   /* of the calibration's samples, over F_max (a follower
+                                   test's largest deflection), 1; NaN unknown */
+    double stiffness_deviation; /* standard deviation of ln(M) over the calibration's samples; NaN
+                                   unknown */
+    int n_samples;              /* of the calibration; 0 unknown */
     bool is_virtual;
     /* The law, of which `material` is the Ludwik equivalent; of files without one Ludwik's,
      * isotropic, of `material`. */

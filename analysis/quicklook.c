@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/cycle_data.h"
 #include "analysis/plot/figure.h"
 #include "base/file.h"
 #include "base/units.h"
@@ -76,6 +77,28 @@ static bool find_bow(const struct wb_json *document, double *bow_mm, double *unc
            wb_json_get_number(natural, "bow_uncertainty_mm", uncertainty_mm);
 }
 
+/* Deflection at which the force on the first way back is zero, m; NaN: there is none. */
+static double find_residual(const struct wb_dataset *dataset)
+{
+    struct wb_cycle_data data;
+    struct wb_reason why = {.text = ""};
+    if (wb_cycle_data_take(&data, dataset, NULL, &why) != WB_OK)
+        return (double)NAN;
+    const double residual = data.residual_deflection;
+    wb_cycle_data_release(&data);
+    return residual;
+}
+
+static void append_residual(const struct wb_dataset *dataset, struct wb_text *text)
+{
+    const double residual = find_residual(dataset);
+    if (!isfinite(residual))
+        return;
+    const double largest = find_range(dataset).deflection;
+    wb_text_append(text, "left deflected      %.2f mm at zero force on the way back (%.0f %%)\n",
+                   residual / WB_MM, 100.0 * residual / largest);
+}
+
 static void append_corrections(const struct wb_json *document, struct wb_text *text)
 {
     static const char *const units[] = {"ms", "mN", "mm"};
@@ -120,6 +143,7 @@ enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_
     wb_text_append(text, "wire                %s, sample %d, %g mm free length\n", info->wire,
                    info->sample, info->length / WB_MM);
     append_range(dataset, text);
+    append_residual(dataset, text);
     double bow, bow_uncertainty;
     if (find_bow(document, &bow, &bow_uncertainty))
         wb_text_append(text, "bow                 %.2f +- %.2f mm\n", bow, bow_uncertainty);
@@ -149,6 +173,9 @@ void wb_quicklook_describe(const struct wb_dataset *dataset, struct wb_json *obj
     wb_json_set_number(object, "largest_deflection_mm", range.deflection / WB_MM);
     wb_json_set_number(object, "largest_force_N", range.force);
     wb_json_set_number(object, "largest_tension_N", range.tension);
+    const double residual = find_residual(dataset);
+    if (isfinite(residual))
+        wb_json_set_number(object, "residual_deflection_mm", residual / WB_MM);
     if (find_bow(dataset->document, &bow, &bow_uncertainty)) {
         wb_json_set_number(object, "bow_mm", bow);
         wb_json_set_number(object, "bow_uncertainty_mm", bow_uncertainty);
@@ -179,10 +206,10 @@ static enum wb_status allocate_line(struct line *line, size_t most)
 static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, int cycle,
                       int n_cycles, enum wb_phase phase, struct line *line)
 {
+    /* Not dashed: noise of the deflection would make dashes of all lengths. */
     const struct wb_figure_style style = {
         .colour = wb_palette_sequence(cycle - 1, n_cycles),
-        .width = 1.2,
-        .dash = phase == WB_PHASE_LOAD ? WB_DASH_SOLID : WB_DASH_DASHED,
+        .width = phase == WB_PHASE_LOAD ? 1.6 : 0.7,
     };
     char label[64];
     const double longest = wb_dataset_gap(dataset);
@@ -204,6 +231,19 @@ static void add_curve(struct wb_panel *panel, const struct wb_dataset *dataset, 
     snprintf(label, sizeof label, "cycle %d, %sing", cycle, wb_trial_phase_name(phase));
     if (n_shown > 1)
         wb_figure_add_line(panel, label, line->n, line->x, line->y, &style);
+}
+
+/* Where the force is gone on the first way back: a ring, with the number in the legend. */
+static void add_residual(struct wb_panel *panel, const struct wb_dataset *dataset)
+{
+    const double residual = find_residual(dataset) / WB_MM, none = 0.0;
+    const struct wb_figure_style style = {
+        .colour = wb_palette_wire(1), .marker = WB_MARKER_RING, .marker_size = 6.0};
+    char label[64];
+    if (!isfinite(residual))
+        return;
+    snprintf(label, sizeof label, "left deflected: %.1f mm", residual);
+    wb_figure_add_line(panel, label, 1, &residual, &none, &style);
 }
 
 static void set_origin(struct wb_figure *figure, const struct wb_dataset *dataset)
@@ -241,6 +281,7 @@ static enum wb_status draw_curve(struct wb_figure **out, const struct wb_dataset
             add_curve(panel, dataset, cycle, n_cycles, WB_PHASE_LOAD, &line);
             add_curve(panel, dataset, cycle, n_cycles, WB_PHASE_UNLOAD, &line);
         }
+        add_residual(panel, dataset);
         set_origin(*out, dataset);
     }
     free(line.x);

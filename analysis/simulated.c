@@ -82,6 +82,37 @@ static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_loadi
     return WB_OK;
 }
 
+/* The numbers of the law that was computed with: Ludwik's four, or the parts. */
+static void describe_law(struct wb_json *simulation, const struct wb_law *law)
+{
+    const struct wb_material *const material = &law->material;
+    const bool is_parallel = law->form == WB_LAW_PARALLEL;
+    const bool is_elastic = !is_parallel && material->hardening == WB_HARDENING_NONE_ELASTIC;
+    wb_json_set_text(simulation, "law", is_elastic ? "elastic" : "elastoplastic");
+    wb_json_set_number(simulation, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
+    wb_json_set_number(simulation, "poissons_ratio", material->poissons_ratio);
+    if (is_elastic)
+        return;
+    if (!is_parallel) {
+        wb_json_set_number(simulation, "yield_stress_MPa", material->yield_stress / WB_MPA);
+        wb_json_set_number(simulation, "strength_coefficient_MPa",
+                           material->strength_coefficient / WB_MPA);
+        wb_json_set_number(simulation, "hardening_exponent", material->hardening_exponent);
+    }
+    wb_json_set_text(simulation, "form", wb_law_form_name(law->form));
+    wb_json_set_text(simulation, "hardening", wb_law_rule_name(law));
+    wb_json_set_number(simulation, "isotropic_share", law->isotropic_share);
+    if (!is_parallel)
+        return;
+    struct wb_json *const parts = wb_json_set_array(simulation, "parts");
+    for (int i = 0; i < law->n_parts; i++) {
+        struct wb_json *const part = wb_json_append_object(parts);
+        wb_json_set_number(part, "modulus_MPa", law->parts[i].modulus / WB_MPA);
+        if (isfinite(law->parts[i].yield_strain))
+            wb_json_set_number(part, "yield_strain", law->parts[i].yield_strain);
+    }
+}
+
 static void describe(struct wb_json *document, const struct wb_test_info *info,
                      const struct wb_loading_steps *loading,
                      const struct wb_simulated_origin *origin)
@@ -92,16 +123,8 @@ static void describe(struct wb_json *document, const struct wb_test_info *info,
 
     struct wb_json *simulation = wb_json_set_object(document, "simulation");
     wb_json_set_text(simulation, "model", origin->model);
-    wb_json_set_text(simulation, "law", origin->law);
+    describe_law(simulation, origin->law);
     wb_json_set_text(simulation, "properties_source", origin->source);
-    wb_json_set_number(simulation, "youngs_modulus_MPa", origin->material->youngs_modulus / WB_MPA);
-    wb_json_set_number(simulation, "poissons_ratio", origin->material->poissons_ratio);
-    if (origin->material->hardening != WB_HARDENING_NONE_ELASTIC) {
-        wb_json_set_number(simulation, "yield_stress_MPa", origin->material->yield_stress / WB_MPA);
-        wb_json_set_number(simulation, "strength_coefficient_MPa",
-                           origin->material->strength_coefficient / WB_MPA);
-        wb_json_set_number(simulation, "hardening_exponent", origin->material->hardening_exponent);
-    }
     wb_json_set_boolean(simulation, "converged", loading->converged);
     wb_json_set_number(simulation, "zero_force_N", loading->zero_force);
     wb_json_set_number(simulation, "wall_s", origin->wall);

@@ -8,6 +8,7 @@
 
 #include "analysis/dataset.h"
 #include "base/status.h"
+#include "fe/material/law.h"
 #include "fe/model/wire_model.h"
 #include "fe/trial/loading_steps.h"
 #include "fe/trial/wire3d.h"
@@ -15,11 +16,10 @@
 
 /* How the simulation was made, for dataset.json. */
 struct wb_simulated_origin {
-    const char *model;  /* "cantilever" */
-    const char *law;    /* "elastic" or "elastoplastic" */
-    const char *source; /* where the properties come from */
-    const struct wb_material *material;
-    double wall, cpu; /* s */
+    const char *model;        /* "cantilever" */
+    const char *source;       /* where the properties come from */
+    const struct wb_law *law; /* an elastic one: Ludwik's form of an elastic material */
+    double wall, cpu;         /* s */
 };
 
 /* Fills an initialised dataset. `shape_s` are the arc lengths of the plan, m. */

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+#include <gsl/gsl_cdf.h>
+
 #include "analysis/computed.h"
 #include "analysis/errors.h"
 #include "analysis/marker_distance.h"
@@ -30,6 +32,11 @@
 /* Frames of a follower test's model to a step of the grid, whose ends may be far from each other.
  */
 #define FRAMES 4
+/* Part of ln k by which stiffness is changed to find what it changes. */
+#define SMALL 0.01
+/* Curvatures larger than the known ones by this factor are beyond. A test like the calibration's
+ * own, which is known as far as its least bent specimen, is not. */
+#define BEYOND 1.1
 
 static enum wb_status check_wire(const struct wb_properties *properties,
                                  const struct wb_test_info *info, struct wb_reason *why)
@@ -82,29 +89,97 @@ static enum wb_status predict(struct wb_prediction *prediction, struct wb_comput
     return WB_OK;
 }
 
-/* Square of the standard error of an average. The residual scatter holds what the model does not
- * follow of the bows, the scatter the bows themselves: the smaller bounds what remains. */
-static double average_variance(double scatter, double residual, int n)
+/* --- what scatter lets expect --- */
+
+/* The same law of a wire that is stiffer by a factor: so much larger is its moment at any
+ * curvature.
+ */
+static struct wb_law stiffer(const struct wb_law *law, double factor)
 {
-    const double least = fmin(scatter, residual);
-    return n > 1 && isfinite(least) ? least * least / n : 0.0;
+    struct wb_law scaled = *law;
+    scaled.material.youngs_modulus *= factor;
+    scaled.material.yield_stress *= factor;
+    scaled.material.strength_coefficient *= factor;
+    for (int i = 0; i < law->n_parts; i++)
+        scaled.parts[i].modulus *= factor;
+    return scaled;
 }
 
-/* What scatter between samples alone makes of two averages, at most. */
-static void judge_scatter(struct wb_validate_result *result, const struct wb_properties *properties)
+/* G of validate.h: root mean square of dF/d ln k over F_max; NaN where the beam does not reach the
+ * end of the curve. */
+static enum wb_status find_sensitivity(double *G, const struct wb_validate_result *result,
+                                       const struct wb_law *law,
+                                       const struct wb_computed_settings *how)
 {
-    const int n = result->curve.n_samples;
+    const struct wb_curve *const curve = &result->curve;
+    double *const value = malloc(2 * (size_t)curve->n * sizeof *value);
+    enum wb_status status = WB_OK;
+    bool complete = true;
+    if (!value)
+        return wb_fail_to(how->why, WB_ERR_MEMORY, "no memory for %d points", curve->n);
+    for (int side = 0; status == WB_OK && side < 2; side++) {
+        const struct wb_law scaled = stiffer(law, side == 0 ? exp(-SMALL) : exp(SMALL));
+        struct wb_computed_settings with = *how;
+        struct wb_computed *computed;
+        int reached = 0;
+        with.law = how->law ? &scaled : NULL;
+        status = wb_computed_create(&computed, &result->info, &scaled.material, &with);
+        if (status == WB_OK) {
+            status = wb_computed_curve(computed, &scaled.material, curve->n, curve->step,
+                                       value + side * curve->n, &reached);
+            wb_computed_destroy(computed);
+        }
+        complete = complete && reached == curve->n;
+    }
+    for (int i = 0; status == WB_OK && complete && i < curve->n; i++)
+        value[i] = (value[curve->n + i] - value[i]) / (2.0 * SMALL * wb_curve_scale(curve));
+    *G = status == WB_OK && complete ? wb_errors_rms(curve->n, value) : (double)NAN;
+    free(value);
+    return status;
+}
+
+/* s of specimens whose curves scatter so. What the model makes of bows that the specimens do not
+ * have is in the residual scatter alone, so that the smaller counts. */
+static double deviation_of(double scatter, double residual_scatter, double G)
+{
+    return isfinite(scatter) ? fmin(scatter, residual_scatter) / G : (double)NAN;
+}
+
+/* What scatter between specimens makes of a perfect model's error; see validate.h. Properties that
+ * do not say how much the calibration's specimens differ in stiffness say how much their curves do,
+ * and G changes little with the length. */
+static void judge_scatter(struct wb_validate_result *result, const struct wb_properties *properties,
+                          double G)
+{
+    const int n = result->curve.n_samples, m = properties->n_samples;
     result->scatter_rms = wb_curve_scatter(&result->curve);
-    result->expected_rms = result->scatter_share = (double)NAN;
-    if (n < 2)
+    const double own = deviation_of(result->scatter_rms, result->residual_scatter_rms, G);
+    const double calibrated =
+        isfinite(properties->stiffness_deviation)
+            ? properties->stiffness_deviation
+            : deviation_of(properties->scatter_rms, properties->residual_scatter_rms, G);
+    double squares = 0.0;
+    int degrees = 0;
+    result->stiffness_deviation = (double)NAN;
+    result->expected_rms = result->expected_rms_95 = result->scatter_share = (double)NAN;
+    if (n > 1 && isfinite(own)) {
+        squares += (n - 1) * own * own;
+        degrees += n - 1;
+    }
+    if (m > 1 && isfinite(calibrated)) {
+        squares += (m - 1) * calibrated * calibrated;
+        degrees += m - 1;
+    }
+    if (degrees == 0)
         return;
-    const double square = average_variance(result->scatter_rms, result->residual_scatter_rms, n) +
-                          average_variance(properties->scatter_rms,
-                                           properties->residual_scatter_rms, properties->n_samples);
-    result->expected_rms = sqrt(square);
+    result->stiffness_degrees = degrees;
+    result->stiffness_deviation = sqrt(squares / degrees);
+    result->expected_rms =
+        result->stiffness_deviation * sqrt(1.0 / n + (m > 0 ? 1.0 / m : 0.0)) * G;
+    result->expected_rms_95 = gsl_cdf_tdist_Pinv(0.975, degrees) * result->expected_rms;
     const double rms = result->elastoplastic.rms;
     if (rms > 0.0)
-        result->scatter_share = fmin(1.0, square / (rms * rms));
+        result->scatter_share = fmin(1.0, pow(result->expected_rms / rms, 2));
 }
 
 /* A prediction that goes nowhere is an error, one that is cut short is warned about. */
@@ -127,42 +202,87 @@ static enum wb_status check_reached(const struct wb_validate_result *result, str
     return WB_OK;
 }
 
+/* What is left of a plain law is its material, which runs are given. */
+static const struct wb_law *overlay_of(const struct wb_properties *properties)
+{
+    return wb_law_is_plain(&properties->law) ? NULL : &properties->law;
+}
+
+/* The elastic prediction beside it. */
+static enum wb_status predict_elastic(struct wb_validate_result *result,
+                                      const struct wb_material *material,
+                                      const struct wb_computed_settings *how)
+{
+    struct wb_computed_settings without = *how;
+    struct wb_material elastic = *material;
+    struct wb_computed *computed;
+    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+    without.law = NULL;
+    WB_TRY(wb_computed_create(&computed, &result->info, material, &without));
+    const enum wb_status status =
+        predict(&result->elastic, computed, &elastic, &result->curve, how->why);
+    wb_computed_destroy(computed);
+    return status;
+}
+
 static enum wb_status validate_curve(struct wb_validate_result *result,
                                      const struct wb_properties *properties,
                                      const struct wb_dataset *const *datasets, int n,
                                      const struct wb_calibrate_settings *settings,
                                      struct wb_reason *why)
 {
-    struct wb_material elastic = properties->material;
+    const struct wb_material *const material = &properties->law.material;
     const struct wb_computed_settings how = {settings->straight, settings->n_elements,
-                                             settings->n_fibres, why};
+                                             settings->n_fibres, why, overlay_of(properties)};
     struct wb_computed *computed;
     struct wb_marker_distance distance;
-    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
-    WB_TRY(wb_computed_create(&computed, &result->info, &properties->material, &how));
+    double G;
+    WB_TRY(wb_computed_create(&computed, &result->info, material, &how));
     const struct wb_curve *const curve = &result->curve;
     const struct wb_marker_distance_range range = {
         curve->is_follower ? curve->step / FRAMES : curve->step,
         curve->is_follower ? curve->max_force : curve->max_deflection};
-    enum wb_status status =
-        predict(&result->elastoplastic, computed, &properties->material, curve, why);
+    enum wb_status status = predict(&result->elastoplastic, computed, material, curve, why);
     if (status == WB_OK)
-        status = predict(&result->elastic, computed, &elastic, curve, why);
+        status = predict_elastic(result, material, &how);
     if (status == WB_OK)
-        status = wb_marker_distance_find(&distance, computed, &properties->material, datasets, n,
-                                         &range);
-    if (status == WB_OK)
-        status = wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve,
-                                     &properties->material, &how);
-    if (status == WB_OK) {
-        judge_scatter(result, properties);
-        result->shape_rms = distance.rms;
-        result->shape_max = distance.largest;
-        result->n_shape_points = distance.n_points;
-        status = check_reached(result, why);
-    }
+        status = wb_marker_distance_find(&distance, computed, material, datasets, n, &range);
     wb_computed_destroy(computed);
-    return status;
+    if (status == WB_OK)
+        status =
+            wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve, material, &how);
+    if (status == WB_OK)
+        status = find_sensitivity(&G, result, &properties->law, &how);
+    WB_TRY(status);
+    judge_scatter(result, properties, G);
+    result->shape_rms = distance.rms;
+    result->shape_max = distance.largest;
+    result->n_shape_points = distance.n_points;
+    return check_reached(result, why);
+}
+
+/* The way back and later cycles; a test that has none is as good. */
+static enum wb_status validate_cycles(struct wb_validate_result *result,
+                                      const struct wb_properties *properties,
+                                      const struct wb_dataset *const *datasets, int n,
+                                      const struct wb_calibrate_settings *settings)
+{
+    const struct wb_validate_cycle_settings how = {settings->straight, settings->n_elements,
+                                                   settings->n_fibres, result->curve.max_force};
+    const double known = properties->largest_curvature;
+    result->is_rule_untested =
+        isfinite(known) ? !properties->is_rule_tested : wb_law_is_plain(&properties->law);
+    result->cycles.clamp_curvature = (double)NAN;
+    if (result->curve.is_follower)
+        return WB_OK;
+    WB_TRY(wb_validate_cycles_run(&result->cycles, &properties->law, datasets, n, &how));
+    result->is_beyond = result->cycles.clamp_curvature > BEYOND * known;
+    if (result->is_beyond)
+        wb_warn("wire '%s', L = %g mm: the clamp is bent to %.3g /m, the properties are known up "
+                "to %.3g /m: beyond, they are a guess",
+                result->info.wire, result->info.length / WB_MM, result->cycles.clamp_curvature,
+                known);
+    return WB_OK;
 }
 
 enum wb_status wb_validate_run(struct wb_validate_result *result,
@@ -188,6 +308,8 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
                             made.info.wire, made.curve.is_follower ? "deflection" : "force");
     if (status == WB_OK)
         status = validate_curve(&made, properties, datasets, n, settings, why);
+    if (status == WB_OK)
+        status = validate_cycles(&made, properties, datasets, n, settings);
     if (status != WB_OK) {
         wb_validate_result_release(&made);
         return status;
@@ -227,27 +349,108 @@ static void put_rows(struct wb_text *text, const struct wb_validate_result *resu
     }
 }
 
-enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, const char *path)
+/* The wire's name without what would break a table. */
+static void plain_name(char *name, size_t size, const struct wb_validate_result *result)
 {
-    const struct wb_curve *const curve = &result->curve;
-    struct wb_text text = {0};
-    char wire[sizeof result->info.wire];
-    snprintf(wire, sizeof wire, "%s", result->info.wire);
-    for (char *c = wire; *c; c++) {
-        if ((unsigned char)*c < 0x20)
+    snprintf(name, size, "%s", result->info.wire);
+    for (char *c = name; *c; c++) {
+        if ((unsigned char)*c < 0x20 || *c == ',')
             *c = ' ';
     }
-    wb_text_append(&text, "# %swire %s, L = %g mm, %d %s, wirebench %s (%s)\n",
+}
+
+/* The first line: whose data they are. */
+static void put_origin(struct wb_text *text, const struct wb_validate_result *result)
+{
+    char wire[sizeof result->info.wire];
+    plain_name(wire, sizeof wire, result);
+    wb_text_append(text, "# %swire %s, L = %g mm, %d %s, wirebench %s (%s)\n",
                    result->info.is_virtual      ? "virtual rig, "
                    : result->info.is_simulation ? "simulation, "
                                                 : "",
-                   wire, result->info.length / WB_MM, curve->n_samples,
-                   curve->n_samples == 1 ? "sample" : "samples", wb_version(),
+                   wire, result->info.length / WB_MM, result->curve.n_samples,
+                   result->curve.n_samples == 1 ? "sample" : "samples", wb_version(),
                    wb_version_revision());
-    put_rows(&text, result);
-    const enum wb_status status = wb_file_write_text(path, &text);
-    wb_text_release(&text);
+}
+
+static enum wb_status write_text(struct wb_text *text, const char *path)
+{
+    const enum wb_status status = wb_file_write_text(path, text);
+    wb_text_release(text);
     return status;
+}
+
+enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, const char *path)
+{
+    struct wb_text text = {0};
+    put_origin(&text, result);
+    put_rows(&text, result);
+    return write_text(&text, path);
+}
+
+enum wb_status wb_validate_write_unloading(const struct wb_validate_result *result,
+                                           const char *path)
+{
+    const struct wb_validate_cycles *const cycles = &result->cycles;
+    struct wb_text text = {0};
+    put_origin(&text, result);
+    wb_text_append(&text, "deflection_mm,measured_N,elastoplastic_N,elastoplastic_error\n");
+    for (int i = 0; i < cycles->n; i++) {
+        const double difference = cycles->measured[i] - cycles->computed[i];
+        put_field(&text, cycles->deflection[i] / WB_MM, ',');
+        put_field(&text, cycles->measured[i], ',');
+        put_field(&text, cycles->computed[i], ',');
+        put_field(&text, fabs(difference) / result->curve.max_force, '\n');
+    }
+    return write_text(&text, path);
+}
+
+/* A row of scores.csv; what is NaN stays empty. */
+static void put_score(struct wb_text *text, const struct wb_validate_result *result,
+                      const char *score, const double values[3], const char *unit)
+{
+    char wire[sizeof result->info.wire];
+    plain_name(wire, sizeof wire, result);
+    wb_text_append(text, "%s,%g,%s,", wire, result->info.length / WB_MM, score);
+    for (int i = 0; i < 3; i++)
+        put_field(text, values[i], ',');
+    wb_text_append(text, "%s\n", unit);
+}
+
+static void put_scores(struct wb_text *text, const struct wb_validate_result *result)
+{
+    const struct wb_validate_cycles *const cycles = &result->cycles;
+    const double none = (double)NAN;
+    put_score(text, result, "loading", (double[]){none, none, result->elastoplastic.rms}, "1");
+    put_score(text, result, "loading_perfect_model_95",
+              (double[]){none, none, result->expected_rms_95}, "1");
+    put_score(text, result, "shapes", (double[]){none, none, result->shape_rms / WB_MM}, "mm");
+    if (cycles->n_samples == 0)
+        return;
+    put_score(text, result, "unloading", (double[]){none, none, cycles->rms}, "1");
+    const double left = cycles->residual_measured, computed_left = cycles->residual_computed;
+    put_score(text, result, "residual_deflection",
+              (double[]){left / WB_MM, computed_left / WB_MM, (computed_left - left) / WB_MM},
+              "mm");
+    for (int i = 0; i < cycles->n_loops; i++) {
+        const struct wb_validate_loop *const loop = &cycles->loops[i];
+        char name[40];
+        snprintf(name, sizeof name, "loop_energy_cycle_%d", loop->cycle);
+        put_score(text, result, name,
+                  (double[]){loop->measured / WB_MJ, loop->computed / WB_MJ,
+                             loop->computed / loop->measured - 1.0},
+                  "mJ");
+    }
+}
+
+enum wb_status wb_validate_write_scores(const struct wb_validate_result *results, int n,
+                                        const char *path)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "wire,length_mm,score,measured,computed,error,unit\n");
+    for (int i = 0; i < n; i++)
+        put_scores(&text, &results[i]);
+    return write_text(&text, path);
 }
 
 void wb_validate_result_release(struct wb_validate_result *result)
@@ -257,6 +460,7 @@ void wb_validate_result_release(struct wb_validate_result *result)
     free(result->elastoplastic.error);
     free(result->elastic.value);
     free(result->elastic.error);
+    wb_validate_cycles_release(&result->cycles);
     memset(result, 0, sizeof *result);
 }
 
@@ -297,18 +501,19 @@ find_shape(const struct wb_properties *properties, const struct wb_test_info *in
            enum wb_status (*go)(struct wb_computed *, const struct wb_material *, double),
            double target, const struct wb_validate_points *points)
 {
-    const struct wb_computed_settings how = {0};
+    const struct wb_computed_settings how = {.law = overlay_of(properties)};
+    const struct wb_material *const material = &properties->law.material;
     struct wb_computed *computed;
     if (points->n < 2 || !isfinite(target))
         return wb_fail(WB_ERR_ARGUMENT, "a shape needs at least two points and a finite target");
     double *const s = malloc((size_t)points->n * sizeof *s);
     if (!s)
         return wb_fail(WB_ERR_MEMORY, "no memory for a shape of %d points", points->n);
-    enum wb_status status = wb_computed_create(&computed, info, &properties->material, &how);
+    enum wb_status status = wb_computed_create(&computed, info, material, &how);
     if (status == WB_OK) {
         for (int i = 0; i < points->n; i++)
             s[i] = info->length * i / (points->n - 1);
-        status = go(computed, &properties->material, target);
+        status = go(computed, material, target);
         if (status == WB_OK)
             wb_computed_shape(computed, points->n, s, points->x, points->y, points->angle);
         wb_computed_destroy(computed);

@@ -1,11 +1,30 @@
-/* Validation of calibrated properties on other datasets: eqs. 18 and 19, the linear elastic
- * prediction beside it, and the distance of the markers from the computed shapes. */
+/* Validation of calibrated properties on other datasets, each part of a test scored apart: the
+ * first loading by eqs. 18 and 19 with the linear elastic prediction beside it, the distance of the
+ * markers from the computed shapes, the way back, the deflection that is left, and the work of
+ * later cycles (analysis/validate_cycle.h).
+ *
+ * Not even a perfect model, one of the product's mean, predicts a few specimens exactly. Specimen i
+ * is k_i times as stiff as the mean, ln k_i normal with standard deviation s. The mean of n
+ * specimens here and the model, calibrated on m others, then differ by
+ *
+ *     d = mean of ln k over n - mean of ln k over m,  normal with deviation s (1/n + 1/m)^(1/2),
+ *     RMS = |d| G,  G = RMS over the grid of dF/d ln k, over F_max.
+ *
+ * G is found with moduli and stresses of the law all a little larger and smaller. s is pooled over
+ * these specimens (s G is the smaller of scatter and residual scatter, which hold all else that
+ * tells specimens apart as well) and the calibration's, with v degrees of freedom; so the RMS of a
+ * perfect model is beyond
+ *
+ *     RMS95 = t_0.975(v) s (1/n + 1/m)^(1/2) G
+ *
+ * in one of twenty validations, whatever s is. */
 #ifndef WB_ANALYSIS_VALIDATE_H
 #define WB_ANALYSIS_VALIDATE_H
 
 #include "analysis/curve.h"
 #include "analysis/dataset.h"
 #include "analysis/properties.h"
+#include "analysis/validate_cycle.h"
 #include "base/reason.h"
 #include "base/status.h"
 
@@ -35,14 +54,17 @@ struct wb_validate_result {
     double shape_max; /* m */
     int n_shape_points;
     double scatter_rms, residual_scatter_rms; /* as in calibrate */
-    /* RMS error to be expected from the scatter between samples alone, at most: standard errors of
-     * this average and of the one calibrated on (as far as known), from the smaller of their
-     * scatter and their residual scatter, added in squares. An upper bound: the residual scatter
-     * holds the model's own error with the samples' bows too. */
-    double expected_rms;
-    /* expected_rms squared over the elastoplastic RMS squared, at most 1: the scatter explains at
-     * most this share of the mean square error; NaN with one sample. */
+    double stiffness_deviation; /* s of ln k above, pooled; NaN unknown: one sample and no other, */
+    int stiffness_degrees;      /* and v */
+    /* What a perfect model gets with this scatter: root mean square over many such validations, and
+     * the value that one of twenty exceeds; NaN where s is not known. */
+    double expected_rms, expected_rms_95;
+    /* expected_rms squared over the elastoplastic RMS squared, at most 1: how much of the mean
+     * square error such scatter makes on average; NaN as above. */
     double scatter_share;
+    struct wb_validate_cycles cycles; /* owned; zero samples of a follower test */
+    bool is_beyond;        /* bent further than the properties are known: curvature of the clamp */
+    bool is_rule_untested; /* the properties are of a loading alone: the way back is its guess */
     struct wb_test_info info;
     double cpu_s;
 };
@@ -62,6 +84,13 @@ WB_MUST_CHECK enum wb_status wb_validate_run(struct wb_validate_result *result,
  * existing file. */
 WB_MUST_CHECK enum wb_status wb_validate_write_csv(const struct wb_validate_result *result,
                                                    const char *path);
+/* The mean way back likewise: deflection_mm,measured_N,elastoplastic_N,elastoplastic_error; forces
+ * are tensions less that at zero deflection. */
+WB_MUST_CHECK enum wb_status wb_validate_write_unloading(const struct wb_validate_result *result,
+                                                         const char *path);
+/* The scores of n results, a row each: wire,length_mm,score,measured,computed,error,unit. */
+WB_MUST_CHECK enum wb_status wb_validate_write_scores(const struct wb_validate_result *results,
+                                                      int n, const char *path);
 
 /* Frees and zeroes; accepts a zeroed one. */
 void wb_validate_result_release(struct wb_validate_result *result);

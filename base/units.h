@@ -15,6 +15,7 @@
 #define WB_N_PER_MM3 1e9               /* Pa/m: stiffness of an interface in N/mm3 */
 #define WB_S_PER_MM 1e3                /* s/m */
 #define WB_MN 1e-3                     /* N: one millinewton */
+#define WB_MJ 1e-3                     /* J: one millijoule */
 #define WB_PERCENT 1e-2                /* 1 */
 #define WB_PPM 1e-6                    /* 1 */
 #define WB_DEGREE 0.017453292519943295 /* rad */

@@ -20,7 +20,7 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"output", 'o', "DIR", 0, "Write forces and errors of each group there as CSV", 0},
+    {"output", 'o', "DIR", 0, "Write forces, errors and scores of each group there as CSV", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the output folder's files", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
@@ -30,12 +30,14 @@ static const struct argp argp = {
     .options = other_options,
     .parser = wb_command_parse_only_common,
     .args_doc = "PROPERTIES.yaml DATASET...",
-    .doc = "Predicts the first loading of tests with calibrated properties and prints the errors "
-           "of eqs. 18 and 19, beside those of a linear elastic prediction, and the distance of "
-           "shapes. Datasets are grouped by wire, length and loading, and each group is averaged.\v"
-           "Errors are over F_max, the largest force of the measured average, or over the largest "
-           "deflection of tests with a follower force. Exit code 3: a prediction was cut short "
-           "because the beam did not converge.",
+    .doc =
+        "Predicts tests with calibrated properties and scores each part of them apart: the first "
+        "loading (eqs. 18 and 19, beside a linear elastic prediction), the way back, the "
+        "deflection that is left, the energy that later cycles lose, and shapes. Datasets are "
+        "grouped by wire, length and loading, and each group is averaged.\v"
+        "Errors are over F_max, the largest force of the measured average, or over the largest "
+        "deflection of tests with a follower force. Exit code 3: a prediction was cut short "
+        "because the beam did not converge.",
 };
 
 /* The datasets in groups of one wire, length and loading, with the result of each group. */
@@ -80,10 +82,10 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
 }
 
 /* Name of a group's CSV file: the wire's name with anything unusual in a path replaced. */
-static void csv_name(char *name, size_t size, const struct wb_test_info *info)
+static void csv_name(char *name, size_t size, const struct wb_test_info *info, const char *what)
 {
-    snprintf(name, size, "%s-L%g%s.csv", info->wire, info->length / WB_MM,
-             info->is_follower ? "-follower" : "");
+    snprintf(name, size, "%s-L%g%s%s.csv", info->wire, info->length / WB_MM,
+             info->is_follower ? "-follower" : "", what);
     for (char *c = name; *c; c++) {
         if (*c == '/' || *c == ' ' || (unsigned char)*c < 0x20)
             *c = '_';
@@ -92,14 +94,22 @@ static void csv_name(char *name, size_t size, const struct wb_test_info *info)
 
 static enum wb_status write_tables(const struct options *o, const struct groups *groups)
 {
-    WB_TRY(wb_file_prepare_output(o->common.output, o->common.force));
+    const char *const folder = o->common.output;
+    char name[128], path[WB_PATH];
+    WB_TRY(wb_file_prepare_output(folder, o->common.force));
     for (int i = 0; i < groups->n; i++) {
-        char name[128], path[WB_PATH];
-        csv_name(name, sizeof name, &groups->results[i].info);
-        WB_TRY(wb_file_join(path, o->common.output, name));
-        WB_TRY(wb_validate_write_csv(&groups->results[i], path));
+        const struct wb_validate_result *const result = &groups->results[i];
+        csv_name(name, sizeof name, &result->info, "");
+        WB_TRY(wb_file_join(path, folder, name));
+        WB_TRY(wb_validate_write_csv(result, path));
+        if (result->cycles.n == 0)
+            continue;
+        csv_name(name, sizeof name, &result->info, "-unloading");
+        WB_TRY(wb_file_join(path, folder, name));
+        WB_TRY(wb_validate_write_unloading(result, path));
     }
-    return WB_OK;
+    WB_TRY(wb_file_join(path, folder, "scores.csv"));
+    return wb_validate_write_scores(groups->results, groups->n, path);
 }
 
 static void set_prediction(struct wb_json *object, const struct wb_prediction *prediction)
@@ -108,6 +118,35 @@ static void set_prediction(struct wb_json *object, const struct wb_prediction *p
     wb_json_set_number(object, "max_error", prediction->max_error);
     wb_json_set_number(object, "rms_from_5mm", prediction->rms_from_5mm);
     wb_json_set_boolean(object, "converged", prediction->n_reached == prediction->n);
+}
+
+/* The way back, what is left, and later cycles; null without a way back. */
+static void set_cycles(struct wb_json *item, const struct wb_validate_result *r)
+{
+    const struct wb_validate_cycles *const cycles = &r->cycles;
+    wb_json_set_number(item, "clamp_curvature_1_m", cycles->clamp_curvature);
+    wb_json_set_boolean(item, "beyond_known_curvature", r->is_beyond);
+    if (cycles->n_samples == 0) {
+        wb_json_set_number(item, "unloading", (double)NAN);
+        return;
+    }
+    struct wb_json *const unloading = wb_json_set_object(item, "unloading");
+    wb_json_set_integer(unloading, "samples", cycles->n_samples);
+    wb_json_set_number(unloading, "rms", cycles->rms);
+    wb_json_set_number(unloading, "max_error", cycles->largest_error);
+    wb_json_set_number(unloading, "rms_of_samples", cycles->sample_rms);
+    wb_json_set_boolean(unloading, "rule_untested", r->is_rule_untested);
+    struct wb_json *const left = wb_json_set_object(item, "residual_deflection_mm");
+    wb_json_set_number(left, "measured", cycles->residual_measured / WB_MM);
+    wb_json_set_number(left, "predicted", cycles->residual_computed / WB_MM);
+    struct wb_json *const loops = wb_json_set_array(item, "loop_energy_mJ");
+    for (int i = 0; i < cycles->n_loops; i++) {
+        struct wb_json *const loop = wb_json_append_object(loops);
+        wb_json_set_integer(loop, "cycle", cycles->loops[i].cycle);
+        wb_json_set_integer(loop, "samples", cycles->loops[i].n_samples);
+        wb_json_set_number(loop, "measured", cycles->loops[i].measured / WB_MJ);
+        wb_json_set_number(loop, "predicted", cycles->loops[i].computed / WB_MJ);
+    }
 }
 
 static int print_json(const struct options *o, const struct wb_properties *properties,
@@ -135,11 +174,54 @@ static int print_json(const struct options *o, const struct wb_properties *prope
         wb_json_set_integer(item, "shape_points", r->n_shape_points);
         wb_json_set_number(item, "scatter_rms", r->scatter_rms);
         wb_json_set_number(item, "residual_scatter_rms", r->residual_scatter_rms);
-        wb_json_set_number(item, "expected_rms_at_most", r->expected_rms);
-        wb_json_set_number(item, "scatter_share_at_most", r->scatter_share);
+        wb_json_set_number(item, "stiffness_deviation", r->stiffness_deviation);
+        wb_json_set_integer(item, "stiffness_degrees_of_freedom", r->stiffness_degrees);
+        wb_json_set_number(item, "expected_rms", r->expected_rms);
+        wb_json_set_number(item, "expected_rms_95", r->expected_rms_95);
+        wb_json_set_number(item, "scatter_share", r->scatter_share);
+        set_cycles(item, r);
         wb_json_set_number(item, "cpu_s", r->cpu_s);
     }
     return wb_command_print_json(root);
+}
+
+static void print_cycles(const struct wb_validate_result *r)
+{
+    const struct wb_validate_cycles *const cycles = &r->cycles;
+    if (cycles->n_samples == 0) {
+        if (!r->info.is_follower)
+            printf("  unloading      not scored: %s\n",
+                   cycles->why.text[0] ? cycles->why.text : "no way back was measured");
+        return;
+    }
+    printf("  unloading      RMS %.3g, largest error %.3g%s\n", cycles->rms, cycles->largest_error,
+           r->is_rule_untested ? "; the rule of these properties is untested" : "");
+    const double left = cycles->residual_measured, predicted = cycles->residual_computed;
+    if (isfinite(left))
+        printf("  left deflected %.2f mm measured, %.2f mm predicted (%+.2f mm)\n", left / WB_MM,
+               predicted / WB_MM, (predicted - left) / WB_MM);
+    for (int i = 0; i < cycles->n_loops; i++) {
+        const struct wb_validate_loop *const loop = &cycles->loops[i];
+        printf("  cycle %-2d       loses %.3g mJ measured, %.3g mJ predicted (%+.1f %%)\n",
+               loop->cycle, loop->measured / WB_MJ, loop->computed / WB_MJ,
+               100.0 * (loop->computed / loop->measured - 1.0));
+    }
+}
+
+static void print_scatter(const struct wb_validate_result *r)
+{
+    if (r->curve.n_samples > 1)
+        printf("  scatter        between samples %.3g, with each one's own natural shape %.3g\n",
+               r->scatter_rms, r->residual_scatter_rms);
+    if (isfinite(r->expected_rms_95))
+        printf("  perfect model  with specimens that differ by %.1f %% in stiffness: RMS about "
+               "%.2g on loading, above %.2g in one of twenty validations\n"
+               "                 found %.2g: %s\n",
+               100.0 * r->stiffness_deviation, r->expected_rms, r->expected_rms_95,
+               r->elastoplastic.rms,
+               r->elastoplastic.rms > r->expected_rms_95
+                   ? "more than the scatter of specimens explains"
+                   : "no more than the scatter of specimens explains");
 }
 
 static void print_group(const struct wb_validate_result *r)
@@ -150,23 +232,23 @@ static void print_group(const struct wb_validate_result *r)
            : r->info.is_simulation ? ", simulation"
                                    : "",
            r->info.is_follower ? ", follower force" : "");
-    printf("  elastoplastic  RMS %.3g, largest error %.3g ", r->elastoplastic.rms,
+    printf("  loading        RMS %.3g, largest error %.3g ", r->elastoplastic.rms,
            r->elastoplastic.max_error);
     if (r->info.is_follower)
         printf("(of the deflection, over the largest measured, %.4g mm)\n",
                r->curve.max_deflection / WB_MM);
     else
         printf("(over F_max = %.4g N of the measured average)\n", r->curve.max_force);
-    printf("  elastic        RMS %.3g, largest error %.3g\n", r->elastic.rms, r->elastic.max_error);
+    printf("    if elastic   RMS %.3g, largest error %.3g\n", r->elastic.rms, r->elastic.max_error);
+    print_cycles(r);
     if (r->n_shape_points > 0)
         printf("  shapes         RMS %.2f mm, largest %.2f mm, %d markers\n", r->shape_rms / WB_MM,
                r->shape_max / WB_MM, r->n_shape_points);
-    if (isfinite(r->expected_rms))
-        printf("  scatter        between samples %.3g, with each one's own natural shape %.3g\n"
-               "                 RMS that the scatter between samples alone lets expect: at most "
-               "%.2g; found: %.2g (at most %.0f %% of the mean square error)\n",
-               r->scatter_rms, r->residual_scatter_rms, r->expected_rms, r->elastoplastic.rms,
-               100.0 * r->scatter_share);
+    print_scatter(r);
+    if (r->is_beyond)
+        printf("  beyond         the clamp is bent to %.3g /m, further than these properties are "
+               "known\n",
+               r->cycles.clamp_curvature);
 }
 
 static int deliver(const struct options *o, const struct wb_properties *properties,

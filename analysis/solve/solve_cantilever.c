@@ -19,7 +19,7 @@ enum {
 struct run {
     struct wb_solve solve;
     struct wb_wire wire;
-    struct wb_material material;
+    struct wb_law law; /* as computed with: the wire's, or elastic */
     struct wb_section section;
     struct wb_cantilever *cantilever;
     struct wb_loading_steps loading;
@@ -38,13 +38,18 @@ static enum wb_status prepare(void *context)
     run->solve.name = run->wire.name;
     if (!run->wire.has_properties)
         return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);
-    run->material = run->wire.material;
-    if (o->law == WB_SOLVE_ELASTIC)
-        run->material.hardening = WB_HARDENING_NONE_ELASTIC;
+    run->law = run->wire.law;
 
     struct wb_cantilever_model model;
     wb_cantilever_default_model(&model);
-    WB_TRY(wb_section_init_circle(&run->section, run->wire.outer_diameter, &run->material, 0));
+    if (o->law == WB_SOLVE_ELASTIC) {
+        struct wb_material elastic = run->law.material;
+        elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+        wb_law_init_ludwik(&run->law, &elastic);
+        WB_TRY(wb_section_init_circle(&run->section, run->wire.outer_diameter, &elastic, 0));
+    } else {
+        WB_TRY(wb_section_init_law(&run->section, run->wire.outer_diameter, &run->law, 0));
+    }
     model.section = &run->section;
     model.length = o->length;
     model.strand_length = o->strand;
@@ -94,7 +99,7 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
         .length = o->length,
         .outer_diameter = run->wire.outer_diameter,
         .mass_per_length = wb_wire_mass_per_length(&run->wire),
-        .poissons_ratio = run->material.poissons_ratio,
+        .poissons_ratio = run->law.material.poissons_ratio,
         .strand_length = o->strand,
         .gravity = o->weight ? WB_STANDARD_GRAVITY : 0.0,
         .rest_level = (double)NAN,
@@ -102,9 +107,8 @@ static enum wb_status fill(const void *context, struct wb_dataset *dataset)
     };
     const struct wb_simulated_origin origin = {
         .model = wb_solve_settings_kind(o),
-        .law = o->law == WB_SOLVE_ELASTIC ? "elastic" : "elastoplastic",
         .source = run->wire.source,
-        .material = &run->material,
+        .law = &run->law,
         .wall = run->solve.spent.wall,
         .cpu = run->solve.spent.cpu,
     };

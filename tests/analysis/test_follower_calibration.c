@@ -399,6 +399,7 @@ static struct wb_properties fitted_properties(void)
         .material = {WB_HARDENING_ISOTROPIC_POWER, 13845e6, 0.39, 55.11e6, 85.73e6, 0.3273}};
     properties.calibration_length = properties.rms = (double)NAN;
     properties.scatter_rms = properties.residual_scatter_rms = (double)NAN;
+    properties.largest_curvature = properties.stiffness_deviation = (double)NAN;
     wb_law_init_ludwik(&properties.law, &properties.material);
     return properties;
 }

@@ -160,12 +160,40 @@ static void a_dataset_without_shapes_or_rows_has_a_summary(void **state)
     wb_dataset_release(&dataset);
 }
 
+/* The force of the way back falls faster than that of the way up has grown: it is gone at 13.07 mm,
+ * where the tension is that of zero deflection. */
+static void summary_says_what_deflection_is_left(void **state)
+{
+    (void)state;
+    struct wb_dataset dataset;
+    struct wb_text text = {0};
+    struct wb_json *const object = wb_json_create();
+    double left = (double)NAN;
+    fill(&dataset);
+    dataset.info.is_simulation = true; /* every row counts as a point */
+    for (size_t i = 0; i < dataset.n_rows; i++) {
+        struct wb_row *const row = &dataset.rows[i];
+        if (row->phase == WB_PHASE_UNLOAD)
+            row->tension -= 0.5 * (0.04 - row->deflection);
+    }
+    assert_int_equal(wb_quicklook_summary(&dataset, &text), WB_OK);
+    assert_non_null(strstr(wb_text_string(&text),
+                           "left deflected      13.07 mm at zero force on the way back (33 %)"));
+    wb_quicklook_describe(&dataset, object);
+    assert_true(wb_json_get_number(object, "residual_deflection_mm", &left));
+    assert_true(fabs(left - 13.07) < 0.02);
+    wb_json_destroy(object);
+    wb_text_release(&text);
+    wb_dataset_release(&dataset);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_files_are_written_and_say_virtual_rig),
         cmocka_unit_test(the_same_dataset_gives_the_same_bytes),
         cmocka_unit_test(a_dataset_without_shapes_or_rows_has_a_summary),
+        cmocka_unit_test(summary_says_what_deflection_is_left),
     };
     return cmocka_run_group_tests(tests, start, remove_folder);
 }

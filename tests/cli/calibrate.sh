@@ -79,7 +79,7 @@ expect 2 'at least one dataset' "$wirebench" calibrate
 expect 2 '--elastic-zone' "$wirebench" calibrate L85 --elastic-zone 5mm
 expect 2 'properties and at least one dataset' "$wirebench" validate type3.yaml
 
-expect 0 'elastoplastic' "$wirebench" validate type3.yaml L85 L100 -o curves
+expect 0 'unloading' "$wirebench" validate type3.yaml L85 L100 -o curves
 for length in 85 100; do
     [ "$(wc -l <"curves/type3-L$length.csv")" -eq 109 ] || fail "curves/type3-L$length.csv"
 done

@@ -108,6 +108,92 @@ static void dataset_is_one_like_any_other(void **unused)
     wb_json_destroy(root);
 }
 
+/* A wire whose file has that block beside the four numbers of type 2. */
+static void write_wire(const char *name, const char *law)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s.yaml", folder, name);
+    FILE *const file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file,
+            "name: %s\nconductor_diameter_mm: 0.85\nouter_diameter_mm: 1.25\n"
+            "density_g_cm3: 4.31\nproperties:\n  source: test\n  youngs_modulus_MPa: 5641\n"
+            "  poissons_ratio: 0.39\n  yield_stress_MPa: 4.95\n"
+            "  strength_coefficient_MPa: 850\n  hardening_exponent: 0.78\n%s",
+            name, law);
+    fclose(file);
+}
+
+/* Force at the last deflection of a way. */
+static double force_at(const struct wb_dataset *dataset, int cycle, enum wb_phase phase,
+                       double deflection)
+{
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->cycle == cycle && row->phase == phase && fabs(row->deflection - deflection) < 1e-7)
+            return row->force;
+    }
+    fail_msg("no row of cycle %d at %g m", cycle, deflection);
+    return (double)NAN;
+}
+
+static void solve_wire(const char *name, const char *law, struct wb_dataset *dataset)
+{
+    char path[128], command[256];
+    write_wire(name, law);
+    snprintf(command, sizeof command,
+             "solve cantilever --wire ./%s.yaml --length-mm 100 --deflection-mm 50 --points 50 "
+             "--cycles 2 -o %s-test",
+             name, name);
+    tool(command);
+    assert_int_equal(o.code, 0);
+    snprintf(path, sizeof path, "%s/%s-test", folder, name);
+    assert_int_equal(wb_dataset_read(dataset, path, NULL), WB_OK);
+}
+
+static void hardening_rule_of_the_wire_decides_the_way_back(void **unused)
+{
+    (void)unused;
+    struct wb_dataset plain, kinematic, parallel;
+    const char *text;
+    solve_wire("plain", "", &plain);
+    solve_wire("kinematic", "  law: {form: ludwik, hardening: kinematic}\n", &kinematic);
+    solve_wire("parallel",
+               "  law:\n    form: parallel\n    hardening: kinematic\n    parts:\n"
+               "      - {modulus_MPa: 4000, yield_strain: 0.001}\n      - {modulus_MPa: 800}\n",
+               &parallel);
+    /* One virgin curve, two ways back. */
+    const double top = force_at(&plain, 1, WB_PHASE_LOAD, 0.05);
+    assert_close(force_at(&kinematic, 1, WB_PHASE_LOAD, 0.05), top, 3e-3 * top);
+    assert_close(force_at(&kinematic, 1, WB_PHASE_LOAD, 0.02),
+                 force_at(&plain, 1, WB_PHASE_LOAD, 0.02), 3e-3 * top);
+    assert_true(force_at(&kinematic, 1, WB_PHASE_UNLOAD, 0.03) >
+                force_at(&plain, 1, WB_PHASE_UNLOAD, 0.03) + 0.05 * top);
+    /* The memory of the turn: the second cycle comes back to it. */
+    const double parallel_top = force_at(&parallel, 1, WB_PHASE_LOAD, 0.05);
+    assert_close_relative(force_at(&parallel, 2, WB_PHASE_LOAD, 0.05), parallel_top, 1e-6);
+    assert_true(force_at(&parallel, 2, WB_PHASE_LOAD, 0.03) <
+                0.95 * force_at(&parallel, 1, WB_PHASE_LOAD, 0.03));
+
+    /* dataset.json has the numbers of the law that was computed with. */
+    struct wb_json *simulation = wb_json_get(parallel.document, "simulation");
+    assert_close_relative(number(simulation, "youngs_modulus_MPa"), 4800.0, 1e-12);
+    assert_null(wb_json_get(simulation, "yield_stress_MPa"));
+    assert_true(wb_json_get_text(simulation, "form", &text));
+    assert_string_equal(text, "parallel");
+    const struct wb_json *const parts = wb_json_get(simulation, "parts");
+    assert_int_equal(wb_json_length(parts), 2);
+    assert_close_relative(number(wb_json_item(parts, 0), "yield_strain"), 0.001, 1e-12);
+    assert_null(wb_json_get(wb_json_item(parts, 1), "yield_strain"));
+    simulation = wb_json_get(kinematic.document, "simulation");
+    assert_true(wb_json_get_text(simulation, "hardening", &text));
+    assert_string_equal(text, "kinematic");
+    assert_close_relative(number(simulation, "hardening_exponent"), 0.78, 1e-12);
+    wb_dataset_release(&plain);
+    wb_dataset_release(&kinematic);
+    wb_dataset_release(&parallel);
+}
+
 static void curve_cut_short_exits_with_3(void **unused)
 {
     (void)unused;
@@ -162,6 +248,7 @@ int main(void)
         cmocka_unit_test(json_holds_the_reference_curve),
         cmocka_unit_test(law_and_cycles_are_obeyed),
         cmocka_unit_test(dataset_is_one_like_any_other),
+        cmocka_unit_test(hardening_rule_of_the_wire_decides_the_way_back),
         cmocka_unit_test(curve_cut_short_exits_with_3),
         cmocka_unit_test(bad_input_gives_one_message_and_its_exit_code),
     };

@@ -109,9 +109,9 @@ static void put_validation(struct wb_json *object, const struct wb_recordings_re
     const struct wb_validate_result *const validation =
         &wire->steps[WB_RECORDINGS_VALIDATION].result;
     put_comparison(object, validation, validation->scatter_rms, validation->residual_scatter_rms);
-    wb_json_set_number(object, "rms_expected_from_scatter_at_most_over_F_max",
-                       validation->expected_rms);
-    wb_json_set_number(object, "share_explained_by_scatter_at_most",
+    wb_json_set_number(object, "rms_of_perfect_model_over_F_max", validation->expected_rms);
+    wb_json_set_number(object, "rms_of_perfect_model_95_over_F_max", validation->expected_rms_95);
+    wb_json_set_number(object, "share_explained_by_scatter",
                        wb_recordings_results_validation_share(wire));
 }
 

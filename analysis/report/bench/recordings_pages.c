@@ -50,10 +50,13 @@ static void append_share(struct wb_text *text, const struct wb_validate_result *
 {
     if (isfinite(validation->scatter_share))
         wb_text_append(text,
-                       " RMS that the scatter between samples alone lets expect: at most %.4f; "
-                       "found: %.4f. So it explains at most %.0f %% of the mean square error.",
-                       validation->expected_rms, validation->elastoplastic.rms,
-                       100.0 * validation->scatter_share);
+                       " RMS of a perfect model with specimens that differ like these: about "
+                       "%.4f, above %.4f in one of twenty validations; found: %.4f, which is %s.",
+                       validation->expected_rms, validation->expected_rms_95,
+                       validation->elastoplastic.rms,
+                       validation->elastoplastic.rms > validation->expected_rms_95
+                           ? "more than the scatter of specimens explains"
+                           : "no more than the scatter of specimens explains");
     else
         wb_text_append(text, " What the scatter between samples explains is not known: there are "
                              "fewer than two samples.");
@@ -231,7 +234,7 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
         {.heading = "Validation RMS", .right = true, .wraps = true},
         {.heading = "Validation, largest", .right = true, .wraps = true},
         {.heading = "Linear elastic RMS", .right = true, .wraps = true},
-        {.heading = "Scatter explains, at most", .right = true, .wraps = true},
+        {.heading = "Scatter explains, about", .right = true, .wraps = true},
         {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
     };
@@ -239,10 +242,9 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
     int length = snprintf(caption, sizeof caption,
                           "Errors are parts of <i>F</i><sub>max</sub>, the largest force of the "
                           "mean measured curve (eqs. 18 and 19); that of the validation is given. "
-                          "Scatter explains, at most: bound of the part of the validation's "
-                          "RMS<sup>2</sup> that a perfect model would show too, because means of a "
-                          "few unlike samples differ by chance; the scatter it comes from holds "
-                          "the model's error with the samples' bows too.");
+                          "Scatter explains, about: the part of the validation's RMS<sup>2</sup> "
+                          "that a perfect model would show too, on average, because means of a few "
+                          "specimens of unlike stiffness differ by chance.");
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         if (campaign->limit[k] > 0.0)
             length +=
@@ -758,8 +760,10 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
          v_scatters ? v->scatter_rms : none, 4},
         {"Scatter beyond the natural shapes <i>r</i>", part,
          scatters ? c->residual_scatter_rms : none, v_scatters ? v->residual_scatter_rms : none, 4},
-        {"RMS expected from scatter, at most", part, none, v ? v->expected_rms : none, 4},
-        {"Share that the scatter explains, at most", "1", none,
+        {"RMS of a perfect model, about", part, none, v ? v->expected_rms : none, 4},
+        {"RMS of a perfect model, exceeded by one of twenty", part, none,
+         v ? v->expected_rms_95 : none, 4},
+        {"Share that the scatter explains, about", "1", none,
          wb_recordings_results_validation_share(wire), 2},
         {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? v->shape_rms / WB_MM : none, 2},
         {"Shapes, largest distance", "mm", fit->shape_max / WB_MM, v ? v->shape_max / WB_MM : none,
@@ -776,14 +780,13 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         document,
         "Scatter <i>s</i>: standard deviation between the samples at the same deflection, RMS over "
         "all deflections; <i>r</i>: what remains of it when each sample is computed with its own "
-        "natural shape, the model's error with the bow included. With <i>m</i> the smaller of "
-        "both, "
-        "the mean of <i>n</i> samples is off by <i>m</i>/<i>n</i><sup>1/2</sup> at most by chance, "
-        "so that even a perfect model would show an RMS of up to "
-        "(<i>m</i><sub>v</sub><sup>2</sup>/<i>n</i><sub>v</sub> + "
-        "<i>m</i><sub>c</sub><sup>2</sup>/<i>n</i><sub>c</sub>)<sup>1/2</sup>, of the validation's "
-        "samples (v) and those calibrated on (c). Share: its square over RMS<sup>2</sup>, at most "
-        "1; an upper bound, near 0 the error is the model's.",
+        "natural shape, the model's error with the bow included. A perfect model, one of the "
+        "product's mean, shows an RMS of about <i>s</i><sub>k</sub> <i>G</i> "
+        "(1/<i>n</i> + 1/<i>m</i>)<sup>1/2</sup> with <i>n</i> samples here and <i>m</i> "
+        "calibrated on, whose stiffness has the standard deviation <i>s</i><sub>k</sub> (of its "
+        "logarithm, pooled); <i>G</i> is what stiffness changes in the curve. Student's <i>t</i> "
+        "times as much is exceeded in one of twenty validations. Share: its square over "
+        "RMS<sup>2</sup>, at most 1; near 0 the error is the model's.",
         4, columns);
     for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
         put_merit(table, &merits[i]);

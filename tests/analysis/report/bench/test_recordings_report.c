@@ -374,13 +374,15 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
     const double r_v = fmin(wire->steps[WB_RECORDINGS_VALIDATION].result.scatter_rms,
                             wire->steps[WB_RECORDINGS_VALIDATION].result.residual_scatter_rms);
     const double r_c = fmin(wire->calibration.scatter_rms, wire->calibration.residual_scatter_rms);
-    const double rms = wire->steps[WB_RECORDINGS_VALIDATION].result.elastoplastic.rms;
+    const struct wb_validate_result *const result = &wire->steps[WB_RECORDINGS_VALIDATION].result;
+    const double rms = result->elastoplastic.rms;
     assert_close(share, fmin(1.0, (r_v * r_v + r_c * r_c) / 2.0 / (rms * rms)), 1e-12);
     assert_true(share > 0.01 && share < 0.9);
     assert_int_equal(wb_kind_write(&wb_recordings_kind, &bad.results, in_folder("bad"), false),
                      WB_OK);
     char text[80];
-    snprintf(text, sizeof text, "explains at most %.0f %% of the mean square error", 100.0 * share);
+    snprintf(text, sizeof text, "about %.4f, above %.4f in one of twenty validations",
+             result->expected_rms, result->expected_rms_95);
     assert_true(says("bad/report.html", "Limit exceeded."));
     assert_true(says("bad/report.html", text));
     assert_true(says("bad/report.json", "\"limit_exceeded\": true"));

@@ -211,11 +211,8 @@ static void make_rod(int index, double cpu)
     const struct wb_test_info info = {.length = run->model->length,
                                       .outer_diameter = beam->outer_diameter,
                                       .rest_level = (double)NAN};
-    const struct wb_simulated_origin origin = {.model = "cantilever",
-                                               .law = "elastoplastic",
-                                               .source = beam->source,
-                                               .material = &beam->material,
-                                               .cpu = cpu};
+    const struct wb_simulated_origin origin = {
+        .model = "cantilever", .source = beam->source, .law = &beam->law, .cpu = cpu};
     struct wb_loading_steps_row rows[2] = {{.cycle = 1}, {.cycle = 1}};
     rows[1].point.deflection = run->model->run.deflection;
     const struct wb_loading_steps loading = {.n_rows = 2, .rows = rows, .converged = true};
@@ -458,7 +455,9 @@ static void a_rod_with_other_properties_is_outdated(void **state)
     (void)state;
     read_small("", "");
     make_run(0, 1.0);
-    campaign.runs[0].model->published.beam.material.yield_stress = 3e6;
+    struct wb_wire *const beam = &campaign.runs[0].model->published.beam;
+    beam->material.yield_stress = 3e6;
+    wb_law_init_ludwik(&beam->law, &beam->material);
     make_rod(0, 0.1);
     wb_bundles_release(&campaign);
     read_small("", "");
