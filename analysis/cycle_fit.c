@@ -7,6 +7,7 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
@@ -106,7 +107,8 @@ static double logistic(double x)
  * go to nothing stay positive. */
 static double positive(double x)
 {
-    return log1p((M_E - 1.0) * exp(x * M_E / (M_E - 1.0)));
+    const double rise = x * M_E / (M_E - 1.0);
+    return rise > 50.0 ? rise + log(M_E - 1.0) : log1p((M_E - 1.0) * exp(rise));
 }
 
 static double largest_exponent_of(const struct candidate *c)
@@ -358,6 +360,38 @@ static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *i
     return false;
 }
 
+/* How many points in a row tell the same: those with residuals of one sign, over the two that noise
+ * alone has on average. */
+static double alike_in_a_row(const struct problem *p, const gsl_vector *f)
+{
+    const int n = p->data->n_points;
+    int rows = 1;
+    for (int i = 1; i < n; i++)
+        rows += (gsl_vector_get(f, (size_t)i) < 0.0) != (gsl_vector_get(f, (size_t)i - 1) < 0.0);
+    return fmax(1.0, 0.5 * n / rows);
+}
+
+/* The law moved along the columns of the covariance's triangular factor, which it is destroyed
+ * for. */
+static void move_law(const struct problem *p, const gsl_vector *x, double variance,
+                     gsl_matrix *covariance, struct wb_cycle_fit *fit)
+{
+    double free[WB_FIT_MOST_FREE], step[WB_FIT_MOST_FREE];
+    fit->n_moved = 0;
+    if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
+        return;
+    for (int k = 0; k < p->n_law; k++) {
+        for (int i = 0; i < p->n_free; i++) {
+            const double side =
+                i < k ? 0.0 : gsl_matrix_get(covariance, (size_t)i, (size_t)k) * sqrt(variance);
+            step[i] = gsl_vector_get(x, (size_t)i) + side;
+        }
+        absolute(p, step, free);
+        law_of(p, free, &fit->moved[fit->n_moved]);
+        fit->n_moved += wb_law_check(&fit->moved[fit->n_moved]) == WB_OK;
+    }
+}
+
 /* Standard errors from the curvature of the sum of squares, scaled by what is left of it. */
 static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_cycle_fit *fit)
@@ -385,6 +419,7 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
             fit->ln_strength_error =
                 sqrt(variance * fmax(0.0, a * a * hh + 2.0 * a * b * hn + b * b * nn));
         }
+        move_law(p, w->x, variance * alike_in_a_row(p, w->f), covariance, fit);
     }
     gsl_matrix_free(covariance);
 }

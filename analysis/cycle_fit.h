@@ -71,10 +71,16 @@ struct wb_cycle_fit {
     double place_rms;                        /* m, after the markers' offsets; NaN without places */
     double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
                                                  specimen's own residuals; NaN of parallel parts */
-    double clamp_curvature;                   /* 1/m, largest */
-    double first_curvature;                   /* 1/m, at the first point */
-    int n_free;                               /* numbers fitted */
-    int n_outliers;                           /* points weighted by less than half */
+    /* The law moved by one standard error in each of independent directions, which all that is
+     * computed with it can be asked for its error: a number's variance is the sum of the squares of
+     * its differences. Neighbouring residuals are alike where the law's form is wrong; the errors
+     * grow with that. */
+    int n_moved;
+    struct wb_law moved[WB_FIT_MOST_FREE];
+    double clamp_curvature; /* 1/m, largest */
+    double first_curvature; /* 1/m, at the first point */
+    int n_free;             /* numbers fitted */
+    int n_outliers;         /* points weighted by less than half */
     int runs, iterations;
     double cpu_s;
     /* (data->n_points) computed tension of the last run, N; owned; NULL where it failed */
