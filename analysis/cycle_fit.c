@@ -91,6 +91,8 @@ struct problem {
     double scale[WB_FIT_MOST_FREE];
     double start_modulus[WB_FIT_PARTS];  /* Pa */
     double *tension, *distance, *weight; /* weight: (n_points), of Huber */
+    double last_x[WB_FIT_MOST_FREE];     /* where the residuals were asked for last, */
+    double *last;                        /* and they; (n_residuals) */
     double force_scale;                  /* N */
     struct wb_cycle_run run;
     int runs;
@@ -281,18 +283,27 @@ static int residuals(struct problem *p, const double *x, double *r)
 
 static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
 {
-    return residuals(context, x->data, f->data);
+    struct problem *const p = context;
+    const int status = residuals(p, x->data, f->data);
+    memcpy(p->last_x, x->data, (size_t)p->n_free * sizeof *p->last_x);
+    memcpy(p->last, f->data, (size_t)p->n_residuals * sizeof *p->last);
+    return status;
 }
 
+/* Differences from the residuals at x, which were asked for last if that step was taken. */
 static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
 {
     struct problem *const p = context;
     double moved[WB_FIT_MOST_FREE];
     double *const base = calloc(2 * (size_t)p->n_residuals, sizeof *base);
     double *const other = base + p->n_residuals;
+    int status = GSL_SUCCESS;
     if (!base)
         return GSL_ENOMEM;
-    int status = residuals(p, x->data, base);
+    if (memcmp(p->last_x, x->data, (size_t)p->n_free * sizeof *moved) == 0)
+        memcpy(base, p->last, (size_t)p->n_residuals * sizeof *base);
+    else
+        status = residuals(p, x->data, base);
     for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
         memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
         moved[k] += difference;
@@ -558,6 +569,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     p.tension = calloc(points, sizeof *p.tension);
     p.weight = calloc(points, sizeof *p.weight);
     p.distance = calloc((size_t)data->n_places + 1, sizeof *p.distance);
+    p.last = calloc((size_t)p.n_residuals, sizeof *p.last);
     fit->tension = calloc(points, sizeof *fit->tension);
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
     parameters.trs = gsl_multifit_nlinear_trs_dogleg;
@@ -565,7 +577,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
         gsl_multifit_nlinear_trust, &parameters, (size_t)p.n_residuals, (size_t)p.n_free);
     enum wb_status status = WB_OK;
-    if (!p.tension || !p.weight || !p.distance || !fit->tension || !w)
+    if (!p.tension || !p.weight || !p.distance || !p.last || !fit->tension || !w)
         status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);
     for (int i = 0; status == WB_OK && i < data->n_points; i++)
         p.weight[i] = 1.0;
@@ -580,6 +592,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     free(p.tension);
     free(p.weight);
     free(p.distance);
+    free(p.last);
     fit->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
     if (status != WB_OK)
         wb_cycle_fit_release(fit);
