@@ -94,10 +94,12 @@ static double best_misfit(const struct wb_cycle_member *member)
 /* Fits a candidate; that the beam cannot follow it is a result. */
 static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
                               const struct wb_law *start, const struct wb_cycle_grid *grid,
-                              const struct wb_cycle_fit_settings *given)
+                              const struct wb_cycle_calibrate_settings *given)
 {
     struct wb_cycle_answer *const answer = &member->answers[candidate];
-    struct wb_cycle_fit_settings settings = *given;
+    struct wb_cycle_fit_settings settings = given->fit;
+    if (given->left_out >> candidate & 1U)
+        return WB_OK;
     const double best = best_misfit(member);
     if (isfinite(best))
         settings.hopeless = fmax(hopeless_ratio * best, hopeless_least);
@@ -131,12 +133,11 @@ static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct w
     WB_TRY(wb_cycle_data_take(&member->data, dataset, &settings->data, &member->why));
     WB_TRY(first_law(dataset, &start, &member->why));
     if (member->data.n_loading == member->data.n_points)
-        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, &settings->fit);
+        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, settings);
     for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
         const struct wb_cycle_fit *const near = best_ludwik(member);
         const bool is_mixed = order[i] == WB_CANDIDATE_LUDWIK_MIXED;
-        WB_TRY(fit_one(member, order[i], is_mixed && near ? &near->law : &start, &none,
-                       &settings->fit));
+        WB_TRY(fit_one(member, order[i], is_mixed && near ? &near->law : &start, &none, settings));
     }
     return WB_OK;
 }
@@ -148,8 +149,8 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     const struct wb_cycle_fit *const near = best_ludwik(member);
     if (!near || member->data.n_loading == member->data.n_points)
         return WB_OK;
-    WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, &settings->fit));
-    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, &near->law, grid, &settings->fit);
+    WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, settings));
+    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, &near->law, grid, settings);
 }
 
 /* --- specimens side by side --- */
@@ -444,7 +445,7 @@ static void estimate_number(struct wb_cycle_calibration *calibration, enum numbe
 
 static void add_square(double *sum, double moved, double value)
 {
-    const double difference = value > 0.0 ? moved / value - 1.0 : 0.0;
+    const double difference = value > 0.0 ? (moved / value - 1.0) / WB_FIT_MOVED : 0.0;
     *sum += difference * difference;
 }
 

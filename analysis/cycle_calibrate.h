@@ -101,6 +101,7 @@ struct wb_cycle_calibration {
 struct wb_cycle_calibrate_settings {
     struct wb_cycle_data_settings data;
     struct wb_cycle_fit_settings fit;
+    unsigned left_out;       /* bit 1 << candidate: is not fitted */
     double pooled_deviation; /* s of ln(EI) pooled over other wires; 0: of these specimens */
     int pooled_degrees;      /* its degrees of freedom */
     int threads;             /* 0: as many as there are processors */

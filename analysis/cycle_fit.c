@@ -430,7 +430,8 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
             fit->ln_strength_error =
                 sqrt(variance * fmax(0.0, a * a * hh + 2.0 * a * b * hn + b * b * nn));
         }
-        move_law(p, w->x, variance * alike_in_a_row(p, w->f), covariance, fit);
+        const double alike = alike_in_a_row(p, w->f);
+        move_law(p, w->x, WB_FIT_MOVED * WB_FIT_MOVED * variance * alike, covariance, fit);
     }
     gsl_matrix_free(covariance);
 }

@@ -53,6 +53,9 @@ struct wb_cycle_fit_settings {
 };
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
 
+/* Small, so that numbers change in proportion. */
+#define WB_FIT_MOVED 0.1
+
 /* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain at the first
  * point of the data to that at the last, where the elastic part's would stand. */
 struct wb_cycle_grid {
@@ -71,9 +74,9 @@ struct wb_cycle_fit {
     double place_rms;                        /* m, after the markers' offsets; NaN without places */
     double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
                                                  specimen's own residuals; NaN of parallel parts */
-    /* The law moved by one standard error in each of independent directions, which all that is
-     * computed with it can be asked for its error: a number's variance is the sum of the squares of
-     * its differences. Neighbouring residuals are alike where the law's form is wrong; the errors
+    /* The law moved by WB_FIT_MOVED standard errors in each of independent directions. What is
+     * computed with it has a variance: the sum of the squares of its differences, over the square
+     * of WB_FIT_MOVED. Neighbouring residuals are alike where the law's form is wrong; the errors
      * grow with that. */
     int n_moved;
     struct wb_law moved[WB_FIT_MOST_FREE];
