@@ -27,6 +27,8 @@ static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
 /* Candidates count up to this many times the best misfit; a rule is supported up to this one. */
 static const double counts_up_to = 2.0;
 static const double largest_supported = 5e-3;
+/* Standard errors of a fit on either side of a candidate's number. */
+static const double range_errors = 2.0;
 /* Level of the F-tests, coverage of the intervals. */
 static const double f_level = 0.01, coverage = 0.95;
 /* A fit that stays this many times above the best misfit of the specimen is given up. */
@@ -158,11 +160,13 @@ static void first_law(const struct wb_cycle_data *data, struct wb_law *law)
     wb_law_init_ludwik(law, &material);
 }
 
-/* The curvature that the first point's deflection makes of a straight wire, times the radius. */
+/* The curvature that the deflection between the first two points makes of a straight wire, times
+ * the radius: what yields before is seen in one point alone. */
 static double first_strain(const struct wb_cycle_data *data)
 {
     const double length = data->info.length;
-    return 1.5 * data->info.outer_diameter * data->points[0].deflection / (length * length);
+    const double deflection = 0.5 * (data->points[0].deflection + data->points[1].deflection);
+    return 1.5 * data->info.outer_diameter * deflection / (length * length);
 }
 
 static double best_misfit(const struct wb_cycle_member *member)
@@ -178,10 +182,12 @@ static double best_misfit(const struct wb_cycle_member *member)
 /* Fits a candidate; that the beam cannot follow it is a result. */
 static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
                               const struct wb_law *start, const struct wb_cycle_grid *grid,
-                              const struct wb_cycle_fit_settings *given)
+                              const struct wb_cycle_calibrate_settings *given)
 {
     struct wb_cycle_answer *const answer = &member->answers[candidate];
-    struct wb_cycle_fit_settings settings = *given;
+    struct wb_cycle_fit_settings settings = given->fit;
+    if (given->left_out >> candidate & 1U)
+        return WB_OK;
     const double best = best_misfit(member);
     if (isfinite(best))
         settings.hopeless = fmax(hopeless_ratio * best, hopeless_least);
@@ -215,12 +221,11 @@ static enum wb_status fit_ludwiks(struct wb_cycle_member *member, const struct w
     WB_TRY(wb_cycle_data_take(&member->data, dataset, &settings->data, &member->why));
     first_law(&member->data, &start);
     if (member->data.n_loading == member->data.n_points)
-        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, &settings->fit);
+        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, &none, settings);
     for (size_t i = 0; i < sizeof order / sizeof order[0]; i++) {
         const struct wb_cycle_fit *const near = best_ludwik(member);
         const bool is_mixed = order[i] == WB_CANDIDATE_LUDWIK_MIXED;
-        WB_TRY(fit_one(member, order[i], is_mixed && near ? &near->law : &start, &none,
-                       &settings->fit));
+        WB_TRY(fit_one(member, order[i], is_mixed && near ? &near->law : &start, &none, settings));
     }
     return WB_OK;
 }
@@ -232,8 +237,8 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     const struct wb_cycle_fit *const near = best_ludwik(member);
     if (!near || member->data.n_loading == member->data.n_points)
         return WB_OK;
-    WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, &settings->fit));
-    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, &near->law, grid, &settings->fit);
+    WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, settings));
+    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, &near->law, grid, settings);
 }
 
 /* --- specimens side by side --- */
@@ -450,17 +455,17 @@ enum number {
     NUMBERS = MOMENTS + WB_CYCLE_MOMENTS
 };
 
-static double number_of(const struct wb_cycle_answer *answer, enum number number)
+static double number_of(const struct wb_bending *bending, const double *moment, enum number number)
 {
     switch (number) {
     case RIGIDITY:
-        return answer->bending.flexural_rigidity;
+        return bending->flexural_rigidity;
     case SPRINGBACK:
-        return answer->bending.springback;
+        return bending->springback;
     case LOOP_ENERGY:
-        return answer->bending.loop_energy;
+        return bending->loop_energy;
     default:
-        return answer->moment[number - MOMENTS];
+        return moment[number - MOMENTS];
     }
 }
 
@@ -472,7 +477,8 @@ static void average(const struct wb_cycle_calibration *calibration, enum wb_cand
     const int n = calibration->n_members;
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < n; i++) {
-        const double x = log(number_of(&calibration->members[i].answers[candidate], number));
+        const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
+        const double x = log(number_of(&answer->bending, answer->moment, number));
         sum += x;
         squares += x * x;
     }
@@ -493,6 +499,19 @@ static void average(const struct wb_cycle_calibration *calibration, enum wb_cand
     estimate->high = exp(mean + half);
 }
 
+/* Root mean square over the specimens. */
+static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                        enum number number)
+{
+    double squares = 0.0;
+    for (int i = 0; i < calibration->n_members; i++) {
+        const struct wb_cycle_answer *const answer = &calibration->members[i].answers[candidate];
+        const double error = number_of(&answer->bending_error, answer->moment_error, number);
+        squares += error * error;
+    }
+    return sqrt(squares / calibration->n_members);
+}
+
 /* The chosen law's number with the range over the candidates that count. */
 static void estimate_number(struct wb_cycle_calibration *calibration, enum number number,
                             const struct wb_cycle_calibrate_settings *settings,
@@ -501,13 +520,56 @@ static void estimate_number(struct wb_cycle_calibration *calibration, enum numbe
     average(calibration, calibration->chosen, number, settings, estimate);
     estimate->candidates_low = estimate->candidates_high = estimate->value;
     for (int i = 0; i < calibration->n_ranked; i++) {
+        const enum wb_candidate candidate = calibration->ranked[i].candidate;
         struct wb_estimate other;
         if (!calibration->ranked[i].counts)
             continue;
-        average(calibration, calibration->ranked[i].candidate, number, settings, &other);
-        estimate->candidates_low = fmin(estimate->candidates_low, other.value);
-        estimate->candidates_high = fmax(estimate->candidates_high, other.value);
+        average(calibration, candidate, number, settings, &other);
+        const double error = range_errors * fit_error(calibration, candidate, number);
+        estimate->candidates_low = fmin(estimate->candidates_low, other.value * exp(-error));
+        estimate->candidates_high = fmax(estimate->candidates_high, other.value * exp(error));
     }
+}
+
+static void add_square(double *sum, double moved, double value)
+{
+    const double difference = value > 0.0 ? (moved / value - 1.0) / WB_FIT_MOVED : 0.0;
+    *sum += difference * difference;
+}
+
+/* Errors of the logarithms of an answer, of what the moved laws make of its numbers. */
+static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double diameter,
+                                         const struct wb_cycle_calibration *calibration)
+{
+    struct wb_bending *const error = &answer->bending_error, bending;
+    double moment[WB_CYCLE_MOMENTS];
+    for (int i = 0; i < answer->fit.n_moved; i++) {
+        const struct wb_law *const law = &answer->fit.moved[i];
+        WB_TRY(wb_bending_describe(law, diameter, calibration->largest_curvature, &bending));
+        WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature, moment));
+        add_square(&error->flexural_rigidity, bending.flexural_rigidity,
+                   answer->bending.flexural_rigidity);
+        add_square(&error->springback, bending.springback, answer->bending.springback);
+        add_square(&error->loop_energy, bending.loop_energy, answer->bending.loop_energy);
+        for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+            add_square(&answer->moment_error[k], moment[k], answer->moment[k]);
+    }
+    error->flexural_rigidity = sqrt(error->flexural_rigidity);
+    error->springback = sqrt(error->springback);
+    error->loop_energy = sqrt(error->loop_energy);
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        answer->moment_error[k] = sqrt(answer->moment_error[k]);
+    return WB_OK;
+}
+
+static bool candidate_counts(const struct wb_cycle_calibration *calibration,
+                             enum wb_candidate candidate)
+{
+    for (int i = 0; i < calibration->n_ranked; i++) {
+        if (calibration->ranked[i].candidate == candidate)
+            return calibration->ranked[i].counts;
+    }
+    return false;
 }
 
 static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
@@ -534,6 +596,8 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             WB_TRY(wb_bending_moments(&answer->fit.law, diameter, WB_CYCLE_MOMENTS,
                                       calibration->curvature, moments));
             memcpy(answer->moment, moments, sizeof moments);
+            if (candidate_counts(calibration, c))
+                WB_TRY(find_answer_errors(answer, diameter, calibration));
         }
     }
     return WB_OK;

@@ -8,7 +8,9 @@
  *
  * A number's interval is that of the mean of its logarithms over the specimens (Student's t, 95 %).
  * It says nothing of the law: beside it stands the range of the number over all candidates whose
- * misfit is at most twice the best. What all specimens share (gain of the cell, lengths,
+ * misfit is at most twice the best, each with two standard errors of its fits on either side. What
+ * the law's form cannot follow makes those errors, so that they do not shrink with more
+ * specimens. What all specimens share (gain of the cell, lengths,
  * counterweight, diameter) leaves no trace in the data and is in neither.
  */
 #ifndef WB_ANALYSIS_CYCLE_CALIBRATE_H
@@ -48,6 +50,10 @@ struct wb_cycle_answer {
     struct wb_cycle_fit fit;
     struct wb_bending bending;
     double moment[WB_CYCLE_MOMENTS]; /* N m */
+    /* Standard errors of the logarithms by the residuals of the fit; 0 of candidates that do not
+     * count. */
+    struct wb_bending bending_error;
+    double moment_error[WB_CYCLE_MOMENTS];
 };
 
 struct wb_cycle_member {
@@ -99,6 +105,7 @@ struct wb_cycle_calibration {
 struct wb_cycle_calibrate_settings {
     struct wb_cycle_data_settings data;
     struct wb_cycle_fit_settings fit;
+    unsigned left_out;       /* bit 1 << candidate: is not fitted */
     double pooled_deviation; /* s of ln(EI) pooled over other wires; 0: of these specimens */
     int pooled_degrees;      /* its degrees of freedom */
     int threads;             /* 0: as many as there are processors */

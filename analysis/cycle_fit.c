@@ -8,6 +8,7 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
@@ -187,6 +188,8 @@ struct problem {
     double scale[WB_FIT_MOST_FREE];
     double start_modulus[WB_FIT_PARTS];  /* Pa */
     double *tension, *distance, *weight; /* weight: (n_points), of Huber */
+    double last_x[WB_FIT_MOST_FREE];     /* where the residuals were asked for last, */
+    double *last;                        /* and they; (n_residuals) */
     double force_scale;                  /* N */
     struct wb_cycle_run run;
     int runs;
@@ -203,7 +206,8 @@ static double logistic(double x)
  * go to nothing stay positive. */
 static double positive(double x)
 {
-    return log1p((M_E - 1.0) * exp(x * M_E / (M_E - 1.0)));
+    const double rise = x * M_E / (M_E - 1.0);
+    return rise > 50.0 ? rise + log(M_E - 1.0) : log1p((M_E - 1.0) * exp(rise));
 }
 
 static double largest_exponent_of(const struct candidate *c)
@@ -376,18 +380,27 @@ static int residuals(struct problem *p, const double *x, double *r)
 
 static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
 {
-    return residuals(context, x->data, f->data);
+    struct problem *const p = context;
+    const int status = residuals(p, x->data, f->data);
+    memcpy(p->last_x, x->data, (size_t)p->n_free * sizeof *p->last_x);
+    memcpy(p->last, f->data, (size_t)p->n_residuals * sizeof *p->last);
+    return status;
 }
 
+/* Differences from the residuals at x, which were asked for last if that step was taken. */
 static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
 {
     struct problem *const p = context;
     double moved[WB_FIT_MOST_FREE];
     double *const base = calloc(2 * (size_t)p->n_residuals, sizeof *base);
     double *const other = base + p->n_residuals;
+    int status = GSL_SUCCESS;
     if (!base)
         return GSL_ENOMEM;
-    int status = residuals(p, x->data, base);
+    if (memcmp(p->last_x, x->data, (size_t)p->n_free * sizeof *moved) == 0)
+        memcpy(base, p->last, (size_t)p->n_residuals * sizeof *base);
+    else
+        status = residuals(p, x->data, base);
     for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
         memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
         moved[k] += difference;
@@ -455,6 +468,38 @@ static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *i
     return false;
 }
 
+/* How many points in a row tell the same: those with residuals of one sign, over the two that noise
+ * alone has on average. */
+static double alike_in_a_row(const struct problem *p, const gsl_vector *f)
+{
+    const int n = p->data->n_points;
+    int rows = 1;
+    for (int i = 1; i < n; i++)
+        rows += (gsl_vector_get(f, (size_t)i) < 0.0) != (gsl_vector_get(f, (size_t)i - 1) < 0.0);
+    return fmax(1.0, 0.5 * n / rows);
+}
+
+/* The law moved along the columns of the covariance's triangular factor, which it is destroyed
+ * for. */
+static void move_law(const struct problem *p, const gsl_vector *x, double variance,
+                     gsl_matrix *covariance, struct wb_cycle_fit *fit)
+{
+    double free[WB_FIT_MOST_FREE], step[WB_FIT_MOST_FREE];
+    fit->n_moved = 0;
+    if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
+        return;
+    for (int k = 0; k < p->n_law; k++) {
+        for (int i = 0; i < p->n_free; i++) {
+            const double side =
+                i < k ? 0.0 : gsl_matrix_get(covariance, (size_t)i, (size_t)k) * sqrt(variance);
+            step[i] = gsl_vector_get(x, (size_t)i) + side;
+        }
+        absolute(p, step, free);
+        law_of(p, free, &fit->moved[fit->n_moved]);
+        fit->n_moved += wb_law_check(&fit->moved[fit->n_moved]) == WB_OK;
+    }
+}
+
 /* Standard errors from the curvature of the sum of squares, scaled by what is left of it. */
 static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_cycle_fit *fit)
@@ -482,6 +527,8 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
             fit->ln_strength_error =
                 sqrt(variance * fmax(0.0, a * a * hh + 2.0 * a * b * hn + b * b * nn));
         }
+        const double alike = alike_in_a_row(p, w->f);
+        move_law(p, w->x, WB_FIT_MOVED * WB_FIT_MOVED * variance * alike, covariance, fit);
     }
     gsl_matrix_free(covariance);
 }
@@ -620,6 +667,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     p.tension = calloc(points, sizeof *p.tension);
     p.weight = calloc(points, sizeof *p.weight);
     p.distance = calloc((size_t)data->n_places + 1, sizeof *p.distance);
+    p.last = calloc((size_t)p.n_residuals, sizeof *p.last);
     fit->tension = calloc(points, sizeof *fit->tension);
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
     parameters.trs = gsl_multifit_nlinear_trs_dogleg;
@@ -627,7 +675,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
         gsl_multifit_nlinear_trust, &parameters, (size_t)p.n_residuals, (size_t)p.n_free);
     enum wb_status status = WB_OK;
-    if (!p.tension || !p.weight || !p.distance || !fit->tension || !w)
+    if (!p.tension || !p.weight || !p.distance || !p.last || !fit->tension || !w)
         status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);
     for (int i = 0; status == WB_OK && i < data->n_points; i++)
         p.weight[i] = 1.0;
@@ -642,6 +690,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     free(p.tension);
     free(p.weight);
     free(p.distance);
+    free(p.last);
     fit->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
     if (status != WB_OK)
         wb_cycle_fit_release(fit);

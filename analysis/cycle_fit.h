@@ -59,6 +59,9 @@ enum {
 extern const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS];
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
 
+/* Small, so that numbers change in proportion. */
+#define WB_FIT_MOVED 0.1
+
 /* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain at the first
  * point of the data to that at the last, where the elastic part's would stand. */
 struct wb_cycle_grid {
@@ -77,10 +80,16 @@ struct wb_cycle_fit {
     double place_rms;                        /* m, after the markers' offsets; NaN without places */
     double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
                                                  specimen's own residuals; NaN of parallel parts */
-    double clamp_curvature;                   /* 1/m, largest */
-    double first_curvature;                   /* 1/m, at the first point */
-    int n_free;                               /* numbers fitted */
-    int n_outliers;                           /* points weighted by less than half */
+    /* The law moved by WB_FIT_MOVED standard errors in each of independent directions. What is
+     * computed with it has a variance: the sum of the squares of its differences, over the square
+     * of WB_FIT_MOVED. Neighbouring residuals are alike where the law's form is wrong; the errors
+     * grow with that. */
+    int n_moved;
+    struct wb_law moved[WB_FIT_MOST_FREE];
+    double clamp_curvature; /* 1/m, largest */
+    double first_curvature; /* 1/m, at the first point */
+    int n_free;             /* numbers fitted */
+    int n_outliers;         /* points weighted by less than half */
     int runs, iterations;
     double cpu_s;
     /* (data->n_points) computed tension of the last run, N; owned; NULL where it failed */
