@@ -12,6 +12,8 @@
 #define WB_LOG_DOMAIN "report"
 
 static const double coverage = 0.95;
+/* mJ in one J. */
+static const double MILLI = 1e-3;
 
 /* What the interval of a mean of n logarithms is to both sides. */
 static double half_width(double deviation, int degrees, int n)
@@ -56,6 +58,37 @@ static enum wb_status draw_curve(struct wb_recordings_cycle *cycle)
     return WB_OK;
 }
 
+/* --- what figures need --- */
+
+/* The first specimen with the most cycles: later ones are predicted. */
+static enum wb_status predict_later(struct wb_recordings_cycle *cycle,
+                                    const struct wb_dataset *const *datasets, struct wb_reason *why)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    int best = 0;
+    for (int i = 1; i < c->n_members; i++) {
+        if (wb_cycle_later_count(datasets[i]) > wb_cycle_later_count(datasets[best]))
+            best = i;
+    }
+    const struct wb_cycle_member *const member = &c->members[best];
+    return wb_cycle_later_predict(&cycle->later, datasets[best], &member->data,
+                                  &member->answers[c->chosen].fit, why);
+}
+
+/* The valley is looked at from Ludwik's best law; a specimen without one has none. */
+static bool find_valley(struct wb_recordings_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    struct wb_reason why = {.text = ""};
+    for (int i = 0; i < c->n_ranked; i++) {
+        const struct wb_cycle_fit *const fit = &c->members[0].answers[c->ranked[i].candidate].fit;
+        if (fit->law.form == WB_LAW_LUDWIK)
+            return wb_cycle_valley_find(&cycle->valley, &c->members[0].data, &fit->law, &why) ==
+                   WB_OK;
+    }
+    return false;
+}
+
 /* --- all of it --- */
 
 static bool go_on(void *context, int done, int all)
@@ -74,20 +107,70 @@ enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
     settings.threads = 1;
     settings.progress = go_on;
     WB_TRY(wb_cycle_calibrate_run(&cycle->calibration, datasets, n, &settings, why));
-    const enum wb_status status = draw_curve(cycle);
-    if (status != WB_OK)
+    enum wb_status status = draw_curve(cycle);
+    if (status == WB_OK)
+        status = predict_later(cycle, datasets, why);
+    if (status != WB_OK) {
         wb_recordings_cycle_release(cycle);
-    return status;
+        return status;
+    }
+    /* A report without these two is still one. */
+    struct wb_reason unheard = {.text = ""};
+    cycle->has_shared =
+        wb_cycle_shared_find(&cycle->shared, &cycle->calibration, &unheard) == WB_OK;
+    cycle->has_valley = find_valley(cycle);
+    return WB_OK;
 }
 
 void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle)
 {
     wb_cycle_calibrate_release(&cycle->calibration);
+    wb_cycle_later_release(&cycle->later);
+}
+
+static void put_shared(struct wb_json *array, const struct wb_cycle_shared *shared)
+{
+    for (int i = 0; i < WB_SHARED_CAUSES; i++) {
+        struct wb_json *const item = wb_json_append_object(array);
+        wb_json_set_text(item, "cause", wb_cycle_shared_name(i));
+        wb_json_set_number(item, "flexural_rigidity", shared->slopes[i].rigidity);
+        wb_json_set_number(item, "moment_at_0.3", shared->slopes[i].middle_moment);
+        wb_json_set_number(item, "moment_at_1", shared->slopes[i].largest_moment);
+        wb_json_set_number(item, "springback_ratio", shared->slopes[i].springback);
+    }
+}
+
+static void put_later(struct wb_json *object, const struct wb_cycle_later *later)
+{
+    wb_json_set_integer(object, "sample", later->sample);
+    wb_json_set_integer(object, "cycles", later->n_cycles);
+    wb_json_set_number(object, "rms_over_F_max", later->rms);
+    wb_json_set_number(object, "measured_energy_mJ", later->measured_energy / MILLI);
+    wb_json_set_number(object, "computed_energy_mJ", later->computed_energy / MILLI);
+}
+
+static void put_valley(struct wb_json *object, const struct wb_cycle_valley *valley)
+{
+    wb_json_set_number(object, "strength_coefficient_MPa",
+                       valley->best.strength_coefficient / WB_MPA);
+    wb_json_set_number(object, "hardening_exponent", valley->best.hardening_exponent);
+    wb_json_set_number(object, "misfit", valley->best_misfit);
+    wb_json_set_number(object, "limit", valley->limit);
+    wb_json_set_number(object, "strength_coefficient_low_MPa", valley->strength_low / WB_MPA);
+    wb_json_set_number(object, "strength_coefficient_high_MPa", valley->strength_high / WB_MPA);
+    wb_json_set_number(object, "hardening_exponent_low", valley->exponent_low);
+    wb_json_set_number(object, "hardening_exponent_high", valley->exponent_high);
 }
 
 void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle)
 {
     wb_cycle_json_put(object, &cycle->calibration);
+    if (cycle->later.n > 0)
+        put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
+    if (cycle->has_shared)
+        put_shared(wb_json_set_array(object, "percent_per_percent"), &cycle->shared);
+    if (cycle->has_valley)
+        put_valley(wb_json_set_object(object, "ludwik_on_loading_alone"), &cycle->valley);
 }
 
 /* --- pooled over wires --- */

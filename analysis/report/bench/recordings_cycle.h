@@ -10,6 +10,9 @@
 #include <stdbool.h>
 
 #include "analysis/cycle_calibrate.h"
+#include "analysis/cycle_later.h"
+#include "analysis/cycle_shared.h"
+#include "analysis/cycle_valley.h"
 #include "analysis/dataset.h"
 #include "base/json.h"
 #include "base/reason.h"
@@ -29,6 +32,11 @@ struct wb_recordings_cycle_curve {
 struct wb_recordings_cycle {
     struct wb_cycle_calibration calibration;
     struct wb_recordings_cycle_curve curve;
+    /* Of the specimen with the most cycles; n 0 where none has a second one. */
+    struct wb_cycle_later later;
+    bool has_shared, has_valley;
+    struct wb_cycle_shared shared;
+    struct wb_cycle_valley valley; /* of the first specimen */
 };
 
 /* Calibrates on n datasets of a wire, on the calling thread alone. On a failure nothing needs a
