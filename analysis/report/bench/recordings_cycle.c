@@ -1,6 +1,7 @@
 #include "analysis/report/bench/recordings_cycle.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include <gsl/gsl_cdf.h>
 
@@ -89,6 +90,28 @@ static bool find_valley(struct wb_recordings_cycle *cycle)
     return false;
 }
 
+/* A test without shapes has an empty cloud. */
+static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
+                                  const struct wb_dataset *const *datasets)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const size_t n = (size_t)c->n_members;
+    cycle->clouds = calloc(n, sizeof *cycle->clouds);
+    enum wb_status status = WB_OK;
+    if (!cycle->clouds)
+        status = wb_fail(WB_ERR_MEMORY, "no memory for %zu specimens", n);
+    for (int i = 0; status == WB_OK && i < c->n_members; i++) {
+        const struct wb_cycle_fit *const fit = &c->members[i].answers[c->chosen].fit;
+        const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level};
+        struct wb_reason why = {.text = ""};
+        const enum wb_status one =
+            wb_moment_curvature_take(&cycle->clouds[i], datasets[i], &specimen, NULL, &why);
+        if (one != WB_OK)
+            cycle->clouds[i] = (struct wb_moment_cloud){.n = 0};
+    }
+    return status;
+}
+
 /* --- all of it --- */
 
 static bool go_on(void *context, int done, int all)
@@ -110,34 +133,27 @@ enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
     enum wb_status status = draw_curve(cycle);
     if (status == WB_OK)
         status = predict_later(cycle, datasets, why);
+    if (status == WB_OK)
+        status = wb_cycle_sensitivity_find(&cycle->calibration, &settings, cycle->sensitivities);
+    if (status == WB_OK)
+        status = take_clouds(cycle, datasets);
     if (status != WB_OK) {
         wb_recordings_cycle_release(cycle);
         return status;
     }
-    /* A report without these two is still one. */
-    struct wb_reason unheard = {.text = ""};
-    cycle->has_shared =
-        wb_cycle_shared_find(&cycle->shared, &cycle->calibration, &unheard) == WB_OK;
     cycle->has_valley = find_valley(cycle);
     return WB_OK;
 }
 
 void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle)
 {
+    const int n = cycle->calibration.n_members;
     wb_cycle_calibrate_release(&cycle->calibration);
     wb_cycle_later_release(&cycle->later);
-}
-
-static void put_shared(struct wb_json *array, const struct wb_cycle_shared *shared)
-{
-    for (int i = 0; i < WB_SHARED_CAUSES; i++) {
-        struct wb_json *const item = wb_json_append_object(array);
-        wb_json_set_text(item, "cause", wb_cycle_shared_name(i));
-        wb_json_set_number(item, "flexural_rigidity", shared->slopes[i].rigidity);
-        wb_json_set_number(item, "moment_at_0.3", shared->slopes[i].middle_moment);
-        wb_json_set_number(item, "moment_at_1", shared->slopes[i].largest_moment);
-        wb_json_set_number(item, "springback_ratio", shared->slopes[i].springback);
-    }
+    for (int i = 0; cycle->clouds && i < n; i++)
+        wb_moment_curvature_release(&cycle->clouds[i]);
+    free(cycle->clouds);
+    cycle->clouds = NULL;
 }
 
 static void put_later(struct wb_json *object, const struct wb_cycle_later *later)
@@ -167,10 +183,8 @@ void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_
     wb_cycle_json_put(object, &cycle->calibration);
     if (cycle->later.n > 0)
         put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
-    if (cycle->has_shared)
-        put_shared(wb_json_set_array(object, "percent_per_percent"), &cycle->shared);
-    if (cycle->has_valley)
-        put_valley(wb_json_set_object(object, "ludwik_on_loading_alone"), &cycle->valley);
+    wb_cycle_sensitivity_put(wb_json_set_array(object, "shared_sensitivities"),
+                             cycle->sensitivities);
 }
 
 /* --- pooled over wires --- */

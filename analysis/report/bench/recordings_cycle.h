@@ -11,9 +11,10 @@
 
 #include "analysis/cycle_calibrate.h"
 #include "analysis/cycle_later.h"
-#include "analysis/cycle_shared.h"
+#include "analysis/cycle_sensitivity.h"
 #include "analysis/cycle_valley.h"
 #include "analysis/dataset.h"
+#include "analysis/moment_curvature.h"
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
@@ -34,9 +35,11 @@ struct wb_recordings_cycle {
     struct wb_recordings_cycle_curve curve;
     /* Of the specimen with the most cycles; n 0 where none has a second one. */
     struct wb_cycle_later later;
-    bool has_shared, has_valley;
-    struct wb_cycle_shared shared;
+    struct wb_cycle_sensitivity sensitivities[WB_SHARED];
+    bool has_valley;
     struct wb_cycle_valley valley; /* of the first specimen */
+    /* Of the members: moment over curvature as measured; empty where there are no shapes. */
+    struct wb_moment_cloud *clouds; /* (calibration.n_members), owned */
 };
 
 /* Calibrates on n datasets of a wire, on the calling thread alone. On a failure nothing needs a
