@@ -185,6 +185,8 @@ void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_
         put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
     wb_cycle_sensitivity_put(wb_json_set_array(object, "shared_sensitivities"),
                              cycle->sensitivities);
+    if (cycle->has_valley)
+        put_valley(wb_json_set_object(object, "ludwik_on_loading_alone"), &cycle->valley);
 }
 
 /* --- pooled over wires --- */

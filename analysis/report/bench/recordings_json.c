@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/report/bench/recordings_figures.h"
+#include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/numbers.h"
 #include "base/units.h"
 
@@ -227,7 +227,7 @@ struct wb_json *wb_recordings_json_build(const void *context)
     const struct wb_recordings_results *const results = context;
     const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
-    wb_numbers_put_title(root, campaign->head.title, wb_recordings_figures_measured(results));
+    wb_numbers_put_title(root, campaign->head.title, wb_recordings_draw_measured(results));
     wb_json_set_boolean(root, "virtual_rig", results->any_virtual);
     wb_numbers_put_program(root);
     wb_numbers_put_campaign(root, &campaign->head);

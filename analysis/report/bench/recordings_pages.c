@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/align.h"
+#include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/pages.h"
 #include "base/text.h"
@@ -840,7 +841,7 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
 {
     const struct wb_recordings_results_wire *const wire = &results->wires[index];
     char slug[64], anchor[80];
-    wb_recordings_figures_slug(slug, wire->wanted->product.name);
+    wb_recordings_draw_slug(slug, wire->wanted->product.name);
     snprintf(anchor, sizeof anchor, "wire-%s", slug);
     wb_document_new_page(document);
     wb_document_heading(document, 1, anchor, wire->wanted->label);
