@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/report/bench/recordings_cycle_figures.h"
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
@@ -699,6 +700,12 @@ const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
     {"overview", NULL, draw_calibrations, false},
     {"overview", NULL, draw_validations, false},
     {"overview", NULL, draw_errors, false},
+    {"cycle", wb_recordings_draw_count, wb_recordings_cycle_figures_ways, false},
+    {"cycle", wb_recordings_draw_count, wb_recordings_cycle_figures_residuals, false},
+    {"later", wb_recordings_draw_count, wb_recordings_cycle_figures_later, false},
+    {"law", wb_recordings_draw_count, wb_recordings_cycle_figures_forest, true},
+    {"law", wb_recordings_draw_count, wb_recordings_cycle_figures_moments, true},
+    {"valley", wb_recordings_draw_count, wb_recordings_cycle_figures_valley, false},
     {"measured", wb_recordings_draw_count, draw_cycles, true},
     {"measured", wb_recordings_draw_count, draw_samples, true},
     {"measured", wb_recordings_draw_count, draw_shapes, false},
