@@ -16,7 +16,7 @@
 static const double middle_plastic_strain = 3e-3;
 static const double smallest_exponent = 0.02, largest_exponent = 1.5;
 /* How far the nodes go, in standard errors; and the widest, in ln of the stress and in n. */
-static const double reach = 3.5, widest_stress = 0.5, widest_exponent = 0.4;
+static const double reach = 5.0, widest_stress = 0.5, widest_exponent = 0.4;
 /* Step of the differences. */
 static const double difference = 1e-3;
 static const double confidence = 0.95;
@@ -176,6 +176,7 @@ static enum wb_status fill_nodes(struct wb_cycle_valley *valley, struct problem 
             if (!(n >= smallest_exponent && n <= largest_exponent) || (i % 2 == 1 && k % 2 == 1))
                 continue;
             node->exponent = n;
+            node->stress = exp(numbers[STRESS]);
             node->strength = exp(numbers[STRESS]) / pow(middle_plastic_strain, n);
             if (adapt(p, base, numbers))
                 WB_TRY(run(p, numbers, &node->misfit));

@@ -19,6 +19,7 @@ enum {
 
 struct wb_cycle_valley_node {
     double strength, exponent; /* K (Pa), n */
+    double stress;             /* Pa: what hardening adds at a plastic strain of 0.003 */
     double misfit;             /* RMS over the largest force; NaN where there is no such law */
 };
 

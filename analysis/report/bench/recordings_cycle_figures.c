@@ -15,7 +15,8 @@
 static const double N_MM2 = 1e-6, MILLI = 1e-3;
 
 enum {
-    MOST_PANELS = 3 /* samples beside each other */
+    MOST_PANELS = 3, /* samples beside each other */
+    MOST_ROWS = 24   /* of the samples' EI, with the two of the mean */
 };
 
 static const char deflection_axis[] = "Deflection <i>\xce\xb4</i> (mm)";
@@ -83,18 +84,24 @@ static enum wb_status add_ways(struct wb_panel *panel, const struct wb_cycle_mem
     if (!x)
         return no_memory();
     const struct wb_figure_style points[2] = {
-        {.colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 2.6},
-        {.colour = colour, .marker = WB_MARKER_RING, .marker_size = 3.0}};
+        {.colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 3.2},
+        {.colour = colour, .marker = WB_MARKER_RING, .marker_size = 3.6}};
     const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 1.0};
     static const char *const labels[2] = {"loading", "unloading"};
     for (int k = 0; k < 2; k++) {
         const int n = take_way(member, fit, k == 1, x, measured, computed);
         if (n == 0)
             continue;
-        wb_figure_add_line(panel, has_legend ? labels[k] : NULL, (size_t)n, x, measured,
-                           &points[k]);
-        wb_figure_add_line(panel, has_legend && k == 0 ? "computed" : NULL, (size_t)n, x, computed,
+        wb_figure_add_line(panel, has_legend && k == 1 ? "computed" : NULL, (size_t)n, x, computed,
                            &line);
+        /* Every third, so that the line is seen between them. */
+        int shown = 0;
+        for (int i = 0; i < n; i += 3, shown++) {
+            x[shown] = x[i];
+            measured[shown] = measured[i];
+        }
+        wb_figure_add_line(panel, has_legend ? labels[k] : NULL, (size_t)shown, x, measured,
+                           &points[k]);
     }
     free(x);
     return WB_OK;
@@ -107,10 +114,12 @@ enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_item *item)
         return WB_OK;
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     WB_TRY(wb_recordings_draw_start(item, "ways", WB_PDF_WIDTH, 200.0));
-    wb_text_append(&item->caption,
-                   "First loading and unloading, %s, and the beam with the chosen law (%s), each "
-                   "sample with its own fit. Tension of the strand as read, weights included.",
-                   measured_of(item), wb_candidate_name(c->chosen));
+    wb_text_append(
+        &item->caption,
+        "First loading and unloading, %s, and the beam with the chosen law (%s), each "
+        "sample with its own fit; every third reading is drawn. Tension of the strand as read, "
+        "weights included.",
+        measured_of(item), wb_candidate_name(c->chosen));
     if (c->n_members > MOST_PANELS)
         wb_text_append(&item->caption, " The first %d of %d samples.", MOST_PANELS, c->n_members);
     for (int i = 0; i < panels_of(cycle); i++) {
@@ -302,7 +311,7 @@ enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_estimate *const EI = &c->rigidity;
     const struct wb_colour colour = wb_palette_wire(item->index);
-    const int n = c->n_members;
+    const int n = c->n_members < MOST_ROWS - 2 ? c->n_members : MOST_ROWS - 2;
     WB_TRY(wb_recordings_draw_start(item, "forest", WB_PDF_HALF_WIDTH, 200.0));
     wb_text_append(&item->caption,
                    "<i>EI</i> of each sample, %s: dots of the chosen law, lines over the laws in "
@@ -317,41 +326,31 @@ enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
     const struct wb_figure_style mean = {
         .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.5};
     const struct wb_figure_style interval = {.colour = wb_palette_ink(), .width = 1.4};
-    double left = EI->candidates_low / N_MM2, right = EI->candidates_high / N_MM2;
-    for (int i = 0; i < n; i++) {
-        double range[2];
-        range_of(c, &c->members[i], range);
-        left = fmin(left, range[0]);
-        right = fmax(right, range[1]);
-    }
-    if (isfinite(EI->low)) {
-        left = fmin(left, EI->low / N_MM2);
-        right = fmax(right, EI->high / N_MM2);
-    }
-    /* Names stand on the left, within the axes. */
-    const double width = fmax(right - left, 1e-3 * right);
-    const double names = left - 0.42 * width;
+    char names[MOST_ROWS][32];
+    const char *rows[MOST_ROWS];
+    /* From the bottom up: the range over laws, the mean, then the samples from the last on. */
     for (int i = 0; i < n + 2; i++) {
-        const double y = n + 1.0 - i, ys[2] = {y, y};
-        char name[40];
-        double range[2], value;
-        if (i < n) {
-            snprintf(name, sizeof name, "sample %d", c->members[i].sample);
-            range_of(c, &c->members[i], range);
-            value = c->members[i].answers[c->chosen].bending.flexural_rigidity / N_MM2;
-        } else {
-            snprintf(name, sizeof name, "%s", i == n ? "mean, 95 %" : "over laws");
-            range[0] = (i == n ? EI->low : EI->candidates_low) / N_MM2;
-            range[1] = (i == n ? EI->high : EI->candidates_high) / N_MM2;
-            value = EI->value / N_MM2;
+        const double y = i, ys[2] = {y, y};
+        const bool is_mean = i == 1;
+        double range[2] = {EI->candidates_low / N_MM2, EI->candidates_high / N_MM2};
+        double value = EI->value / N_MM2;
+        snprintf(names[i], sizeof names[i], "%s", is_mean ? "mean" : "over laws");
+        if (is_mean) {
+            range[0] = EI->low / N_MM2;
+            range[1] = EI->high / N_MM2;
+        } else if (i > 1) {
+            const struct wb_cycle_member *const member = &c->members[n + 1 - i];
+            snprintf(names[i], sizeof names[i], "sample %d", member->sample);
+            range_of(c, member, range);
+            value = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
         }
+        rows[i] = names[i];
         if (isfinite(range[0]))
-            wb_figure_add_line(panel, NULL, 2, range, ys, i == n ? &interval : &thin);
-        if (i <= n)
-            wb_figure_add_line(panel, NULL, 1, &value, &y, i < n ? &dot : &mean);
-        wb_figure_add_text(panel, names, y, -1, name);
+            wb_figure_add_line(panel, NULL, 2, range, ys, is_mean ? &interval : &thin);
+        if (i > 0)
+            wb_figure_add_line(panel, NULL, 1, &value, &y, is_mean ? &mean : &dot);
     }
-    wb_figure_set_x_range(panel, names - 0.04 * width, right + 0.08 * width);
+    wb_figure_set_y_names(panel, n + 2, rows);
     wb_figure_set_y_range(panel, -0.6, n + 1.6);
     return WB_OK;
 }
@@ -378,7 +377,7 @@ static enum wb_status add_cloud(struct wb_panel *panel, const struct wb_recordin
         }
         const struct wb_figure_style dots = {.colour = wb_palette_fade(wb_palette_grey(), 0.75),
                                              .marker = WB_MARKER_CIRCLE,
-                                             .marker_size = 1.8};
+                                             .marker_size = 2.4};
         if (n > 0)
             wb_figure_add_line(panel, is_named ? NULL : "shape and tension", (size_t)n, x, y,
                                &dots);
@@ -430,8 +429,10 @@ enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item)
 
 /* --- K and n --- */
 
-/* Faces of 8 nodes over the grid; values are ln(misfit / best). */
-static int make_faces(const struct wb_cycle_valley *valley, struct wb_contour_face *faces)
+/* Faces of 8 nodes over the grid; values are misfits over the smallest. Along y K itself, or the
+ * stress that hardening adds. */
+static int make_faces(const struct wb_cycle_valley *valley, bool is_stress,
+                      struct wb_contour_face *faces)
 {
     static const int at[8][2] = {{0, 0}, {0, 2}, {2, 2}, {2, 0}, {0, 1}, {1, 2}, {2, 1}, {1, 0}};
     int n = 0;
@@ -442,48 +443,98 @@ static int make_faces(const struct wb_cycle_valley *valley, struct wb_contour_fa
                 const struct wb_cycle_valley_node *const node =
                     &valley->nodes[i + at[j][0]][k + at[j][1]];
                 face->x[j] = node->exponent;
-                face->y[j] = node->strength / WB_MPA;
-                face->value[j] = log(node->misfit / valley->best_misfit);
+                face->y[j] = (is_stress ? node->stress : node->strength) / WB_MPA;
+                face->value[j] = node->misfit / valley->best_misfit;
             }
         }
     }
     return n;
 }
 
-/* The line around what the data cannot tell apart. */
-static enum wb_status add_region(struct wb_panel *panel, int n_faces,
-                                 const struct wb_contour_face *faces, double limit)
+/* The line around what the data cannot tell apart, values up to the limit; it closes along the edge
+ * of the faces. */
+static enum wb_status add_region(struct wb_panel *panel, int n_faces, struct wb_contour_face *faces,
+                                 double limit)
 {
-    /* Level 1 of 2 begins at the limit, the inside lies below it. */
-    const struct wb_contour_levels levels = {.low = -limit, .high = 3.0 * limit, .n = 2};
+    const struct wb_contour_levels levels = {.low = -3.0 * limit, .high = limit, .n = 2};
     const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 1.4};
     struct wb_contour contour;
-    bool is_named = false;
+    const char *label = "not told apart";
+    for (int i = 0; i < n_faces; i++) {
+        for (int k = 0; k < 8; k++)
+            faces[i].value[k] = -faces[i].value[k];
+    }
     WB_TRY(wb_contour_create(&contour, n_faces, faces, &levels));
-    for (int i = 0; i < contour.n_loops; i++) {
+    enum wb_status status = WB_OK;
+    for (int i = 0; i < contour.n_loops && status == WB_OK; i++) {
         const struct wb_contour_loop *const loop = &contour.loops[i];
         double *const x = columns_of(2, loop->n + 1), *const y = x + loop->n + 1;
-        /* A loop around the outside of the faces is no limit; those inside turn the other way. */
-        double area = 0.0;
-        if (!x)
+        if (!x) {
+            status = no_memory();
             break;
-        for (int k = 0; k < loop->n; k++) {
-            const double *const a = contour.points[loop->first + k];
-            const double *const b = contour.points[loop->first + (k + 1) % loop->n];
-            area += 0.5 * (a[0] * b[1] - b[0] * a[1]);
-            x[k] = a[0];
-            y[k] = a[1];
         }
-        x[loop->n] = x[0];
-        y[loop->n] = y[0];
-        if (loop->level == 1 && area < 0.0) {
-            wb_figure_add_line(panel, is_named ? NULL : "not told apart", (size_t)loop->n + 1, x, y,
-                               &line);
-            is_named = true;
+        for (int k = 0; k <= loop->n; k++) {
+            x[k] = contour.points[loop->first + k % loop->n][0];
+            y[k] = contour.points[loop->first + k % loop->n][1];
+        }
+        if (loop->level == 1) {
+            wb_figure_add_line(panel, label, (size_t)loop->n + 1, x, y, &line);
+            label = NULL;
         }
         free(x);
     }
     wb_contour_release(&contour);
+    return status;
+}
+
+/* K over n: the region, the fit, and where the paper's route ended. */
+static enum wb_status add_pairs(struct wb_panel *panel, const struct wb_figures_item *item,
+                                struct wb_contour_face *faces)
+{
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(item->results, item->index);
+    const struct wb_cycle_valley *const valley = &wire->cycle.valley;
+    const int n_faces = make_faces(valley, false, faces);
+    wb_figure_set_axes(panel, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
+    WB_TRY(add_region(panel, n_faces, faces, valley->limit / valley->best_misfit));
+    const double n = valley->best.hardening_exponent;
+    const double K = valley->best.strength_coefficient / WB_MPA;
+    const struct wb_figure_style best = {
+        .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
+    wb_figure_add_line(panel, "best", 1, &n, &K, &best);
+    if (wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION)) {
+        const double paper_n = wire->calibration.material.hardening_exponent;
+        const double paper_K = wire->calibration.material.strength_coefficient / WB_MPA;
+        const struct wb_figure_style ring = {
+            .colour = wb_palette_grey(), .marker = WB_MARKER_RING, .marker_size = 6.0};
+        wb_figure_add_line(panel, "paper's route, all samples", 1, &paper_n, &paper_K, &ring);
+    }
+    return WB_OK;
+}
+
+/* The misfit over n and the stress that hardening adds, where the valley is not a thin line. */
+static enum wb_status add_misfits(struct wb_figure *figure, const struct wb_cycle_valley *valley,
+                                  struct wb_contour_face *faces)
+{
+    const int n_faces = make_faces(valley, true, faces);
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    double highest = 1.0;
+    for (int i = 0; i < n_faces; i++) {
+        for (int k = 0; k < 8; k++)
+            highest = faces[i].value[k] > highest ? faces[i].value[k] : highest;
+    }
+    if (!(highest > 1.0))
+        return WB_OK;
+    const struct wb_figure_colours colours = {.map = WB_PALETTE_SEQUENTIAL,
+                                              .low = 1.0,
+                                              .high = highest,
+                                              .n = 16,
+                                              .outline = WB_OUTLINE_LIGHT};
+    wb_figure_set_axes(panel, "Hardening exponent <i>n</i>",
+                       "<i>K</i> \xc2\xb7 0.003<sup><i>n</i></sup> (MPa)");
+    wb_figure_add_field(panel, n_faces, faces, &colours);
+    WB_TRY(add_region(panel, n_faces, faces, valley->limit / valley->best_misfit));
+    wb_figure_add_colour_bar(figure, &colours, "misfit ratio");
     return WB_OK;
 }
 
@@ -494,16 +545,6 @@ enum wb_status wb_recordings_cycle_figures_valley(struct wb_figures_item *item)
     if (!cycle || !cycle->has_valley)
         return WB_OK;
     const struct wb_cycle_valley *const valley = &cycle->valley;
-    const int n_faces = make_faces(valley, faces);
-    double highest = 0.0;
-    for (int i = 0; i < n_faces; i++) {
-        for (int k = 0; k < 8; k++) {
-            if (faces[i].value[k] > highest)
-                highest = faces[i].value[k];
-        }
-    }
-    if (!(highest > 0.0))
-        return WB_OK;
     WB_TRY(wb_recordings_draw_start(item, "valley", WB_PDF_WIDTH, 200.0));
     wb_text_append(
         &item->caption,
@@ -511,24 +552,11 @@ enum wb_status wb_recordings_cycle_figures_valley(struct wb_figures_item *item)
         "each pair <i>E</i>, <i>\xcf\x83</i><sub>Y</sub>, bow and level fit best. Within "
         "the line, <i>K</i> from %.0f to %.0f MPa and <i>n</i> from %.3f to %.3f, a pair "
         "fits as well as the best (misfit %.3f %%, limit %.3f %%, <i>F</i>-test of "
-        "95 %%).",
+        "95 %%). Right: misfit over the smallest; <i>y</i> is the stress that hardening "
+        "adds at a plastic strain of 0.003.",
         cycle->calibration.members[0].sample, measured_of(item), valley->strength_low / WB_MPA,
         valley->strength_high / WB_MPA, valley->exponent_low, valley->exponent_high,
         100.0 * valley->best_misfit, 100.0 * valley->limit);
-    const struct wb_figure_colours colours = {.map = WB_PALETTE_SEQUENTIAL,
-                                              .low = 0.0,
-                                              .high = highest,
-                                              .n = 16,
-                                              .outline = WB_OUTLINE_LIGHT};
-    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
-    wb_figure_set_axes(panel, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
-    wb_figure_add_field(panel, n_faces, faces, &colours);
-    WB_TRY(add_region(panel, n_faces, faces, log(valley->limit / valley->best_misfit)));
-    const double n = valley->best.hardening_exponent;
-    const double K = valley->best.strength_coefficient / WB_MPA;
-    const struct wb_figure_style best = {
-        .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
-    wb_figure_add_line(panel, "fit", 1, &n, &K, &best);
-    wb_figure_add_colour_bar(item->figure, &colours, "ln (misfit / smallest)");
-    return WB_OK;
+    WB_TRY(add_pairs(wb_figure_add_panel(item->figure), item, faces));
+    return add_misfits(item->figure, valley, faces);
 }
