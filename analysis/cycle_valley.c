@@ -11,9 +11,6 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-/* Plastic strain at which the stress of hardening is a number of its own: amidst those of a test.
- */
-static const double middle_plastic_strain = 3e-3;
 static const double smallest_exponent = 0.02, largest_exponent = 1.5;
 /* How far the nodes go, in standard errors; and the widest, in ln of the stress and in n. */
 static const double reach = 5.0, widest_stress = 0.5, widest_exponent = 0.4;
@@ -53,7 +50,7 @@ static void law_of(const struct problem *p, const double *numbers, struct wb_law
         .youngs_modulus = exp(numbers[MODULUS]),
         .poissons_ratio = p->poissons_ratio,
         .yield_stress = exp(numbers[YIELD]),
-        .strength_coefficient = exp(numbers[STRESS]) / pow(middle_plastic_strain, n),
+        .strength_coefficient = exp(numbers[STRESS]) / pow(WB_VALLEY_PLASTIC_STRAIN, n),
         .hardening_exponent = n,
     };
     wb_law_init_ludwik(law, &material);
@@ -177,7 +174,7 @@ static enum wb_status fill_nodes(struct wb_cycle_valley *valley, struct problem 
                 continue;
             node->exponent = n;
             node->stress = exp(numbers[STRESS]);
-            node->strength = exp(numbers[STRESS]) / pow(middle_plastic_strain, n);
+            node->strength = exp(numbers[STRESS]) / pow(WB_VALLEY_PLASTIC_STRAIN, n);
             if (adapt(p, base, numbers))
                 WB_TRY(run(p, numbers, &node->misfit));
         }
@@ -242,7 +239,7 @@ static enum wb_status find_best(struct problem *p, const struct wb_law *start,
     p->best[BOW] = fit.bow_angle;
     p->best[LEVEL] = fit.level;
     p->best[STRESS] =
-        log(best->strength_coefficient * pow(middle_plastic_strain, best->hardening_exponent));
+        log(best->strength_coefficient * pow(WB_VALLEY_PLASTIC_STRAIN, best->hardening_exponent));
     p->best[EXPONENT] = best->hardening_exponent;
     p->bow_prior = fmax(1e-6, isfinite(fit.bow_angle_error) ? fit.bow_angle_error : 0.01);
     for (int k = 0; k < NUMBERS; k++)

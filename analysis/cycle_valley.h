@@ -17,9 +17,13 @@ enum {
     WB_VALLEY_NODES = 15 /* of each direction; odd */
 };
 
+/* Plastic strain, amidst those of a test, at which the stress of hardening is a number of its own.
+ */
+#define WB_VALLEY_PLASTIC_STRAIN 3e-3
+
 struct wb_cycle_valley_node {
     double strength, exponent; /* K (Pa), n */
-    double stress;             /* Pa: what hardening adds at a plastic strain of 0.003 */
+    double stress;             /* Pa: what hardening adds at that plastic strain */
     double misfit;             /* RMS over the largest force; NaN where there is no such law */
 };
 

@@ -16,7 +16,8 @@ static const double N_MM2 = 1e-6, MILLI = 1e-3;
 
 enum {
     MOST_PANELS = 3, /* samples beside each other */
-    MOST_ROWS = 24   /* of the samples' EI, with the two of the mean */
+    MOST_FACES = WB_VALLEY_NODES * WB_VALLEY_NODES / 4,
+    MOST_ROWS = 24 /* of the samples' EI, with the two of the mean */
 };
 
 static const char deflection_axis[] = "Deflection <i>\xce\xb4</i> (mm)";
@@ -92,7 +93,7 @@ static enum wb_status add_ways(struct wb_panel *panel, const struct wb_cycle_mem
         const int n = take_way(member, fit, k == 1, x, measured, computed);
         if (n == 0)
             continue;
-        wb_figure_add_line(panel, has_legend && k == 1 ? "computed" : NULL, (size_t)n, x, computed,
+        wb_figure_add_line(panel, has_legend && k == 0 ? "computed" : NULL, (size_t)n, x, computed,
                            &line);
         /* Every third, so that the line is seen between them. */
         int shown = 0;
@@ -203,8 +204,8 @@ enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *ite
     WB_TRY(wb_recordings_draw_start(item, "residuals", WB_PDF_WIDTH, 135.0));
     wb_text_append(&item->caption,
                    "Computed less measured tension of the same samples (dots: loading, rings: "
-                   "unloading). Readings far off are marked as outliers; there the fit counts them "
-                   "for less.");
+                   "unloading). Points that the fit counts for less than half are marked as "
+                   "outliers.");
     for (int i = 0; i < panels_of(cycle); i++) {
         const struct wb_cycle_member *const member = &c->members[i];
         struct wb_panel *const panel = wb_figure_add_panel(item->figure);
@@ -303,6 +304,16 @@ static void range_of(const struct wb_cycle_calibration *c, const struct wb_cycle
     }
 }
 
+/* Ends at round numbers, so that at least these carry one. */
+static void set_round_range(struct wb_panel *panel, double low, double high)
+{
+    const double span = fmax(high - low, 1e-3 * high);
+    const double power = pow(10.0, floor(log10(span)));
+    const double step = span / power > 5.0 ? 5.0 * power : span / power > 2.0 ? 2.0 * power : power;
+    wb_figure_set_x_range(panel, step * floor((low - 0.02 * span) / step),
+                          step * ceil((high + 0.02 * span) / step));
+}
+
 enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
 {
     const struct wb_recordings_cycle *const cycle = cycle_of(item);
@@ -328,6 +339,7 @@ enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
     const struct wb_figure_style interval = {.colour = wb_palette_ink(), .width = 1.4};
     char names[MOST_ROWS][32];
     const char *rows[MOST_ROWS];
+    double ends[2] = {(double)INFINITY, 0.0};
     /* From the bottom up: the range over laws, the mean, then the samples from the last on. */
     for (int i = 0; i < n + 2; i++) {
         const double y = i, ys[2] = {y, y};
@@ -345,11 +357,14 @@ enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
             value = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
         }
         rows[i] = names[i];
+        ends[0] = fmin(ends[0], fmin(value, range[0]));
+        ends[1] = fmax(ends[1], fmax(value, range[1]));
         if (isfinite(range[0]))
             wb_figure_add_line(panel, NULL, 2, range, ys, is_mean ? &interval : &thin);
         if (i > 0)
             wb_figure_add_line(panel, NULL, 1, &value, &y, is_mean ? &mean : &dot);
     }
+    set_round_range(panel, ends[0], ends[1]);
     wb_figure_set_y_names(panel, n + 2, rows);
     wb_figure_set_y_range(panel, -0.6, n + 1.6);
     return WB_OK;
@@ -429,10 +444,9 @@ enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item)
 
 /* --- K and n --- */
 
-/* Faces of 8 nodes over the grid; values are misfits over the smallest. Along y K itself, or the
- * stress that hardening adds. */
-static int make_faces(const struct wb_cycle_valley *valley, bool is_stress,
-                      struct wb_contour_face *faces)
+/* Faces of 8 nodes over n and the stress that hardening adds; values are misfits over the smallest.
+ */
+static int make_faces(const struct wb_cycle_valley *valley, struct wb_contour_face *faces)
 {
     static const int at[8][2] = {{0, 0}, {0, 2}, {2, 2}, {2, 0}, {0, 1}, {1, 2}, {2, 1}, {1, 0}};
     int n = 0;
@@ -443,7 +457,7 @@ static int make_faces(const struct wb_cycle_valley *valley, bool is_stress,
                 const struct wb_cycle_valley_node *const node =
                     &valley->nodes[i + at[j][0]][k + at[j][1]];
                 face->x[j] = node->exponent;
-                face->y[j] = (is_stress ? node->stress : node->strength) / WB_MPA;
+                face->y[j] = node->stress / WB_MPA;
                 face->value[j] = node->misfit / valley->best_misfit;
             }
         }
@@ -452,14 +466,16 @@ static int make_faces(const struct wb_cycle_valley *valley, bool is_stress,
 }
 
 /* The line around what the data cannot tell apart, values up to the limit; it closes along the edge
- * of the faces. */
-static enum wb_status add_region(struct wb_panel *panel, int n_faces, struct wb_contour_face *faces,
-                                 double limit)
+ * of the faces. Over n as K or as the stress that hardening adds. */
+static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_valley *valley,
+                                 bool is_stress, const char *label)
 {
+    struct wb_contour_face faces[MOST_FACES];
+    const int n_faces = make_faces(valley, faces);
+    const double limit = valley->limit / valley->best_misfit;
     const struct wb_contour_levels levels = {.low = -3.0 * limit, .high = limit, .n = 2};
     const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 1.4};
     struct wb_contour contour;
-    const char *label = "not told apart";
     for (int i = 0; i < n_faces; i++) {
         for (int k = 0; k < 8; k++)
             faces[i].value[k] = -faces[i].value[k];
@@ -476,6 +492,8 @@ static enum wb_status add_region(struct wb_panel *panel, int n_faces, struct wb_
         for (int k = 0; k <= loop->n; k++) {
             x[k] = contour.points[loop->first + k % loop->n][0];
             y[k] = contour.points[loop->first + k % loop->n][1];
+            if (!is_stress)
+                y[k] /= pow(WB_VALLEY_PLASTIC_STRAIN, x[k]);
         }
         if (loop->level == 1) {
             wb_figure_add_line(panel, label, (size_t)loop->n + 1, x, y, &line);
@@ -488,15 +506,13 @@ static enum wb_status add_region(struct wb_panel *panel, int n_faces, struct wb_
 }
 
 /* K over n: the region, the fit, and where the paper's route ended. */
-static enum wb_status add_pairs(struct wb_panel *panel, const struct wb_figures_item *item,
-                                struct wb_contour_face *faces)
+static enum wb_status add_pairs(struct wb_panel *panel, const struct wb_figures_item *item)
 {
     const struct wb_recordings_results_wire *const wire =
         wb_recordings_draw_wire(item->results, item->index);
     const struct wb_cycle_valley *const valley = &wire->cycle.valley;
-    const int n_faces = make_faces(valley, false, faces);
     wb_figure_set_axes(panel, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
-    WB_TRY(add_region(panel, n_faces, faces, valley->limit / valley->best_misfit));
+    WB_TRY(add_region(panel, valley, false, "not told apart"));
     const double n = valley->best.hardening_exponent;
     const double K = valley->best.strength_coefficient / WB_MPA;
     const struct wb_figure_style best = {
@@ -513,10 +529,10 @@ static enum wb_status add_pairs(struct wb_panel *panel, const struct wb_figures_
 }
 
 /* The misfit over n and the stress that hardening adds, where the valley is not a thin line. */
-static enum wb_status add_misfits(struct wb_figure *figure, const struct wb_cycle_valley *valley,
-                                  struct wb_contour_face *faces)
+static enum wb_status add_misfits(struct wb_figure *figure, const struct wb_cycle_valley *valley)
 {
-    const int n_faces = make_faces(valley, true, faces);
+    struct wb_contour_face faces[MOST_FACES];
+    const int n_faces = make_faces(valley, faces);
     struct wb_panel *const panel = wb_figure_add_panel(figure);
     double highest = 1.0;
     for (int i = 0; i < n_faces; i++) {
@@ -533,7 +549,13 @@ static enum wb_status add_misfits(struct wb_figure *figure, const struct wb_cycl
     wb_figure_set_axes(panel, "Hardening exponent <i>n</i>",
                        "<i>K</i> \xc2\xb7 0.003<sup><i>n</i></sup> (MPa)");
     wb_figure_add_field(panel, n_faces, faces, &colours);
-    WB_TRY(add_region(panel, n_faces, faces, valley->limit / valley->best_misfit));
+    WB_TRY(add_region(panel, valley, true, NULL));
+    const double n = valley->best.hardening_exponent;
+    const double stress =
+        valley->best.strength_coefficient * pow(WB_VALLEY_PLASTIC_STRAIN, n) / WB_MPA;
+    const struct wb_figure_style best = {
+        .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
+    wb_figure_add_line(panel, NULL, 1, &n, &stress, &best);
     wb_figure_add_colour_bar(figure, &colours, "misfit ratio");
     return WB_OK;
 }
@@ -541,7 +563,6 @@ static enum wb_status add_misfits(struct wb_figure *figure, const struct wb_cycl
 enum wb_status wb_recordings_cycle_figures_valley(struct wb_figures_item *item)
 {
     const struct wb_recordings_cycle *const cycle = cycle_of(item);
-    struct wb_contour_face faces[WB_VALLEY_NODES * WB_VALLEY_NODES / 4];
     if (!cycle || !cycle->has_valley)
         return WB_OK;
     const struct wb_cycle_valley *const valley = &cycle->valley;
@@ -557,6 +578,6 @@ enum wb_status wb_recordings_cycle_figures_valley(struct wb_figures_item *item)
         cycle->calibration.members[0].sample, measured_of(item), valley->strength_low / WB_MPA,
         valley->strength_high / WB_MPA, valley->exponent_low, valley->exponent_high,
         100.0 * valley->best_misfit, 100.0 * valley->limit);
-    WB_TRY(add_pairs(wb_figure_add_panel(item->figure), item, faces));
-    return add_misfits(item->figure, valley, faces);
+    WB_TRY(add_pairs(wb_figure_add_panel(item->figure), item));
+    return add_misfits(item->figure, valley);
 }

@@ -860,8 +860,10 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
     }
     wb_recordings_cycle_pages_wire(document, results, index, figures);
     const bool calibrated = wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION);
-    if (wb_recordings_results_cycle(wire))
+    if (wb_recordings_results_cycle(wire)) {
+        wb_document_new_page(document);
         wb_document_heading(document, 2, "", "The paper's route");
+    }
     if (calibrated)
         put_calibration_text(document, results, wire);
     wb_figures_put(figures, document, "measured", index);
