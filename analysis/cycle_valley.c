@@ -182,6 +182,48 @@ static enum wb_status fill_nodes(struct wb_cycle_valley *valley, struct problem 
     return WB_OK;
 }
 
+/* Shape functions of a face of 8 nodes: corners around, then the middles of the sides. */
+static double misfit_within(const struct wb_cycle_valley *valley, int i, int k, double x, double y)
+{
+    const double weights[3][3] = {
+        {-0.25 * (1.0 - x) * (1.0 - y) * (1.0 + x + y), 0.5 * (1.0 - x * x) * (1.0 - y),
+         -0.25 * (1.0 + x) * (1.0 - y) * (1.0 - x + y)},
+        {0.5 * (1.0 - x) * (1.0 - y * y), 0.0, 0.5 * (1.0 + x) * (1.0 - y * y)},
+        {-0.25 * (1.0 - x) * (1.0 + y) * (1.0 + x - y), 0.5 * (1.0 - x * x) * (1.0 + y),
+         -0.25 * (1.0 + x) * (1.0 + y) * (1.0 - x - y)},
+    };
+    double sum = 0.0;
+    for (int a = 0; a < 3; a++) {
+        for (int b = 0; b < 3; b++) {
+            if (a != 1 || b != 1)
+                sum += weights[a][b] * valley->nodes[i + a][k + b].misfit;
+        }
+    }
+    return sum;
+}
+
+/* Takes the pairs of a face that lie within the limit. */
+static void take_face(struct wb_cycle_valley *valley, int i, int k)
+{
+    const struct wb_cycle_valley_node *const low = &valley->nodes[i][k];
+    const struct wb_cycle_valley_node *const high = &valley->nodes[i + 2][k + 2];
+    const int fine = 10;
+    for (int a = 0; a <= fine; a++) {
+        for (int b = 0; b <= fine; b++) {
+            const double x = 2.0 * b / fine - 1.0, y = 2.0 * a / fine - 1.0;
+            if (!(misfit_within(valley, i, k, x, y) <= valley->limit))
+                continue;
+            const double n = low->exponent + (high->exponent - low->exponent) * b / fine;
+            const double stress = low->stress * pow(high->stress / low->stress, (double)a / fine);
+            const double K = stress / pow(WB_VALLEY_PLASTIC_STRAIN, n);
+            valley->strength_low = fmin(valley->strength_low, K);
+            valley->strength_high = fmax(valley->strength_high, K);
+            valley->exponent_low = fmin(valley->exponent_low, n);
+            valley->exponent_high = fmax(valley->exponent_high, n);
+        }
+    }
+}
+
 /* What lies within the limit. */
 static void find_region(struct wb_cycle_valley *valley, int n_points)
 {
@@ -195,13 +237,9 @@ static void find_region(struct wb_cycle_valley *valley, int n_points)
     valley->limit = valley->best_misfit * sqrt(1.0 + 2.0 * f / degrees);
     valley->strength_low = valley->strength_high = valley->best.strength_coefficient;
     valley->exponent_low = valley->exponent_high = valley->best.hardening_exponent;
-    for (int i = 0; i < WB_VALLEY_NODES * WB_VALLEY_NODES; i++) {
-        if (!(nodes[i].misfit <= valley->limit))
-            continue;
-        valley->strength_low = fmin(valley->strength_low, nodes[i].strength);
-        valley->strength_high = fmax(valley->strength_high, nodes[i].strength);
-        valley->exponent_low = fmin(valley->exponent_low, nodes[i].exponent);
-        valley->exponent_high = fmax(valley->exponent_high, nodes[i].exponent);
+    for (int i = 0; i + 2 < WB_VALLEY_NODES; i += 2) {
+        for (int k = 0; k + 2 < WB_VALLEY_NODES; k += 2)
+            take_face(valley, i, k);
     }
 }
 

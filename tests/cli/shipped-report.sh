@@ -7,12 +7,13 @@ campaign=$root/fixtures/campaigns/single-wires.yaml
 make_report "$campaign"
 [ $code -eq 0 ] || fail "exit code $code: $(cat "$folder/a.err")"
 make_it_again "$campaign"
-expect_figures 25
+expect_figures 43
 forbid "experiment|$folder|$root"
 grep -q 'Virtual rig' "$folder/a/report.html" || fail 'the virtual rig is not named'
 if command -v pdftotext >/dev/null; then
     text=$(pdftotext -layout "$folder/a/report.pdf" -)
-    for part in 'Virtual rig.' 'Calibrated properties' 'Type 3' 'SHA-256' 'measured (virtual rig)'; do
+    for part in 'Virtual rig.' 'Bending properties, from loading and unloading' \
+        'parallel parts, kinematic' 'Calibrated properties' 'Type 3' 'SHA-256' 'measured (virtual rig)'; do
         grep -qF "$part" <<<"$text" || fail "the PDF does not say '$part'"
     done
 fi

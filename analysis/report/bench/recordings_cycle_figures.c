@@ -194,13 +194,21 @@ static double largest_residual(const struct wb_recordings_cycle *cycle)
     return 100.0 * largest;
 }
 
+/* The next of 1, 2, 5 times a power of ten: axes that end there carry numbers at both ends. */
+static double round_end(double value)
+{
+    const double power = pow(10.0, floor(log10(fmax(value, 1e-6))));
+    const double part = value / power;
+    return power * (part <= 1.0 ? 1.0 : part <= 2.0 ? 2.0 : part <= 5.0 ? 5.0 : 10.0);
+}
+
 enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *item)
 {
     const struct wb_recordings_cycle *const cycle = cycle_of(item);
     if (!cycle)
         return WB_OK;
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const double end = 1.15 * largest_residual(cycle);
+    const double end = round_end(largest_residual(cycle));
     WB_TRY(wb_recordings_draw_start(item, "residuals", WB_PDF_WIDTH, 135.0));
     wb_text_append(&item->caption,
                    "Computed less measured tension of the same samples (dots: loading, rings: "
