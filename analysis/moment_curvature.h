@@ -73,9 +73,11 @@ struct wb_moment_comparison {
     double in_deviations; /* 1: and how many standard deviations it is */
 };
 
-/* Compares the first loadings of n clouds with a law on a solid circle of that diameter. A
- * specimen's points share what their cameras and bow are off by, so that an average over them is
- * not taken to be better than one of them. Fails only without memory. */
+/* Compares the first loadings of n clouds with a law on a solid circle of that diameter, in
+ * stretches of curvature in which at least half the specimens have two points; a comparison without
+ * stretches says nothing. A specimen's points share what their cameras and bow are off by, so that
+ * an average over them is not taken to be better than one of them; the scatter of several specimens
+ * counts too. Two neighbouring stretches must agree before they warn. Fails only without memory. */
 WB_MUST_CHECK enum wb_status
 wb_moment_curvature_compare(const struct wb_moment_cloud *const *clouds, int n,
                             const struct wb_law *law, double diameter,
