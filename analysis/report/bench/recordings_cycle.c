@@ -97,8 +97,10 @@ static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const size_t n = (size_t)c->n_members;
     cycle->clouds = calloc(n, sizeof *cycle->clouds);
+    const struct wb_moment_cloud **const taken = calloc(n, sizeof *taken);
+    int n_taken = 0;
     enum wb_status status = WB_OK;
-    if (!cycle->clouds)
+    if (!cycle->clouds || !taken)
         status = wb_fail(WB_ERR_MEMORY, "no memory for %zu specimens", n);
     for (int i = 0; status == WB_OK && i < c->n_members; i++) {
         const struct wb_cycle_fit *const fit = &c->members[i].answers[c->chosen].fit;
@@ -106,9 +108,17 @@ static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
         struct wb_reason why = {.text = ""};
         const enum wb_status one =
             wb_moment_curvature_take(&cycle->clouds[i], datasets[i], &specimen, NULL, &why);
-        if (one != WB_OK)
+        if (one == WB_OK)
+            taken[n_taken++] = &cycle->clouds[i];
+        else
             cycle->clouds[i] = (struct wb_moment_cloud){.n = 0};
     }
+    if (status == WB_OK && n_taken > 0) {
+        status = wb_moment_curvature_compare(
+            taken, n_taken, &c->law, c->members[0].data.info.outer_diameter, &cycle->comparison);
+        cycle->has_comparison = status == WB_OK;
+    }
+    free(taken);
     return status;
 }
 
@@ -181,6 +191,12 @@ static void put_valley(struct wb_json *object, const struct wb_cycle_valley *val
 void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle)
 {
     wb_cycle_json_put(object, &cycle->calibration);
+    struct wb_json *const clouds = wb_json_set_array(object, "moment_curvature_measured");
+    for (int i = 0; i < cycle->calibration.n_members; i++) {
+        struct wb_json *const cloud = wb_json_append_object(clouds);
+        wb_json_set_integer(cloud, "sample", cycle->calibration.members[i].sample);
+        wb_moment_curvature_put(wb_json_set_array(cloud, "points"), &cycle->clouds[i]);
+    }
     if (cycle->later.n > 0)
         put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
     wb_cycle_sensitivity_put(wb_json_set_array(object, "shared_sensitivities"),

@@ -40,6 +40,8 @@ struct wb_recordings_cycle {
     struct wb_cycle_valley valley; /* of the first specimen */
     /* Of the members: moment over curvature as measured; empty where there are no shapes. */
     struct wb_moment_cloud *clouds; /* (calibration.n_members), owned */
+    bool has_comparison;
+    struct wb_moment_comparison comparison; /* of the clouds with the law */
 };
 
 /* Calibrates on n datasets of a wire, on the calling thread alone. On a failure nothing needs a

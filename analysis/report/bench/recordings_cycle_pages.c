@@ -435,6 +435,22 @@ static void put_law(struct wb_document *document, const struct wb_cycle_calibrat
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
+/* Where the law and what shapes and tension say without it part. */
+static void put_apart(struct wb_document *document, const struct wb_recordings_cycle *cycle)
+{
+    const struct wb_moment_comparison *const c = &cycle->comparison;
+    struct wb_text text = {0};
+    if (!cycle->has_comparison || !c->is_apart)
+        return;
+    wb_text_append(
+        &text,
+        "<b>Law and measured moments part.</b> Between %.1f and %.1f /m the law's moment "
+        "is %.1f %% %s what shapes and tension say, %.1f standard deviations.",
+        c->first, c->last, 100.0 * fabs(c->difference), c->difference > 0.0 ? "above" : "below",
+        c->in_deviations);
+    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
+}
+
 void wb_recordings_cycle_pages_wire(struct wb_document *document,
                                     const struct wb_recordings_results *results, int index,
                                     const struct wb_figures *figures)
@@ -450,6 +466,7 @@ void wb_recordings_cycle_pages_wire(struct wb_document *document,
     wb_figures_put(figures, document, "later", index);
     put_specimens(document, cycle);
     wb_figures_put(figures, document, "law", index);
+    put_apart(document, cycle);
     put_law(document, &cycle->calibration);
     wb_figures_put(figures, document, "valley", index);
     put_sensitivities(document, cycle);
