@@ -39,6 +39,19 @@ static double largest_deflection(const struct wb_dataset *dataset, int cycle)
     return largest;
 }
 
+/* Where the way back of a cycle ends or the strand becomes slack. */
+static double lowest_deflection(const struct wb_dataset *dataset, int cycle)
+{
+    double lowest = largest_deflection(dataset, cycle);
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->cycle == cycle && row->phase == WB_PHASE_UNLOAD && row->tension > 0.0 &&
+            row->deflection < lowest)
+            lowest = row->deflection;
+    }
+    return lowest;
+}
+
 /* Appends the points of one way of a cycle in the order of the test. */
 static void add_way(struct wb_cycle_later *later, const struct wb_dataset *dataset, int cycle,
                     bool is_unloading, struct bin *bins, int n_bins)
@@ -85,7 +98,10 @@ static void make_path(struct wb_cycle_data *path, int *index, const struct wb_cy
     }
     for (int i = 0; i < later->n; i++) {
         const struct wb_cycle_later_point *const p = &later->points[i];
-        if (i > 0 && p->is_unloading && !later->points[i - 1].is_unloading)
+        /* Both turns, which no bin's mean reaches: a loop that is turned too early is too small. */
+        if (i == 0 || p->cycle != later->points[i - 1].cycle)
+            push(path, lowest_deflection(dataset, p->cycle - 1));
+        else if (p->is_unloading && !later->points[i - 1].is_unloading)
             push(path, largest_deflection(dataset, p->cycle));
         index[i] = path->n_points;
         push(path, p->deflection);
@@ -125,7 +141,7 @@ static enum wb_status predict(struct wb_cycle_later *later, const struct wb_data
         add_way(later, dataset, cycle, true, bins, n_bins);
     }
     struct wb_cycle_data path = *data;
-    const size_t most = (size_t)(data->n_points + later->n + later->n_cycles + 2);
+    const size_t most = (size_t)(data->n_points + later->n + 2 * later->n_cycles + 2);
     path.points = calloc(most, sizeof *path.points);
     double *const tension = calloc(most, sizeof *tension);
     int *const index = calloc(most, sizeof *index);
