@@ -316,8 +316,7 @@ static void range_of(const struct wb_cycle_calibration *c, const struct wb_cycle
 static void set_round_range(struct wb_panel *panel, double low, double high)
 {
     const double span = fmax(high - low, 1e-3 * high);
-    const double power = pow(10.0, floor(log10(span)));
-    const double step = span / power > 5.0 ? 5.0 * power : span / power > 2.0 ? 2.0 * power : power;
+    const double step = round_end(0.5 * span);
     wb_figure_set_x_range(panel, step * floor((low - 0.02 * span) / step),
                           step * ceil((high + 0.02 * span) / step));
 }
