@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -202,6 +203,15 @@ void wb_figure_set_logarithmic_y(struct wb_panel *panel)
 {
     if (panel)
         panel->logarithmic_y = true;
+}
+
+void wb_figure_set_y_names(struct wb_panel *panel, int n, const char *const *names)
+{
+    if (!panel)
+        return;
+    panel->n_y_names = n < WB_SCALE_TICKS ? n : WB_SCALE_TICKS;
+    for (int i = 0; i < panel->n_y_names; i++)
+        snprintf(panel->y_names[i], sizeof panel->y_names[i], "%s", names[i]);
 }
 
 void wb_figure_set_equal_aspect(struct wb_panel *panel)

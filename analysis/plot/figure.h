@@ -103,6 +103,9 @@ void wb_figure_set_title(struct wb_panel *panel, const char *markup);
 void wb_figure_set_x_range(struct wb_panel *panel, double low, double high);
 void wb_figure_set_y_range(struct wb_panel *panel, double low, double high);
 void wb_figure_set_logarithmic_y(struct wb_panel *panel);
+/* Names (markup, cut behind 31 bytes) in the place of the numbers of the y axis: at 0, 1, 2, ... Of
+ * more than 24 the last ones have none. */
+void wb_figure_set_y_names(struct wb_panel *panel, int n, const char *const *names);
 /* The same length for a unit on both axes (shapes). */
 void wb_figure_set_equal_aspect(struct wb_panel *panel);
 /* A second scale on the right whose values are those of y times `factor` (> 0). */

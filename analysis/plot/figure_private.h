@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "analysis/plot/figure.h"
+#include "analysis/plot/scale.h"
 
 #define WB_FIGURE_PANELS 6
 
@@ -41,6 +42,8 @@ struct wb_panel {
     double right_factor;
     double x_range[2], y_range[2]; /* NaN: from the data */
     bool logarithmic_y, equal_aspect, hidden_axes, is_inset;
+    int n_y_names;
+    char y_names[WB_SCALE_TICKS][WB_SCALE_TEXT];
     double width;                     /* pt; 0: a share of what is left */
     bool is_bar;                      /* of colours: */
     struct wb_figure_colours colours; /* those; the label is y_label */

@@ -96,11 +96,25 @@ static double widest_label(cairo_t *cairo, const struct wb_layout_panel *layout,
     return widest;
 }
 
+static void place_names(struct wb_scale *scale, const struct wb_panel *panel)
+{
+    scale->n_ticks = 0;
+    for (int i = 0; i < panel->n_y_names; i++) {
+        if (i < scale->low || i > scale->high)
+            continue;
+        scale->ticks[scale->n_ticks] = i;
+        memcpy(scale->labels[scale->n_ticks++], panel->y_names[i], WB_SCALE_TEXT);
+    }
+}
+
 static void place_ticks(struct wb_layout_panel *layout)
 {
     const double every_x = 6.5 * layout->text_size, every_y = 3.6 * layout->text_size;
     wb_scale_place_ticks(&layout->x, (int)(layout->plot.width / every_x));
-    wb_scale_place_ticks(&layout->y, (int)(layout->plot.height / every_y));
+    if (layout->panel->n_y_names > 0)
+        place_names(&layout->y, layout->panel);
+    else
+        wb_scale_place_ticks(&layout->y, (int)(layout->plot.height / every_y));
     layout->right = layout->y;
     if (layout->panel->right_factor > 0.0) {
         layout->right.low *= layout->panel->right_factor;

@@ -315,7 +315,7 @@ static void no_wire_of_another_law_is_wrong_without_a_warning(void **unused)
         for (int i = 0; i <= PER_TRUTH; i++)
             assert_true(jobs[v][i].verdict.good);
         const struct summary summary = summarise(jobs[v], PER_TRUTH);
-        print_summary(wb_composite_variant_name(v), &summary);
+        print_summary(wb_composite_variant_names[v], &summary);
         print_laws(jobs[v], PER_TRUTH);
         printf("    best misfit without noise %.3f %%\n",
                100.0 * jobs[v][PER_TRUTH].verdict.best_misfit);

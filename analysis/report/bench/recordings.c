@@ -274,12 +274,15 @@ static enum wb_status read_all(struct reading *reading, const struct wb_config_n
     const struct wb_config_node *settings, *limits, *reference, *wires;
     char index[1024] = "";
     campaign->samples = 1;
+    campaign->whole_cycle = true;
     const struct wb_config_key keys[] = {
         WB_CAMPAIGN_KEYS(&campaign->head),
         WB_CONFIG_OPTIONAL_TEXT("index", index),
         WB_CONFIG_NUMBER("calibration_length_mm", &campaign->length[0], WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_NUMBER("validation_length_mm", &campaign->length[1], WB_MM, 1.0, 1e4),
         WB_CONFIG_OPTIONAL_INTEGER("samples", &campaign->samples, 1, 1000),
+        WB_CONFIG_OPTIONAL_BOOLEAN("whole_cycle", &campaign->whole_cycle),
+        WB_CONFIG_OPTIONAL_BOOLEAN("pooled_scatter", &campaign->pooled_scatter),
         WB_CONFIG_OPTIONAL_NODE("settings", &settings),
         WB_CONFIG_OPTIONAL_NODE("limits", &limits),
         WB_CONFIG_OPTIONAL_NODE("reference", &reference),

@@ -8,6 +8,9 @@
  *     calibration_length_mm: 85
  *     validation_length_mm: 100                   # optional, absent: no validation
  *     samples: 3                                  # recordings expected for each wire and length
+ *     whole_cycle: true                           # optional, false: the paper's route alone
+ *     pooled_scatter: false                       # optional, true: intervals of EI also from the
+ *                                                 # scatter of all wires' specimens together
  *     settings:                                   # optional, as all of its keys
  *       elastic_zone: 0.05
  *       yield_point: 0.04
@@ -88,6 +91,8 @@ struct wb_recordings {
     double length[WB_RECORDINGS_PURPOSES]; /* m; of the validation 0: there is none */
     double limit[WB_RECORDINGS_PURPOSES];  /* of the RMS over F_max; 0: none */
     int samples;
+    bool whole_cycle;    /* loading and unloading are calibrated on, beside the paper's route */
+    bool pooled_scatter; /* s of ln EI is also pooled over the wires */
     char reference_source[160];
     double reference_rms[2]; /* published range of the validation's RMS; 0: none */
     int n_wires;

@@ -1,29 +1,17 @@
 #include "analysis/report/bench/recordings_figures.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/report/bench/recordings_cycle_figures.h"
+#include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
-
-const char *wb_recordings_figures_measured(const struct wb_recordings_results *results)
-{
-    return results->any_virtual ? "measured (virtual rig)" : "measured";
-}
-
-void wb_recordings_figures_slug(char slug[64], const char *name)
-{
-    size_t n = 0;
-    for (; name[n] && n < 48; n++)
-        slug[n] = (char)(isalnum((unsigned char)name[n]) ? tolower((unsigned char)name[n]) : '-');
-    slug[n] = '\0';
-}
 
 /* --- what they share --- */
 
@@ -37,39 +25,12 @@ struct frame {
     double deflection, t;                    /* m, s */
 };
 
-static const struct wb_recordings_results_wire *wire_of(const struct wb_recordings_results *results,
-                                                        int index)
-{
-    return &results->wires[index];
-}
-
-static int count_wires(const void *context)
-{
-    const struct wb_recordings_results *const results = context;
-    return results->n_wires;
-}
-
 /* Deflection in mm and force in mN; with a scale over F_max on the right when it is given. */
 static void set_force_axes(struct wb_panel *panel, double max_force)
 {
     wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", "Force <i>F</i> (mN)");
     if (max_force > 0.0)
         wb_figure_set_right_axis(panel, "<i>F</i> / <i>F</i><sub>max</sub>", WB_MN / max_force);
-}
-
-/* Starts a figure that says where its data come from, named WIRE-KIND ("all-KIND" when its row is
- * not of single wires). */
-static enum wb_status start(struct wb_figures_item *item, const char *kind, double width,
-                            double height)
-{
-    const struct wb_recordings_results *const results = item->results;
-    char slug[64] = "all", name[128];
-    if (item->row->count)
-        wb_recordings_figures_slug(slug, wire_of(results, item->index)->wanted->product.name);
-    snprintf(name, sizeof name, "%s-%s", slug, kind);
-    WB_TRY(wb_figure_create(&item->figure, name, width, height));
-    wb_figure_set_footer(item->figure, wb_recordings_figures_measured(results));
-    return WB_OK;
 }
 
 /* A panel of deflection and force, whose scale over F_max is on the right; F_max is in the footer.
@@ -79,7 +40,7 @@ static struct wb_panel *add_force_panel(struct wb_figures_item *item, double max
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     char footer[160];
     snprintf(footer, sizeof footer, "%s \xc2\xb7 <i>F</i><sub>max</sub> = %.1f mN",
-             wb_recordings_figures_measured(item->results), max_force / WB_MN);
+             wb_recordings_draw_measured(item->results), max_force / WB_MN);
     set_force_axes(panel, max_force);
     wb_figure_set_footer(item->figure, footer);
     return panel;
@@ -201,16 +162,17 @@ most_cycles(const struct wb_recordings_results_wire *wire, int *most)
 static enum wb_status draw_cycles(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(results, item->index);
     int most;
     const struct wb_recordings_results_test *const best = most_cycles(wire, &most);
     if (!best)
         return WB_OK;
-    WB_TRY(start(item, "cycles", WB_PDF_HALF_WIDTH, 200.0));
+    WB_TRY(wb_recordings_draw_start(item, "cycles", WB_PDF_HALF_WIDTH, 200.0));
     wb_text_append(&item->caption,
                    "Cycles of sample %d, %g mm, %s; stretches with a slack strand left out.",
                    best->dataset.info.sample, best->dataset.info.length / WB_MM,
-                   wb_recordings_figures_measured(results));
+                   wb_recordings_draw_measured(results));
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, 0.0);
     for (int cycle = 1; cycle <= most; cycle++) {
@@ -230,7 +192,8 @@ static enum wb_status draw_samples(struct wb_figures_item *item)
 {
     static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(results, item->index);
     const struct wb_recordings_results_tests *const tests =
         &wire->steps[WB_RECORDINGS_CALIBRATION].tests;
     const struct wb_validate_result *const fit =
@@ -239,13 +202,13 @@ static enum wb_status draw_samples(struct wb_figures_item *item)
     if (!fit)
         return WB_OK;
     const struct wb_curve *const curve = &fit->curve;
-    WB_TRY(start(item, "samples", WB_PDF_HALF_WIDTH, 200.0));
+    WB_TRY(wb_recordings_draw_start(item, "samples", WB_PDF_HALF_WIDTH, 200.0));
     wb_text_append(&item->caption,
                    "First loading of %d %s, %g mm, %s, with mean and range; "
                    "<i>F</i><sub>max</sub> = %.1f mN.",
                    curve->n_samples, wb_pages_plural(curve->n_samples, "sample", "samples"),
                    results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_figures_measured(results), curve->max_force / WB_MN);
+                   wb_recordings_draw_measured(results), curve->max_force / WB_MN);
     struct wb_panel *const panel = add_force_panel(item, curve->max_force);
     char label[64];
     snprintf(label, sizeof label, "range of %d", curve->n_samples);
@@ -282,17 +245,18 @@ static enum wb_status draw_shapes(struct wb_figures_item *item)
     static const enum wb_figure_marker markers[] = {
         WB_MARKER_CIRCLE, WB_MARKER_SQUARE, WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND, WB_MARKER_RING};
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(results, item->index);
     const struct wb_recordings_results_test *const test =
         first_with_shapes(&wire->steps[WB_RECORDINGS_CALIBRATION].tests);
     if (!test)
         return WB_OK;
-    WB_TRY(start(item, "shapes", WB_PDF_WIDTH, 300.0));
+    WB_TRY(wb_recordings_draw_start(item, "shapes", WB_PDF_WIDTH, 300.0));
     const struct wb_test_info *const info = &test->dataset.info;
     wb_text_append(&item->caption,
                    "Shapes of sample %d, %g mm, on its first loading, %s: the markers, moved onto "
                    "the wire's axis, in the clamp's frame.",
-                   info->sample, info->length / WB_MM, wb_recordings_figures_measured(results));
+                   info->sample, info->length / WB_MM, wb_recordings_draw_measured(results));
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
@@ -394,12 +358,12 @@ static enum wb_status draw_bench(struct wb_figures_item *item)
     find_frame(&test->dataset, wb_recordings_figures_turn(&test->dataset, &end), &frame);
     if (frame.n < 2)
         return WB_OK;
-    WB_TRY(start(item, "bench", WB_PDF_WIDTH, 190.0));
+    WB_TRY(wb_recordings_draw_start(item, "bench", WB_PDF_WIDTH, 190.0));
     wb_text_append(&item->caption,
                    "The test, drawn to scale but for the strand: the clamp moves down, the strand "
                    "holds the wire's tip, the load cell above stands still. Markers as %s at the "
                    "largest deflection.",
-                   wb_recordings_figures_measured(item->results));
+                   wb_recordings_draw_measured(item->results));
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_hide_axes(panel);
     wb_figure_set_equal_aspect(panel);
@@ -478,10 +442,11 @@ static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings
                                 double room)
 {
     static const char *const labels[] = {"computed, calibrated", "computed, elastoplastic"};
-    const struct wb_recordings_results_wire *const wire = wire_of(item->results, item->index);
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(item->results, item->index);
     const struct wb_validate_result *const result = &wire->steps[purpose].result;
     const struct wb_colour colour = wb_palette_wire(item->index);
-    WB_TRY(start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH, 208.0));
+    WB_TRY(wb_recordings_draw_start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH, 208.0));
     struct wb_panel *const panel = add_force_panel(item, result->curve.max_force);
     wb_figure_set_y_range(panel, (double)NAN, room * result->curve.max_force / WB_MN);
     WB_TRY(add_measured(panel, &result->curve, colour));
@@ -498,8 +463,8 @@ static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings
 static enum wb_status draw_calibration(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_validate_result *const fit =
-        wb_recordings_results_of(wire_of(results, item->index), WB_RECORDINGS_CALIBRATION);
+    const struct wb_validate_result *const fit = wb_recordings_results_of(
+        wb_recordings_draw_wire(results, item->index), WB_RECORDINGS_CALIBRATION);
     if (!fit)
         return WB_OK;
     wb_text_append(&item->caption,
@@ -507,7 +472,7 @@ static enum wb_status draw_calibration(struct wb_figures_item *item)
                    "markers of one sample and computed shape at half and at full deflection. "
                    "<i>F</i><sub>max</sub> = %.1f mN.",
                    results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_figures_measured(results), fit->curve.max_force / WB_MN);
+                   wb_recordings_draw_measured(results), fit->curve.max_force / WB_MN);
     return draw_step(item, WB_RECORDINGS_CALIBRATION, 1.25);
 }
 
@@ -515,8 +480,8 @@ static enum wb_status draw_validation(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
     const double *const length = results->campaign->length;
-    const struct wb_validate_result *const validation =
-        wb_recordings_results_of(wire_of(results, item->index), WB_RECORDINGS_VALIDATION);
+    const struct wb_validate_result *const validation = wb_recordings_results_of(
+        wb_recordings_draw_wire(results, item->index), WB_RECORDINGS_VALIDATION);
     if (!validation)
         return WB_OK;
     wb_text_append(
@@ -524,7 +489,7 @@ static enum wb_status draw_validation(struct wb_figures_item *item)
         "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and "
         "for contrast the same beam without yielding, which leaves the frame. Inset as "
         "before. <i>F</i><sub>max</sub> = %.1f mN.",
-        length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_figures_measured(results),
+        length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(results),
         length[WB_RECORDINGS_CALIBRATION] / WB_MM, validation->curve.max_force / WB_MN);
     /* The elastic curve goes far beyond; it may leave the frame. */
     return draw_step(item, WB_RECORDINGS_VALIDATION, 1.45);
@@ -533,17 +498,18 @@ static enum wb_status draw_validation(struct wb_figures_item *item)
 static enum wb_status draw_error(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(results, item->index);
     const struct wb_figure_style styles[] = {
         {.colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED},
         {.colour = wb_palette_wire(item->index), .width = 1.5}};
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
         return WB_OK;
-    WB_TRY(start(item, "error", WB_PDF_WIDTH, 155.0));
+    WB_TRY(wb_recordings_draw_start(item, "error", WB_PDF_WIDTH, 155.0));
     wb_text_append(&item->caption,
                    "Error of the computed force against the mean force, %s (eq. 18), as part of "
                    "each curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19).",
-                   wb_recordings_figures_measured(results));
+                   wb_recordings_draw_measured(results));
     struct wb_panel *const panel = add_error_panel(item);
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         const struct wb_validate_result *const result =
@@ -608,10 +574,11 @@ static enum wb_status add_path(struct wb_figure *figure, const struct wb_calibra
 static enum wb_status draw_optimiser(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire = wire_of(results, item->index);
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(results, item->index);
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION) || wire->calibration.n_path < 1)
         return WB_OK;
-    WB_TRY(start(item, "optimiser", WB_PDF_WIDTH, 170.0));
+    WB_TRY(wb_recordings_draw_start(item, "optimiser", WB_PDF_WIDTH, 170.0));
     wb_text_append(&item->caption,
                    "Left: error of the best corner of the simplex after each iteration. "
                    "Right: its path from the first guess to the calibrated values.");
@@ -660,7 +627,8 @@ static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_
         if (!result)
             continue;
         if (!panel) {
-            WB_TRY(start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH, 205.0));
+            WB_TRY(wb_recordings_draw_start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH,
+                                            205.0));
             panel = wb_figure_add_panel(item->figure);
             set_force_axes(panel, 0.0);
         }
@@ -676,7 +644,7 @@ static enum wb_status draw_calibrations(struct wb_figures_item *item)
                    "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
                    "against them. Bands: range of the samples.",
                    results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_figures_measured(results));
+                   wb_recordings_draw_measured(results));
     return draw_all(item, WB_RECORDINGS_CALIBRATION);
 }
 
@@ -687,8 +655,7 @@ static enum wb_status draw_validations(struct wb_figures_item *item)
     wb_text_append(&item->caption,
                    "The same wires at %g mm, %s, and the prediction of the beams calibrated at %g "
                    "mm.",
-                   length[WB_RECORDINGS_VALIDATION] / WB_MM,
-                   wb_recordings_figures_measured(results),
+                   length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(results),
                    length[WB_RECORDINGS_CALIBRATION] / WB_MM);
     return draw_all(item, WB_RECORDINGS_VALIDATION);
 }
@@ -706,7 +673,7 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
         if (!validation)
             continue;
         if (!panel) {
-            WB_TRY(start(item, "errors", WB_PDF_WIDTH, 165.0));
+            WB_TRY(wb_recordings_draw_start(item, "errors", WB_PDF_WIDTH, 165.0));
             panel = add_error_panel(item);
         }
         char label[160];
@@ -722,7 +689,7 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
                    "Error of the prediction at %g mm (eq. 18): distance of mean force, %s, and "
                    "computed force over the largest mean force of the wire.",
                    results->campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM,
-                   wb_recordings_figures_measured(results));
+                   wb_recordings_draw_measured(results));
     return WB_OK;
 }
 
@@ -733,11 +700,17 @@ const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
     {"overview", NULL, draw_calibrations, false},
     {"overview", NULL, draw_validations, false},
     {"overview", NULL, draw_errors, false},
-    {"measured", count_wires, draw_cycles, true},
-    {"measured", count_wires, draw_samples, true},
-    {"measured", count_wires, draw_shapes, false},
-    {"compared", count_wires, draw_calibration, false},
-    {"compared", count_wires, draw_validation, false},
-    {"compared", count_wires, draw_error, false},
-    {"search", count_wires, draw_optimiser, false},
+    {"cycle", wb_recordings_draw_count, wb_recordings_cycle_figures_ways, false},
+    {"cycle", wb_recordings_draw_count, wb_recordings_cycle_figures_residuals, false},
+    {"later", wb_recordings_draw_count, wb_recordings_cycle_figures_later, false},
+    {"law", wb_recordings_draw_count, wb_recordings_cycle_figures_forest, true},
+    {"law", wb_recordings_draw_count, wb_recordings_cycle_figures_moments, true},
+    {"valley", wb_recordings_draw_count, wb_recordings_cycle_figures_valley, false},
+    {"measured", wb_recordings_draw_count, draw_cycles, true},
+    {"measured", wb_recordings_draw_count, draw_samples, true},
+    {"measured", wb_recordings_draw_count, draw_shapes, false},
+    {"compared", wb_recordings_draw_count, draw_calibration, false},
+    {"compared", wb_recordings_draw_count, draw_validation, false},
+    {"compared", wb_recordings_draw_count, draw_error, false},
+    {"search", wb_recordings_draw_count, draw_optimiser, false},
 };

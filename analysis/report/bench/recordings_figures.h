@@ -6,20 +6,14 @@
 #include "analysis/report/figures.h"
 
 enum {
-    WB_RECORDINGS_FIGURES = 11
+    WB_RECORDINGS_FIGURES = 17
 };
 
-/* Of struct wb_recordings_results. Places: "bench", "overview"; of each wire "measured",
- * "compared", "search". */
+/* Of struct wb_recordings_results. Places: "bench", "overview"; of each wire "cycle",
+ * "later", "law", "valley", "measured", "compared", "search". */
 extern const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES];
-
-/* "measured (virtual rig)" or "measured", after where the used recordings come from. */
-const char *wb_recordings_figures_measured(const struct wb_recordings_results *results);
 
 /* Largest deflection of the first loading, m, and when it was reached, s (infinite without one). */
 double wb_recordings_figures_turn(const struct wb_dataset *dataset, double *t);
-
-/* A wire's name as part of file names, anchors and figure names: other characters become '-'. */
-void wb_recordings_figures_slug(char slug[64], const char *name);
 
 #endif

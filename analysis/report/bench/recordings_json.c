@@ -4,9 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/report/bench/recordings_figures.h"
+#include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/numbers.h"
 #include "base/units.h"
+
+/* N mm2 in one N m2. */
+static const double N_MM2 = 1e-6;
 
 static const char *state_text(enum wb_recordings_results_state state)
 {
@@ -165,7 +168,33 @@ static void put_calibration(struct wb_json *object, const struct wb_recordings_r
     put_search(object, c);
 }
 
-static void put_wire(struct wb_json *list, const struct wb_recordings_results_wire *wire)
+static void put_cycle(struct wb_json *entry, const struct wb_recordings_results *results,
+                      const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+    if (wire->cycle_state == WB_RECORDINGS_NOT_WANTED)
+        return;
+    struct wb_json *const of = wb_json_set_object(entry, "cycle");
+    wb_json_set_text(of, "state", state_text(wire->cycle_state));
+    if (!cycle) {
+        wb_json_set_text(of, "problem", wb_text_string(&wire->cycle_problem));
+        return;
+    }
+    wb_recordings_cycle_put(of, cycle);
+    if (results->pool.degrees > 0) {
+        struct wb_json *const pooled =
+            wb_json_set_object(of, "flexural_rigidity_N_mm2_pooled_over_wires");
+        double low, high;
+        wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
+        wb_json_set_number(pooled, "low", low / N_MM2);
+        wb_json_set_number(pooled, "high", high / N_MM2);
+        wb_json_set_number(pooled, "deviation_of_logarithm", results->pool.deviation);
+        wb_json_set_integer(pooled, "degrees_of_freedom", results->pool.degrees);
+    }
+}
+
+static void put_wire(struct wb_json *list, const struct wb_recordings_results *results,
+                     const struct wb_recordings_results_wire *wire)
 {
     const struct wb_recordings_wire *const wanted = wire->wanted;
     struct wb_json *const entry = wb_json_append_object(list);
@@ -190,6 +219,7 @@ static void put_wire(struct wb_json *list, const struct wb_recordings_results_wi
         else if (step->state != WB_RECORDINGS_NOT_WANTED)
             wb_json_set_text(of, "problem", wb_text_string(&step->problem));
     }
+    put_cycle(entry, results, wire);
 }
 
 struct wb_json *wb_recordings_json_build(const void *context)
@@ -197,7 +227,7 @@ struct wb_json *wb_recordings_json_build(const void *context)
     const struct wb_recordings_results *const results = context;
     const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
-    wb_numbers_put_title(root, campaign->head.title, wb_recordings_figures_measured(results));
+    wb_numbers_put_title(root, campaign->head.title, wb_recordings_draw_measured(results));
     wb_json_set_boolean(root, "virtual_rig", results->any_virtual);
     wb_numbers_put_program(root);
     wb_numbers_put_campaign(root, &campaign->head);
@@ -211,6 +241,6 @@ struct wb_json *wb_recordings_json_build(const void *context)
         put_test(recordings, wire, test, purpose);
     struct wb_json *const wires = wb_json_set_array(root, "wires");
     for (int i = 0; i < results->n_wires; i++)
-        put_wire(wires, &results->wires[i]);
+        put_wire(wires, results, &results->wires[i]);
     return root;
 }

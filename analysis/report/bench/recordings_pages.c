@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "analysis/align.h"
+#include "analysis/report/bench/recordings_cycle_pages.h"
+#include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/pages.h"
 #include "base/text.h"
@@ -191,7 +193,10 @@ static void put_properties(struct wb_document *document,
             break;
         }
     }
-    wb_document_heading(document, 2, "properties", "Calibrated properties");
+    wb_document_heading(document, 2, "properties",
+                        results->campaign->whole_cycle
+                            ? "Calibrated properties, by the paper's route"
+                            : "Calibrated properties");
     snprintf(caption, sizeof caption,
              "<i>E</i> from eq. 10 at a deflection of %g of the length, "
              "<i>\xcf\x83</i><sub>Y</sub> from eq. 11 at %g of it. \xc2\xb1: standard "
@@ -395,6 +400,7 @@ static void put_summary(struct wb_document *document, const struct wb_recordings
     put_origin(document, results);
     put_limits(document, results);
     put_missing(document, results);
+    wb_recordings_cycle_pages_summary(document, results);
     put_properties(document, results);
     put_merits(document, results);
     put_warnings(document, results);
@@ -843,7 +849,7 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
 {
     const struct wb_recordings_results_wire *const wire = &results->wires[index];
     char slug[64], anchor[80];
-    wb_recordings_figures_slug(slug, wire->wanted->product.name);
+    wb_recordings_draw_slug(slug, wire->wanted->product.name);
     snprintf(anchor, sizeof anchor, "wire-%s", slug);
     wb_document_new_page(document);
     wb_document_heading(document, 1, anchor, wire->wanted->label);
@@ -855,7 +861,12 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
         wb_text_append_escaped(&text, problem_of(&wire->steps[k]));
         wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
     }
+    wb_recordings_cycle_pages_wire(document, results, index, figures);
     const bool calibrated = wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION);
+    if (wb_recordings_results_cycle(wire)) {
+        wb_document_new_page(document);
+        wb_document_heading(document, 2, "", "The paper's route");
+    }
     if (calibrated)
         put_calibration_text(document, results, wire);
     wb_figures_put(figures, document, "measured", index);

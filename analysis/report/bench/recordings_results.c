@@ -21,12 +21,14 @@ enum job_state {
     JOB_FINISHED
 };
 
-/* The alignment of a recording, or the step that follows for all of a wire. */
+/* The alignment of a recording, the step that follows for all of a wire, or the calibration of a
+ * wire on whole cycles. */
 struct job {
     enum job_state state;
     enum wb_recordings_purpose purpose;
     struct wb_recordings_results_wire *wire;
-    struct wb_recordings_results_test *test; /* of an alignment; NULL: of a step */
+    struct wb_recordings_results_test *test; /* of an alignment; NULL: of a wire */
+    bool is_cycle;
 };
 
 struct schedule {
@@ -176,16 +178,39 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
     return WB_RECORDINGS_FAILED;
 }
 
+static enum wb_recordings_results_state run_cycle(struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings_results_tests *const tests =
+        &wire->steps[WB_RECORDINGS_CALIBRATION].tests;
+    const struct wb_dataset **const datasets = calloc((size_t)tests->n + 1, sizeof *datasets);
+    const int n = datasets ? usable_datasets(tests, datasets) : 0;
+    if (n == 0) {
+        wb_text_append(&wire->cycle_problem, "no usable recording");
+        free(datasets);
+        return WB_RECORDINGS_MISSING;
+    }
+    const struct wb_reasons reasons = {&wire->cycle_problem, NULL, NULL};
+    struct wb_reason why = {.text = ""};
+    const enum wb_status status = wb_recordings_cycle_run(&wire->cycle, datasets, n, &why);
+    free(datasets);
+    if (status == WB_OK)
+        return WB_RECORDINGS_DONE;
+    wb_reasons_fail(&reasons, status, &why);
+    return WB_RECORDINGS_FAILED;
+}
+
 /* --- the schedule --- */
 
-/* A calibration waits for the recordings of its own, a validation for all else of its wire. */
+/* A calibration waits for the recordings of its own, a validation for all else of its wire but the
+ * calibration on whole cycles, which it does not build on. */
 static bool is_ready(const struct schedule *schedule, const struct job *job)
 {
     for (int i = 0; i < schedule->n && !job->test; i++) {
         const struct job *const other = &schedule->jobs[i];
         const bool before = job->purpose == WB_RECORDINGS_VALIDATION ||
                             (other->test && other->purpose == WB_RECORDINGS_CALIBRATION);
-        if (other != job && other->wire == job->wire && before && other->state != JOB_FINISHED)
+        if (other != job && other->wire == job->wire && before && !other->is_cycle &&
+            other->state != JOB_FINISHED)
             return false;
     }
     return true;
@@ -208,8 +233,8 @@ static void tell(const struct schedule *schedule, const struct job *job)
     char what[160];
     const char *const label = job->wire->wanted->label;
     static const char *const done[] = {"calibrated", "validated"};
-    snprintf(what, sizeof what, "%s %.120s", job->test ? "aligned" : done[job->purpose],
-             job->test ? job->test->wanted->name : label);
+    snprintf(what, sizeof what, "%s %.120s%s", job->test ? "aligned" : done[job->purpose],
+             job->test ? job->test->wanted->name : label, job->is_cycle ? " on whole cycles" : "");
     schedule->progress(schedule->context, schedule->n_finished, what);
 }
 
@@ -227,6 +252,8 @@ static void *work(void *context)
         pthread_mutex_unlock(&schedule->lock);
         if (job->test)
             run_align(schedule->results->campaign, job);
+        else if (job->is_cycle)
+            job->wire->cycle_state = run_cycle(job->wire);
         else
             job->wire->steps[job->purpose].state = run_step(schedule->results->campaign, job);
         pthread_mutex_lock(&schedule->lock);
@@ -250,6 +277,16 @@ static void add_steps(struct schedule *schedule, enum wb_recordings_purpose purp
     }
 }
 
+static void add_cycles(struct schedule *schedule)
+{
+    for (int i = 0; i < schedule->results->n_wires; i++) {
+        struct wb_recordings_results_wire *const wire = &schedule->results->wires[i];
+        if (wire->cycle_state != WB_RECORDINGS_NOT_WANTED)
+            schedule->jobs[schedule->n++] =
+                (struct job){.purpose = WB_RECORDINGS_CALIBRATION, .wire = wire, .is_cycle = true};
+    }
+}
+
 static void add_alignments(struct schedule *schedule, enum wb_recordings_purpose purpose)
 {
     for (int i = 0; i < schedule->results->n_wires; i++) {
@@ -263,6 +300,8 @@ static void add_alignments(struct schedule *schedule, enum wb_recordings_purpose
 
 static void add_jobs(struct schedule *schedule)
 {
+    /* The longest first. */
+    add_cycles(schedule);
     add_steps(schedule, WB_RECORDINGS_CALIBRATION);
     add_alignments(schedule, WB_RECORDINGS_CALIBRATION);
     add_alignments(schedule, WB_RECORDINGS_VALIDATION);
@@ -302,7 +341,7 @@ enum wb_status wb_recordings_results_load(void *context, const void *of)
     struct wb_kind_outcome *const outcome = &results->outcome;
     results->campaign = campaign;
     outcome->n_wanted = wb_recordings_count(campaign, &outcome->n_missing);
-    outcome->n_steps = outcome->n_wanted + 2 * campaign->n_wires;
+    outcome->n_steps = outcome->n_wanted + (campaign->whole_cycle ? 3 : 2) * campaign->n_wires;
     results->wires = calloc((size_t)campaign->n_wires, sizeof *results->wires);
     if (!results->wires)
         return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
@@ -310,6 +349,8 @@ enum wb_status wb_recordings_results_load(void *context, const void *of)
     for (int i = 0; i < campaign->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &results->wires[i];
         wire->wanted = &campaign->wires[i];
+        wire->cycle_state =
+            campaign->whole_cycle ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
         for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
             wire->steps[k].state =
                 campaign->length[k] > 0.0 ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
@@ -348,6 +389,15 @@ static void judge_step(struct wb_recordings_results *results,
         results->outcome.exceeds_limit = true;
 }
 
+static void judge_cycle(struct wb_recordings_results *results,
+                        const struct wb_recordings_results_wire *wire)
+{
+    results->outcome.is_complete &=
+        wire->cycle_state == WB_RECORDINGS_DONE || wire->cycle_state == WB_RECORDINGS_NOT_WANTED;
+    if (results->campaign->pooled_scatter && wire->cycle_state == WB_RECORDINGS_DONE)
+        wb_recordings_cycle_pool(&results->pool, &wire->cycle);
+}
+
 void wb_recordings_results_judge(struct wb_recordings_results *results)
 {
     results->all_virtual = true;
@@ -355,7 +405,9 @@ void wb_recordings_results_judge(struct wb_recordings_results *results)
     for (int i = 0; i < results->n_wires; i++) {
         judge_step(results, &results->wires[i], WB_RECORDINGS_CALIBRATION);
         judge_step(results, &results->wires[i], WB_RECORDINGS_VALIDATION);
+        judge_cycle(results, &results->wires[i]);
     }
+    wb_recordings_cycle_close(&results->pool);
     results->outcome.is_complete &= results->outcome.n_usable == results->outcome.n_wanted;
     results->all_virtual &= results->outcome.n_usable > 0;
 }
@@ -403,6 +455,9 @@ void wb_recordings_results_release(void *context)
         struct wb_recordings_results_wire *const wire = &results->wires[i];
         if (wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
             wb_calibrate_result_release(&wire->calibration);
+        if (wire->cycle_state == WB_RECORDINGS_DONE)
+            wb_recordings_cycle_release(&wire->cycle);
+        wb_text_release(&wire->cycle_problem);
         for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++)
             release_step(&wire->steps[k]);
     }
@@ -440,6 +495,12 @@ wb_recordings_results_of(const struct wb_recordings_results_wire *wire,
 {
     const struct wb_recordings_results_step *const step = &wire->steps[purpose];
     return step->state == WB_RECORDINGS_DONE ? &step->result : NULL;
+}
+
+const struct wb_recordings_cycle *
+wb_recordings_results_cycle(const struct wb_recordings_results_wire *wire)
+{
+    return wire->cycle_state == WB_RECORDINGS_DONE ? &wire->cycle : NULL;
 }
 
 double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,

@@ -10,6 +10,7 @@
 #include "analysis/calibrate.h"
 #include "analysis/dataset.h"
 #include "analysis/report/bench/recordings.h"
+#include "analysis/report/bench/recordings_cycle.h"
 #include "analysis/report/kind.h"
 #include "analysis/validate.h"
 #include "base/status.h"
@@ -55,6 +56,9 @@ struct wb_recordings_results_wire {
     struct wb_recordings_results_step steps[WB_RECORDINGS_PURPOSES];
     struct wb_calibrate_result calibration; /* when it is done, as the next */
     struct wb_properties properties;
+    enum wb_recordings_results_state cycle_state; /* of the whole-cycle calibration, */
+    struct wb_text cycle_problem;
+    struct wb_recordings_cycle cycle; /* when it is done */
 };
 
 struct wb_recordings_results {
@@ -62,6 +66,7 @@ struct wb_recordings_results {
     const struct wb_recordings *campaign; /* borrowed; must outlive the results */
     int n_wires;
     struct wb_recordings_results_wire *wires; /* (n_wires), owned */
+    struct wb_recordings_cycle_pool pool;     /* degrees 0 where the campaign asks for none */
     bool any_virtual, all_virtual;            /* of the recordings that were used */
     char latest_utc[40];                      /* start of the latest recording; "" without any */
 };
@@ -84,6 +89,10 @@ wb_recordings_results_at(const struct wb_recordings_results *results, int index,
 const struct wb_validate_result *
 wb_recordings_results_of(const struct wb_recordings_results_wire *wire,
                          enum wb_recordings_purpose purpose);
+
+/* The whole-cycle calibration of a wire; NULL unless it is done. */
+const struct wb_recordings_cycle *
+wb_recordings_results_cycle(const struct wb_recordings_results_wire *wire);
 
 /* The RMS error over F_max of a step that is done: what limits bound. */
 double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,

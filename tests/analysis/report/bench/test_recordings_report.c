@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "analysis/align.h"
+#include "analysis/cycle_model.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"
 #include "analysis/report/bench/recordings_results_private.h"
@@ -46,6 +47,32 @@ static void add_gap(struct wb_recordings_results_test *test, double longest_gap)
     wb_json_append_text(warnings, "1 gap " WB_ALIGN_GAPS_TEXT " 0.85 s");
 }
 
+/* The strand's tension with the weights in it, of which the beam's curves have only the force. */
+static void fill_tensions(struct wb_dataset *dataset, const struct wb_material *material)
+{
+    const int n = (int)dataset->n_rows;
+    struct wb_cycle_data data = {.info = dataset->info, .n_points = n, .n_loading = n};
+    const struct wb_cycle_specimen specimen = {dataset->info.natural_shape[0], 0.0};
+    const struct wb_cycle_model_settings settings = {.n_elements = BEAM_ELEMENTS};
+    struct wb_cycle_model *model;
+    struct wb_cycle_run run;
+    struct wb_law law;
+    double *const tension = calloc((size_t)n, sizeof *tension);
+    data.points = calloc((size_t)n, sizeof *data.points);
+    assert_true(tension && data.points);
+    for (int i = 0; i < n; i++)
+        data.points[i].deflection = dataset->rows[i].deflection;
+    wb_law_init_ludwik(&law, material);
+    assert_int_equal(wb_cycle_model_create(&model, &data, &law, &settings), WB_OK);
+    assert_int_equal(wb_cycle_model_run(model, &law, &specimen, tension, NULL, &run), WB_OK);
+    assert_true(run.reached);
+    for (int i = 0; i < n; i++)
+        dataset->rows[i].tension = tension[i];
+    wb_cycle_model_destroy(model);
+    free(data.points);
+    free(tension);
+}
+
 static void fill_tests(struct wb_recordings_results_tests *tests, double length, double factor)
 {
     const struct wb_material truth = beam_material(0);
@@ -54,7 +81,8 @@ static void fill_tests(struct wb_recordings_results_tests *tests, double length,
         struct wb_test_info info = beam_info(0, length, i == 0 ? 3e-3 : -2e-3);
         info.sample = i + 1;
         info.is_simulation = false;
-        beam_dataset(&test->dataset, &info, &truth, 1e-3, 50e-3, factor * (i == 0 ? 0.97 : 1.03));
+        beam_dataset(&test->dataset, &info, &truth, 2e-4, 50e-3, factor * (i == 0 ? 0.97 : 1.03));
+        fill_tensions(&test->dataset, &truth);
         test->usable = true;
         test->is_virtual = true;
         snprintf(test->start_utc, sizeof test->start_utc, "2026-11-%02dT10:11:12Z", 10 + i);
@@ -70,7 +98,8 @@ static void fill_tests(struct wb_recordings_results_tests *tests, double length,
     }
 }
 
-static void make_good(struct good *good, double validation_factor)
+/* `whole_cycle`: calibrated on whole cycles too. */
+static void make_good(struct good *good, double validation_factor, bool whole_cycle)
 {
     write_text("good.yaml", good_campaign);
     assert_int_equal(wb_kind_read(&wb_recordings_kind, &good->campaign, in_folder("good.yaml")),
@@ -99,6 +128,10 @@ static void make_good(struct good *good, double validation_factor)
                                      NULL),
                      WB_OK);
     wire->steps[0].state = wire->steps[1].state = WB_RECORDINGS_DONE;
+    struct wb_reason why = {.text = ""};
+    wire->cycle_state = whole_cycle ? WB_RECORDINGS_DONE : WB_RECORDINGS_NOT_WANTED;
+    if (whole_cycle && wb_recordings_cycle_run(&wire->cycle, calibration, 2, &why) != WB_OK)
+        fail_msg("%s", why.text);
     wb_recordings_results_judge(&good->results);
 }
 
@@ -116,6 +149,11 @@ static const char *const good_files[] = {
     "figures/all-calibration.svg",
     "figures/all-validation.svg",
     "figures/all-errors.svg",
+    "figures/type1-ways.svg",
+    "figures/type1-residuals.svg",
+    "figures/type1-forest.svg",
+    "figures/type1-moments.svg",
+    "figures/type1-valley.svg",
     "figures/type1-cycles.svg",
     "figures/type1-samples.svg",
     "figures/type1-shapes.svg",
@@ -162,7 +200,7 @@ static void the_same_results_give_the_same_bytes_in_all_files(void **state)
     }
     /* All there is, and nothing left over from writing. */
     assert_int_equal(count_files("once"), 4);
-    assert_int_equal(count_files("once/figures"), 22);
+    assert_int_equal(count_files("once/figures"), 32);
 }
 
 static void every_output_says_virtual_rig_and_none_says_experiment(void **state)
@@ -207,7 +245,7 @@ static void the_html_page_needs_no_other_file_and_escapes_what_comes_from_files(
     int n = 0;
     for (const char *c = html; (c = strstr(c, "<svg")); c++)
         n++;
-    assert_int_equal(n, 11);
+    assert_int_equal(n, 16);
     /* Ids are unique over all figures. */
     assert_non_null(strstr(html, "id=\"type1-cycles-0\""));
     assert_non_null(strstr(html, "id=\"type1-samples-0\""));
@@ -267,7 +305,7 @@ static void a_slack_strand_or_a_gap_breaks_the_line(void **state)
 {
     (void)state;
     struct good good;
-    make_good(&good, 1.0);
+    make_good(&good, 1.0, false);
     struct wb_dataset *const dataset = &good.results.wires[0].steps[0].tests.items[0].dataset;
     const int whole = begun_lines(&good.results);
     assert_true(dataset->n_rows > 40);
@@ -303,8 +341,86 @@ static void the_json_file_holds_the_computed_numbers(void **state)
     assert_close_relative(value * WB_MN,
                           wire->steps[WB_RECORDINGS_VALIDATION].result.curve.max_force, 1e-12);
     assert_int_equal(wb_json_length(wb_json_get(root, "recordings")), 4);
-    assert_int_equal(wb_json_length(wb_json_get(root, "files")), 25);
+    assert_int_equal(wb_json_length(wb_json_get(root, "files")), 35);
     wb_json_destroy(root);
+}
+
+static void compute(const char *name, const char *text, int threads, struct wb_recordings *campaign,
+                    struct wb_recordings_results *results)
+{
+    write_text(name, text);
+    assert_int_equal(wb_kind_read(&wb_recordings_kind, campaign, in_folder(name)), WB_OK);
+    memset(results, 0, sizeof *results);
+    assert_int_equal(wb_recordings_results_load(results, campaign), WB_OK);
+    assert_int_equal(wb_recordings_results_compute(results, threads, NULL, NULL), WB_OK);
+}
+
+/* The beam's curves have no unloading. */
+static void a_loading_alone_leaves_the_rule_untested(void **state)
+{
+    const struct good *const good = *state;
+    const struct wb_cycle_calibration *const c = &good->results.wires[0].cycle.calibration;
+    struct wb_json *root;
+    assert_int_equal(wb_json_read(&root, in_folder("once/report.json")), WB_OK);
+    const struct wb_json *const entry = wb_json_item(wb_json_get(root, "wires"), 0);
+    const struct wb_json *const cycle = wb_json_get(entry, "cycle");
+    const struct wb_json *const rule = wb_json_get(cycle, "hardening_rule");
+    double value = 0.0;
+    bool is_measured = true;
+    assert_true(wb_json_get_number(wb_json_get(cycle, "flexural_rigidity_N_mm2"), "value", &value));
+    assert_close_relative(1e-6 * value, c->rigidity.value, 1e-12);
+    assert_true(wb_json_get_boolean(rule, "unloading_measured", &is_measured));
+    assert_false(is_measured);
+    assert_null(wb_json_get(cycle, "later_cycles"));
+    assert_non_null(wb_json_get(cycle, "ludwik_on_loading_alone"));
+    wb_json_destroy(root);
+    assert_true(says("once/report.html", "rule untested: no unloading"));
+    assert_true(says("once/report.html", "Bending properties, from loading and unloading"));
+    assert_true(says("once/report.html", "by the paper&#39;s route") ||
+                says("once/report.html", "by the paper's route"));
+}
+
+/* s of ln EI about each wire's own mean, and the interval that it gives. */
+static void the_scatter_is_pooled_over_wires_where_it_is_asked_for(void **state)
+{
+    (void)state;
+    struct wb_recordings_cycle a = {.calibration = {.n_members = 3}};
+    struct wb_recordings_cycle b = {.calibration = {.n_members = 2}};
+    struct wb_recordings_cycle_pool pool = {0};
+    double low, high;
+    a.calibration.rigidity = (struct wb_estimate){.value = 2.0, .deviation = 0.03};
+    b.calibration.rigidity = (struct wb_estimate){.value = 5.0, .deviation = 0.06};
+    wb_recordings_cycle_pool(&pool, &a);
+    wb_recordings_cycle_pool(&pool, &b);
+    wb_recordings_cycle_close(&pool);
+    assert_int_equal(pool.degrees, 3);
+    assert_close_relative(pool.deviation, sqrt((2.0 * 9e-4 + 36e-4) / 3.0), 1e-12);
+    /* Student's t of 3 degrees of freedom is 3.182446. */
+    wb_recordings_cycle_interval(&pool, &a, &low, &high);
+    assert_close_relative(log(high / 2.0), 3.182446 * pool.deviation / sqrt(3.0), 1e-6);
+    assert_close_relative(low * high, 4.0, 1e-12);
+    const struct wb_recordings_cycle_pool none = {0};
+    wb_recordings_cycle_interval(&none, &a, &low, &high);
+    assert_true(isnan(low) && isnan(high));
+}
+
+/* Without it the report is the paper's route alone, complete as before. */
+static void a_campaign_may_ask_for_the_papers_route_alone(void **state)
+{
+    (void)state;
+    struct wb_recordings campaign;
+    struct wb_recordings_results results;
+    char text[1000];
+    snprintf(text, sizeof text, "%swhole_cycle: false\n", good_campaign);
+    compute("paper.yaml", text, 1, &campaign, &results);
+    assert_int_equal(results.wires[0].cycle_state, WB_RECORDINGS_NOT_WANTED);
+    assert_int_equal(results.outcome.n_steps, 6);
+    assert_int_equal(wb_kind_write(&wb_recordings_kind, &results, in_folder("paper"), false),
+                     WB_OK);
+    assert_false(says("paper/report.html", "Bending properties"));
+    assert_false(says("paper/report.json", "\"cycle\""));
+    wb_recordings_results_release(&results);
+    wb_recordings_release(&campaign);
 }
 
 static void the_pdf_text_can_be_searched(void **state)
@@ -366,7 +482,7 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
 {
     (void)state;
     struct good bad;
-    make_good(&bad, 1.12);
+    make_good(&bad, 1.12, false);
     assert_true(bad.results.outcome.exceeds_limit);
     assert_true(bad.results.outcome.is_complete);
     const struct wb_recordings_results_wire *const wire = &bad.results.wires[0];
@@ -390,16 +506,6 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
 }
 
 /* --- campaigns that lack something --- */
-
-static void compute(const char *name, const char *text, int threads, struct wb_recordings *campaign,
-                    struct wb_recordings_results *results)
-{
-    write_text(name, text);
-    assert_int_equal(wb_kind_read(&wb_recordings_kind, campaign, in_folder(name)), WB_OK);
-    memset(results, 0, sizeof *results);
-    assert_int_equal(wb_recordings_results_load(results, campaign), WB_OK);
-    assert_int_equal(wb_recordings_results_compute(results, threads, NULL, NULL), WB_OK);
-}
 
 static void a_campaign_without_any_recording_still_reports(void **state)
 {
@@ -468,6 +574,7 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
         assert_int_equal(wire->steps[WB_RECORDINGS_CALIBRATION].state, WB_RECORDINGS_FAILED);
         assert_true(wire->steps[WB_RECORDINGS_CALIBRATION].problem.length > 10);
         assert_int_equal(wire->steps[WB_RECORDINGS_VALIDATION].state, WB_RECORDINGS_NOT_WANTED);
+        assert_int_not_equal(wire->cycle_state, WB_RECORDINGS_NOT_WANTED);
         assert_int_equal(
             wb_kind_write(&wb_recordings_kind, &results, in_folder("made-up"), threads > 1), WB_OK);
         texts[threads - 1] = read_text("made-up/report.json", NULL);
@@ -505,7 +612,7 @@ static int setup(void **state)
     keep_messages();
     if (make_folder(state) != 0)
         return -1;
-    make_good(&good, 1.0);
+    make_good(&good, 1.0, true);
     *state = &good;
     return 0;
 }
@@ -526,6 +633,9 @@ int main(void)
         cmocka_unit_test(the_capacity_is_what_weighs_so_much_on_that_bench),
         cmocka_unit_test(a_slack_strand_or_a_gap_breaks_the_line),
         cmocka_unit_test(the_json_file_holds_the_computed_numbers),
+        cmocka_unit_test(a_loading_alone_leaves_the_rule_untested),
+        cmocka_unit_test(the_scatter_is_pooled_over_wires_where_it_is_asked_for),
+        cmocka_unit_test(a_campaign_may_ask_for_the_papers_route_alone),
         cmocka_unit_test(the_pdf_text_can_be_searched),
         cmocka_unit_test(a_full_folder_is_refused_and_force_replaces_only_the_reports_own_files),
         cmocka_unit_test(a_folder_that_cannot_be_written_leaves_nothing),

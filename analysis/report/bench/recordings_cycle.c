@@ -1,0 +1,237 @@
+#include "analysis/report/bench/recordings_cycle.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "analysis/bending.h"
+#include "analysis/cycle_json.h"
+#include "base/interrupt.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double coverage = 0.95;
+/* mJ in one J. */
+static const double MILLI = 1e-3;
+
+/* What the interval of a mean of n logarithms is to both sides. */
+static double half_width(double deviation, int degrees, int n)
+{
+    return gsl_cdf_tdist_Qinv(0.5 * (1.0 - coverage), degrees) * deviation / sqrt(n);
+}
+
+/* --- the law's line --- */
+
+static enum wb_status draw_curve(struct wb_recordings_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    struct wb_recordings_cycle_curve *const curve = &cycle->curve;
+    double sum[WB_RECORDINGS_CYCLE_CURVE] = {0.0}, squares[WB_RECORDINGS_CYCLE_CURVE] = {0.0};
+    double moment[WB_RECORDINGS_CYCLE_CURVE];
+    const int n = c->n_members, points = WB_RECORDINGS_CYCLE_CURVE;
+
+    /* Close together where the line bends most. */
+    for (int k = 0; k < points; k++)
+        curve->curvature[k] = c->largest_curvature * pow((double)k / (points - 1), 2.0);
+    for (int i = 0; i < n; i++) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        WB_TRY(wb_bending_moments(&member->answers[c->chosen].fit.law,
+                                  member->data.info.outer_diameter, points, curve->curvature,
+                                  moment));
+        for (int k = 1; k < points; k++) {
+            sum[k] += log(moment[k]);
+            squares[k] += log(moment[k]) * log(moment[k]);
+        }
+    }
+    curve->moment[0] = curve->low[0] = curve->high[0] = 0.0;
+    for (int k = 1; k < points; k++) {
+        const double mean = sum[k] / n;
+        curve->moment[k] = exp(mean);
+        curve->low[k] = curve->high[k] = (double)NAN;
+        if (n < 2)
+            continue;
+        const double s = sqrt(fmax(0.0, squares[k] - n * mean * mean) / (n - 1));
+        curve->low[k] = exp(mean - half_width(s, n - 1, n));
+        curve->high[k] = exp(mean + half_width(s, n - 1, n));
+    }
+    return WB_OK;
+}
+
+/* --- what figures need --- */
+
+/* The first specimen with the most cycles: later ones are predicted. */
+static enum wb_status predict_later(struct wb_recordings_cycle *cycle,
+                                    const struct wb_dataset *const *datasets, struct wb_reason *why)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    int best = 0;
+    for (int i = 1; i < c->n_members; i++) {
+        if (wb_cycle_later_count(datasets[i]) > wb_cycle_later_count(datasets[best]))
+            best = i;
+    }
+    const struct wb_cycle_member *const member = &c->members[best];
+    return wb_cycle_later_predict(&cycle->later, datasets[best], &member->data,
+                                  &member->answers[c->chosen].fit, why);
+}
+
+/* The valley is looked at from Ludwik's best law; a specimen without one has none. */
+static bool find_valley(struct wb_recordings_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    struct wb_reason why = {.text = ""};
+    for (int i = 0; i < c->n_ranked; i++) {
+        const struct wb_cycle_fit *const fit = &c->members[0].answers[c->ranked[i].candidate].fit;
+        if (fit->law.form == WB_LAW_LUDWIK)
+            return wb_cycle_valley_find(&cycle->valley, &c->members[0].data, &fit->law, &why) ==
+                   WB_OK;
+    }
+    return false;
+}
+
+/* A test without shapes has an empty cloud. */
+static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
+                                  const struct wb_dataset *const *datasets)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const size_t n = (size_t)c->n_members;
+    cycle->clouds = calloc(n, sizeof *cycle->clouds);
+    const struct wb_moment_cloud **const taken = calloc(n, sizeof *taken);
+    int n_taken = 0;
+    enum wb_status status = WB_OK;
+    if (!cycle->clouds || !taken)
+        status = wb_fail(WB_ERR_MEMORY, "no memory for %zu specimens", n);
+    for (int i = 0; status == WB_OK && i < c->n_members; i++) {
+        const struct wb_cycle_fit *const fit = &c->members[i].answers[c->chosen].fit;
+        const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level};
+        struct wb_reason why = {.text = ""};
+        const enum wb_status one =
+            wb_moment_curvature_take(&cycle->clouds[i], datasets[i], &specimen, NULL, &why);
+        if (one == WB_OK)
+            taken[n_taken++] = &cycle->clouds[i];
+        else
+            cycle->clouds[i] = (struct wb_moment_cloud){.n = 0};
+    }
+    if (status == WB_OK && n_taken > 0) {
+        status = wb_moment_curvature_compare(
+            taken, n_taken, &c->law, c->members[0].data.info.outer_diameter, &cycle->comparison);
+        cycle->has_comparison = status == WB_OK;
+    }
+    free(taken);
+    return status;
+}
+
+/* --- all of it --- */
+
+static bool go_on(void *context, int done, int all)
+{
+    (void)context, (void)done, (void)all;
+    return !wb_interrupted();
+}
+
+enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
+                                       const struct wb_dataset *const *datasets, int n,
+                                       struct wb_reason *why)
+{
+    struct wb_cycle_calibrate_settings settings;
+    wb_cycle_calibrate_default_settings(&settings);
+    /* Wires are computed side by side already. */
+    settings.threads = 1;
+    settings.progress = go_on;
+    WB_TRY(wb_cycle_calibrate_run(&cycle->calibration, datasets, n, &settings, why));
+    enum wb_status status = draw_curve(cycle);
+    if (status == WB_OK)
+        status = predict_later(cycle, datasets, why);
+    if (status == WB_OK)
+        status = wb_cycle_sensitivity_find(&cycle->calibration, &settings, cycle->sensitivities);
+    if (status == WB_OK)
+        status = take_clouds(cycle, datasets);
+    if (status != WB_OK) {
+        wb_recordings_cycle_release(cycle);
+        return status;
+    }
+    cycle->has_valley = find_valley(cycle);
+    return WB_OK;
+}
+
+void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle)
+{
+    const int n = cycle->calibration.n_members;
+    wb_cycle_calibrate_release(&cycle->calibration);
+    wb_cycle_later_release(&cycle->later);
+    for (int i = 0; cycle->clouds && i < n; i++)
+        wb_moment_curvature_release(&cycle->clouds[i]);
+    free(cycle->clouds);
+    cycle->clouds = NULL;
+}
+
+static void put_later(struct wb_json *object, const struct wb_cycle_later *later)
+{
+    wb_json_set_integer(object, "sample", later->sample);
+    wb_json_set_integer(object, "cycles", later->n_cycles);
+    wb_json_set_number(object, "rms_over_F_max", later->rms);
+    wb_json_set_number(object, "measured_energy_mJ", later->measured_energy / MILLI);
+    wb_json_set_number(object, "computed_energy_mJ", later->computed_energy / MILLI);
+}
+
+static void put_valley(struct wb_json *object, const struct wb_cycle_valley *valley)
+{
+    wb_json_set_number(object, "strength_coefficient_MPa",
+                       valley->best.strength_coefficient / WB_MPA);
+    wb_json_set_number(object, "hardening_exponent", valley->best.hardening_exponent);
+    wb_json_set_number(object, "misfit", valley->best_misfit);
+    wb_json_set_number(object, "limit", valley->limit);
+    wb_json_set_number(object, "strength_coefficient_low_MPa", valley->strength_low / WB_MPA);
+    wb_json_set_number(object, "strength_coefficient_high_MPa", valley->strength_high / WB_MPA);
+    wb_json_set_number(object, "hardening_exponent_low", valley->exponent_low);
+    wb_json_set_number(object, "hardening_exponent_high", valley->exponent_high);
+}
+
+void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle)
+{
+    wb_cycle_json_put(object, &cycle->calibration);
+    struct wb_json *const clouds = wb_json_set_array(object, "moment_curvature_measured");
+    for (int i = 0; i < cycle->calibration.n_members; i++) {
+        struct wb_json *const cloud = wb_json_append_object(clouds);
+        wb_json_set_integer(cloud, "sample", cycle->calibration.members[i].sample);
+        wb_moment_curvature_put(wb_json_set_array(cloud, "points"), &cycle->clouds[i]);
+    }
+    if (cycle->later.n > 0)
+        put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
+    wb_cycle_sensitivity_put(wb_json_set_array(object, "shared_sensitivities"),
+                             cycle->sensitivities);
+    if (cycle->has_valley)
+        put_valley(wb_json_set_object(object, "ludwik_on_loading_alone"), &cycle->valley);
+}
+
+/* --- pooled over wires --- */
+
+void wb_recordings_cycle_pool(struct wb_recordings_cycle_pool *pool,
+                              const struct wb_recordings_cycle *cycle)
+{
+    const struct wb_estimate *const rigidity = &cycle->calibration.rigidity;
+    const int degrees = cycle->calibration.n_members - 1;
+    if (degrees < 1 || !isfinite(rigidity->deviation))
+        return;
+    pool->deviation += degrees * rigidity->deviation * rigidity->deviation;
+    pool->degrees += degrees;
+}
+
+void wb_recordings_cycle_close(struct wb_recordings_cycle_pool *pool)
+{
+    pool->deviation = pool->degrees > 0 ? sqrt(pool->deviation / pool->degrees) : (double)NAN;
+}
+
+void wb_recordings_cycle_interval(const struct wb_recordings_cycle_pool *pool,
+                                  const struct wb_recordings_cycle *cycle, double *low,
+                                  double *high)
+{
+    const double value = cycle->calibration.rigidity.value;
+    *low = *high = (double)NAN;
+    if (pool->degrees < 1)
+        return;
+    const double half = half_width(pool->deviation, pool->degrees, cycle->calibration.n_members);
+    *low = value * exp(-half);
+    *high = value * exp(half);
+}

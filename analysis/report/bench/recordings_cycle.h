@@ -1,0 +1,74 @@
+/* The whole-cycle calibration of a wire as a report has it: what analysis/cycle_calibrate.h gives,
+ * and what its figures need beyond that.
+ *
+ * It stands beside the paper's route, which other struct wb_recordings_results_step hold. That it
+ * fails is a result, with the reason.
+ */
+#ifndef WB_ANALYSIS_REPORT_BENCH_RECORDINGS_CYCLE_H
+#define WB_ANALYSIS_REPORT_BENCH_RECORDINGS_CYCLE_H
+
+#include <stdbool.h>
+
+#include "analysis/cycle_calibrate.h"
+#include "analysis/cycle_later.h"
+#include "analysis/cycle_sensitivity.h"
+#include "analysis/cycle_valley.h"
+#include "analysis/dataset.h"
+#include "analysis/moment_curvature.h"
+#include "base/json.h"
+#include "base/reason.h"
+#include "base/status.h"
+
+enum {
+    WB_RECORDINGS_CYCLE_CURVE = 41 /* curvatures of the law's line, from 0 to the largest */
+};
+
+/* M(kappa) of the chosen law: as struct wb_estimate of each curvature. */
+struct wb_recordings_cycle_curve {
+    double curvature[WB_RECORDINGS_CYCLE_CURVE];                            /* 1/m */
+    double moment[WB_RECORDINGS_CYCLE_CURVE];                               /* N m */
+    double low[WB_RECORDINGS_CYCLE_CURVE], high[WB_RECORDINGS_CYCLE_CURVE]; /* NaN: one specimen */
+};
+
+struct wb_recordings_cycle {
+    struct wb_cycle_calibration calibration;
+    struct wb_recordings_cycle_curve curve;
+    /* Of the specimen with the most cycles; n 0 where none has a second one. */
+    struct wb_cycle_later later;
+    struct wb_cycle_sensitivity sensitivities[WB_SHARED];
+    bool has_valley;
+    struct wb_cycle_valley valley; /* of the first specimen */
+    /* Of the members: moment over curvature as measured; empty where there are no shapes. */
+    struct wb_moment_cloud *clouds; /* (calibration.n_members), owned */
+    bool has_comparison;
+    struct wb_moment_comparison comparison; /* of the clouds with the law */
+};
+
+/* Calibrates on n datasets of a wire, on the calling thread alone. On a failure nothing needs a
+ * release; `why` receives the reason. */
+WB_MUST_CHECK enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
+                                                     const struct wb_dataset *const *datasets,
+                                                     int n, struct wb_reason *why);
+void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle);
+
+/* All numbers into an object of report.json. */
+void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle);
+
+/* s of ln EI pooled over wires: that of each specimen about the mean of its own wire. */
+struct wb_recordings_cycle_pool {
+    double deviation; /* of ln EI; NaN unknown */
+    int degrees;      /* of freedom; 0: no wire has two specimens */
+};
+
+/* Adds a wire's specimens to sums that begin at zero; then wb_recordings_cycle_close() makes the
+ * deviation of them. */
+void wb_recordings_cycle_pool(struct wb_recordings_cycle_pool *pool,
+                              const struct wb_recordings_cycle *cycle);
+void wb_recordings_cycle_close(struct wb_recordings_cycle_pool *pool);
+
+/* The interval of 95 % that EI has with the pooled deviation; NaN where that is unknown. */
+void wb_recordings_cycle_interval(const struct wb_recordings_cycle_pool *pool,
+                                  const struct wb_recordings_cycle *cycle, double *low,
+                                  double *high);
+
+#endif

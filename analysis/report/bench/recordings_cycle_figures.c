@@ -1,0 +1,590 @@
+#include "analysis/report/bench/recordings_cycle_figures.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/report/bench/recordings_draw.h"
+#include "analysis/report/pages.h"
+#include "analysis/report/pdf.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+/* N mm2 in one N m2; mJ in one J. */
+static const double N_MM2 = 1e-6, MILLI = 1e-3;
+
+enum {
+    MOST_PANELS = 3, /* samples beside each other */
+    MOST_FACES = WB_VALLEY_NODES * WB_VALLEY_NODES / 4,
+    MOST_ROWS = 24 /* of the samples' EI, with the two of the mean */
+};
+
+static const char deflection_axis[] = "Deflection <i>\xce\xb4</i> (mm)";
+
+/* What an item is of; NULL: there is no such calibration. */
+static const struct wb_recordings_cycle *cycle_of(const struct wb_figures_item *item)
+{
+    return wb_recordings_results_cycle(wb_recordings_draw_wire(item->results, item->index));
+}
+
+static const char *measured_of(const struct wb_figures_item *item)
+{
+    return wb_recordings_draw_measured(item->results);
+}
+
+/* Columns of numbers to draw; NULL when out of memory. */
+static double *columns_of(int n_columns, int n)
+{
+    return calloc((size_t)n_columns * ((size_t)n + 1), sizeof(double));
+}
+
+static enum wb_status no_memory(void)
+{
+    return wb_fail(WB_ERR_MEMORY, "out of memory drawing figures");
+}
+
+/* --- both ways --- */
+
+static int panels_of(const struct wb_recordings_cycle *cycle)
+{
+    const int n = cycle->calibration.n_members;
+    return n < MOST_PANELS ? n : MOST_PANELS;
+}
+
+/* The points of a way in mm and mN: measured, computed. */
+static int take_way(const struct wb_cycle_member *member, const struct wb_cycle_fit *fit,
+                    bool is_unloading, double *x, double *measured, double *computed)
+{
+    int n = 0;
+    for (int i = 0; i < member->data.n_points; i++) {
+        const struct wb_cycle_point *const point = &member->data.points[i];
+        if (point->is_unloading != is_unloading)
+            continue;
+        x[n] = point->deflection / WB_MM;
+        measured[n] = point->tension / WB_MN;
+        computed[n++] = fit->tension[i] / WB_MN;
+    }
+    return n;
+}
+
+static void title_sample(struct wb_panel *panel, const struct wb_cycle_member *member)
+{
+    char title[40];
+    snprintf(title, sizeof title, "sample %d", member->sample);
+    wb_figure_set_title(panel, title);
+}
+
+static enum wb_status add_ways(struct wb_panel *panel, const struct wb_cycle_member *member,
+                               const struct wb_cycle_fit *fit, struct wb_colour colour,
+                               bool has_legend)
+{
+    const int most = member->data.n_points;
+    double *const x = columns_of(3, most), *const measured = x + most,
+                  *const computed = x + 2 * most;
+    if (!x)
+        return no_memory();
+    const struct wb_figure_style points[2] = {
+        {.colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 3.2},
+        {.colour = colour, .marker = WB_MARKER_RING, .marker_size = 3.6}};
+    const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 1.0};
+    static const char *const labels[2] = {"loading", "unloading"};
+    for (int k = 0; k < 2; k++) {
+        const int n = take_way(member, fit, k == 1, x, measured, computed);
+        if (n == 0)
+            continue;
+        wb_figure_add_line(panel, has_legend && k == 0 ? "computed" : NULL, (size_t)n, x, computed,
+                           &line);
+        /* Every third, so that the line is seen between them. */
+        int shown = 0;
+        for (int i = 0; i < n; i += 3, shown++) {
+            x[shown] = x[i];
+            measured[shown] = measured[i];
+        }
+        wb_figure_add_line(panel, has_legend ? labels[k] : NULL, (size_t)shown, x, measured,
+                           &points[k]);
+    }
+    free(x);
+    return WB_OK;
+}
+
+enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_item *item)
+{
+    const struct wb_recordings_cycle *const cycle = cycle_of(item);
+    if (!cycle)
+        return WB_OK;
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    WB_TRY(wb_recordings_draw_start(item, "ways", WB_PDF_WIDTH, 200.0));
+    wb_text_append(
+        &item->caption,
+        "First loading and unloading, %s, and the beam with the chosen law (%s), each "
+        "sample with its own fit; every third reading is drawn. Tension of the strand as read, "
+        "weights included.",
+        measured_of(item), wb_candidate_name(c->chosen));
+    if (c->n_members > MOST_PANELS)
+        wb_text_append(&item->caption, " The first %d of %d samples.", MOST_PANELS, c->n_members);
+    for (int i = 0; i < panels_of(cycle); i++) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+        wb_figure_set_axes(panel, deflection_axis, i == 0 ? "Tension (mN)" : "");
+        title_sample(panel, member);
+        WB_TRY(add_ways(panel, member, &member->answers[c->chosen].fit,
+                        wb_palette_wire(item->index), i == 0));
+    }
+    return WB_OK;
+}
+
+/* Points that count for less than half in the fit: farther off than 5 standard deviations. */
+static double outlier_limit(const struct wb_cycle_member *member, const struct wb_cycle_fit *fit)
+{
+    struct wb_cycle_fit_settings settings;
+    wb_cycle_fit_default_settings(&settings);
+    const double noise = fmax(settings.force_noise, settings.force_share * member->data.max_force);
+    return 5.0 * fmax(noise, fit->misfit * member->data.max_force);
+}
+
+static enum wb_status add_residuals(struct wb_panel *panel, const struct wb_cycle_member *member,
+                                    const struct wb_cycle_fit *fit, struct wb_colour colour)
+{
+    const int most = member->data.n_points;
+    double *const x = columns_of(5, most), *const measured = x + most,
+                  *const computed = x + 2 * most;
+    double *const off_x = x + 3 * most, *const off = x + 4 * most;
+    if (!x)
+        return no_memory();
+    const struct wb_figure_style ways[2] = {
+        {.colour = colour, .width = 0.9, .marker = WB_MARKER_CIRCLE, .marker_size = 2.2},
+        {.colour = colour, .width = 0.7, .marker = WB_MARKER_RING, .marker_size = 2.6}};
+    const struct wb_figure_style outliers = {
+        .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 5.0};
+    const double limit = outlier_limit(member, fit) / WB_MN;
+    const double percent = 100.0 * WB_MN / member->data.max_force;
+    int n_off = 0;
+    for (int k = 0; k < 2; k++) {
+        const int n = take_way(member, fit, k == 1, x, measured, computed);
+        for (int i = 0; i < n; i++) {
+            const double residual = computed[i] - measured[i];
+            measured[i] = percent * residual;
+            if (!(fabs(residual) > limit))
+                continue;
+            off_x[n_off] = x[i];
+            off[n_off++] = measured[i];
+        }
+        if (n > 0)
+            wb_figure_add_line(panel, NULL, (size_t)n, x, measured, &ways[k]);
+    }
+    if (n_off > 0)
+        wb_figure_add_line(panel, "outliers", (size_t)n_off, off_x, off, &outliers);
+    free(x);
+    return WB_OK;
+}
+
+/* The largest residual of any sample, % of F_max: all panels have the same scale. */
+static double largest_residual(const struct wb_recordings_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    double largest = 0.0;
+    for (int i = 0; i < panels_of(cycle); i++) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        const struct wb_cycle_fit *const fit = &member->answers[c->chosen].fit;
+        for (int k = 0; k < member->data.n_points; k++)
+            largest = fmax(largest, fabs(fit->tension[k] - member->data.points[k].tension) /
+                                        member->data.max_force);
+    }
+    return 100.0 * largest;
+}
+
+/* The next of 1, 2, 5 times a power of ten: axes that end there carry numbers at both ends. */
+static double round_end(double value)
+{
+    const double power = pow(10.0, floor(log10(fmax(value, 1e-6))));
+    const double part = value / power;
+    return power * (part <= 1.0 ? 1.0 : part <= 2.0 ? 2.0 : part <= 5.0 ? 5.0 : 10.0);
+}
+
+enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *item)
+{
+    const struct wb_recordings_cycle *const cycle = cycle_of(item);
+    if (!cycle)
+        return WB_OK;
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const double end = round_end(largest_residual(cycle));
+    WB_TRY(wb_recordings_draw_start(item, "residuals", WB_PDF_WIDTH, 135.0));
+    wb_text_append(&item->caption,
+                   "Computed less measured tension of the same samples (dots: loading, rings: "
+                   "unloading). Points that the fit counts for less than half are marked as "
+                   "outliers.");
+    for (int i = 0; i < panels_of(cycle); i++) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+        wb_figure_set_axes(panel, deflection_axis, i == 0 ? "% of <i>F</i><sub>max</sub>" : "");
+        wb_figure_set_y_range(panel, -end, end);
+        WB_TRY(add_residuals(panel, member, &member->answers[c->chosen].fit,
+                             wb_palette_wire(item->index)));
+    }
+    return WB_OK;
+}
+
+/* --- later cycles --- */
+
+static enum wb_status add_later(struct wb_figure *figure, const struct wb_cycle_later *later,
+                                double max_force)
+{
+    double *const x = columns_of(4, later->n), *const measured = x + later->n;
+    double *const computed = x + 2 * later->n, *const error = x + 3 * later->n;
+    if (!x)
+        return no_memory();
+    struct wb_panel *const loops = wb_figure_add_panel(figure);
+    struct wb_panel *const errors = wb_figure_add_panel(figure);
+    wb_figure_set_axes(loops, deflection_axis, "Tension (mN)");
+    wb_figure_set_axes(errors, deflection_axis,
+                       "Computed less measured, % of <i>F</i><sub>max</sub>");
+    for (int cycle = 2; cycle <= later->n_cycles; cycle++) {
+        int n = 0;
+        for (int i = 0; i < later->n; i++) {
+            const struct wb_cycle_later_point *const p = &later->points[i];
+            if (p->cycle != cycle)
+                continue;
+            x[n] = p->deflection / WB_MM;
+            measured[n] = p->measured / WB_MN;
+            computed[n] = p->computed / WB_MN;
+            error[n++] = 100.0 * (p->computed - p->measured) / max_force;
+        }
+        char label[40];
+        snprintf(label, sizeof label, "cycle %d", cycle);
+        const struct wb_colour colour = wb_palette_sequence(cycle - 2, later->n_cycles);
+        const struct wb_figure_style points = {.colour = colour,
+                                               .marker = cycle % 2 == 0 ? WB_MARKER_CIRCLE
+                                                                        : WB_MARKER_RING,
+                                               .marker_size = 3.0};
+        const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 0.9};
+        const struct wb_figure_style thin = {.colour = colour,
+                                             .width = 1.0,
+                                             .dash =
+                                                 cycle % 2 == 0 ? WB_DASH_SOLID : WB_DASH_DASHED};
+        wb_figure_add_line(loops, label, (size_t)n, x, measured, &points);
+        wb_figure_add_line(loops, cycle == later->n_cycles ? "predicted" : NULL, (size_t)n, x,
+                           computed, &line);
+        wb_figure_add_line(errors, label, (size_t)n, x, error, &thin);
+    }
+    free(x);
+    return WB_OK;
+}
+
+static double max_force_of(const struct wb_cycle_calibration *c, int sample)
+{
+    for (int i = 0; i < c->n_members; i++) {
+        if (c->members[i].sample == sample)
+            return c->members[i].data.max_force;
+    }
+    return (double)NAN;
+}
+
+enum wb_status wb_recordings_cycle_figures_later(struct wb_figures_item *item)
+{
+    const struct wb_recordings_cycle *const cycle = cycle_of(item);
+    if (!cycle || cycle->later.n == 0)
+        return WB_OK;
+    const struct wb_cycle_later *const later = &cycle->later;
+    WB_TRY(wb_recordings_draw_start(item, "later", WB_PDF_WIDTH, 190.0));
+    wb_text_append(&item->caption,
+                   "Cycles 2 to %d of sample %d, %s, and what the law predicts that was fitted to "
+                   "the first one alone: RMS %.2f %% of <i>F</i><sub>max</sub>, energy lost in a "
+                   "cycle %.2f mJ measured, %.2f mJ predicted.",
+                   later->n_cycles, later->sample, measured_of(item), 100.0 * later->rms,
+                   later->measured_energy / MILLI, later->computed_energy / MILLI);
+    return add_later(item->figure, later, max_force_of(&cycle->calibration, later->sample));
+}
+
+/* --- EI of the samples --- */
+
+/* The range of a sample's EI over the laws that count. */
+static void range_of(const struct wb_cycle_calibration *c, const struct wb_cycle_member *member,
+                     double range[2])
+{
+    range[0] = range[1] = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
+    for (int i = 0; i < c->n_ranked; i++) {
+        const struct wb_cycle_answer *const answer = &member->answers[c->ranked[i].candidate];
+        if (!c->ranked[i].counts || !answer->is_fitted)
+            continue;
+        range[0] = fmin(range[0], answer->bending.flexural_rigidity / N_MM2);
+        range[1] = fmax(range[1], answer->bending.flexural_rigidity / N_MM2);
+    }
+}
+
+/* Ends at round numbers, so that at least these carry one. */
+static void set_round_range(struct wb_panel *panel, double low, double high)
+{
+    const double span = fmax(high - low, 1e-3 * high);
+    const double step = round_end(0.5 * span);
+    wb_figure_set_x_range(panel, step * floor((low - 0.02 * span) / step),
+                          step * ceil((high + 0.02 * span) / step));
+}
+
+enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
+{
+    const struct wb_recordings_cycle *const cycle = cycle_of(item);
+    if (!cycle)
+        return WB_OK;
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_estimate *const EI = &c->rigidity;
+    const struct wb_colour colour = wb_palette_wire(item->index);
+    const int n = c->n_members < MOST_ROWS - 2 ? c->n_members : MOST_ROWS - 2;
+    WB_TRY(wb_recordings_draw_start(item, "forest", WB_PDF_HALF_WIDTH, 200.0));
+    wb_text_append(&item->caption,
+                   "<i>EI</i> of each sample, %s: dots of the chosen law, lines over the laws in "
+                   "range. Below them the mean with its interval of 95 %%, and the range of the "
+                   "mean over the laws.",
+                   measured_of(item));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+    wb_figure_set_axes(panel, "<i>EI</i> (N mm\xc2\xb2)", "");
+    const struct wb_figure_style thin = {.colour = wb_palette_grey(), .width = 1.0};
+    const struct wb_figure_style dot = {
+        .colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 5.0};
+    const struct wb_figure_style mean = {
+        .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.5};
+    const struct wb_figure_style interval = {.colour = wb_palette_ink(), .width = 1.4};
+    char names[MOST_ROWS][32];
+    const char *rows[MOST_ROWS];
+    double ends[2] = {(double)INFINITY, 0.0};
+    /* From the bottom up: the range over laws, the mean, then the samples from the last on. */
+    for (int i = 0; i < n + 2; i++) {
+        const double y = i, ys[2] = {y, y};
+        const bool is_mean = i == 1;
+        double range[2] = {EI->candidates_low / N_MM2, EI->candidates_high / N_MM2};
+        double value = EI->value / N_MM2;
+        snprintf(names[i], sizeof names[i], "%s", is_mean ? "mean" : "over laws");
+        if (is_mean) {
+            range[0] = EI->low / N_MM2;
+            range[1] = EI->high / N_MM2;
+        } else if (i > 1) {
+            const struct wb_cycle_member *const member = &c->members[n + 1 - i];
+            snprintf(names[i], sizeof names[i], "sample %d", member->sample);
+            range_of(c, member, range);
+            value = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
+        }
+        rows[i] = names[i];
+        ends[0] = fmin(ends[0], fmin(value, range[0]));
+        ends[1] = fmax(ends[1], fmax(value, range[1]));
+        if (isfinite(range[0]))
+            wb_figure_add_line(panel, NULL, 2, range, ys, is_mean ? &interval : &thin);
+        if (i > 0)
+            wb_figure_add_line(panel, NULL, 1, &value, &y, is_mean ? &mean : &dot);
+    }
+    set_round_range(panel, ends[0], ends[1]);
+    wb_figure_set_y_names(panel, n + 2, rows);
+    wb_figure_set_y_range(panel, -0.6, n + 1.6);
+    return WB_OK;
+}
+
+/* --- M(kappa) --- */
+
+/* The measured cloud: moments from shapes and tension alone, loading only, from where they mean
+ * something. */
+static enum wb_status add_cloud(struct wb_panel *panel, const struct wb_recordings_cycle *cycle)
+{
+    bool is_named = false;
+    for (int i = 0; i < cycle->calibration.n_members; i++) {
+        const struct wb_moment_cloud *const cloud = &cycle->clouds[i];
+        double *const x = columns_of(2, cloud->n), *const y = x + cloud->n;
+        int n = 0;
+        if (!x)
+            return no_memory();
+        for (int k = 0; k < cloud->n; k++) {
+            const struct wb_moment_point *const point = &cloud->points[k];
+            if (point->is_unloading || point->is_band)
+                continue;
+            x[n] = point->curvature;
+            y[n++] = point->moment / WB_NMM;
+        }
+        const struct wb_figure_style dots = {.colour = wb_palette_fade(wb_palette_grey(), 0.75),
+                                             .marker = WB_MARKER_CIRCLE,
+                                             .marker_size = 2.4};
+        if (n > 0)
+            wb_figure_add_line(panel, is_named ? NULL : "shape and tension", (size_t)n, x, y,
+                               &dots);
+        is_named |= n > 0;
+        free(x);
+    }
+    return WB_OK;
+}
+
+enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item)
+{
+    const struct wb_recordings_cycle *const cycle = cycle_of(item);
+    if (!cycle)
+        return WB_OK;
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_recordings_cycle_curve *const curve = &cycle->curve;
+    const struct wb_colour colour = wb_palette_wire(item->index);
+    const int n = WB_RECORDINGS_CYCLE_CURVE;
+    WB_TRY(wb_recordings_draw_start(item, "moments", WB_PDF_HALF_WIDTH, 200.0));
+    wb_text_append(&item->caption,
+                   "Moment over curvature of the chosen law with the interval of its mean (95 %%), "
+                   "and where the wire would come to rest if it were let go at the end. Dots: from "
+                   "shapes and tension, %s, without any law; they are no data of the fit.",
+                   measured_of(item));
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+    wb_figure_set_axes(panel, "Curvature <i>\xce\xba</i> (1/m)", "Moment <i>M</i> (N mm)");
+    double *const moment = wb_figures_scaled(curve->moment, n, WB_NMM);
+    double *const low = wb_figures_scaled(curve->low, n, WB_NMM);
+    double *const high = wb_figures_scaled(curve->high, n, WB_NMM);
+    const double *const edges[2] = {low, high};
+    enum wb_status status = moment && low && high ? add_cloud(panel, cycle) : no_memory();
+    const struct wb_figure_style line = {.colour = colour, .width = 1.6};
+    if (status == WB_OK && isfinite(curve->low[n - 1]))
+        wb_figure_add_band(panel, "95 %", (size_t)n, curve->curvature, edges,
+                           wb_palette_fade(colour, 0.22));
+    if (status == WB_OK)
+        wb_figure_add_line(panel, "law", (size_t)n, curve->curvature, moment, &line);
+    if (status == WB_OK && c->has_unloading) {
+        const double rest = c->springback.value * c->largest_curvature, zero = 0.0;
+        const struct wb_figure_style at_rest = {
+            .colour = wb_palette_ink(), .marker = WB_MARKER_TRIANGLE, .marker_size = 6.0};
+        wb_figure_add_line(panel, "let go", 1, &rest, &zero, &at_rest);
+    }
+    free(moment);
+    free(low);
+    free(high);
+    return status;
+}
+
+/* --- K and n --- */
+
+/* Faces of 8 nodes over n and the stress that hardening adds; values are misfits over the smallest.
+ */
+static int make_faces(const struct wb_cycle_valley *valley, struct wb_contour_face *faces)
+{
+    static const int at[8][2] = {{0, 0}, {0, 2}, {2, 2}, {2, 0}, {0, 1}, {1, 2}, {2, 1}, {1, 0}};
+    int n = 0;
+    for (int i = 0; i + 2 < WB_VALLEY_NODES; i += 2) {
+        for (int k = 0; k + 2 < WB_VALLEY_NODES; k += 2) {
+            struct wb_contour_face *const face = &faces[n++];
+            for (int j = 0; j < 8; j++) {
+                const struct wb_cycle_valley_node *const node =
+                    &valley->nodes[i + at[j][0]][k + at[j][1]];
+                face->x[j] = node->exponent;
+                face->y[j] = node->stress / WB_MPA;
+                face->value[j] = node->misfit / valley->best_misfit;
+            }
+        }
+    }
+    return n;
+}
+
+/* The line around what the data cannot tell apart, values up to the limit; it closes along the edge
+ * of the faces. Over n as K or as the stress that hardening adds. */
+static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_valley *valley,
+                                 bool is_stress, const char *label)
+{
+    struct wb_contour_face faces[MOST_FACES];
+    const int n_faces = make_faces(valley, faces);
+    const double limit = valley->limit / valley->best_misfit;
+    const struct wb_contour_levels levels = {.low = -3.0 * limit, .high = limit, .n = 2};
+    const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 1.4};
+    struct wb_contour contour;
+    for (int i = 0; i < n_faces; i++) {
+        for (int k = 0; k < 8; k++)
+            faces[i].value[k] = -faces[i].value[k];
+    }
+    WB_TRY(wb_contour_create(&contour, n_faces, faces, &levels));
+    enum wb_status status = WB_OK;
+    for (int i = 0; i < contour.n_loops && status == WB_OK; i++) {
+        const struct wb_contour_loop *const loop = &contour.loops[i];
+        double *const x = columns_of(2, loop->n + 1), *const y = x + loop->n + 1;
+        if (!x) {
+            status = no_memory();
+            break;
+        }
+        for (int k = 0; k <= loop->n; k++) {
+            x[k] = contour.points[loop->first + k % loop->n][0];
+            y[k] = contour.points[loop->first + k % loop->n][1];
+            if (!is_stress)
+                y[k] /= pow(WB_VALLEY_PLASTIC_STRAIN, x[k]);
+        }
+        if (loop->level == 1) {
+            wb_figure_add_line(panel, label, (size_t)loop->n + 1, x, y, &line);
+            label = NULL;
+        }
+        free(x);
+    }
+    wb_contour_release(&contour);
+    return status;
+}
+
+/* K over n: the region, the fit, and where the paper's route ended. */
+static enum wb_status add_pairs(struct wb_panel *panel, const struct wb_figures_item *item)
+{
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(item->results, item->index);
+    const struct wb_cycle_valley *const valley = &wire->cycle.valley;
+    wb_figure_set_axes(panel, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
+    WB_TRY(add_region(panel, valley, false, "not told apart"));
+    const double n = valley->best.hardening_exponent;
+    const double K = valley->best.strength_coefficient / WB_MPA;
+    const struct wb_figure_style best = {
+        .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
+    wb_figure_add_line(panel, "best", 1, &n, &K, &best);
+    if (wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION)) {
+        const double paper_n = wire->calibration.material.hardening_exponent;
+        const double paper_K = wire->calibration.material.strength_coefficient / WB_MPA;
+        const struct wb_figure_style ring = {
+            .colour = wb_palette_grey(), .marker = WB_MARKER_RING, .marker_size = 6.0};
+        wb_figure_add_line(panel, "paper's route, all samples", 1, &paper_n, &paper_K, &ring);
+    }
+    return WB_OK;
+}
+
+/* The misfit over n and the stress that hardening adds, where the valley is not a thin line. */
+static enum wb_status add_misfits(struct wb_figure *figure, const struct wb_cycle_valley *valley)
+{
+    struct wb_contour_face faces[MOST_FACES];
+    const int n_faces = make_faces(valley, faces);
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    double highest = 1.0;
+    for (int i = 0; i < n_faces; i++) {
+        for (int k = 0; k < 8; k++)
+            highest = faces[i].value[k] > highest ? faces[i].value[k] : highest;
+    }
+    if (!(highest > 1.0))
+        return WB_OK;
+    const struct wb_figure_colours colours = {.map = WB_PALETTE_SEQUENTIAL,
+                                              .low = 1.0,
+                                              .high = highest,
+                                              .n = 16,
+                                              .outline = WB_OUTLINE_LIGHT};
+    wb_figure_set_axes(panel, "Hardening exponent <i>n</i>",
+                       "<i>K</i> \xc2\xb7 0.003<sup><i>n</i></sup> (MPa)");
+    wb_figure_add_field(panel, n_faces, faces, &colours);
+    WB_TRY(add_region(panel, valley, true, NULL));
+    const double n = valley->best.hardening_exponent;
+    const double stress =
+        valley->best.strength_coefficient * pow(WB_VALLEY_PLASTIC_STRAIN, n) / WB_MPA;
+    const struct wb_figure_style best = {
+        .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
+    wb_figure_add_line(panel, NULL, 1, &n, &stress, &best);
+    wb_figure_add_colour_bar(figure, &colours, "misfit ratio");
+    return WB_OK;
+}
+
+enum wb_status wb_recordings_cycle_figures_valley(struct wb_figures_item *item)
+{
+    const struct wb_recordings_cycle *const cycle = cycle_of(item);
+    if (!cycle || !cycle->has_valley)
+        return WB_OK;
+    const struct wb_cycle_valley *const valley = &cycle->valley;
+    WB_TRY(wb_recordings_draw_start(item, "valley", WB_PDF_WIDTH, 200.0));
+    wb_text_append(
+        &item->caption,
+        "Ludwik's <i>K</i> and <i>n</i> by the first loading of sample %d alone, %s; at "
+        "each pair <i>E</i>, <i>\xcf\x83</i><sub>Y</sub>, bow and level fit best. Within "
+        "the line, <i>K</i> from %.0f to %.0f MPa and <i>n</i> from %.3f to %.3f, a pair "
+        "fits as well as the best (misfit %.3f %%, limit %.3f %%, <i>F</i>-test of "
+        "95 %%). Right: misfit over the smallest; <i>y</i> is the stress that hardening "
+        "adds at a plastic strain of 0.003.",
+        cycle->calibration.members[0].sample, measured_of(item), valley->strength_low / WB_MPA,
+        valley->strength_high / WB_MPA, valley->exponent_low, valley->exponent_high,
+        100.0 * valley->best_misfit, 100.0 * valley->limit);
+    WB_TRY(add_pairs(wb_figure_add_panel(item->figure), item));
+    return add_misfits(item->figure, valley);
+}

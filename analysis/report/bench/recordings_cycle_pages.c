@@ -1,0 +1,473 @@
+#include "analysis/report/bench/recordings_cycle_pages.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "analysis/report/pages.h"
+#include "base/text.h"
+#include "base/units.h"
+
+/* N mm2 in one N m2; mJ in one J. */
+static const double N_MM2 = 1e-6, MILLI = 1e-3;
+
+/* --- numbers --- */
+
+/* Decimals that give a positive number three digits that mean something. */
+static int decimals_of(double value)
+{
+    if (!(value > 0.0) || !isfinite(value))
+        return 0;
+    const int before = (int)floor(log10(value)) + 1;
+    return before >= 3 ? 0 : 3 - before;
+}
+
+static void put_number(struct wb_document_table *table, double value)
+{
+    wb_pages_cell_number(table, value, decimals_of(value));
+}
+
+/* "367 to 432"; a dash where either is not known. */
+static void put_range(struct wb_document_table *table, double low, double high)
+{
+    const int decimals = decimals_of(high);
+    if (!isfinite(low) || !isfinite(high))
+        wb_pages_cell_number(table, (double)NAN, 0);
+    else
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.*f to %.*f", decimals, low, decimals, high);
+}
+
+/* With a real minus sign. */
+static void put_signed(struct wb_document_table *table, double value, double error)
+{
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s%.2f \xc2\xb1 %.2f", value < 0.0 ? "\xe2\x88\x92" : "",
+                  fabs(value), error);
+}
+
+static double best_misfit(const struct wb_cycle_calibration *c)
+{
+    return c->ranked[0].misfit;
+}
+
+/* --- the first page --- */
+
+static void put_verdict(struct wb_document_table *table, const struct wb_cycle_calibration *c)
+{
+    if (!c->has_unloading)
+        wb_pages_cell(table, WB_TONE_WARNING, "rule untested: no unloading");
+    else if (!c->is_supported)
+        wb_pages_cell(table, WB_TONE_WARNING, "hardening rule not supported by the data");
+    else
+        wb_pages_cell(table, WB_TONE_GOOD, "%s", wb_candidate_name(c->chosen));
+}
+
+static void put_wire(struct wb_document_table *table, const struct wb_recordings_results *results,
+                     const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+    if (!cycle) {
+        wb_pages_cell(table, WB_TONE_WARNING, "missing");
+        return;
+    }
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_estimate *const EI = &c->rigidity, *const back = &c->springback;
+    const double none = (double)NAN;
+    double low = EI->low, high = EI->high;
+    if (results->pool.degrees > 0)
+        wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
+    /* Where no law follows the data, the range over laws is all that is known. */
+    const bool is_known = c->is_supported || !c->has_unloading;
+    put_number(table, is_known ? EI->value / N_MM2 : none);
+    put_range(table, is_known ? low / N_MM2 : none, high / N_MM2);
+    put_range(table, EI->candidates_low / N_MM2, EI->candidates_high / N_MM2);
+    put_number(table, is_known && c->has_unloading ? back->value : none);
+    put_range(table, c->has_unloading ? back->candidates_low : none, back->candidates_high);
+    put_verdict(table, c);
+    wb_pages_cell_number(table, 100.0 * best_misfit(c), 2);
+    if (c->specimens_for_5_percent > 0)
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", c->specimens_for_5_percent);
+    else
+        wb_pages_cell_number(table, none, 0);
+}
+
+static void put_rigidities(struct wb_document *document,
+                           const struct wb_recordings_results *results)
+{
+    const bool is_pooled = results->pool.degrees > 0;
+    const struct wb_document_column columns[] = {
+        {"Wire"},
+        {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true, .wraps = true},
+        {.heading = is_pooled ? "95 % (scatter pooled)" : "95 % interval",
+         .right = true,
+         .wraps = true},
+        {.heading = "over laws", .right = true},
+        {.heading = "Spring- back", .right = true, .wraps = true},
+        {.heading = "over laws", .right = true},
+        {.heading = "Law and rule", .wraps = true},
+        {.heading = "Misfit (%)", .right = true, .wraps = true},
+        {.heading = "\xc2\xb1"
+                    "5 % needs",
+         .right = true,
+         .wraps = true},
+    };
+    struct wb_text caption = {0};
+    wb_text_append(
+        &caption,
+        "From the first loading and unloading of each sample. <i>EI</i>: flexural rigidity of the "
+        "virgin wire. Springback: curvature that stays over the curvature it was bent to. 95 %%: "
+        "interval of the mean of the samples (Student's <i>t</i>), ");
+    if (is_pooled)
+        wb_text_append(&caption,
+                       "from the scatter of all wires' samples together, <i>s</i> of ln <i>EI</i> "
+                       "%.3f with %d degrees of freedom; ",
+                       results->pool.deviation, results->pool.degrees);
+    wb_text_append(&caption,
+                   "what all samples share is not in it. Over laws: range over all laws whose "
+                   "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
+                   "over <i>F</i><sub>max</sub>; above 0.5 %% no law follows the data. \xc2\xb1"
+                   "5 %%: "
+                   "samples that <i>EI</i> within it needs.");
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 9, columns);
+    for (int i = 0; i < results->n_wires; i++)
+        put_wire(table, results, &results->wires[i]);
+}
+
+static void put_moments_of(struct wb_document_table *table,
+                           const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+    if (!cycle)
+        return;
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_estimate *const M = c->moment;
+    wb_document_row(table, true);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+    wb_pages_cell(table, WB_TONE_QUIET, "<i>\xce\xba</i> (1/m)");
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        put_number(table, c->curvature[k]);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", "");
+    wb_pages_cell(table, WB_TONE_PLAIN, "<i>M</i> (N mm)");
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        put_number(table, M[k].value / WB_NMM);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", "");
+    wb_pages_cell(table, WB_TONE_QUIET, "95 %%");
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        put_range(table, M[k].low / WB_NMM, M[k].high / WB_NMM);
+}
+
+static void put_moments(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    char headings[WB_CYCLE_MOMENTS][64];
+    struct wb_document_column columns[2 + WB_CYCLE_MOMENTS] = {{"Wire"}, {""}};
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
+        snprintf(headings[k], sizeof headings[k], "%g <i>\xce\xba</i><sub>max</sub>",
+                 wb_cycle_moment_parts[k]);
+        columns[2 + k] = (struct wb_document_column){.heading = headings[k], .right = true};
+    }
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Bending moment <i>M</i> of a first loading at parts of the largest curvature "
+        "<i>\xce\xba</i><sub>max</sub> that all samples of the wire reached at the clamp, with the "
+        "interval of the mean of the samples. Beyond it the law is not backed by data.",
+        2 + WB_CYCLE_MOMENTS, columns);
+    for (int i = 0; i < results->n_wires; i++)
+        put_moments_of(table, &results->wires[i]);
+}
+
+static void put_failures(struct wb_document *document, const struct wb_recordings_results *results)
+{
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+        if (!cycle)
+            wb_pages_item(
+                document, WB_TONE_WARNING, "<b>", wire->wanted->label,
+                ": no calibration on whole cycles</b>: ", wb_text_string(&wire->cycle_problem));
+        else if (cycle->calibration.has_unloading && !cycle->calibration.is_supported)
+            wb_pages_item(document, WB_TONE_WARNING, "<b>", wire->wanted->label,
+                          ": hardening rule not supported by the data</b>: ",
+                          "no law follows loading and unloading; only the range over laws is "
+                          "given, and springback as measured.");
+    }
+}
+
+void wb_recordings_cycle_pages_summary(struct wb_document *document,
+                                       const struct wb_recordings_results *results)
+{
+    bool any = false;
+    if (!results->campaign->whole_cycle)
+        return;
+    wb_document_heading(document, 2, "bending", "Bending properties, from loading and unloading");
+    for (int i = 0; i < results->n_wires; i++)
+        any |= wb_recordings_results_cycle(&results->wires[i]) != NULL;
+    if (any) {
+        put_rigidities(document, results);
+        put_moments(document, results);
+    }
+    put_failures(document, results);
+}
+
+/* --- one wire --- */
+
+static void append_estimate(struct wb_text *text, const char *name, const struct wb_estimate *e,
+                            double unit, const char *unit_name)
+{
+    const int decimals = decimals_of(e->value / unit);
+    wb_text_append(text, "%s = %.*f%s", name, decimals, e->value / unit, unit_name);
+    if (isfinite(e->low))
+        wb_text_append(text, " (%.*f to %.*f)", decimals, e->low / unit, decimals, e->high / unit);
+}
+
+static void put_answer(struct wb_document *document, const struct wb_recordings_cycle *cycle)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    struct wb_text text = {0};
+    if (!c->has_unloading) {
+        wb_text_append(&text, "<b>Rule untested.</b> There is no unloading, so Ludwik's law is "
+                              "fitted to the loading alone, and nothing is said of springback. ");
+    } else if (!c->is_supported) {
+        wb_text_append(&text,
+                       "<b>Hardening rule not supported by the data.</b> The best law misses both "
+                       "ways by %.2f %% of <i>F</i><sub>max</sub>. <i>EI</i> lies between %.*f and "
+                       "%.*f N mm\xc2\xb2, springback between %.3f and %.3f, over the laws that "
+                       "fit about as well. ",
+                       100.0 * best_misfit(c), decimals_of(c->rigidity.candidates_low / N_MM2),
+                       c->rigidity.candidates_low / N_MM2,
+                       decimals_of(c->rigidity.candidates_high / N_MM2),
+                       c->rigidity.candidates_high / N_MM2, c->springback.candidates_low,
+                       c->springback.candidates_high);
+    } else {
+        const char *const name = wb_candidate_name(c->chosen);
+        wb_text_append(&text, "<b>%c%s.</b> ", toupper((unsigned char)name[0]), name + 1);
+    }
+    if (c->is_supported || !c->has_unloading)
+        append_estimate(&text, "<i>EI</i>", &c->rigidity, N_MM2, " N mm\xc2\xb2");
+    if (c->is_supported) {
+        append_estimate(&text, "; springback", &c->springback, 1.0, "");
+        append_estimate(&text, "; loop energy", &c->loop_energy, MILLI, " mJ/m");
+        wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
+    }
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
+}
+
+static void put_ranked(struct wb_document *document, const struct wb_cycle_calibration *c)
+{
+    static const struct wb_document_column columns[] = {
+        {"Law"},
+        {.heading = "Misfit (%)", .right = true},
+        {.heading = "Numbers", .right = true},
+        {.heading = "<i>F</i> of the readings", .right = true, .wraps = true},
+        {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true},
+        {.heading = "Springback", .right = true},
+        {""},
+    };
+    struct wb_text caption = {0};
+    wb_text_append(&caption,
+                   "Laws by misfit: RMS over both ways over <i>F</i><sub>max</sub>. <i>F</i>: "
+                   "misfit over the repeat noise of the readings (%.3f %%), squared; above its "
+                   "limit of about %.2f the law is rejected. Chosen is the simplest that is not "
+                   "rejected or, where all are, the simplest that does as well as the best. In "
+                   "range: misfit at most twice the best.",
+                   100.0 * c->repeat_noise, c->ranked[0].f_limit);
+    wb_document_heading(document, 2, "", "Laws and hardening rules");
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 7, columns);
+    for (int i = 0; i < c->n_ranked; i++) {
+        const struct wb_cycle_rank *const rank = &c->ranked[i];
+        const bool is_chosen = rank->candidate == c->chosen;
+        const char *const name = wb_candidate_name(rank->candidate);
+        wb_document_row(table, false);
+        wb_pages_cell(table, WB_TONE_PLAIN, is_chosen ? "<b>%s</b>" : "%s", name);
+        wb_pages_cell_number(table, 100.0 * rank->misfit, 3);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", rank->n_free);
+        wb_pages_cell_number(table, rank->f_ratio, rank->f_ratio < 100.0 ? 1 : 0);
+        put_number(table, rank->rigidity.value / N_MM2);
+        put_number(table, c->has_unloading ? rank->springback.value : (double)NAN);
+        wb_pages_cell(table, rank->counts ? WB_TONE_PLAIN : WB_TONE_QUIET,
+                      is_chosen      ? "chosen"
+                      : rank->counts ? "in range"
+                                     : "out of range");
+    }
+}
+
+static void put_specimens(struct wb_document *document, const struct wb_recordings_cycle *cycle)
+{
+    static const struct wb_document_column columns[] = {
+        {.heading = "Sample", .right = true},
+        {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true, .wraps = true},
+        {.heading = "Spring- back", .right = true, .wraps = true},
+        {.heading = "Residual deflection (mm)", .right = true, .wraps = true},
+        {.heading = "Bow (mm)", .right = true},
+        {.heading = "Level (mm)", .right = true, .wraps = true},
+        {.heading = "Misfit, loading (%)", .right = true, .wraps = true},
+        {.heading = "Misfit, unloading (%)", .right = true, .wraps = true},
+        {.heading = "Markers (mm)", .right = true, .wraps = true},
+        {.heading = "Outliers", .right = true},
+    };
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    wb_document_heading(document, 2, "", "Samples");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Each sample fitted by itself with the chosen law. Residual deflection: as measured, where "
+        "the force has come down to that at zero deflection. Bow and level: natural offset of the "
+        "tip and error of zero deflection, fitted. Markers: RMS distance to the computed wire. "
+        "Outliers: readings that were left out or weighted down.",
+        10, columns);
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
+        const struct wb_cycle_fit *const fit = &answer->fit;
+        wb_document_row(table, false);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
+        put_number(table, answer->bending.flexural_rigidity / N_MM2);
+        put_number(table, c->has_unloading ? answer->bending.springback : (double)NAN);
+        wb_pages_cell_number(table, member->data.residual_deflection / WB_MM, 1);
+        put_signed(table, 0.5 * fit->bow_angle * member->data.info.length / WB_MM,
+                   0.5 * fit->bow_angle_error * member->data.info.length / WB_MM);
+        wb_pages_cell_number(table, fit->level / WB_MM, 2);
+        wb_pages_cell_number(table, 100.0 * fit->loading_misfit, 3);
+        wb_pages_cell_number(table, 100.0 * fit->unloading_misfit, 3);
+        wb_pages_cell_number(table, fit->place_rms / WB_MM, 3);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", fit->n_outliers + member->data.n_outliers);
+    }
+}
+
+static void put_sensitivities(struct wb_document *document, const struct wb_recordings_cycle *cycle)
+{
+    static const struct wb_document_column columns[] = {
+        {"1 % more"},
+        {.heading = "<i>EI</i> (%)", .right = true},
+        {.heading = "<i>E</i> (%)", .right = true},
+        {.heading = "<i>M</i>(<i>\xce\xba</i><sub>max</sub>) (%)", .right = true},
+        {.heading = "Springback (%)", .right = true},
+    };
+    wb_document_heading(document, 2, "", "What all samples share");
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "An error that all samples share leaves no trace in the data and is in no interval. What "
+        "1 % more of it in the settings changes, by fits of the first sample.",
+        5, columns);
+    for (int i = 0; i < WB_SHARED; i++) {
+        const struct wb_cycle_sensitivity *const s = &cycle->sensitivities[i];
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_cycle_shared_name(i));
+        /* Adding zero makes no number "-0.0". */
+        wb_pages_cell_number(table, round(10.0 * s->rigidity) / 10.0 + 0.0, 1);
+        wb_pages_cell_number(table, round(10.0 * s->modulus) / 10.0 + 0.0, 1);
+        wb_pages_cell_number(table, round(10.0 * s->moment) / 10.0 + 0.0, 1);
+        wb_pages_cell_number(table, round(10.0 * s->springback) / 10.0 + 0.0, 1);
+    }
+}
+
+/* A number of a Ludwik law that is only shown where the data know it. */
+static void append_known(struct wb_text *text, const char *name, double value, int decimals,
+                         const char *unit, bool is_known)
+{
+    if (is_known)
+        wb_text_append(text, ", %s = %.*f%s", name, decimals, value, unit);
+    else
+        wb_text_append(text, ", %s not identifiable with these data", name);
+}
+
+static void put_parts(struct wb_document *document, const struct wb_law *law)
+{
+    struct wb_document_column columns[WB_DOCUMENT_COLUMNS] = {{"Part"}};
+    char headings[WB_DOCUMENT_COLUMNS][8], caption[300];
+    const int n = law->n_parts < WB_DOCUMENT_COLUMNS ? law->n_parts : WB_DOCUMENT_COLUMNS - 1;
+    for (int i = 0; i < n; i++) {
+        snprintf(headings[i], sizeof headings[i], "%d", i + 1);
+        columns[1 + i] = (struct wb_document_column){.heading = headings[i], .right = true};
+    }
+    snprintf(caption, sizeof caption,
+             "Parts side by side that share the strain, each elastic up to its yield strain; means "
+             "over the samples. Share of the area with isotropic hardening: %.2f.",
+             law->isotropic_share);
+    struct wb_document_table *const table = wb_document_table(document, caption, 1 + n, columns);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "Modulus (MPa)");
+    for (int i = 0; i < n; i++)
+        put_number(table, law->parts[i].modulus / WB_MPA);
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN,
+                  "Yield strain (10<sup>\xe2\x88\x92"
+                  "3</sup>)");
+    for (int i = 0; i < n; i++) {
+        if (isfinite(law->parts[i].yield_strain))
+            put_number(table, 1e3 * law->parts[i].yield_strain);
+        else
+            wb_pages_cell(table, WB_TONE_QUIET, "elastic");
+    }
+}
+
+static void put_law(struct wb_document *document, const struct wb_cycle_calibration *c)
+{
+    struct wb_text text = {0};
+    const struct wb_material *const m = &c->ludwik;
+    wb_document_heading(document, 2, "", "The law's numbers");
+    if (c->law.form == WB_LAW_PARALLEL) {
+        put_parts(document, &c->law);
+        wb_text_append(&text,
+                       "Ludwik's law that bends alike on a first loading (RMS %.1f %% of <i>M</i>)"
+                       ": <i>E</i> = %.0f MPa, <i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = "
+                       "%.0f MPa, <i>n</i> = %.3f. Of the way back it says nothing.",
+                       100.0 * c->ludwik_misfit, m->youngs_modulus / WB_MPA,
+                       m->yield_stress / WB_MPA, m->strength_coefficient / WB_MPA,
+                       m->hardening_exponent);
+    } else {
+        wb_text_append(&text,
+                       "Isotropic share %.2f, <i>E</i> = %.0f MPa, "
+                       "<i>\xcf\x83</i><sub>Y</sub> = %.2f MPa",
+                       c->law.isotropic_share, m->youngs_modulus / WB_MPA,
+                       m->yield_stress / WB_MPA);
+        append_known(&text, "<i>K</i>", m->strength_coefficient / WB_MPA, 0, " MPa",
+                     c->is_strength_identifiable);
+        append_known(&text, "<i>n</i>", m->hardening_exponent, 3, "", c->is_exponent_identifiable);
+        wb_text_append(&text, ".");
+        if (!(c->is_strength_identifiable && c->is_exponent_identifiable))
+            wb_text_append(&text, " %s",
+                           c->travel_share < 0.35
+                               ? "A travel of at least 0.35 of the length would mend it."
+                               : "More samples, or an unloading, would mend it.");
+    }
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
+}
+
+/* Where the law and what shapes and tension say without it part. */
+static void put_apart(struct wb_document *document, const struct wb_recordings_cycle *cycle)
+{
+    const struct wb_moment_comparison *const c = &cycle->comparison;
+    struct wb_text text = {0};
+    if (!cycle->has_comparison || !c->is_apart)
+        return;
+    wb_text_append(
+        &text,
+        "<b>Law and measured moments part.</b> Between %.1f and %.1f /m the law's moment "
+        "is %.1f %% %s what shapes and tension say, %.1f standard deviations.",
+        c->first, c->last, 100.0 * fabs(c->difference), c->difference > 0.0 ? "above" : "below",
+        c->in_deviations);
+    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
+}
+
+void wb_recordings_cycle_pages_wire(struct wb_document *document,
+                                    const struct wb_recordings_results *results, int index,
+                                    const struct wb_figures *figures)
+{
+    const struct wb_recordings_cycle *const cycle =
+        wb_recordings_results_cycle(&results->wires[index]);
+    if (!cycle)
+        return;
+    wb_document_heading(document, 2, "", "Loading and unloading");
+    put_answer(document, cycle);
+    wb_figures_put(figures, document, "cycle", index);
+    put_ranked(document, &cycle->calibration);
+    wb_figures_put(figures, document, "later", index);
+    put_specimens(document, cycle);
+    wb_figures_put(figures, document, "law", index);
+    put_apart(document, cycle);
+    put_law(document, &cycle->calibration);
+    wb_figures_put(figures, document, "valley", index);
+    put_sensitivities(document, cycle);
+}
