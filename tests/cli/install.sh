@@ -1,7 +1,8 @@
-#!/bin/sh
+#!/bin/bash
 # What `meson install` puts into an empty place works from there: the version is told, shipped
 # fixtures are found, the manual page is there. Usage: install.sh WIREBENCH BUILD_ROOT PREFIX
 set -eu
+. "$(dirname "$0")/wait.sh"
 tool=$(realpath "$1") build=$2 prefix=$3
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
@@ -25,12 +26,7 @@ cd "$place"
 "$place$prefix/bin/wirebench" rig fixtures/rigs/paper.yaml \
     --specimen fixtures/specimens/type1-L85-1.yaml --run run 2>rig.log &
 rig=$!
-tries=0
-until grep -qx ready rig.log; do
-    tries=$((tries + 1))
-    [ $tries -lt 100 ] && kill -0 $rig || { cat rig.log; exit 1; }
-    sleep 0.1
-done
+wait_until $rig grep -qsx ready rig.log || { cat rig.log; exit 1; }
 ! grep -q "$place" run/rig.yaml || { echo "the rig file holds a path of the machine"; exit 1; }
 kill -INT $rig
 wait $rig

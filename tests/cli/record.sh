@@ -3,6 +3,7 @@
 # everything that goes wrong, each with its message, its exit code and a recording that can be read.
 # Usage: record.sh WIREBENCH SOURCE_ROOT
 set -u
+. "$(dirname "$0")/wait.sh"
 
 wirebench=$(realpath "$1")
 root=$2
@@ -38,11 +39,9 @@ start_rig() {
         --run "$folder/$1" --time-scale 20 2>"$folder/$1.log" &
     rig=$!
     rigs+=("$rig")
-    for _ in $(seq 100); do
-        grep -q '^ready' "$folder/$1.log" && return
-        sleep 0.05
-    done
+    wait_until "$rig" grep -qs '^ready' "$folder/$1.log" && return
     fail "$1: the rig is not ready: $(cat "$folder/$1.log")"
+    exit 1
 }
 
 # record NAME OPTIONS...: records from the rig of that name; its exit code in $code.
@@ -69,19 +68,25 @@ readable() { # NAME KIND: the recording opens and holds an event of that kind
     done
 }
 
-wait_for_start() { # NAME: until the recording of that name runs
-    for _ in $(seq 100); do
-        [ -s "$folder/$1.wbr" ] && return
-        sleep 0.02
-    done
-    fail "$1: did not start"
+wait_for_start() { # NAME PROCESS: until its recording of that name runs
+    wait_until "$2" [ -s "$folder/$1.wbr" ] || fail "$1: did not start"
+}
+
+# NAME PROCESS: until the stage is well on its way, at a fifth of what a whole test records; a busy
+# machine needs seconds for that.
+wait_for_motion() {
+    wait_until "$2" has_grown "$1" || fail "$1: the test did not get going"
+}
+
+has_grown() { # NAME
+    [ "$(cat "$folder/$1.wbr" "$folder/$1.wbr-wal" 2>/dev/null | wc -c)" -gt 1500000 ]
 }
 
 begin() { # NAME: a recording from the rig of that name, once it runs; its process in $recorder
     "$wirebench" record "$folder/$1/rig.yaml" --specimen "$specimen" -o "$folder/$1.wbr" \
         >"$folder/$1.out" 2>"$folder/$1.err" </dev/null &
     recorder=$!
-    wait_for_start "$1"
+    wait_for_start "$1" $recorder
 }
 
 whole_test() {
@@ -97,7 +102,7 @@ whole_test() {
 ctrl_c() {
     start_rig ctrlc
     begin ctrlc
-    sleep 1.2
+    wait_for_motion ctrlc $recorder
     kill -INT $recorder
     wait $recorder
     code=$?
@@ -145,7 +150,7 @@ force_limit() {
 rig_killed() {
     start_rig killed
     begin killed
-    sleep 1
+    wait_for_motion killed $recorder
     kill -KILL "$rig"
     wait "$rig" 2>/dev/null
     wait $recorder
@@ -159,8 +164,7 @@ rig_stalls() {
     "$wirebench" record "$folder/stalled/rig.yaml" --specimen "$specimen" \
         -o "$folder/stalled.wbr" >"$folder/stalled.out" 2>"$folder/stalled.err" </dev/null &
     local recorder=$!
-    wait_for_start stalled
-    sleep 1
+    wait_for_motion stalled $recorder
     kill -STOP "$rig"
     wait $recorder
     code=$?
@@ -179,14 +183,10 @@ dead_reader() {
         echo $? >"$folder/dead.code"
     ) | true &
     local recorder=$!
-    wait_for_start dead
-    sleep 1
+    wait_for_motion dead $$
     kill -STOP "$rig"
     wait $recorder
-    for _ in $(seq 200); do
-        [ -s "$folder/dead.code" ] && break
-        sleep 0.05
-    done
+    wait_until $$ [ -s "$folder/dead.code" ]
     kill -CONT "$rig"
     [ "$(cat "$folder/dead.code")" = 3 ] || fail "dead: exit code $(cat "$folder/dead.code")"
     readable dead 'soft reset'
@@ -201,8 +201,7 @@ hung_reader() {
     "$wirebench" record "$folder/hung/rig.yaml" --specimen "$specimen" -o "$folder/hung.wbr" \
         >"$folder/hung.out" 2>"$folder/hung.fifo" </dev/null &
     local recorder=$!
-    wait_for_start hung
-    sleep 1
+    wait_for_motion hung $recorder
     kill -STOP "$rig"
     # T is 1 s of the host; 0.5 s later the soft reset is due.
     sleep 4
@@ -240,10 +239,10 @@ keys_of_the_terminal() {
 
 full_disk() {
     start_rig full
-    # 1 MiB blocks of 1024 bytes: the recording grows past it within the test. No SIGXFSZ.
+    # 3 MiB in blocks of 1024 bytes: the recording grows past it within the test. No SIGXFSZ.
     (
         trap '' XFSZ
-        ulimit -f 1024
+        ulimit -f 3072
         exec "$wirebench" record "$folder/full/rig.yaml" --specimen "$specimen" \
             -o "$folder/full.wbr" >"$folder/full.out" 2>"$folder/full.err" </dev/null
     )
@@ -286,7 +285,7 @@ bad_ports() {
     "$wirebench" record "$good" --specimen "$specimen" -o "$folder/first.wbr" \
         >"$folder/first.out" 2>"$folder/first.err" </dev/null &
     local recorder=$!
-    wait_for_start first
+    wait_for_start first $recorder
     record ports
     expect ports 1 'use'
     [ ! -e "$folder/ports.wbr" ] || fail "busy: a recording was left behind"

@@ -2,6 +2,7 @@
 # `wirebench rig` as a user meets it: ready, its rig file, its end, and what it refuses.
 # Usage: rig.sh WIREBENCH SOURCE_ROOT
 set -u
+. "$(dirname "$0")/wait.sh"
 
 wirebench=$(realpath "$1")
 root=$2
@@ -32,11 +33,9 @@ start() { # NAME OPTIONS...: a rig in $folder/NAME, its process in $process
         2>"$folder/$name.log" &
     process=$!
     running+=("$process")
-    for _ in $(seq 100); do
-        grep -q '^ready' "$folder/$name.log" && return
-        sleep 0.05
-    done
+    wait_until "$process" grep -qs '^ready' "$folder/$name.log" && return
     fail "$name: not ready: $(cat "$folder/$name.log")"
+    exit 1
 }
 
 refused() { # CODE WORDS OPTIONS...: one message with these words, this exit code, no rig file

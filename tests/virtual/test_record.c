@@ -101,7 +101,7 @@ static void assert_recorded_like_replayed(int major, int minor, const char *spec
     assert_true(result.is_virtual);
     assert_int_equal(result.drops, 0);
     assert_true(log.n[WB_ROLE_LOAD] > 100 && log.n[WB_ROLE_MOCAP] > 100);
-    assert_true(log.n[WB_ROLE_STAGE] > 20);
+    assert_true(log.n[WB_ROLE_STAGE] > 0);
     assert_replay_identical(fixture.output, &log);
     print_message("           %d readings, %d frames, %d reports identical\n", log.n[WB_ROLE_LOAD],
                   log.n[WB_ROLE_MOCAP], log.n[WB_ROLE_STAGE]);
