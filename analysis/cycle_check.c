@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "analysis/cycle_check_private.h"
 #include "analysis/cycle_fit.h"
 #include "analysis/cycle_model.h"
 #include "analysis/fit.h"
@@ -633,4 +634,34 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
     }
     check_others(remarks, calibration);
     return WB_OK;
+}
+
+enum wb_status wb_cycle_check_calibrate(struct wb_cycle_calibration *calibration,
+                                        struct wb_cycle_remarks *remarks,
+                                        const struct wb_dataset *const *datasets, int n,
+                                        const struct wb_cycle_calibrate_settings *settings,
+                                        struct wb_reason *why)
+{
+    *remarks = (struct wb_cycle_remarks){.n = 0};
+    *calibration = (struct wb_cycle_calibration){.n_members = 0};
+    WB_TRY(wb_cycle_check_data(remarks, datasets, n));
+    WB_TRY(wb_cycle_check_refuse(remarks, why));
+    WB_TRY(wb_cycle_calibrate_run(calibration, datasets, n, settings, why));
+    enum wb_status status = wb_cycle_check_run(remarks, calibration, datasets);
+    if (status == WB_OK)
+        status = wb_cycle_check_refuse(remarks, why);
+    if (status != WB_OK)
+        wb_cycle_calibrate_release(calibration);
+    return status;
+}
+
+void wb_cycle_check_put(struct wb_json *array, const struct wb_cycle_remarks *remarks)
+{
+    for (int i = 0; i < remarks->n; i++) {
+        const struct wb_cycle_remark *const remark = &remarks->items[i];
+        struct wb_json *const item = wb_json_append_object(array);
+        wb_json_set_text(item, "severity", wb_cycle_check_severity_name(remark->severity));
+        wb_json_set_number(item, "sample", remark->sample > 0 ? remark->sample : (double)NAN);
+        wb_json_set_text(item, "text", remark->text);
+    }
 }

@@ -12,6 +12,7 @@
 
 #include "analysis/cycle_calibrate.h"
 #include "analysis/dataset.h"
+#include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
 
@@ -40,25 +41,14 @@ struct wb_cycle_remarks {
     struct wb_cycle_remark items[WB_CYCLE_MOST_REMARKS];
 };
 
-/* Checks the rows of n datasets of one wire, before a calibration. At most one remark that makes a
- * dataset unusable, the plainest. Fails only without memory. */
-WB_MUST_CHECK enum wb_status wb_cycle_check_data(struct wb_cycle_remarks *remarks,
-                                                 const struct wb_dataset *const *datasets, int n);
+/* A calibration between both checks: what is unusable is refused, before it or after it, and leaves
+ * no calibration. */
+WB_MUST_CHECK enum wb_status
+wb_cycle_check_calibrate(struct wb_cycle_calibration *calibration, struct wb_cycle_remarks *remarks,
+                         const struct wb_dataset *const *datasets, int n,
+                         const struct wb_cycle_calibrate_settings *settings, struct wb_reason *why);
 
-/* Checks what a calibration made of them; `datasets` are the same, in the same order. It computes
- * a few points of each specimen, and refits one whose length is in doubt and cannot be seen. Fails
- * only without memory. */
-WB_MUST_CHECK enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
-                                                const struct wb_cycle_calibration *calibration,
-                                                const struct wb_dataset *const *datasets);
-
-/* The first remark of at least this severity; NULL: none. */
-const struct wb_cycle_remark *wb_cycle_check_find(const struct wb_cycle_remarks *remarks,
-                                                  enum wb_cycle_check_severity severity);
-
-/* WB_ERR_DATA with the first unusable remark's text where there is one. `why` receives it; NULL: it
- * is logged. */
-WB_MUST_CHECK enum wb_status wb_cycle_check_refuse(const struct wb_cycle_remarks *remarks,
-                                                   struct wb_reason *why);
+/* Appends the remarks to an array: severity, sample (null: all), text. */
+void wb_cycle_check_put(struct wb_json *array, const struct wb_cycle_remarks *remarks);
 
 #endif

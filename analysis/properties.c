@@ -6,6 +6,7 @@
 
 #include <gsl/gsl_cdf.h>
 
+#include "analysis/properties_private.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -641,7 +642,6 @@ enum wb_status wb_properties_read(const char *path, struct wb_properties *proper
     const enum wb_status status = read_root(wb_config_root(config), &read);
     wb_config_destroy(config);
     find_deviation(&read);
-    wb_law_init_ludwik(&read.law, &read.material);
     if (status == WB_OK)
         *properties = read;
     return status;

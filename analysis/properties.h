@@ -97,7 +97,5 @@ wb_properties_write_cycle(const char *path, const struct wb_cycle_calibration *c
 /* The same properties without a file in between. */
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
-void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
-                              struct wb_properties *properties);
 
 #endif

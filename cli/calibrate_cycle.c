@@ -235,6 +235,9 @@ void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle)
     print_law(c);
     print_specimens(c);
     print_shared(cycle);
+    for (int i = 0; i < cycle->remarks.n; i++)
+        printf("%s: %s\n", wb_cycle_check_severity_name(cycle->remarks.items[i].severity),
+               cycle->remarks.items[i].text);
     wb_cycle_calibrate_settings_text(&cycle->settings, &settings);
     printf("settings: %s\n", wb_text_string(&settings));
     wb_text_release(&settings);
@@ -262,6 +265,7 @@ int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle)
     wb_json_set_boolean(root, "simulation", info->is_simulation);
     wb_cycle_json_put(root, c);
     wb_cycle_sensitivity_put(wb_json_set_array(root, "shared_sensitivities"), cycle->sensitivities);
+    wb_cycle_check_put(wb_json_set_array(root, "remarks"), &cycle->remarks);
     put_settings(wb_json_set_object(root, "settings"), &cycle->settings);
     wb_json_set_number(root, "cpu_s", c->cpu_s);
     return wb_command_print_json(root);

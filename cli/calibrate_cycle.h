@@ -3,11 +3,13 @@
 #define WB_CLI_CALIBRATE_CYCLE_H
 
 #include "analysis/cycle_calibrate.h"
+#include "analysis/cycle_check.h"
 #include "analysis/cycle_sensitivity.h"
 
 struct wb_calibrate_cycle {
     struct wb_cycle_calibrate_settings settings;
     struct wb_cycle_calibration calibration;
+    struct wb_cycle_remarks remarks; /* on the data and what was made of them */
     struct wb_cycle_sensitivity sensitivities[WB_SHARED];
 };
 

@@ -303,8 +303,9 @@ static enum wb_status calibrate_on_cycles(struct options *o)
     settings->progress = report_specimens;
     settings->progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "fits", 2.0 * o->datasets.n);
-    const enum wb_status status = wb_cycle_calibrate_run(
-        &o->cycle.calibration, o->datasets.pointers, o->datasets.n, settings, NULL);
+    const enum wb_status status =
+        wb_cycle_check_calibrate(&o->cycle.calibration, &o->cycle.remarks, o->datasets.pointers,
+                                 o->datasets.n, settings, NULL);
     wb_progress_finish(&progress);
     WB_TRY(status);
     return wb_cycle_sensitivity_find(&o->cycle.calibration, settings, o->cycle.sensitivities);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "fe/material/hardening.h"
+#include "fe/material/law_private.h"
 
 #define WB_LOG_DOMAIN "law"
 
@@ -191,7 +192,7 @@ void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay)
     }
 }
 
-double wb_overlay_virgin_stress(const struct wb_overlay *overlay, double strain, double *tangent)
+double wb_law_overlay_stress(const struct wb_overlay *overlay, double strain, double *tangent)
 {
     double stress = 0.0, slope = 0.0;
     for (int i = 0; i < overlay->n; i++) {
@@ -208,7 +209,7 @@ double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tan
     if (law->form == WB_LAW_PARALLEL) {
         struct wb_overlay overlay;
         wb_law_overlay(law, &overlay);
-        return wb_overlay_virgin_stress(&overlay, strain, tangent);
+        return wb_law_overlay_stress(&overlay, strain, tangent);
     }
     const struct wb_material *const m = &law->material;
     const double E = m->youngs_modulus, overstress = E * strain - m->yield_stress;

@@ -80,9 +80,6 @@ void wb_law_overlay(const struct wb_law *law, struct wb_overlay *overlay);
  * exact. */
 double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tangent);
 
-/* The same of an overlay. */
-double wb_overlay_virgin_stress(const struct wb_overlay *overlay, double strain, double *tangent);
-
 /* "ludwik" or "parallel"; "isotropic", "kinematic" or "mixed". */
 const char *wb_law_form_name(enum wb_law_form form);
 const char *wb_law_rule_name(const struct wb_law *law);

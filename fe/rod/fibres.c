@@ -13,9 +13,11 @@
 #define WB_LOG_DOMAIN "fibres"
 
 enum {
-    LANES = 4,        /* fibres of a material are padded to a multiple of this */
-    HISTORY_HEAD = 8, /* the first double says whether the point ever yielded; rest is padding */
-    HISTORY_ROWS = 3  /* plastic strain, accumulated plastic strain, yield or back stress */
+    LANES = 4, /* fibres of a material are padded to a multiple of this */
+    /* The first double says whether the point ever yielded, the second how many parts of an overlay
+     * may have; the rest is padding. */
+    HISTORY_HEAD = 8,
+    HISTORY_ROWS = 3 /* plastic strain, accumulated plastic strain, yield or back stress */
 };
 
 /* See fe/material/material.c. */
@@ -36,7 +38,7 @@ struct wb_fibres {
     double *y, *area; /* (n) */
     struct wb_material *materials;
     struct wb_hardening_table *tables; /* (n_materials) */
-    double *virgin;                    /* history rows of a virgin point */
+    double *virgin;                    /* history of a virgin point, with its head */
     double outermost;                  /* largest |y|, m */
     double yield_strain;               /* no fibre yields below this strain, 1 */
     double EA, ES, EI;                 /* elastic N = EA eps + ES kappa, M = ES eps + EI kappa */
@@ -44,10 +46,11 @@ struct wb_fibres {
     double shear_stiffness;
     struct wb_overlay *overlay; /* of a section that has one; owned; its fibres are of one batch */
     int overlay_capacity;       /* parts that the history has room for */
-    const struct wb_point_law *point_laws; /* (n_materials) of a section that has them; borrowed */
-    int point_history;                     /* rows of the history that the largest needs */
-    void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *rows,
-                    double *rows_after, struct wb_fibres_response *response);
+    double tail[WB_OVERLAY_MOST_PARTS + 1]; /* Pa: sum of the moduli from a part on */
+    const struct wb_point_law *point_laws;  /* (n_materials) of a section that has them; borrowed */
+    int point_history;                      /* rows of the history that the largest needs */
+    void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *before,
+                    double *after, struct wb_fibres_response *response);
     struct wb_memory memory; /* of all arrays */
 };
 
@@ -94,29 +97,24 @@ static int history_rows(const struct wb_fibres *f)
     return f->point_laws ? f->point_history : HISTORY_ROWS;
 }
 
-static double overlay_modulus(const struct wb_overlay *overlay)
-{
-    double sum = 0.0;
-    for (int i = 0; i < overlay->n; i++)
-        sum += overlay->modulus[i];
-    return sum;
-}
-
 enum wb_status wb_fibres_set_overlay(struct wb_fibres *f, const struct wb_overlay *overlay)
 {
     if (!f->overlay || overlay->n > f->overlay_capacity)
         return wb_fail(WB_ERR_ARGUMENT, "an overlay of %d parts: the section has room for %d",
                        overlay->n, f->overlay ? f->overlay_capacity : 0);
     *f->overlay = *overlay;
+    f->tail[overlay->n] = 0.0;
+    for (int i = overlay->n - 1; i >= 0; i--)
+        f->tail[i] = f->tail[i + 1] + overlay->modulus[i];
     const struct wb_material elastic = {
         .hardening = WB_HARDENING_NONE_ELASTIC,
-        .youngs_modulus = overlay_modulus(overlay),
+        .youngs_modulus = f->tail[0],
         .poissons_ratio = f->materials[0].poissons_ratio,
     };
     wb_fibres_set_materials(f, &elastic);
     f->yield_strain = overlay->yield_strain[0];
     for (int i = 0; i < f->n; i++)
-        f->virgin[(f->overlay_capacity + 2) * f->n + i] =
+        f->virgin[HISTORY_HEAD + (f->overlay_capacity + 2) * f->n + i] =
             elastic.youngs_modulus * overlay->yield_strain[0];
     return WB_OK;
 }
@@ -138,7 +136,7 @@ void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *mate
             f->ES -= EA * f->y[i];
             f->EI += EA * f->y[i] * f->y[i];
             if (!f->point_laws)
-                f->virgin[2 * f->n + i] = law->growth ? m->yield_stress : 0.0;
+                f->virgin[HISTORY_HEAD + 2 * f->n + i] = law->growth ? m->yield_stress : 0.0;
         }
         if (law->yields)
             f->yield_strain = fmin(f->yield_strain, m->yield_stress / m->youngs_modulus);
@@ -397,9 +395,11 @@ static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct stra
 /* The share of an overlay with isotropic hardening: the stress is the virgin curve's at the strain
  * e = |trial| / E + p at which a first loading would have come as far. The third row is the stress
  * reached so far. */
-static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_overlay *o, double E,
-                                                              lanes strain, const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_overlay *o,
+                                                              const double *tail, lanes strain,
+                                                              const struct rows *h)
 {
+    const double E = tail[0];
     const lanes plastic = load(h->plastic), p0 = load(h->accumulated), yield = load(h->third);
     const lanes trial = E * (strain - plastic);
     const lanes size = absolute(trial);
@@ -407,13 +407,19 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_ov
     const lanes virgin = size * (1.0 / E) + p0;
     lanes reached = {0}, tangent = {0};
 
-    for (int i = 0; i < o->n; i++) {
+    /* Parts beyond that of the largest strain are elastic, all together. */
+    int i = 0;
+    for (; i < o->n; i++) {
         const lanes corner = o->yield_strain[i] + (lanes){0};
         const masks below = virgin < corner;
+        if (!any(~below))
+            break;
         const lanes modulus = o->modulus[i] + (lanes){0};
         reached += modulus * select_lanes(below, virgin, corner);
         tangent += select_lanes(below, modulus, (lanes){0});
     }
+    reached += tail[i] * virgin;
+    tangent += tail[i];
     const lanes p = virgin - reached * (1.0 / E);
     store(h->plastic_after, select_lanes(yields, plastic + with_sign(p - p0, trial), plastic));
     store(h->accumulated_after, select_lanes(yields, p, p0));
@@ -422,35 +428,49 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_ov
                            select_lanes(yields, tangent, E + (lanes){0})};
 }
 
+/* Which parts of an overlay a step looks at one by one: those that yielded before have rows of the
+ * history; those that may yield now get some; the others are elastic, all together. */
+struct active_parts {
+    int before, now;
+};
+
 /* The share with kinematic hardening: each part is elastic up to its yield strain and perfectly
  * plastic beyond; a row of the history is its plastic strain. */
 static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fibres *f, int at,
+                                                             struct active_parts active,
                                                              lanes strain, const double *rows,
                                                              double *rows_after)
 {
     const struct wb_overlay *const o = f->overlay;
-    struct answer answer = {{0}, {0}};
+    struct answer answer = {f->tail[active.now] * strain, f->tail[active.now] + (lanes){0}};
 
-    for (int i = 0; i < o->n; i++) {
-        const lanes elastic = strain - load(rows + i * f->n + at);
+    for (int i = 0; i < active.now; i++) {
+        const lanes plastic = i < active.before ? load(rows + i * f->n + at) : (lanes){0};
+        const lanes elastic = strain - plastic;
         const lanes most = o->yield_strain[i] + (lanes){0};
         const lanes modulus = o->modulus[i] + (lanes){0};
         const masks stays = absolute(elastic) < most;
         const lanes kept = select_lanes(stays, elastic, with_sign(most, elastic));
         answer.stress += modulus * kept;
         answer.tangent += select_lanes(stays, modulus, (lanes){0});
-        store(rows_after + i * f->n + at,
-              select_lanes(stays, load(rows + i * f->n + at), strain - kept));
+        store(rows_after + i * f->n + at, select_lanes(stays, plastic, strain - kept));
     }
     return answer;
 }
 
 static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct strains strains,
-                                             const double *rows, double *rows_after,
+                                             const double *before, double *after,
                                              struct wb_fibres_response *response)
 {
     const double eps = strains.eps, kappa = strains.kappa;
-    const double beta = f->overlay->isotropic_share, E = f->materials[0].youngs_modulus;
+    const double beta = f->overlay->isotropic_share;
+    const double largest = fabs(eps) + f->outermost * fabs(kappa);
+    struct active_parts active = {(int)before[1], (int)before[1]};
+    while (active.now < f->overlay->n && f->overlay->yield_strain[active.now] <= largest)
+        active.now++;
+    after[1] = active.now;
+    const double *const rows = before + HISTORY_HEAD;
+    double *const rows_after = after + HISTORY_HEAD;
     const double *const grown = rows + f->overlay_capacity * f->n;
     double *const grown_after = rows_after + f->overlay_capacity * f->n;
     lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
@@ -468,12 +488,13 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
         const lanes strain = eps - y * kappa;
         lanes force = {0}, stiffness = {0};
         if (beta < 1.0) {
-            const struct answer moving = respond_overlay_moving(f, i, strain, rows, rows_after);
+            const struct answer moving =
+                respond_overlay_moving(f, i, active, strain, rows, rows_after);
             force += (1.0 - beta) * moving.stress * area;
             stiffness += (1.0 - beta) * moving.tangent * area;
         }
         if (beta > 0.0) {
-            const struct answer growing = respond_overlay_growing(f->overlay, E, strain, &h);
+            const struct answer growing = respond_overlay_growing(f->overlay, f->tail, strain, &h);
             force += beta * growing.stress * area;
             stiffness += beta * growing.tangent * area;
         }
@@ -491,9 +512,11 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
 }
 
 /* One fibre after the other: the history of a fibre is contiguous. */
-static void respond_points(const struct wb_fibres *f, double eps, double kappa, const double *rows,
-                           double *rows_after, struct wb_fibres_response *response)
+static void respond_points(const struct wb_fibres *f, double eps, double kappa,
+                           const double *before, double *after, struct wb_fibres_response *response)
 {
+    const double *const rows = before + HISTORY_HEAD;
+    double *const rows_after = after + HISTORY_HEAD;
     *response = (struct wb_fibres_response){0};
     for (int b = 0; b < f->n_materials; b++) {
         const struct wb_point_law *const law = &f->point_laws[f->batches[b].material];
@@ -514,30 +537,30 @@ static void respond_points(const struct wb_fibres *f, double eps, double kappa, 
 
 /* A section's own kind. */
 static WB_ALWAYS_INLINE void respond_any(const struct wb_fibres *f, struct strains strains,
-                                         const double *rows, double *rows_after,
+                                         const double *before, double *after,
                                          struct wb_fibres_response *response)
 {
     if (f->overlay)
-        respond_overlay(f, strains, rows, rows_after, response);
+        respond_overlay(f, strains, before, after, response);
     else
-        respond_rows(f, strains, rows, rows_after, response);
+        respond_rows(f, strains, before + HISTORY_HEAD, after + HISTORY_HEAD, response);
 }
 
 /* The same function, compiled for what the processor has. No variant contracts a * b + c, so all
  * give the same bits. */
 static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
-                             const double *rows, double *rows_after,
+                             const double *before, double *after,
                              struct wb_fibres_response *response)
 {
-    respond_any(f, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_any(f, (struct strains){eps, kappa}, before, after, response);
 }
 
 #ifdef WB_HAS_X86_VARIANTS
 WB_AVX2 static void respond_avx2(const struct wb_fibres *f, double eps, double kappa,
-                                 const double *rows, double *rows_after,
+                                 const double *before, double *after,
                                  struct wb_fibres_response *response)
 {
-    respond_any(f, (struct strains){eps, kappa}, rows, rows_after, response);
+    respond_any(f, (struct strains){eps, kappa}, before, after, response);
 }
 
 WB_AVX512 static void respond_avx512(const struct wb_fibres *f, double eps, double kappa,
@@ -593,7 +616,8 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
                                : f->point_history;
     f->y = wb_memory_take(&f->memory, count, sizeof *f->y);
     f->area = wb_memory_take(&f->memory, count, sizeof *f->area);
-    f->virgin = wb_memory_take(&f->memory, (size_t)history_rows(f) * count, sizeof *f->virgin);
+    f->virgin = wb_memory_take(&f->memory, HISTORY_HEAD + (size_t)history_rows(f) * count,
+                               sizeof *f->virgin);
     f->batches = wb_memory_take(&f->memory, materials, sizeof *f->batches);
     f->materials = wb_memory_take(&f->memory, materials, sizeof *f->materials);
     f->tables = wb_memory_take(&f->memory, materials, sizeof *f->tables);
@@ -649,8 +673,7 @@ void wb_fibres_respond(const struct wb_fibres *f, double eps, double kappa,
         return;
     }
     after[0] = 1.0;
-    f->respond(f, eps, kappa, yielded ? before + HISTORY_HEAD : f->virgin, after + HISTORY_HEAD,
-               response);
+    f->respond(f, eps, kappa, yielded ? before : f->virgin, after, response);
 }
 
 double wb_fibres_largest_plastic_strain(const struct wb_fibres *f, const double *history)

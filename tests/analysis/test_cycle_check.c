@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "analysis/cycle_calibrate.h"
-#include "analysis/cycle_check.h"
+#include "analysis/cycle_check_private.h"
 #include "base/units.h"
 #include "tests/analysis/fast_rig.h"
 #include "tests/check.h"

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "analysis/cycle_json.h"
-#include "analysis/properties.h"
+#include "analysis/properties_private.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "tests/check.h"

@@ -189,6 +189,7 @@ static void way_back_and_later_cycles_are_those_of_the_rule(void **state)
     struct wb_validate_result result;
     kinematic.law.isotropic_share = 0.0;
     kinematic.largest_curvature = 100.0;
+    kinematic.is_rule_tested = true;
     cycle_dataset(&dataset, &kinematic.law, 1.0 * mm);
 
     assert_int_equal(wb_validate_run(&result, &kinematic, datasets, 1, NULL, NULL), WB_OK);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "fixtures/virtual/composite_private.h"
 #include "tests/virtual/setup.h"
 
 static int errors;

@@ -1,6 +1,7 @@
 #include "fixtures/virtual/live_wire.h"
 
 #include "fe/trial/cantilever.h"
+#include "fixtures/virtual/composite_private.h"
 #include "tests/virtual/setup.h"
 
 static struct wb_live_wire *make(const struct setup *setup,

@@ -13,7 +13,7 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "fe/trial/cantilever.h"
-#include "fixtures/virtual/composite.h"
+#include "fixtures/virtual/composite_private.h"
 
 #define WB_LOG_DOMAIN "tune"
 

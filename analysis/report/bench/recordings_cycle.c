@@ -139,7 +139,8 @@ enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
     /* Wires are computed side by side already. */
     settings.threads = 1;
     settings.progress = go_on;
-    WB_TRY(wb_cycle_calibrate_run(&cycle->calibration, datasets, n, &settings, why));
+    WB_TRY(wb_cycle_check_calibrate(&cycle->calibration, &cycle->remarks, datasets, n, &settings,
+                                    why));
     enum wb_status status = draw_curve(cycle);
     if (status == WB_OK)
         status = predict_later(cycle, datasets, why);
@@ -199,6 +200,7 @@ void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_
     }
     if (cycle->later.n > 0)
         put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
+    wb_cycle_check_put(wb_json_set_array(object, "remarks"), &cycle->remarks);
     wb_cycle_sensitivity_put(wb_json_set_array(object, "shared_sensitivities"),
                              cycle->sensitivities);
     if (cycle->has_valley)

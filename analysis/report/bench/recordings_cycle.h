@@ -10,6 +10,7 @@
 #include <stdbool.h>
 
 #include "analysis/cycle_calibrate.h"
+#include "analysis/cycle_check.h"
 #include "analysis/cycle_later.h"
 #include "analysis/cycle_sensitivity.h"
 #include "analysis/cycle_valley.h"
@@ -32,6 +33,7 @@ struct wb_recordings_cycle_curve {
 
 struct wb_recordings_cycle {
     struct wb_cycle_calibration calibration;
+    struct wb_cycle_remarks remarks; /* on the data and what was made of them */
     struct wb_recordings_cycle_curve curve;
     /* Of the specimen with the most cycles; n 0 where none has a second one. */
     struct wb_cycle_later later;

@@ -451,6 +451,21 @@ static void put_apart(struct wb_document *document, const struct wb_recordings_c
     wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
 }
 
+/* What the checks of the data found: doubts as warnings, notes as notes. */
+static void put_remarks(struct wb_document *document, const struct wb_cycle_remarks *remarks)
+{
+    for (int i = 0; i < remarks->n; i++) {
+        const struct wb_cycle_remark *const remark = &remarks->items[i];
+        const bool is_doubt = remark->severity != WB_CHECK_NOTE;
+        struct wb_text text = {0};
+        wb_text_append(&text, is_doubt ? "<b>In doubt:</b> " : "Note: ");
+        wb_text_append_escaped(&text, remark->text);
+        wb_text_append(&text, ".");
+        wb_pages_put_text(document, is_doubt ? WB_BLOCK_NOTICE : WB_BLOCK_PARAGRAPH,
+                          is_doubt ? WB_TONE_WARNING : WB_TONE_QUIET, &text);
+    }
+}
+
 void wb_recordings_cycle_pages_wire(struct wb_document *document,
                                     const struct wb_recordings_results *results, int index,
                                     const struct wb_figures *figures)
@@ -461,6 +476,7 @@ void wb_recordings_cycle_pages_wire(struct wb_document *document,
         return;
     wb_document_heading(document, 2, "", "Loading and unloading");
     put_answer(document, cycle);
+    put_remarks(document, &cycle->remarks);
     wb_figures_put(figures, document, "cycle", index);
     put_ranked(document, &cycle->calibration);
     wb_figures_put(figures, document, "later", index);
