@@ -1,5 +1,7 @@
 #include "analysis/moment_curvature.h"
 
+#include "analysis/cycle_model.h"
+
 #include <stdlib.h>
 
 #include <gsl/gsl_errno.h>
@@ -183,6 +185,26 @@ static void weight_counterweight_strand_and_bow_count(void **state)
     wb_dataset_release(&dataset);
 }
 
+/* The clamp's curvature at the turn, which no state of the cloud need meet. */
+static double curvature_of_the_turn(const struct wb_dataset *dataset, const struct wb_law *law)
+{
+    const struct wb_cycle_model_settings settings = {.n_elements = 0};
+    const struct wb_cycle_specimen straight = {0.0, 0.0};
+    struct wb_cycle_data data;
+    struct wb_cycle_model *model;
+    struct wb_cycle_run run;
+    assert_int_equal(wb_cycle_data_take(&data, dataset, NULL, NULL), WB_OK);
+    assert_int_equal(wb_cycle_model_create(&model, &data, law, &settings), WB_OK);
+    double *const tension = calloc((size_t)data.n_points, sizeof *tension);
+    assert_non_null(tension);
+    assert_int_equal(wb_cycle_model_run(model, law, &straight, tension, NULL, &run), WB_OK);
+    assert_true(run.reached);
+    free(tension);
+    wb_cycle_model_destroy(model);
+    wb_cycle_data_release(&data);
+    return run.clamp_curvature;
+}
+
 /* The clamp's on the way back: the law bent to the largest curvature and let go. */
 static void way_back_is_that_of_the_hardening_rule(void **state)
 {
@@ -201,8 +223,8 @@ static void way_back_is_that_of_the_hardening_rule(void **state)
     const size_t size = wb_fibres_history_size(fibres);
     double *const history = calloc(3 * size, sizeof *history);
     assert_non_null(history);
-    /* The last state of the loading is a little short of the turn. */
-    wb_fibres_respond(fibres, 0.0, cloud.largest, history, history + size, &response);
+    wb_fibres_respond(fibres, 0.0, curvature_of_the_turn(&dataset, &law), history, history + size,
+                      &response);
     const double largest = response.M;
     double worst = 0.0;
     for (int i = 0; i < cloud.n; i++) {
