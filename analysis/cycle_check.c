@@ -43,6 +43,8 @@ static const double full_travel = 0.35, short_travel = 0.20;
  * wrong, or made up for something else. Two with a bow that disagrees. */
 static const double level_deviation = 0.1 * WB_MM;
 static const double level_limit = 3.0, level_limit_with_bow = 2.0;
+/* A law with a larger misfit may move level and bow by what it does not follow. */
+static const double largest_followed = 5e-3;
 /* Measured and computed force at zero deflection, over the largest force. */
 static const double zero_share = 0.01;
 /* Below this tension (N) the strand may hang slack and says nothing. */
@@ -523,14 +525,17 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     say(remarks, WB_CHECK_DOUBT, s->sample,
         "wire '%s', sample %d: %s is wrong: at zero deflection the tension is %.2f mN, the law's "
         "%.2f mN (expected within %.2f mN), and zero deflection lies %.2f mm off (expected within "
-        "%.1f mm)%s; %s",
+        "%.1f mm)%s; %s%s",
         s->wire, s->sample,
         bow_off ? "the zero of force or the counterweight" : "the zero of deflection, or of force,",
         data->zero_tension / WB_MN, zero / WB_MN, limit / WB_MN, level / WB_MM,
         level_limit * level_deviation / WB_MM, bows,
         bow_off ? "weigh the counterweight, tare the cell with nothing on it and record again"
                 : "look at the markers of clamp and tip and their offset from the axis, then at "
-                  "tare and counterweight");
+                  "tare and counterweight",
+        s->fit->misfit > largest_followed
+            ? "; where all specimens say so, the law itself may not follow this wire"
+            : "");
     return WB_OK;
 }
 
