@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -500,6 +501,65 @@ static void move_law(const struct problem *p, const gsl_vector *x, double varian
     }
 }
 
+/* Correlations of the law's numbers. Ludwik's are turned into those of K and n, which fits do not
+ * count in; a part's own scale does not matter. */
+static void find_correlations(const struct problem *p, const gsl_matrix *covariance,
+                              struct wb_cycle_fit *fit)
+{
+    double turn[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW] = {{0.0}}, c[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
+    const int n = p->n_law;
+    for (int i = 0; i < n; i++)
+        turn[i][i] = 1.0;
+    if (p->candidate->form == WB_LAW_LUDWIK) {
+        const double exponent = fit->law.material.hardening_exponent;
+        turn[3][3] = exponent * (1.0 - exponent / largest_exponent_of(p->candidate));
+        turn[2][3] = -turn[3][3] * log(middle_plastic_strain);
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            c[i][j] = 0.0;
+            for (int k = 0; k < n; k++) {
+                for (int l = 0; l < n; l++)
+                    c[i][j] +=
+                        turn[i][k] * turn[j][l] * gsl_matrix_get(covariance, (size_t)k, (size_t)l);
+            }
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++)
+            fit->correlation[i][j] = c[i][j] / sqrt(c[i][i] * c[j][j]);
+    }
+    fit->n_numbers = n;
+}
+
+const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text[24])
+{
+    static const char *const ludwik[] = {"E", "sigma_Y", "K", "n"};
+    const bool is_ludwik = fit->law.form == WB_LAW_LUDWIK;
+    if (i >= (is_ludwik ? 4 : fit->law.n_parts))
+        snprintf(text, 24, "isotropic share");
+    else if (is_ludwik)
+        snprintf(text, 24, "%s", ludwik[i]);
+    else
+        snprintf(text, 24, "part %d", i + 1);
+    return text;
+}
+
+bool wb_cycle_fit_strongest(const struct wb_cycle_fit *fit, int *one, int *other)
+{
+    double strongest = -1.0;
+    for (int i = 0; i < fit->n_numbers; i++) {
+        for (int j = 0; j < i; j++) {
+            if (fabs(fit->correlation[i][j]) > strongest) {
+                strongest = fabs(fit->correlation[i][j]);
+                *one = j;
+                *other = i;
+            }
+        }
+    }
+    return strongest >= 0.0;
+}
+
 /* Standard errors from the curvature of the sum of squares, scaled by what is left of it. */
 static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_cycle_fit *fit)
@@ -527,6 +587,7 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
             fit->ln_strength_error =
                 sqrt(variance * fmax(0.0, a * a * hh + 2.0 * a * b * hn + b * b * nn));
         }
+        find_correlations(p, covariance, fit);
         const double alike = alike_in_a_row(p, w->f);
         move_law(p, w->x, WB_FIT_MOVED * WB_FIT_MOVED * variance * alike, covariance, fit);
     }

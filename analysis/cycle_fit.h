@@ -86,6 +86,10 @@ struct wb_cycle_fit {
      * grow with that. */
     int n_moved;
     struct wb_law moved[WB_FIT_MOST_FREE];
+    /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, or of the
+     * parts' moduli; then of the isotropic share where that is free. NaN unknown. */
+    int n_numbers;
+    double correlation[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
     double clamp_curvature; /* 1/m, largest */
     double first_curvature; /* 1/m, at the first point */
     int n_free;             /* numbers fitted */
@@ -104,6 +108,12 @@ wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
                  enum wb_candidate candidate, const struct wb_law *start,
                  const struct wb_cycle_grid *grid, const struct wb_cycle_fit_settings *settings,
                  struct wb_reason *why);
+/* "E", "part 3", "isotropic share": number `i` of the correlations. */
+const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text[24]);
+
+/* The pair of numbers that hang together most; false where that is not known. */
+bool wb_cycle_fit_strongest(const struct wb_cycle_fit *fit, int *one, int *other);
+
 void wb_cycle_fit_release(struct wb_cycle_fit *fit); /* accepts a zeroed one */
 
 #endif

@@ -75,6 +75,21 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
     }
 }
 
+/* The numbers' names, and their correlations row by row. */
+static void put_correlation(struct wb_json *item, const struct wb_cycle_fit *fit)
+{
+    struct wb_json *const object = wb_json_set_object(item, "law_correlation");
+    struct wb_json *const names = wb_json_set_array(object, "numbers");
+    char text[24];
+    for (int i = 0; i < fit->n_numbers; i++)
+        wb_json_append_text(names, wb_cycle_fit_number(fit, i, text));
+    struct wb_json *const rows = wb_json_set_array(object, "matrix");
+    for (int i = 0; i < fit->n_numbers; i++) {
+        for (int j = 0; j < fit->n_numbers; j++)
+            wb_json_append_number(rows, fit->correlation[i][j]);
+    }
+}
+
 static void put_specimens(struct wb_json *array, const struct wb_cycle_calibration *c)
 {
     for (int i = 0; i < c->n_members; i++) {
@@ -100,6 +115,7 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         wb_json_set_number(item, "residual_deflection_mm",
                            member->data.residual_deflection / WB_MM);
         wb_json_set_integer(item, "outliers", fit->n_outliers + member->data.n_outliers);
+        put_correlation(item, fit);
         put_ludwik(wb_json_set_object(item, "ludwik_equivalent"), &member->ludwik,
                    member->ludwik_misfit);
     }

@@ -141,6 +141,18 @@ static void print_ludwik_number(const struct wb_cycle_calibration *c, const char
     print_remedy(c);
 }
 
+/* Numbers that hang together mean little one by one. */
+static void print_correlation(const struct wb_cycle_calibration *c)
+{
+    const struct wb_cycle_fit *const fit = &c->members[0].answers[c->chosen].fit;
+    char a[24], b[24];
+    int one, other;
+    if (wb_cycle_fit_strongest(fit, &one, &other))
+        printf("  strongest correlation of these numbers: %.2f, of %s and %s (specimen %d)\n",
+               fit->correlation[one][other], wb_cycle_fit_number(fit, one, a),
+               wb_cycle_fit_number(fit, other, b), c->members[0].sample);
+}
+
 static void print_law(const struct wb_cycle_calibration *c)
 {
     const struct wb_law *const law = &c->law;
@@ -166,6 +178,7 @@ static void print_law(const struct wb_cycle_calibration *c)
         else
             printf(", elastic\n");
     }
+    print_correlation(c);
     if (wb_law_is_plain(law))
         return;
     printf("Ludwik equivalent, isotropic, of the first loading (misfit %.2f %% of M; its way back "

@@ -283,6 +283,67 @@ static void the_wrong_rule_shows_in_the_misfit(void **unused)
     wb_cycle_fit_release(&found);
 }
 
+/* A normal number of standard deviation 1, from uniform ones that repeat. */
+static double normal(uint64_t *state)
+{
+    double sum = -6.0;
+    for (int i = 0; i < 12; i++) {
+        *state = *state * 6364136223846793005u + 1442695040888963407u;
+        sum += (double)(*state >> 11) / 9007199254740992.0;
+    }
+    return sum;
+}
+
+/* Of many tests of one wire that differ by their noise alone. */
+static void correlations_are_those_of_repeated_tests(void **unused)
+{
+    (void)unused;
+    enum {
+        TESTS = 60
+    };
+    struct specimen exact, noisy;
+    struct wb_cycle_fit_settings settings;
+    const struct wb_law law = ludwik(0.0, 0.75);
+    const struct wb_cycle_grid grid = test_grid();
+    double x[TESTS], y[TESTS], mean_x = 0.0, mean_y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0,
+                               stated = 0.0, error = 0.0;
+    uint64_t state = 5;
+    char text[24];
+    default_settings(&settings);
+    compute(&exact, &law, 0.05);
+    for (int k = 0; k < TESTS; k++) {
+        struct wb_cycle_fit fit;
+        noisy = exact;
+        noisy.data.points = noisy.points;
+        for (int i = 0; i < noisy.data.n_points; i++)
+            noisy.points[i].tension += 1e-4 * normal(&state);
+        assert_int_equal(wb_cycle_fit_run(&fit, &noisy.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &law,
+                                          &grid, &settings, NULL),
+                         WB_OK);
+        assert_int_equal(fit.n_numbers, 4);
+        assert_string_equal(wb_cycle_fit_number(&fit, 2, text), "K");
+        x[k] = log(fit.law.material.strength_coefficient);
+        y[k] = fit.law.material.hardening_exponent;
+        mean_x += x[k] / TESTS;
+        mean_y += y[k] / TESTS;
+        stated += fit.correlation[2][3] / TESTS;
+        error += fit.exponent_error / TESTS;
+        for (int i = 0; i < 4; i++)
+            assert_close(fit.correlation[i][i], 1.0, 1e-12);
+        wb_cycle_fit_release(&fit);
+    }
+    for (int k = 0; k < TESTS; k++) {
+        xx += (x[k] - mean_x) * (x[k] - mean_x);
+        xy += (x[k] - mean_x) * (y[k] - mean_y);
+        yy += (y[k] - mean_y) * (y[k] - mean_y);
+    }
+    print_message("    ln K and n: %.3f found, %.3f stated\n", xy / sqrt(xx * yy), stated);
+    const double found = sqrt(yy / (TESTS - 1));
+    print_message("    n: standard deviation %.5f found, %.5f stated\n", found, error);
+    assert_close(xy / sqrt(xx * yy), stated, 0.002);
+    assert_close_relative(found, error, 0.3);
+}
+
 int main(void)
 {
     gsl_set_error_handler_off();
@@ -293,6 +354,7 @@ int main(void)
         cmocka_unit_test(points_far_off_count_little_and_are_counted),
         cmocka_unit_test(the_level_of_zero_deflection_is_found),
         cmocka_unit_test(the_wrong_rule_shows_in_the_misfit),
+        cmocka_unit_test(correlations_are_those_of_repeated_tests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

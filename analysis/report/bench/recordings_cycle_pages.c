@@ -432,6 +432,15 @@ static void put_law(struct wb_document *document, const struct wb_cycle_calibrat
                                ? "A travel of at least 0.35 of the length would mend it."
                                : "More samples, or an unloading, would mend it.");
     }
+    char a[24], b[24];
+    int one, other;
+    const struct wb_cycle_fit *const fit = &c->members[0].answers[c->chosen].fit;
+    if (wb_cycle_fit_strongest(fit, &one, &other))
+        wb_text_append(&text,
+                       " The law's numbers hang together: in the fit of sample %d the strongest "
+                       "correlation is %.2f, of %s and %s.",
+                       c->members[0].sample, fit->correlation[one][other],
+                       wb_cycle_fit_number(fit, one, a), wb_cycle_fit_number(fit, other, b));
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
