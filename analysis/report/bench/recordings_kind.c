@@ -6,6 +6,9 @@
 
 #define WB_LOG_DOMAIN "report"
 
+/* N mm2 in one N m2. */
+static const double N_MM2 = 1e-6;
+
 static void print_step(FILE *out, const struct wb_recordings_results *results, int index,
                        enum wb_recordings_purpose purpose)
 {
@@ -24,6 +27,22 @@ static void print_step(FILE *out, const struct wb_recordings_results *results, i
         fprintf(out, "  %s RMS %.4f", what, rms);
 }
 
+/* NULL: the campaign has no whole cycles. */
+static void print_cycle(FILE *out, const struct wb_recordings_cycle *cycle)
+{
+    if (!cycle)
+        return;
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    if (c->has_unloading && !c->is_supported)
+        fprintf(out, "  EI %.0f to %.0f N mm2, hardening rule not supported",
+                c->rigidity.candidates_low / N_MM2, c->rigidity.candidates_high / N_MM2);
+    else
+        fprintf(out, "  EI %.0f N mm2%s", c->rigidity.value / N_MM2,
+                c->has_unloading ? "" : " by loading alone");
+    if (c->has_unloading && c->is_supported)
+        fprintf(out, ", springback %.3f", c->springback.value);
+}
+
 static void print(FILE *out, const void *context)
 {
     const struct wb_recordings_results *const results = context;
@@ -33,6 +52,7 @@ static void print(FILE *out, const void *context)
             results->outcome.n_wanted);
     for (int i = 0; i < results->n_wires; i++) {
         fprintf(out, "%-10s", results->wires[i].wanted->label);
+        print_cycle(out, wb_recordings_results_cycle(&results->wires[i]));
         print_step(out, results, i, WB_RECORDINGS_CALIBRATION);
         print_step(out, results, i, WB_RECORDINGS_VALIDATION);
         fprintf(out, "\n");
