@@ -7,6 +7,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
+#include <gsl/gsl_vector.h>
 
 #include "fe/rod/fibres.h"
 #include "fe/rod/section.h"
@@ -23,6 +24,8 @@ enum {
 /* The first of the curvatures of the equivalent, over the largest. */
 static const double first_of_equivalent = 0.01;
 /* Plastic strain at which its hardening stress is a free number; its largest exponent. */
+/* Of numbers that make no law: far above any other. */
+static const double lost_residual = 1e3;
 static const double middle_plastic_strain = 3e-3, largest_exponent = 1.5;
 
 /* A section point with its history. */
@@ -139,6 +142,7 @@ static int equivalent_residuals(const gsl_vector *x, void *context, gsl_vector *
 {
     struct equivalent *const e = context;
     double M[EQUIVALENT_POINTS];
+    struct wb_reason why;
     struct wb_law law;
     const double n = largest_exponent / (1.0 + exp(-gsl_vector_get(x, 3)));
     e->material = (struct wb_material){
@@ -150,6 +154,10 @@ static int equivalent_residuals(const gsl_vector *x, void *context, gsl_vector *
         .hardening_exponent = n,
     };
     wb_law_init_ludwik(&law, &e->material);
+    if (wb_law_check(&law, &why) != WB_OK) {
+        gsl_vector_set_all(f, lost_residual);
+        return GSL_SUCCESS;
+    }
     e->status = wb_bending_moments(&law, e->diameter, EQUIVALENT_POINTS, e->curvature, M);
     if (e->status != WB_OK)
         return GSL_EFAILED;

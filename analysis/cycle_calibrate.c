@@ -29,6 +29,9 @@ static const double counts_up_to = 2.0;
 static const double largest_supported = 5e-3;
 /* Standard errors of a fit on either side of a candidate's number. */
 static const double range_errors = 2.0;
+/* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
+ * that errors are made of mean nothing. */
+static const double largest_range = 2.3;
 /* Level of the F-tests, coverage of the intervals. */
 static const double f_level = 0.01, coverage = 0.95;
 /* A fit that stays this many times above the best misfit of the specimen is given up. */
@@ -525,7 +528,8 @@ static void estimate_number(struct wb_cycle_calibration *calibration, enum numbe
         if (!calibration->ranked[i].counts)
             continue;
         average(calibration, candidate, number, settings, &other);
-        const double error = range_errors * fit_error(calibration, candidate, number);
+        const double error =
+            fmin(range_errors * fit_error(calibration, candidate, number), largest_range);
         estimate->candidates_low = fmin(estimate->candidates_low, other.value * exp(-error));
         estimate->candidates_high = fmax(estimate->candidates_high, other.value * exp(error));
     }

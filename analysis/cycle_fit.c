@@ -358,7 +358,8 @@ static int residuals(struct problem *p, const double *x, double *r)
     absolute(p, x, free);
     law_of(p, free, &law);
     const struct wb_cycle_specimen specimen = {free[p->n_law], free[p->n_law + 1]};
-    bool reached = wb_law_check(&law) == WB_OK;
+    struct wb_reason why;
+    bool reached = wb_law_check(&law, &why) == WB_OK;
     if (reached) {
         p->runs++;
         p->status = wb_cycle_model_run(p->model, &law, &specimen, p->tension, p->distance, &p->run);
@@ -486,6 +487,7 @@ static void move_law(const struct problem *p, const gsl_vector *x, double varian
                      gsl_matrix *covariance, struct wb_cycle_fit *fit)
 {
     double free[WB_FIT_MOST_FREE], step[WB_FIT_MOST_FREE];
+    struct wb_reason why;
     fit->n_moved = 0;
     if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
         return;
@@ -497,7 +499,7 @@ static void move_law(const struct problem *p, const gsl_vector *x, double varian
         }
         absolute(p, step, free);
         law_of(p, free, &fit->moved[fit->n_moved]);
-        fit->n_moved += wb_law_check(&fit->moved[fit->n_moved]) == WB_OK;
+        fit->n_moved += wb_law_check(&fit->moved[fit->n_moved], &why) == WB_OK;
     }
 }
 

@@ -62,12 +62,13 @@ static enum wb_status run(struct problem *p, const double *numbers, double *misf
     const struct wb_cycle_specimen specimen = {numbers[BOW], numbers[LEVEL]};
     struct wb_cycle_run how;
     struct wb_law law;
+    struct wb_reason why;
     double sum = 0.0;
     const int n = p->loading.n_points;
 
     *misfit = (double)NAN;
     law_of(p, numbers, &law);
-    if (wb_law_check(&law) != WB_OK)
+    if (wb_law_check(&law, &why) != WB_OK)
         return WB_OK;
     WB_TRY(wb_cycle_model_run(p->model, &law, &specimen, p->tension, NULL, &how));
     for (int i = 0; i < n; i++) {

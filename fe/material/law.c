@@ -43,51 +43,54 @@ bool wb_law_is_plain(const struct wb_law *law)
     return law->form == WB_LAW_LUDWIK && law->isotropic_share == 1.0;
 }
 
-static enum wb_status check_parts(const struct wb_law *law)
+static enum wb_status check_parts(const struct wb_law *law, struct wb_reason *why)
 {
     if (law->n_parts < 1 || law->n_parts > WB_LAW_MOST_PARTS)
-        return wb_fail(WB_ERR_ARGUMENT, "%d parallel parts: expected 1 to %d", law->n_parts,
-                       WB_LAW_MOST_PARTS);
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%d parallel parts: expected 1 to %d", law->n_parts,
+                          WB_LAW_MOST_PARTS);
     double before = 0.0, sum = 0.0;
     for (int i = 0; i < law->n_parts; i++) {
         const struct wb_law_part *const part = &law->parts[i];
         if (!(isfinite(part->modulus) && part->modulus >= 0.0))
-            return wb_fail(WB_ERR_ARGUMENT, "part %d: modulus %g Pa: expected 0 or more", i + 1,
-                           part->modulus);
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "part %d: modulus %g Pa: expected 0 or more",
+                              i + 1, part->modulus);
         if (!(part->yield_strain > before))
-            return wb_fail(WB_ERR_ARGUMENT, "part %d: yield strain %g: expected more than %g",
-                           i + 1, part->yield_strain, before);
+            return wb_fail_to(why, WB_ERR_ARGUMENT,
+                              "part %d: yield strain %g: expected more than %g", i + 1,
+                              part->yield_strain, before);
         if (isinf(part->yield_strain) && i + 1 < law->n_parts)
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "part %d does not yield: expected that of the last part only", i + 1);
+            return wb_fail_to(why, WB_ERR_ARGUMENT,
+                              "part %d does not yield: expected that of the last part only", i + 1);
         before = part->yield_strain;
         sum += part->modulus;
     }
     if (!(sum > 0.0 && fabs(sum - law->material.youngs_modulus) <= 1e-9 * sum))
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the parts' moduli add up to %g Pa and Young's modulus is %g Pa: expected "
-                       "the same number above 0",
-                       sum, law->material.youngs_modulus);
+        return wb_fail_to(
+            why, WB_ERR_ARGUMENT,
+            "the parts' moduli add up to %g Pa and Young's modulus is %g Pa: expected "
+            "the same number above 0",
+            sum, law->material.youngs_modulus);
     return WB_OK;
 }
 
-enum wb_status wb_law_check(const struct wb_law *law)
+enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why)
 {
     if (!(law->isotropic_share >= 0.0 && law->isotropic_share <= 1.0))
-        return wb_fail(WB_ERR_ARGUMENT, "isotropic share %g: expected 0 to 1",
-                       law->isotropic_share);
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "isotropic share %g: expected 0 to 1",
+                          law->isotropic_share);
     if (law->form == WB_LAW_PARALLEL)
-        return check_parts(law);
+        return check_parts(law, why);
     if (!wb_hardening_law(&law->material)->growth)
-        return wb_fail(WB_ERR_ARGUMENT, "Ludwik's law needs a material whose yield stress grows");
-    char why[120];
-    if (!wb_hardening_is_possible(&law->material, why, sizeof why))
-        return wb_fail(WB_ERR_ARGUMENT, "%s", why);
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "Ludwik's law needs a material whose yield stress grows");
+    char text[120];
+    if (!wb_hardening_is_possible(&law->material, text, sizeof text))
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%s", text);
     if (law->isotropic_share < 1.0 && law->material.hardening_exponent > 1.0)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "hardening exponent %g: expected at most 1 with kinematic or mixed "
-                       "hardening, where a curve that steepens would give work back",
-                       law->material.hardening_exponent);
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "hardening exponent %g: expected at most 1 with kinematic or mixed "
+                          "hardening, where a curve that steepens would give work back",
+                          law->material.hardening_exponent);
     return WB_OK;
 }
 

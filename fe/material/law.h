@@ -22,6 +22,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/reason.h"
 #include "base/status.h"
 #include "fe/material/material.h"
 
@@ -69,8 +70,9 @@ void wb_law_init_parallel(struct wb_law *law, const struct wb_law_part *parts, i
 bool wb_law_is_plain(const struct wb_law *law);
 
 /* WB_ERR_ARGUMENT for what makes no law: also for Ludwik's with n above 1 and a kinematic share,
- * whose curve steepens behind the yield point: its parts would give work back. */
-WB_MUST_CHECK enum wb_status wb_law_check(const struct wb_law *law);
+ * whose curve steepens behind the yield point: its parts would give work back. `why` receives
+ * which; NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_law_check(const struct wb_law *law, struct wb_reason *why);
 
 /* The overlay of a law that wb_law_check() takes. Ludwik's ends at a strain of 0.1 or 50 times the
  * yield strain, beyond which its stress goes on along the last slope. */

@@ -91,7 +91,7 @@ enum wb_status wb_law_file_read(const struct wb_config_node *node, const struct 
                                 "them");
     WB_TRY(read_parts(list, parts, &n));
     wb_law_init_parallel(law, parts, n, beta, ludwik->poissons_ratio);
-    return wb_law_check(law);
+    return wb_law_check(law, NULL);
 }
 
 void wb_law_file_append(struct wb_text *text, const struct wb_law *law)

@@ -164,7 +164,7 @@ enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
                                    const struct wb_law *law, int n)
 {
     wb_section_init_empty(section);
-    WB_TRY(wb_law_check(law));
+    WB_TRY(wb_law_check(law, NULL));
     WB_TRY(wb_section_init_circle(section, diameter, &law->material, n));
     if (wb_law_is_plain(law))
         return WB_OK;
