@@ -62,8 +62,8 @@ void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
 /* Small, so that numbers change in proportion. */
 #define WB_FIT_MOVED 0.1
 
-/* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain at the first
- * point of the data to that at the last, where the elastic part's would stand. */
+/* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain between the
+ * first two points of the data to that at the last, where the elastic part's would stand. */
 struct wb_cycle_grid {
     double first_strain, last_strain;
 };
@@ -108,6 +108,7 @@ wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
                  enum wb_candidate candidate, const struct wb_law *start,
                  const struct wb_cycle_grid *grid, const struct wb_cycle_fit_settings *settings,
                  struct wb_reason *why);
+
 /* "E", "part 3", "isotropic share": number `i` of the correlations. */
 const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text[24]);
 
