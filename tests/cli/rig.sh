@@ -29,6 +29,8 @@ fail() {
 start() { # NAME OPTIONS...: a rig in $folder/NAME, its process in $process
     local name=$1
     shift
+    # An earlier rig of that name was ready, too.
+    rm -f "$folder/$name.log"
     "$wirebench" rig "$rig" --specimen "$specimen" --run "$folder/$name/deep" "$@" \
         2>"$folder/$name.log" &
     process=$!
