@@ -3,11 +3,11 @@
  * markers between clamp and tip.
  *
  * The tension is as measured, weights included, not zeroed at zero deflection: its absolute size
- * says how the wire is bent by nature. A point is the mean deflection and the mean tension of a bin:
- * a line over the deflection, which has noise too, would be too flat. Rows far off are left out and
- * counted. The loading begins at zero deflection; the unloading begins half a millimetre below the
- * turn, where the change of direction is past, and ends where the strand is about to become slack.
- * Of a simulation, which has no noise, every row is a point.
+ * says how the wire is bent by nature. A point is the mean deflection and the mean tension of a
+ * bin: a line over the deflection, which has noise too, would be too flat. Rows far off are left
+ * out and counted. The loading begins at zero deflection; the unloading begins half a millimetre
+ * below the turn, where the change of direction is past, and ends where the strand is about to
+ * become slack. Of a simulation, which has no noise, every row is a point.
  */
 #ifndef WB_ANALYSIS_CYCLE_DATA_H
 #define WB_ANALYSIS_CYCLE_DATA_H
