@@ -711,7 +711,6 @@ static int specimens_needed(double deviation)
 static enum wb_status conclude(struct wb_cycle_calibration *calibration,
                                const struct wb_cycle_calibrate_settings *settings)
 {
-    choose(calibration);
     WB_TRY(describe_answers(calibration));
     estimate_number(calibration, RIGIDITY, settings, &calibration->rigidity);
     estimate_number(calibration, SPRINGBACK, settings, &calibration->springback);

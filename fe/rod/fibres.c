@@ -357,12 +357,35 @@ struct strains {
     double eps, kappa;
 };
 
+/* What the fibres of a section add up to, lane by lane. */
+struct sums {
+    lanes N, M, D11, D12, D22;
+};
+
+static WB_ALWAYS_INLINE void add_fibres(struct sums *sums, lanes force, lanes stiffness, lanes y)
+{
+    sums->N += force;
+    sums->M -= force * y;
+    sums->D11 += stiffness;
+    sums->D12 -= stiffness * y;
+    sums->D22 += stiffness * y * y;
+}
+
+static WB_ALWAYS_INLINE void take_sums(const struct sums *sums, struct wb_fibres_response *response)
+{
+    response->N = add_lanes(sums->N);
+    response->M = add_lanes(sums->M);
+    response->D11 = add_lanes(sums->D11);
+    response->D12 = add_lanes(sums->D12);
+    response->D22 = add_lanes(sums->D22);
+}
+
 static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct strains strains,
                                           const double *rows, double *rows_after,
                                           struct wb_fibres_response *response)
 {
     const double eps = strains.eps, kappa = strains.kappa;
-    lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
+    struct sums sums = {{0}, {0}, {0}, {0}, {0}};
 
     for (int b = 0; b < f->n_materials; b++) {
         for (int i = f->batches[b].begin; i < f->batches[b].end; i += LANES) {
@@ -376,20 +399,10 @@ static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct stra
             };
             const lanes y = load(f->y + i), area = load(f->area + i);
             const struct answer answer = respond_of(f, &f->batches[b], eps - y * kappa, &h);
-            const lanes force = answer.stress * area;
-            const lanes stiffness = answer.tangent * area;
-            N += force;
-            M -= force * y;
-            D11 += stiffness;
-            D12 -= stiffness * y;
-            D22 += stiffness * y * y;
+            add_fibres(&sums, answer.stress * area, answer.tangent * area, y);
         }
     }
-    response->N = add_lanes(N);
-    response->M = add_lanes(M);
-    response->D11 = add_lanes(D11);
-    response->D12 = add_lanes(D12);
-    response->D22 = add_lanes(D22);
+    take_sums(&sums, response);
 }
 
 /* The share of an overlay with isotropic hardening: the stress is the virgin curve's at the strain
@@ -473,7 +486,7 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
     double *const rows_after = after + HISTORY_HEAD;
     const double *const grown = rows + f->overlay_capacity * f->n;
     double *const grown_after = rows_after + f->overlay_capacity * f->n;
-    lanes N = {0}, M = {0}, D11 = {0}, D12 = {0}, D22 = {0};
+    struct sums sums = {{0}, {0}, {0}, {0}, {0}};
 
     for (int i = 0; i < f->n; i += LANES) {
         const struct rows h = {
@@ -498,17 +511,9 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
             force += beta * growing.stress * area;
             stiffness += beta * growing.tangent * area;
         }
-        N += force;
-        M -= force * y;
-        D11 += stiffness;
-        D12 -= stiffness * y;
-        D22 += stiffness * y * y;
+        add_fibres(&sums, force, stiffness, y);
     }
-    response->N = add_lanes(N);
-    response->M = add_lanes(M);
-    response->D11 = add_lanes(D11);
-    response->D12 = add_lanes(D12);
-    response->D22 = add_lanes(D22);
+    take_sums(&sums, response);
 }
 
 /* One fibre after the other: the history of a fibre is contiguous. */
