@@ -3,7 +3,7 @@
 #ifndef WB_ANALYSIS_QUICKLOOK_H
 #define WB_ANALYSIS_QUICKLOOK_H
 
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "base/json.h"
 #include "base/status.h"
 #include "base/text.h"

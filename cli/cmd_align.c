@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/align.h"
+#include "analysis/align/align.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibrate.h"
-#include "analysis/properties.h"
+#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/properties.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/progress.h"

@@ -1,5 +1,5 @@
 /* wirebench quicklook: one recording's curve, without a campaign. */
-#include "analysis/align.h"
+#include "analysis/align/align.h"
 #include "analysis/quicklook.h"
 #include "cli/command.h"
 #include "cli/datasets.h"

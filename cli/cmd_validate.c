@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/properties.h"
-#include "analysis/validate.h"
+#include "analysis/calibration/properties.h"
+#include "analysis/validation/validate.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/command.h"

@@ -3,7 +3,7 @@
 #ifndef WB_CLI_DATASETS_H
 #define WB_CLI_DATASETS_H
 
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "base/status.h"
 
 struct wb_datasets {

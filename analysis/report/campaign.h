@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "analysis/calibrate.h"
+#include "analysis/calibration/calibrate.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"

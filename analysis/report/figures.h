@@ -16,7 +16,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/curve.h"
+#include "analysis/dataset/curve.h"
 #include "analysis/plot/figure.h"
 #include "analysis/report/document.h"
 #include "base/status.h"

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "analysis/report/campaign.h"
 #include "analysis/solve/solve_settings.h"
 #include "base/file.h"

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "analysis/solve/solve_time.h"
-#include "analysis/surface.h"
+#include "analysis/dataset/surface.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_run.h"
 #include "fe/output/bundle_fields.h"

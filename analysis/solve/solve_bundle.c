@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/simulated_bundle.h"
+#include "analysis/dataset/simulated_bundle.h"
 #include "analysis/solve/bundle_states.h"
 #include "analysis/solve/solve_kind.h"
 #include "analysis/solve/solve_law.h"

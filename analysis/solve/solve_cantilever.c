@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/simulated.h"
+#include "analysis/dataset/simulated.h"
 #include "analysis/solve/solve_kind.h"
 #include "base/file.h"
 #include "base/interrupt.h"

@@ -3,7 +3,7 @@
 #ifndef WB_ANALYSIS_SOLVE_SOLVE_KIND_H
 #define WB_ANALYSIS_SOLVE_SOLVE_KIND_H
 
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "analysis/solve/solve.h"
 #include "analysis/solve/solve_time.h"
 #include "base/progress.h"

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "analysis/bending.h"
+#include "analysis/calibration/bending.h"
 #include "base/log.h"
 
 #define WB_LOG_DOMAIN "solve"

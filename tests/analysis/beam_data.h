@@ -6,10 +6,10 @@
 
 #include <stdlib.h>
 
-#include "analysis/calibrate.h"
-#include "analysis/computed.h"
-#include "analysis/curve.h"
-#include "analysis/dataset.h"
+#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/computed.h"
+#include "analysis/dataset/curve.h"
+#include "analysis/dataset/dataset.h"
 #include "base/log.h"
 #include "base/units.h"
 

@@ -8,8 +8,8 @@
 
 #include <stdlib.h>
 
-#include "analysis/fields.h"
-#include "analysis/simulated.h"
+#include "analysis/dataset/fields.h"
+#include "analysis/dataset/simulated.h"
 #include "fe/rod/section.h"
 #include "fe/trial/cantilever.h"
 #include "fe/trial/wire_run_private.h"

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/align.h"
-#include "analysis/align_private.h"
+#include "analysis/align/align.h"
+#include "analysis/align/align_private.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "fe/rod/fibres.h"

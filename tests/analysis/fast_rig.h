@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "base/status.h"
 #include "daq/rig.h"
 #include "daq/specimen.h"

@@ -5,7 +5,7 @@
 
 #include "tests/check.h"
 
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "base/units.h"
 #include "fe/trial/loading_steps.h"
 

@@ -9,8 +9,8 @@
 
 #include <stdlib.h>
 
-#include "analysis/simulated_bundle.h"
-#include "analysis/surface.h"
+#include "analysis/dataset/simulated_bundle.h"
+#include "analysis/dataset/surface.h"
 #include "base/units.h"
 #include "fe/rod/section.h"
 #include "fe/trial/cantilever.h"

@@ -1,6 +1,6 @@
 /* The static bundle (tests/twin/bundle_static.h) against shipped curves of the explicit one: both
  * with constant friction of 0.4, a vertical force and no weight, as the static model knows them. */
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "base/file.h"
 #include "tests/check.h"
 #include "tests/twin/bundle_static.h"

@@ -9,8 +9,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "analysis/calibrate.h"
-#include "analysis/computed.h"
+#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/computed.h"
 #include "base/units.h"
 
 static const double goal_s = 3.0;

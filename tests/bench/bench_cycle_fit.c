@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "analysis/cycle_calibrate.h"
-#include "analysis/cycle_model.h"
+#include "analysis/calibration/cycle_calibrate.h"
+#include "analysis/calibration/cycle_model.h"
 #include "base/units.h"
 #include "fe/rod/fibres.h"
 #include "fe/trial/loading_steps.h"

@@ -6,9 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "analysis/align.h"
-#include "analysis/calibrate.h"
-#include "analysis/cycle_calibrate.h"
+#include "analysis/align/align.h"
+#include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/cycle_calibrate.h"
 #include "analysis/report/campaign.h"
 #include "analysis/solve/solve_settings.h"
 #include "base/file.h"

@@ -4,7 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "analysis/dataset.h"
+#include "analysis/dataset/dataset.h"
 #include "base/json.h"
 #include "tests/cli/tool.h"
 

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
-#include "analysis/dataset.h"
-#include "analysis/surface.h"
+#include "analysis/dataset/dataset.h"
+#include "analysis/dataset/surface.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "tests/cli/tool.h"

@@ -4,8 +4,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "analysis/dataset.h"
-#include "analysis/fields.h"
+#include "analysis/dataset/dataset.h"
+#include "analysis/dataset/fields.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "tests/cli/tool.h"

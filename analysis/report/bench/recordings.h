@@ -47,7 +47,7 @@
 #include <stdbool.h>
 
 #include "analysis/report/campaign.h"
-#include "analysis/validate.h"
+#include "analysis/validation/validate.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"

@@ -5,8 +5,8 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/bending.h"
-#include "analysis/cycle_json.h"
+#include "analysis/calibration/bending.h"
+#include "analysis/calibration/cycle_json.h"
 #include "base/interrupt.h"
 #include "base/units.h"
 

@@ -9,13 +9,13 @@
 
 #include <stdbool.h>
 
-#include "analysis/cycle_calibrate.h"
-#include "analysis/cycle_check.h"
-#include "analysis/cycle_later.h"
-#include "analysis/cycle_sensitivity.h"
-#include "analysis/cycle_valley.h"
-#include "analysis/dataset.h"
-#include "analysis/moment_curvature.h"
+#include "analysis/calibration/cycle_calibrate.h"
+#include "analysis/calibration/cycle_check.h"
+#include "analysis/calibration/cycle_later.h"
+#include "analysis/calibration/cycle_sensitivity.h"
+#include "analysis/calibration/cycle_valley.h"
+#include "analysis/dataset/dataset.h"
+#include "analysis/calibration/moment_curvature.h"
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"

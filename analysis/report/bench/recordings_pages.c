@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "analysis/align.h"
+#include "analysis/align/align.h"
 #include "analysis/report/bench/recordings_cycle_pages.h"
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/bench/recordings_figures.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "analysis/align.h"
+#include "analysis/align/align.h"
 #include "analysis/report/bench/recordings_results_private.h"
 #include "analysis/report/reasons.h"
 #include "base/interrupt.h"

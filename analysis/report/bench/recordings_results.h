@@ -7,12 +7,12 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibrate.h"
-#include "analysis/dataset.h"
+#include "analysis/calibration/calibrate.h"
+#include "analysis/dataset/dataset.h"
 #include "analysis/report/bench/recordings.h"
 #include "analysis/report/bench/recordings_cycle.h"
 #include "analysis/report/kind.h"
-#include "analysis/validate.h"
+#include "analysis/validation/validate.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "daq/rig.h"

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/properties.h"
+#include "analysis/calibration/properties.h"
 #include "analysis/report/draw/figures_surface.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
-#include "analysis/validate.h"
+#include "analysis/validation/validate.h"
 #include "base/text.h"
 #include "base/units.h"
 

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "analysis/calibrate.h"
+#include "analysis/calibration/calibrate.h"
 #include "analysis/report/bundles/bundles.h"
 #include "analysis/report/bundles/bundles_run.h"
 #include "analysis/report/kind.h"

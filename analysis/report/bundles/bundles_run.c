@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/computed.h"
-#include "analysis/csv_table.h"
-#include "analysis/errors.h"
+#include "analysis/calibration/computed.h"
+#include "analysis/dataset/csv_table.h"
+#include "analysis/dataset/errors.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"

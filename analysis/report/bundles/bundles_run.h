@@ -6,10 +6,10 @@
 
 #include <stdbool.h>
 
-#include "analysis/curve.h"
-#include "analysis/dataset.h"
+#include "analysis/dataset/curve.h"
+#include "analysis/dataset/dataset.h"
 #include "analysis/report/bundles/bundles.h"
-#include "analysis/surface.h"
+#include "analysis/dataset/surface.h"
 #include "base/reason.h"
 #include "base/text.h"
 

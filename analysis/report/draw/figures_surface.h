@@ -10,7 +10,7 @@
 #define WB_ANALYSIS_REPORT_DRAW_FIGURES_SURFACE_H
 
 #include "analysis/plot/figure.h"
-#include "analysis/surface.h"
+#include "analysis/dataset/surface.h"
 #include "base/status.h"
 
 /* Zero is the default of each. */

@@ -6,8 +6,8 @@
 
 #include <stdbool.h>
 
-#include "analysis/dataset.h"
-#include "analysis/fields.h"
+#include "analysis/dataset/dataset.h"
+#include "analysis/dataset/fields.h"
 #include "analysis/report/wires/wires.h"
 #include "analysis/report/wires/wires_rod.h"
 #include "base/text.h"

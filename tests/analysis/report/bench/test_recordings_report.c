@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/align.h"
-#include "analysis/cycle_model.h"
+#include "analysis/align/align.h"
+#include "analysis/calibration/cycle_model.h"
 #include "analysis/report/bench/recordings_figures.h"
 #include "analysis/report/bench/recordings_kind.h"
 #include "analysis/report/bench/recordings_results_private.h"

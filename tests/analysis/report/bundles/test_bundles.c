@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "analysis/report/bundles/bundles_kind.h"
-#include "analysis/simulated.h"
+#include "analysis/dataset/simulated.h"
 #include "base/json.h"
 
 static struct wb_bundles campaign;

@@ -1,0 +1,245 @@
+#include "analysis/align/align.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "analysis/align/align_private.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "align"
+
+#define DEFAULT_ROW_RATE 20.0 /* 1/s */
+
+static const struct wb_setting setting_rows[] = {
+    {.name = "longest_gap_s",
+     .unit = "s",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, longest_gap),
+     .least = 1e-3,
+     .largest = 60.0,
+     .fallback = 0.1,
+     .option = "longest-gap-s",
+     .argument = "S",
+     .help = "Make no row where force or shape is missing for longer"},
+    {.name = "row_rate",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, row_rate),
+     .least = 0.1,
+     .largest = 1e4,
+     .otherwise = "20",
+     .option = "row-rate",
+     .argument = "N",
+     .help = "Rows per second of bench time"},
+    {.name = "shape_step_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, shape_step),
+     .scale = WB_MM,
+     .least = 0.0,
+     .largest = 1000.0,
+     .fallback = 0.5,
+     .option = "shape-step-mm",
+     .argument = "H",
+     .help = "Deflection between stored shapes"},
+    {.name = "lost_steps_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = offsetof(struct wb_align_settings, lost_steps),
+     .scale = WB_MM,
+     .least = 0.01,
+     .largest = 100.0,
+     .fallback = 0.3,
+     .option = "lost-steps-mm",
+     .argument = "H",
+     .help = "Flag the stage when commanded and measured travel differ by more"},
+};
+
+const struct wb_setting_table wb_align_table = {.rows = setting_rows, .n = WB_COUNT(setting_rows)};
+
+void wb_align_default_settings(struct wb_align_settings *settings)
+{
+    wb_setting_fill(&wb_align_table, settings);
+}
+
+/* To 1e-9 m, N, s and rad: far below all noise, and short in the file. */
+static double rounded(double value)
+{
+    return round(value * 1e9) / 1e9;
+}
+
+static void set_info(struct wb_align *align)
+{
+    struct wb_test_info *const info = &align->dataset->info;
+    memcpy(info->wire, align->wire.name, sizeof info->wire);
+    info->sample = align->specimen.sample;
+    info->length = align->specimen.length;
+    info->outer_diameter = align->wire.outer_diameter;
+    info->mass_per_length = wb_wire_mass_per_length(&align->wire);
+    info->poissons_ratio = align->wire.has_properties ? align->wire.material.poissons_ratio : 0.3;
+    info->strand_length = align->rig.strand.length;
+    info->counterweight = align->rig.strand.counterweight;
+    info->gravity = align->gravity;
+    info->is_virtual = align->is_virtual;
+}
+
+static enum wb_status add_shape(struct wb_align *align, const struct wb_align_row *row)
+{
+    for (int k = 0; k < align->specimen.n_markers; k++) {
+        if (!isfinite(row->y[k]))
+            continue;
+        const struct wb_shape_row shape = {
+            .t = rounded(row->t),
+            .deflection = rounded(row->tip_y),
+            .marker = k,
+            .s = align->specimen.markers[k],
+            .x = rounded(row->x[k]),
+            .y = rounded(row->y[k]),
+        };
+        WB_TRY(wb_dataset_add_shape_row(align->dataset, &shape));
+    }
+    return WB_OK;
+}
+
+/* Rows from the start of the first cycle on; shapes whenever the tip went on by a step. */
+static enum wb_status export_rows(struct wb_align *align)
+{
+    double last_shape = (double)NAN;
+    for (size_t i = 0; i < align->n_rows; i++) {
+        const struct wb_align_row *const row = &align->rows[i];
+        if (row->t < 0.0)
+            continue;
+        const struct wb_row out = {
+            .t = rounded(row->t),
+            .cycle = row->cycle,
+            .phase = row->phase,
+            .deflection = rounded(row->tip_y),
+            .tension = rounded(row->tension),
+            .force = rounded(row->force),
+            .stage = rounded(row->commanded),
+            .tip_x = rounded(row->tip_x),
+            .tip_angle = rounded(row->tip_angle),
+        };
+        WB_TRY(wb_dataset_add_row(align->dataset, &out));
+        if (!(fabs(row->tip_y - last_shape) < align->settings.shape_step)) {
+            WB_TRY(add_shape(align, row));
+            last_shape = row->tip_y;
+        }
+    }
+    if (align->dataset->n_rows == 0)
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: nothing was recorded after the first cycle's start", align->name);
+    return WB_OK;
+}
+
+static void describe_rows(struct wb_align *align)
+{
+    struct wb_json *const document = align->dataset->document;
+    /* A row stands at the mean time of its frames, of which half may be lost: a marker hidden for
+     * just the longest gap keeps its rows up to one and a half of their intervals farther apart. */
+    const double most = align->settings.longest_gap + 1.5 / align->settings.row_rate;
+    size_t n_gaps = 0;
+    double longest = 0.0, largest = 0.0;
+    for (size_t i = 0; i < align->n_rows; i++) {
+        const double gap = i > 0 ? align->rows[i].t - align->rows[i - 1].t : 0.0;
+        n_gaps += gap > most;
+        longest = fmax(longest, gap);
+        largest = fmax(largest, align->rows[i].tip_y);
+    }
+    wb_json_set_integer(document, "cycles", align->n_cycles);
+    wb_align_set(document, "largest_deflection_mm", largest / WB_MM);
+    wb_json_set_boolean(document, "complete", !align->is_cut_short && n_gaps == 0);
+    struct wb_json *const rows = wb_json_set_object(align->checks, "rows");
+    wb_json_set_integer(rows, "rows", (int64_t)align->dataset->n_rows);
+    wb_json_set_integer(rows, "shape_rows", (int64_t)align->dataset->n_shape_rows);
+    wb_json_set_integer(rows, "left_out", (int64_t)align->n_dropped_rows);
+    wb_json_set_integer(rows, "gaps", (int64_t)n_gaps);
+    wb_align_set(rows, "longest_gap_s", longest);
+    wb_align_set(rows, "deflection_level_uncertainty_mm",
+                 wb_align_level_uncertainty(align) / WB_MM);
+    wb_json_set_text(rows, "note",
+                     "a row is the mean of the frames of 1/row_rate seconds in which the tip's "
+                     "marker was seen, with the readings around that time; nothing is filled in");
+    if (n_gaps > 0)
+        wb_align_warn(align, "%zu gap%s " WB_ALIGN_GAPS_TEXT " %.2f s", n_gaps,
+                      n_gaps == 1 ? "" : "s", longest);
+}
+
+static enum wb_status run(struct wb_align *align,
+                          enum wb_status (*load)(struct wb_align *, const void *),
+                          const void *context)
+{
+    WB_TRY(load(align, context));
+    WB_TRY(wb_align_times(align));
+    WB_TRY(wb_align_markers(align));
+    WB_TRY(wb_align_rows(align));
+    WB_TRY(wb_align_cycles(align));
+    WB_TRY(wb_align_stage(align));
+    WB_TRY(wb_align_force(align));
+    set_info(align);
+    WB_TRY(wb_align_natural(align));
+    WB_TRY(export_rows(align));
+    describe_rows(align);
+    return WB_OK;
+}
+
+static void release(struct wb_align *align)
+{
+    free(align->readings.items);
+    free(align->reports.items);
+    free(align->probes.items);
+    free(align->frame_t);
+    free(align->rows);
+    wb_point_cloud_release(&align->cloud);
+    wb_marker_tracks_release(&align->tracks);
+    wb_frame_release(&align->frame);
+}
+
+static enum wb_status load_recording(struct wb_align *align, const void *path)
+{
+    return wb_align_load(align, path);
+}
+
+enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_path,
+                            const struct wb_align_settings *settings, struct wb_reason *why)
+{
+    return wb_align_run_from(dataset, settings, load_recording, recording_path, why);
+}
+
+enum wb_status wb_align_run_from(struct wb_dataset *dataset,
+                                 const struct wb_align_settings *settings,
+                                 enum wb_status (*load)(struct wb_align *, const void *),
+                                 const void *context, struct wb_reason *why)
+{
+    struct wb_reason lost = {.text = ""};
+    memset(dataset, 0, sizeof *dataset);
+    if (why)
+        *why = lost;
+    WB_TRY(wb_setting_check(&wb_align_table, settings, why));
+    /* GSL's own handler aborts; its codes are looked at here. */
+    gsl_set_error_handler_off();
+    struct wb_align *const align = calloc(1, sizeof *align);
+    if (!align)
+        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory to align a recording");
+    enum wb_status status = wb_dataset_init(dataset);
+    if (status == WB_OK) {
+        align->why = why;
+        align->lost = why ? &lost : NULL;
+        align->dataset = dataset;
+        align->settings = *settings;
+        if (align->settings.row_rate == 0.0)
+            align->settings.row_rate = DEFAULT_ROW_RATE;
+        status = run(align, load, context);
+        release(align);
+    }
+    free(align);
+    if (status != WB_OK)
+        wb_dataset_release(dataset);
+    if (status != WB_OK && lost.text[0])
+        wb_reason_set(why, "%s%s%s", lost.text, why->text[0] ? "; " : "", why->text);
+    else if (lost.text[0])
+        wb_error("%s", lost.text);
+    return status;
+}

@@ -1,0 +1,187 @@
+/* What the parts of the alignment share: one recording on its way to a dataset.
+ *
+ * The order: align_recording.c decodes the recording and puts everything on the bench's clock,
+ * align_rows.c makes rows of it in the clamp's frame, compares the stage and cuts cycles,
+ * align_force.c turns readings into tension and force, align_natural.c finds the natural shape, and
+ * align.c, which calls them all, fills the dataset. align_report.c, which all call, writes what was
+ * done into dataset.json.
+ */
+#ifndef WB_ANALYSIS_ALIGN_PRIVATE_H
+#define WB_ANALYSIS_ALIGN_PRIVATE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "analysis/align/align.h"
+#include "analysis/dataset/dataset.h"
+#include "analysis/align/frame.h"
+#include "analysis/align/markers.h"
+#include "base/json.h"
+#include "base/status.h"
+#include "daq/clock.h"
+#include "daq/recording.h"
+#include "daq/replay.h"
+#include "daq/rig.h"
+#include "daq/sample.h"
+#include "daq/specimen.h"
+#include "fe/model/wire.h"
+
+/* One reading of the load cell. */
+struct wb_align_reading {
+    int64_t t_ns; /* arrival */
+    double t;     /* s, bench time, filter delay removed */
+    double force; /* N, as read; NaN when not valid */
+};
+
+/* What the stage reported of itself. */
+struct wb_align_report_point {
+    int64_t t_ns;
+    double t;      /* s, bench time of arrival */
+    double travel; /* m, commanded, downwards from the first report */
+};
+
+/* A growing array; where one is declared stands what its items are. */
+struct wb_align_list {
+    void *items; /* owned */
+    size_t n, capacity;
+};
+
+/* One row of the dataset while it is made. */
+struct wb_align_row {
+    double t;      /* s, bench time */
+    double travel; /* m, measured at the clamp's marker, downwards from the start */
+    double x[WB_SPECIMEN_MAX_MARKERS]; /* m, on the axis, clamp's frame; NaN: not seen */
+    double y[WB_SPECIMEN_MAX_MARKERS];
+    double tip_x, tip_y, tip_angle; /* m, m, rad */
+    double lean_cosine;             /* of the strand against the vertical; 1 without a strand */
+    double reading;                 /* N, less the tare */
+    double commanded;               /* m; NaN unknown */
+    double drift;                   /* N, zero drift subtracted */
+    double tension, vertical, force;
+    int cycle;
+    enum wb_phase phase;
+};
+
+/* Where the load cell carried nothing. */
+struct wb_align_zero {
+    double t;                /* s, its middle */
+    double value, deviation; /* N: mean reading less tare, standard error */
+};
+#define WB_ALIGN_MAX_ZEROS 64
+#define WB_ALIGN_MAX_SEGMENTS 64
+
+struct wb_align {
+    struct wb_align_settings settings;
+    struct wb_reason *why;  /* receives why a step failed; NULL: that is logged */
+    struct wb_reason *lost; /* what the recording's reader tells; NULL: that is logged */
+    struct wb_dataset *dataset;
+    struct wb_json *corrections, *checks, *warnings; /* in the dataset's document */
+    char name[128];                                  /* of the recording, without folder */
+    char sha256[65];
+
+    /* What the recording says of the test. */
+    struct wb_rig rig;
+    struct wb_specimen specimen;
+    struct wb_wire wire;
+    double gravity; /* m/s2 */
+    bool is_virtual;
+
+    /* Decoded. */
+    struct wb_align_list readings; /* struct wb_align_reading */
+    struct wb_align_list reports;  /* struct wb_align_report_point */
+    struct wb_align_list probes;   /* struct wb_clock_probe */
+    struct wb_point_cloud cloud;
+    struct wb_replay_counts counts;
+    uint64_t n_invalid; /* readings that were no numbers */
+    bool out_of_memory;
+
+    /* Events. */
+    bool has_tare, has_start;
+    double tare, tare_deviation; /* N, N (of one reading; NaN unknown) */
+    long tare_samples;
+    int64_t tare_ns, start_ns;
+    int n_cycle_starts;
+    bool is_cut_short;    /* not done to its end, or parts are damaged */
+    char stop_reason[64]; /* text of the event `stop` */
+    unsigned n_lost, n_drops;
+
+    /* Times. */
+    int64_t zero_ns;                               /* host time of bench time 0 */
+    double *frame_t;                               /* (cloud.n_frames) s, bench time; owned */
+    const char *method;                            /* of the camera's clock */
+    double camera_uncertainty;                     /* s, bench time; NaN unknown */
+    double filter_delay, filter_delay_uncertainty; /* s, bench time */
+    double load_scatter; /* s, bench time: lateness of arrivals that was removed */
+
+    struct wb_marker_tracks tracks;
+    struct wb_bench_frame frame;
+
+    size_t n_rows;
+    struct wb_align_row *rows; /* owned */
+    size_t n_dropped_rows;     /* bins that had frames but no row */
+    int n_cycles;
+
+    /* Force. */
+    double reading_noise; /* N, standard deviation of a reading */
+    double largest;       /* N, largest tension seen (98th percentile) */
+    double taut_level;    /* m: tip_y - lean - travel while the strand is taut; NaN unknown */
+    size_t n_zeros;
+    struct wb_align_zero zeros[WB_ALIGN_MAX_ZEROS];
+    bool slack_seen;  /* some zero-load stretch was seen, so that the tare is a true zero */
+    double taut_t;    /* s: where the first loading became taut */
+    double settled_t; /* s: from where on the filter no longer remembers that */
+    double carried;   /* N: weights that the strand carries at zero deflection */
+    double zero_force, zero_force_deviation; /* N: vertical force at zero deflection */
+    double stiffness, stiffness_deviation;   /* N/m: initial slope of the loading curve */
+    double speed; /* m/s of bench time: typical deflection rate of the loadings */
+};
+
+/* The items of `readings` and `reports`; they belong to the lists. */
+struct wb_align_reading *wb_align_readings(const struct wb_align *align);
+struct wb_align_report_point *wb_align_reports(const struct wb_align *align);
+
+/* The steps of the alignment, in the order in which they are made. Each tells align->why of its
+ * failure. */
+WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const char *path);
+WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
+WB_MUST_CHECK enum wb_status wb_align_markers(struct wb_align *align);
+WB_MUST_CHECK enum wb_status wb_align_rows(struct wb_align *align);
+WB_MUST_CHECK enum wb_status wb_align_cycles(struct wb_align *align);
+WB_MUST_CHECK enum wb_status wb_align_stage(struct wb_align *align);
+WB_MUST_CHECK enum wb_status wb_align_force(struct wb_align *align);
+WB_MUST_CHECK enum wb_status wb_align_natural(struct wb_align *align);
+
+/* wb_align_run() from another source: `load` does what wb_align_load() does. Tests make specimens
+ * by it without a recording. */
+WB_MUST_CHECK enum wb_status
+wb_align_run_from(struct wb_dataset *dataset, const struct wb_align_settings *settings,
+                  enum wb_status (*load)(struct wb_align *align, const void *context),
+                  const void *context, struct wb_reason *why);
+
+/* How well zero deflection is known, m: the offsets of the clamp's and the tip's marker, and the
+ * vertical over the wire's length. */
+double wb_align_level_uncertainty(const struct wb_align *align);
+
+/* --- the document --- */
+
+/* Logs a warning and lists it in the dataset. */
+void wb_align_warn(struct wb_align *align, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Adds one correction: "value_UNIT" and "uncertainty_UNIT" in that unit (factor to SI), NaN is
+ * null. */
+struct wb_align_correction {
+    const char *name, *unit;
+    double factor, value, uncertainty; /* SI */
+};
+void wb_align_correct(struct wb_align *align, const struct wb_align_correction *correction,
+                      const char *note, ...) __attribute__((format(printf, 3, 4)));
+
+/* Sets a number rounded to six digits: what stands in a document is for reading. */
+void wb_align_set(struct wb_json *object, const char *key, double value);
+
+/* Provenance: recording, settings, specimen, rig. */
+void wb_align_describe(struct wb_align *align);
+
+#endif

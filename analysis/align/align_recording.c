@@ -1,0 +1,644 @@
+/* A recording's bytes, decoded, what its meta and events say, and everything of it on the bench's
+ * clock: seconds since the first cycle began, host time times the rig's time scale. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/align/align_private.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "align"
+
+/* A device clock that jumps by more than this, s of host time, was restarted. */
+#define JUMP 0.5
+/* Stamps over less than this, s of device time, are too short to find a skew from. */
+#define LEAST_SPAN 5.0
+
+/* Adds a copy of an item. */
+static bool list_add(struct wb_align_list *list, const void *item, size_t size)
+{
+    if (list->n == list->capacity) {
+        const size_t capacity = list->capacity ? 2 * list->capacity : 1024;
+        void *const items = realloc(list->items, capacity * size);
+        if (!items)
+            return false;
+        list->items = items;
+        list->capacity = capacity;
+    }
+    memcpy((char *)list->items + list->n++ * size, item, size);
+    return true;
+}
+
+struct wb_align_reading *wb_align_readings(const struct wb_align *align)
+{
+    return align->readings.items;
+}
+
+struct wb_align_report_point *wb_align_reports(const struct wb_align *align)
+{
+    return align->reports.items;
+}
+
+/* --- samples --- */
+
+static void take_load(void *context, const struct wb_load_sample *sample)
+{
+    struct wb_align *const align = context;
+    const struct wb_align_reading reading = {
+        .t_ns = sample->t_ns,
+        .force = sample->valid ? sample->force : (double)NAN,
+    };
+    align->n_invalid += !sample->valid;
+    if (!list_add(&align->readings, &reading, sizeof reading))
+        align->out_of_memory = true;
+}
+
+static void take_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    struct wb_align *const align = context;
+    if (!align->out_of_memory && wb_point_cloud_add(&align->cloud, frame) != WB_OK)
+        align->out_of_memory = true;
+}
+
+static void take_stage(void *context, const struct wb_stage_report *report)
+{
+    struct wb_align *const align = context;
+    if (!isfinite(report->position))
+        return;
+    const struct wb_align_report_point point = {
+        .t_ns = report->t_ns,
+        .travel = align->rig.stage.down * report->position,
+    };
+    if (!list_add(&align->reports, &point, sizeof point))
+        align->out_of_memory = true;
+}
+
+static void take_probe(void *context, const struct wb_clock_probe *probe)
+{
+    struct wb_align *const align = context;
+    if (!list_add(&align->probes, probe, sizeof *probe))
+        align->out_of_memory = true;
+}
+
+static enum wb_status decode(struct wb_align *align, struct wb_recording *recording)
+{
+    const struct wb_sink sink = {
+        .context = align,
+        .load = take_load,
+        .mocap = take_mocap,
+        .stage = take_stage,
+        .probe = take_probe,
+    };
+    const enum wb_status status = wb_replay_run(recording, &align->rig, &sink, 0.0, &align->counts);
+    if (align->out_of_memory)
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "%s: out of memory", align->name);
+    /* What was read before the database broke off can still serve. */
+    if (status == WB_ERR_DATA) {
+        if (wb_recording_is_complete(recording))
+            wb_align_warn(align, "the recording breaks off; what is readable is used");
+        align->is_cut_short = true;
+    } else if (status != WB_OK) {
+        return status;
+    }
+    if (align->readings.n == 0)
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no reading of a load cell in it",
+                          align->name);
+    if (align->cloud.n_frames == 0)
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no frame of motion capture in it",
+                          align->name);
+    if (align->counts.damaged_chunks > 0) {
+        align->is_cut_short = true;
+        wb_align_warn(align, "%llu of %llu chunks %s damaged and left out",
+                      (unsigned long long)align->counts.damaged_chunks,
+                      (unsigned long long)align->counts.chunks,
+                      align->counts.damaged_chunks == 1 ? "is" : "are");
+    }
+    return WB_OK;
+}
+
+/* Imported recordings may have their probes in the table only. */
+static enum wb_status take_clock_row(void *context, const struct wb_clock_row *row)
+{
+    struct wb_align *const align = context;
+    const struct wb_clock_probe probe = {
+        .t_sent_ns = row->t_host_ns - row->rtt_ns / 2,
+        .t_received_ns = row->t_host_ns + row->rtt_ns / 2,
+        .t_device = row->t_device,
+    };
+    take_probe(align, &probe);
+    return WB_OK;
+}
+
+/* --- events --- */
+
+static enum wb_status take_tare(struct wb_align *align, const struct wb_event *event)
+{
+    struct wb_json *json;
+    char origin[192];
+    snprintf(origin, sizeof origin, "%s: event tare", align->name);
+    WB_TRY(wb_json_parse_with_reason(&json, event->text, origin, align->why));
+    int64_t samples = 0;
+    align->tare_deviation = (double)NAN;
+    align->has_tare = wb_json_get_number(json, "force_N", &align->tare);
+    (void)wb_json_get_number(json, "sd_N", &align->tare_deviation);
+    (void)wb_json_get_integer(json, "samples", &samples);
+    wb_json_destroy(json);
+    if (!align->has_tare)
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no number force_N", origin);
+    align->tare_samples = samples > 1 && samples < 100000000 ? (long)samples : 1;
+    align->tare_ns = event->t_ns;
+    return WB_OK;
+}
+
+static enum wb_status take_event(void *context, const struct wb_event *event)
+{
+    struct wb_align *const align = context;
+    if (strcmp(event->kind, "tare") == 0 && !align->has_start)
+        return take_tare(align, event);
+    if (strcmp(event->kind, "cycle_start") == 0) {
+        if (!align->has_start)
+            align->start_ns = event->t_ns;
+        align->has_start = true;
+        align->n_cycle_starts++;
+    } else if (strcmp(event->kind, "stop") == 0) {
+        snprintf(align->stop_reason, sizeof align->stop_reason, "%.60s", event->text);
+        if (strcmp(event->text, "done") != 0)
+            align->is_cut_short = true;
+    } else if (strcmp(event->kind, "stream_lost") == 0) {
+        align->n_lost++;
+    } else if (strcmp(event->kind, "drop") == 0) {
+        align->n_drops++;
+    }
+    return WB_OK;
+}
+
+static enum wb_status load_events(struct wb_align *align, struct wb_recording *recording)
+{
+    const enum wb_status status = wb_recording_each_event(recording, take_event, align);
+    if (status == WB_ERR_DATA && align->has_tare)
+        align->is_cut_short = true;
+    else
+        WB_TRY(status);
+    if (!align->has_tare)
+        return wb_fail_to(align->why, WB_ERR_DATA,
+                          "%s: no tare: the load cell's zero is not known, so there is no force",
+                          align->name);
+    /* From here on the reading of the unloaded cell. */
+    align->tare -= wb_rig_tare_load(&align->rig);
+    if (align->is_cut_short)
+        wb_align_warn(align, "the test was cut short%s%s", align->stop_reason[0] ? ": " : "",
+                      align->stop_reason);
+    if (align->n_lost + align->n_drops > 0)
+        wb_align_warn(align,
+                      "while recording, streams were lost %u times and data dropped %u "
+                      "times: the dataset has gaps there",
+                      align->n_lost, align->n_drops);
+    return WB_OK;
+}
+
+/* --- meta --- */
+
+static enum wb_status need_meta(struct wb_align *align, struct wb_recording *recording,
+                                const char *key, char **text, char origin[192])
+{
+    const enum wb_status status = wb_recording_meta(recording, key, text);
+    snprintf(origin, 192, "%s: %s", align->name, key);
+    if (status == WB_ERR_NOT_FOUND)
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: the recording has no meta '%s'",
+                          align->name, key);
+    return status;
+}
+
+static enum wb_status load_rig_and_specimen(struct wb_align *align, struct wb_recording *recording)
+{
+    char *text, origin[192];
+    WB_TRY(need_meta(align, recording, "rig", &text, origin));
+    enum wb_status status = wb_rig_parse(text, origin, &align->rig, align->why);
+    free(text);
+    WB_TRY(status);
+    WB_TRY(need_meta(align, recording, "specimen", &text, origin));
+    status = wb_specimen_parse(text, origin, &align->specimen, align->why);
+    free(text);
+    return status;
+}
+
+/* The wire as it was when the test was recorded; for recordings without it, the file of that
+ * name. */
+static enum wb_status load_wire(struct wb_align *align, struct wb_recording *recording)
+{
+    char *text, origin[192], path[WB_PATH];
+    const enum wb_status found = wb_recording_meta(recording, "wire", &text);
+    if (found == WB_OK) {
+        snprintf(origin, sizeof origin, "%s: wire", align->name);
+        const enum wb_status status = wb_wire_parse(text, origin, &align->wire, align->why);
+        free(text);
+        return status;
+    }
+    if (found != WB_ERR_NOT_FOUND)
+        return found;
+    WB_TRY(wb_file_find_named(path, "wires", align->specimen.wire, NULL, NULL, align->why));
+    return wb_wire_read(path, &align->wire, align->why);
+}
+
+/* Copies a meta text into the recording's entry; absent is left out. */
+static void copy_meta(struct wb_recording *recording, struct wb_json *entry, const char *key,
+                      const char *as)
+{
+    char *text;
+    if (wb_recording_meta(recording, key, &text) == WB_OK) {
+        wb_json_set_text(entry, as, text);
+        free(text);
+    }
+}
+
+static void load_gravity(struct wb_align *align, struct wb_recording *recording)
+{
+    char *text;
+    align->gravity = align->rig.gravity;
+    if (wb_recording_meta(recording, "g", &text) == WB_OK) {
+        if (!wb_number_parse(text, &align->gravity))
+            wb_align_warn(align, "meta 'g' is no number; gravity is taken from the rig file");
+        free(text);
+    }
+}
+
+static bool says_virtual(struct wb_recording *recording)
+{
+    char *text;
+    if (wb_recording_meta(recording, "virtual", &text) != WB_OK)
+        return false;
+    const bool is_virtual = strcmp(text, "true") == 0;
+    free(text);
+    return is_virtual;
+}
+
+static enum wb_status load_all(struct wb_align *align, struct wb_recording *recording)
+{
+    WB_TRY(load_rig_and_specimen(align, recording));
+    WB_TRY(load_wire(align, recording));
+    align->is_virtual = align->rig.is_virtual || says_virtual(recording);
+    align->gravity = align->rig.gravity;
+    wb_align_describe(align);
+    load_gravity(align, recording);
+    struct wb_json *const list = wb_json_set_array(align->dataset->document, "recordings");
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "name", align->name);
+    wb_json_set_text(entry, "sha256", align->sha256);
+    copy_meta(recording, entry, "start_utc", "start_utc");
+    copy_meta(recording, entry, "operator", "operator");
+    copy_meta(recording, entry, "notes", "notes");
+    copy_meta(recording, entry, "tool_version", "recorded_with_version");
+    copy_meta(recording, entry, "tool_revision", "recorded_with_revision");
+    WB_TRY(load_events(align, recording));
+    if (!wb_recording_is_complete(recording) && !align->is_cut_short) {
+        align->is_cut_short = true;
+        wb_align_warn(align, "the recording was not closed or is not all there: its end is "
+                             "missing");
+    }
+    WB_TRY(decode(align, recording));
+    if (align->probes.n == 0)
+        WB_TRY(wb_recording_each_clock(recording, take_clock_row, align));
+    if (align->out_of_memory)
+        return wb_fail_to(align->why, WB_ERR_MEMORY, "%s: out of memory", align->name);
+    return WB_OK;
+}
+
+enum wb_status wb_align_load(struct wb_align *align, const char *path)
+{
+    struct wb_recording *recording;
+    snprintf(align->name, sizeof align->name, "%.120s", wb_file_name(path));
+    WB_TRY(wb_recording_sha256(path, align->sha256, align->why));
+    WB_TRY(wb_recording_open_with_reason(&recording, path, align->lost));
+    wb_recording_warn_cut_short(recording);
+    const enum wb_status status = load_all(align, recording);
+    const enum wb_status closed = wb_recording_close(recording);
+    return status != WB_OK ? status : closed;
+}
+
+/* --- the bench's clock --- */
+
+static double bench_time(const struct wb_align *align, int64_t host_ns)
+{
+    return wb_seconds_from_ns(host_ns - align->zero_ns) * align->rig.time_scale;
+}
+
+/* --- the cameras --- */
+
+struct stamps {
+    double *device;
+    int64_t *host_ns;
+    size_t n;
+    bool on_probe_clock;
+};
+
+/* Which of a frame's stamps serves: that on the probes' clock if there are probes, else the
+ * capture stamp. */
+static double stamp_of(const struct wb_point_frame *frame, bool on_probe_clock)
+{
+    return on_probe_clock ? frame->t_clock : frame->t_device;
+}
+
+static bool choose_stamp(const struct wb_align *align, bool *on_probe_clock)
+{
+    size_t n_clock = 0, n_device = 0;
+    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+        n_clock += isfinite(align->cloud.frames[i].t_clock);
+        n_device += isfinite(align->cloud.frames[i].t_device);
+    }
+    *on_probe_clock = align->probes.n > 0 && 2 * n_clock > align->cloud.n_frames;
+    return *on_probe_clock || 2 * n_device > align->cloud.n_frames;
+}
+
+/* Keeps the frames that have a stamp and come after all before: repeated frames and datagrams that
+ * were overtaken go. A jump back by more than JUMP is a restart and stays. */
+static size_t drop_disordered(struct wb_align *align, bool on_probe_clock)
+{
+    struct wb_point_frame *const frames = align->cloud.frames;
+    const double back = JUMP * align->rig.time_scale;
+    double last = -HUGE_VAL;
+    size_t n = 0;
+    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+        const double stamp = stamp_of(&frames[i], on_probe_clock);
+        if (!isfinite(stamp) || (stamp <= last && stamp > last - back))
+            continue;
+        last = stamp;
+        frames[n++] = frames[i];
+    }
+    const size_t dropped = align->cloud.n_frames - n;
+    align->cloud.n_frames = n;
+    return dropped;
+}
+
+static void use_arrivals(struct wb_align *align)
+{
+    const struct wb_point_frame *const frames = align->cloud.frames;
+    for (size_t i = 0; i < align->cloud.n_frames; i++)
+        align->frame_t[i] = bench_time(align, frames[i].t_ns);
+    align->method = "arrival";
+    align->camera_uncertainty = (double)NAN;
+    wb_align_warn(align, "frames carry no stamp of the server: their arrival times are used, with "
+                         "the network's jitter");
+}
+
+/* Line for the frames first..last-1: through the probes of that time where there are some. Fails
+ * silently, for want of memory. */
+static enum wb_status fit_segment(struct wb_align *align, const struct stamps *stamps, size_t first,
+                                  size_t last, struct wb_clock_line *line)
+{
+    const double nominal = 1.0 / align->rig.time_scale;
+    enum wb_status status = WB_ERR_DATA;
+    if (stamps->on_probe_clock) {
+        /* Probes answered by the same run of the server: between these stamps, with a margin. */
+        const struct wb_clock_probe *const all = align->probes.items;
+        struct wb_clock_probe *const used = malloc((align->probes.n + 1) * sizeof *used);
+        size_t n = 0;
+        const double margin = 10.0 * align->rig.time_scale;
+        if (!used)
+            return WB_ERR_MEMORY;
+        for (size_t i = 0; i < align->probes.n; i++) {
+            if (all[i].t_device >= stamps->device[first] - margin &&
+                all[i].t_device <= stamps->device[last - 1] + margin)
+                used[n++] = all[i];
+        }
+        status = wb_clock_fit_probes(line, used, n, nominal);
+        free(used);
+        if (status == WB_OK || status == WB_ERR_MEMORY)
+            return status;
+    }
+    return wb_clock_fit_envelope(line, stamps->device + first, stamps->host_ns + first,
+                                 last - first, nominal, LEAST_SPAN);
+}
+
+static void describe_segment(struct wb_align *align, struct wb_json *list, size_t n_frames,
+                             const struct wb_clock_line *line)
+{
+    const bool probed = isfinite(line->uncertainty);
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "method", probed ? "echo probes" : "lower envelope");
+    wb_json_set_integer(entry, "frames", (int64_t)n_frames);
+    wb_json_set_integer(entry, "points", (int64_t)line->n_points);
+    wb_json_set_integer(entry, "points_used", (int64_t)line->n_used);
+    wb_align_set(entry, "skew_ppm", (line->slope * align->rig.time_scale - 1.0) / WB_PPM);
+    wb_align_set(entry, "skew_uncertainty_ppm",
+                 line->slope_uncertainty * align->rig.time_scale / WB_PPM);
+    wb_align_set(entry, "scatter_ms", line->scatter * 1e3);
+    wb_align_set(entry, "uncertainty_ms", line->uncertainty * 1e3);
+    if (!probed)
+        wb_json_set_text(entry, "note",
+                         "the shortest latency of the network is an unknown constant in it");
+}
+
+static enum wb_status map_segments(struct wb_align *align, const struct stamps *stamps)
+{
+    size_t starts[WB_ALIGN_MAX_SEGMENTS];
+    const struct wb_clock_stamps arrivals = {.device = stamps->device,
+                                             .host_ns = stamps->host_ns,
+                                             .n = stamps->n,
+                                             .nominal_slope = 1.0 / align->rig.time_scale};
+    const size_t n_segments = wb_clock_split(&arrivals, JUMP, starts, WB_ALIGN_MAX_SEGMENTS);
+    struct wb_json *const list = wb_json_set_array(align->checks, "camera_clock");
+    align->camera_uncertainty = 0.0;
+    align->method = stamps->on_probe_clock ? "echo probes" : "lower envelope";
+    for (size_t i = 0; i < n_segments; i++) {
+        const size_t first = starts[i], last = i + 1 < n_segments ? starts[i + 1] : stamps->n;
+        struct wb_clock_line line;
+        const enum wb_status status = fit_segment(align, stamps, first, last, &line);
+        if (status != WB_OK)
+            return wb_fail_to(align->why, status, "out of memory for %zu stamps", last - first);
+        for (size_t k = first; k < last; k++)
+            align->frame_t[k] = bench_time(align, wb_clock_line_host_ns(&line, stamps->device[k]));
+        describe_segment(align, list, last - first, &line);
+        const double uncertainty = line.uncertainty * align->rig.time_scale;
+        if (!(uncertainty <= align->camera_uncertainty))
+            align->camera_uncertainty = uncertainty;
+    }
+    if (n_segments > 1)
+        wb_align_warn(align,
+                      "the motion-capture server's clock broke %zu time%s (set or restarted): each "
+                      "stretch was mapped by itself",
+                      n_segments - 1, n_segments == 2 ? "" : "s");
+    return WB_OK;
+}
+
+/* Times must ascend over all segments. */
+static void drop_backward(struct wb_align *align)
+{
+    struct wb_point_frame *const frames = align->cloud.frames;
+    size_t n = 0;
+    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+        if (n > 0 && !(align->frame_t[i] > align->frame_t[n - 1]))
+            continue;
+        align->frame_t[n] = align->frame_t[i];
+        frames[n++] = frames[i];
+    }
+    align->cloud.n_frames = n;
+}
+
+static enum wb_status map_cameras(struct wb_align *align)
+{
+    bool on_probe_clock;
+    const bool has_stamps = choose_stamp(align, &on_probe_clock);
+    size_t n_dropped = 0;
+    if (has_stamps)
+        n_dropped = drop_disordered(align, on_probe_clock);
+    const size_t n = align->cloud.n_frames;
+    struct stamps stamps = {
+        .device = malloc((n + 1) * sizeof *stamps.device),
+        .host_ns = malloc((n + 1) * sizeof *stamps.host_ns),
+        .n = n,
+        .on_probe_clock = on_probe_clock,
+    };
+    align->frame_t = malloc((n + 1) * sizeof *align->frame_t);
+    enum wb_status status = WB_OK;
+    if (!stamps.device || !stamps.host_ns || !align->frame_t) {
+        status = wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu frames", n);
+    } else if (!has_stamps) {
+        use_arrivals(align);
+    } else {
+        for (size_t i = 0; i < n; i++) {
+            stamps.device[i] = stamp_of(&align->cloud.frames[i], on_probe_clock);
+            stamps.host_ns[i] = align->cloud.frames[i].t_ns;
+        }
+        status = map_segments(align, &stamps);
+    }
+    free(stamps.device);
+    free(stamps.host_ns);
+    if (status == WB_OK)
+        drop_backward(align);
+    wb_json_set_integer(align->checks, "disordered_frames",
+                        (int64_t)(n_dropped + n - align->cloud.n_frames));
+    return status;
+}
+
+/* --- the load cell --- */
+
+/* Readings that were asked for one by one keep their arrival; a stream's arrivals are put on a
+ * line over the readings' number, which takes out the host's jitter. */
+static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, double *number,
+                                 size_t *n_used)
+{
+    struct wb_align_reading *const readings = wb_align_readings(align);
+    const size_t n = align->readings.n;
+    size_t starts[WB_ALIGN_MAX_SEGMENTS];
+    for (size_t i = 0; i < n; i++) {
+        host_ns[i] = readings[i].t_ns;
+        number[i] = (double)i;
+    }
+    const size_t n_segments = wb_clock_split_readings(host_ns, n, starts, WB_ALIGN_MAX_SEGMENTS);
+    double scatter = 0.0;
+    for (size_t i = 0; i < n_segments; i++) {
+        const size_t first = starts[i], last = i + 1 < n_segments ? starts[i + 1] : n;
+        const double mean_period =
+            wb_seconds_from_ns(host_ns[n - 1] - host_ns[0]) / (n > 1 ? (double)(n - 1) : 1.0);
+        struct wb_clock_line line;
+        WB_TRY(wb_clock_fit_envelope(&line, number + first, host_ns + first, last - first,
+                                     mean_period, 32.0));
+        for (size_t k = first; k < last; k++)
+            readings[k].t = bench_time(align, wb_clock_line_host_ns(&line, number[k]));
+        scatter = fmax(scatter, line.scatter);
+    }
+    align->load_scatter = scatter * align->rig.time_scale;
+    *n_used = n_segments;
+    return WB_OK;
+}
+
+static void describe_load(struct wb_align *align, bool polled, size_t n_segments)
+{
+    const struct wb_align_reading *const readings = wb_align_readings(align);
+    const size_t n = align->readings.n;
+    const double span = n > 1 ? readings[n - 1].t - readings[0].t : 0.0;
+    struct wb_json *const object = wb_json_set_object(align->checks, "load_cell_stream");
+    wb_json_set_text(object, "method", polled ? "arrival of each answer" : "lower envelope");
+    wb_json_set_integer(object, "readings", (int64_t)n);
+    wb_json_set_integer(object, "invalid_readings", (int64_t)align->n_invalid);
+    wb_json_set_integer(object, "segments", (int64_t)n_segments);
+    if (span > 0.0)
+        wb_align_set(object, "rate_per_s", (double)(n - 1) / span);
+    wb_align_set(object, "arrival_scatter_ms", polled ? (double)NAN : align->load_scatter * 1e3);
+}
+
+static void drop_invalid_readings(struct wb_align *align)
+{
+    struct wb_align_reading *const readings = wb_align_readings(align);
+    size_t n = 0;
+    for (size_t i = 0; i < align->readings.n; i++) {
+        if (!isfinite(readings[i].force) || (n > 0 && readings[i].t < readings[n - 1].t))
+            continue;
+        readings[n++] = readings[i];
+    }
+    align->readings.n = n;
+}
+
+static enum wb_status map_load(struct wb_align *align)
+{
+    struct wb_align_reading *const readings = wb_align_readings(align);
+    const size_t n = align->readings.n;
+    const bool polled = align->rig.load_cell.poll_command[0] != '\0';
+    size_t n_segments = 1;
+    if (polled) {
+        for (size_t i = 0; i < n; i++)
+            readings[i].t = bench_time(align, readings[i].t_ns);
+    } else {
+        int64_t *const host_ns = malloc((n + 1) * sizeof *host_ns);
+        double *const number = malloc((n + 1) * sizeof *number);
+        enum wb_status status = WB_ERR_MEMORY;
+        if (host_ns && number)
+            status = map_stream(align, host_ns, number, &n_segments);
+        free(host_ns);
+        free(number);
+        if (status != WB_OK)
+            return wb_fail_to(align->why, status,
+                              "%s: the load cell's readings cannot be put on a clock", align->name);
+    }
+    describe_load(align, polled, n_segments);
+    align->filter_delay = align->rig.load_cell.filter_delay;
+    align->filter_delay_uncertainty = align->rig.load_cell.filter_delay_uncertainty;
+    for (size_t i = 0; i < n; i++)
+        readings[i].t -= align->filter_delay;
+    drop_invalid_readings(align);
+    if (align->readings.n == 0)
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no valid reading of the load cell in it",
+                          align->name);
+    return WB_OK;
+}
+
+/* --- the stage, and all --- */
+
+static void map_stage(struct wb_align *align)
+{
+    struct wb_align_report_point *const reports = wb_align_reports(align);
+    for (size_t i = 0; i < align->reports.n; i++)
+        reports[i].t = bench_time(align, reports[i].t_ns);
+}
+
+enum wb_status wb_align_times(struct wb_align *align)
+{
+    /* Without events the test starts where both streams are there. */
+    const int64_t load_ns = wb_align_readings(align)[0].t_ns;
+    const int64_t mocap_ns = align->cloud.frames[0].t_ns;
+    align->zero_ns = load_ns > mocap_ns ? load_ns : mocap_ns;
+    if (align->has_start)
+        align->zero_ns = align->start_ns;
+    else if (align->tare_ns > align->zero_ns)
+        align->zero_ns = align->tare_ns;
+    WB_TRY(map_cameras(align));
+    WB_TRY(map_load(align));
+    map_stage(align);
+    if (align->cloud.n_frames == 0)
+        return wb_fail_to(align->why, WB_ERR_DATA, "%s: no frame of motion capture with a time",
+                          align->name);
+    const struct wb_align_correction correction = {
+        .name = "filter delay",
+        .unit = "ms",
+        .factor = 1e-3,
+        .value = align->filter_delay,
+        .uncertainty = align->filter_delay_uncertainty,
+    };
+    wb_align_correct(align, &correction,
+                     "the load cell's stamps were moved back by its filter's delay, from the rig "
+                     "file; the time its line takes on the port is not known apart from it");
+    return WB_OK;
+}

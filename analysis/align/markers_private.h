@@ -1,0 +1,12 @@
+/* A part of markers.c that tests call by itself. */
+#ifndef WB_ANALYSIS_MARKERS_PRIVATE_H
+#define WB_ANALYSIS_MARKERS_PRIVATE_H
+
+#include "analysis/align/markers.h"
+
+/* The best chain through one frame's points: `chosen` (n_markers) receives indices into `points`
+ * or -1. Returns the number of markers in it, 0 when there is no chain of at least `least`. */
+int wb_markers_chain(const double (*points)[3], int n, const struct wb_specimen *specimen,
+                     double noise, int least, int *chosen);
+
+#endif

@@ -1,0 +1,76 @@
+/* What a cycle of a test, the first unless asked otherwise, says of one specimen, as few points
+ * without most of the noise: tension over deflection on the way up and back, and the places of the
+ * markers between clamp and tip.
+ *
+ * The tension is as measured, weights included, not zeroed at zero deflection: its absolute size
+ * says how the wire is bent by nature. A point is the mean deflection and the mean tension of a
+ * bin: a line over the deflection, which has noise too, would be too flat. Rows far off are left
+ * out and counted. The loading begins at zero deflection; the unloading begins half a millimetre
+ * below the turn, where the change of direction is past, and ends where the strand is about to
+ * become slack. Of a simulation, which has no noise, every row is a point.
+ */
+#ifndef WB_ANALYSIS_CYCLE_DATA_H
+#define WB_ANALYSIS_CYCLE_DATA_H
+
+#include <stdbool.h>
+
+#include "analysis/dataset/dataset.h"
+#include "base/reason.h"
+#include "base/setting.h"
+#include "base/status.h"
+
+struct wb_cycle_point {
+    double deflection, tension; /* m, N */
+    double deviation;           /* N: standard error of the tension by the scatter of the rows */
+    bool is_unloading;
+    int n_rows;
+};
+
+/* A marker's place at the deflection of a point. */
+struct wb_cycle_place {
+    int point;   /* index of it */
+    int marker;  /* from 0 among the inner markers */
+    double s;    /* m, arc length */
+    double x, y; /* m */
+};
+
+struct wb_cycle_data {
+    struct wb_test_info info;
+    int n_points, n_loading;       /* the loading's points come first, upwards; then downwards */
+    struct wb_cycle_point *points; /* owned */
+    int n_places, n_markers;
+    struct wb_cycle_place *places; /* owned; of the first cycle only */
+    double top;                    /* m: deflection of the turn */
+    double max_force;              /* N: largest tension less that at zero deflection */
+    double zero_tension;           /* N: that at zero deflection on the first loading */
+    double residual_deflection;    /* m: where the tension of the way back has come down to that at
+                                      zero deflection; NaN: not reached */
+    int n_outliers;                /* rows left out */
+};
+
+struct wb_cycle_data_settings {
+    int cycle;               /* from 1; 0: 1 */
+    double step;             /* m between points; 0: 1 mm */
+    double fine_step;        /* m, of the first points of either way; 0: 0.5 mm */
+    double fine_reach;       /* m: how far they go; 0: 4 mm */
+    double turn_distance;    /* m below the turn where the way back begins; 0: 0.5 mm */
+    double smallest_tension; /* N: where the way back ends; 0: 2.5 mN */
+    double marker_step;      /* m of deflection between places; 0: 4 mm */
+};
+
+/* Rows of the settings, with range and default. */
+enum {
+    WB_CYCLE_DATA_ROWS = 6
+};
+extern const struct wb_setting wb_cycle_data_rows[WB_CYCLE_DATA_ROWS];
+
+/* Takes them from a cycle. WB_ERR_DATA for a test whose cycle makes too few points, or with a
+ * follower force. Without a way back, n_loading is n_points. `settings` NULL: defaults. `why`
+ * receives the reason; NULL: it is logged. */
+WB_MUST_CHECK enum wb_status wb_cycle_data_take(struct wb_cycle_data *data,
+                                                const struct wb_dataset *dataset,
+                                                const struct wb_cycle_data_settings *settings,
+                                                struct wb_reason *why);
+void wb_cycle_data_release(struct wb_cycle_data *data); /* accepts a zeroed one */
+
+#endif

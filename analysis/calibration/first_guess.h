@@ -1,0 +1,36 @@
+/* Closed forms of section 4.1: E and sigma_Y from the elastic zone, and the first guess of K and n
+ * from which the optimiser starts (eqs. 10 to 16 of the paper).
+ *
+ * Eqs. 10 and 11 hold for a straight, weightless cantilever under a vertical tip force and small
+ * deflection; they are used as written, on the zeroed force. Eqs. 12 to 16 are Hollomon's form
+ * (sigma = K eps^n in the total strain) and serve for the first guess only: the law that is
+ * calibrated is Ludwik's (plastic strain only).
+ */
+#ifndef WB_ANALYSIS_FIRST_GUESS_H
+#define WB_ANALYSIS_FIRST_GUESS_H
+
+#include "analysis/dataset/curve.h"
+#include "base/reason.h"
+#include "base/status.h"
+
+struct wb_first_guess {
+    double youngs_modulus;       /* eq. 10 at elastic_zone * L, Pa */
+    double yield_stress;         /* eq. 11 at yield_point * L, Pa */
+    double tangent_modulus;      /* slope of the sigma-eps curve just past yield, Pa */
+    double strength_coefficient; /* K0, Pa */
+    double hardening_exponent;   /* n0; kept within 0.05..1.2, where eq. 16 makes sense */
+};
+
+/* Finds all of it from an averaged curve of a wire with `info`'s length and diameter. A follower
+ * test's curve is turned into force over deflection first: at small deflection a follower force
+ * differs from a vertical one by the square of the slope. The force at a deflection is that of a
+ * straight line fitted within 1.25 % of L around it; the slope past yield is fitted over the 3 % of
+ * L behind the yield point. A curve that cannot serve is WB_ERR_DATA: too short to yield, reversed
+ * sign, not rising, falling behind the yield point. `why` receives which; NULL: that is logged. */
+WB_MUST_CHECK enum wb_status wb_first_guess_run(struct wb_first_guess *guess,
+                                                const struct wb_curve *curve,
+                                                const struct wb_test_info *info,
+                                                double elastic_zone, double yield_point,
+                                                struct wb_reason *why);
+
+#endif

@@ -1,0 +1,79 @@
+#include "analysis/dataset/fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <gsl/gsl_fit.h>
+#include <gsl/gsl_multifit.h>
+
+bool wb_fit_line(const double *x, const double *y, size_t n, struct wb_fit_line *line)
+{
+    double c00, c01, c11, squares;
+    if (n < 3)
+        return false;
+    gsl_fit_linear(x, 1, y, 1, n, &line->value, &line->slope, &c00, &c01, &c11, &squares);
+    line->value_deviation = sqrt(c00);
+    line->slope_deviation = sqrt(c11);
+    line->residual = sqrt(squares / (double)(n - 2));
+    return isfinite(line->value) && isfinite(line->slope);
+}
+
+bool wb_fit_parabola(const double *x, const double *y, size_t n, double c[3], double *deviation)
+{
+    if (n < 4)
+        return false;
+    gsl_matrix *const design = gsl_matrix_alloc(n, 3);
+    gsl_matrix *const covariance = gsl_matrix_alloc(3, 3);
+    gsl_multifit_linear_workspace *const work = gsl_multifit_linear_alloc(n, 3);
+    gsl_vector_view coefficients = gsl_vector_view_array(c, 3);
+    gsl_vector_const_view values = gsl_vector_const_view_array(y, n);
+    bool fitted = false;
+    if (design && covariance && work) {
+        for (size_t i = 0; i < n; i++) {
+            gsl_matrix_set(design, i, 0, 1.0);
+            gsl_matrix_set(design, i, 1, x[i]);
+            gsl_matrix_set(design, i, 2, x[i] * x[i]);
+        }
+        double squares;
+        fitted = gsl_multifit_linear(design, &values.vector, &coefficients.vector, covariance,
+                                     &squares, work) == GSL_SUCCESS &&
+                 isfinite(c[0]) && isfinite(c[1]) && isfinite(c[2]);
+        *deviation = sqrt(gsl_matrix_get(covariance, 0, 0));
+    }
+    gsl_multifit_linear_free(work);
+    gsl_matrix_free(covariance);
+    gsl_matrix_free(design);
+    return fitted;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+void wb_fit_sort(double *values, size_t n)
+{
+    qsort(values, n, sizeof *values, compare_doubles);
+}
+
+double wb_fit_median(double *values, size_t n)
+{
+    if (n == 0)
+        return (double)NAN;
+    wb_fit_sort(values, n);
+    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at)
+{
+    size_t low = 0, high = n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (*(const double *)((const char *)values + middle * stride) < at)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}

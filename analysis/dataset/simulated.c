@@ -1,0 +1,145 @@
+#include "analysis/dataset/simulated.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/units.h"
+#include "base/version.h"
+
+static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
+static const double shortest_row = 1e-3; /* s */
+
+enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row,
+                                    const double *before, const double *tip,
+                                    const struct wb_simulated_shape *shape)
+{
+    row.t = 0.0;
+    if (before) {
+        const double way = hypot(hypot(tip[0] - before[0], tip[1] - before[1]), tip[2] - before[2]);
+        row.t = dataset->rows[dataset->n_rows - 1].t + fmax(way / stage_speed, shortest_row);
+    }
+    row.stage = (double)NAN;
+    row.tip_x = tip[0];
+    WB_TRY(wb_dataset_add_row(dataset, &row));
+    for (int k = 0; k < shape->n; k++) {
+        const struct wb_shape_row marker = {
+            .t = row.t,
+            .deflection = row.deflection,
+            .marker = k,
+            .s = shape->s[k],
+            .x = shape->place[k][0],
+            .y = shape->place[k][1],
+            .z = shape->place[k][2],
+        };
+        WB_TRY(wb_dataset_add_shape_row(dataset, &marker));
+    }
+    return WB_OK;
+}
+
+void wb_simulated_describe_tool(struct wb_json *document)
+{
+    struct wb_json *const tool = wb_json_set_object(document, "tool");
+    wb_json_set_text(tool, "name", "wirebench");
+    wb_json_set_text(tool, "version", wb_version());
+    wb_json_set_text(tool, "revision", wb_version_revision());
+}
+
+static enum wb_status add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *loading,
+                               const double *shape_s)
+{
+    double travelled = 0.0;
+
+    for (int i = 0; i < loading->n_rows; i++) {
+        const struct wb_loading_steps_row *row = &loading->rows[i];
+        if (i > 0)
+            travelled += fabs(row->point.control - loading->rows[i - 1].point.control);
+        const struct wb_row out = {
+            .t = travelled / stage_speed,
+            .cycle = row->cycle,
+            .phase = row->phase,
+            .deflection = row->point.deflection,
+            .tension = row->point.tension,
+            .force = row->force,
+            .stage = (double)NAN,
+            .tip_x = row->point.tip_x,
+            .tip_angle = row->point.tip_angle,
+        };
+        WB_TRY(wb_dataset_add_row(dataset, &out));
+
+        for (int k = 0; k < loading->n_shape; k++) {
+            const size_t at = (size_t)i * (size_t)loading->n_shape + (size_t)k;
+            const struct wb_shape_row shape = {
+                .t = out.t,
+                .deflection = out.deflection,
+                .marker = k,
+                .s = shape_s[k],
+                .x = loading->shape_x[at],
+                .y = loading->shape_y[at],
+            };
+            WB_TRY(wb_dataset_add_shape_row(dataset, &shape));
+        }
+    }
+    return WB_OK;
+}
+
+/* The numbers of the law that was computed with: Ludwik's four, or the parts. */
+static void describe_law(struct wb_json *simulation, const struct wb_law *law)
+{
+    const struct wb_material *const material = &law->material;
+    const bool is_parallel = law->form == WB_LAW_PARALLEL;
+    const bool is_elastic = !is_parallel && material->hardening == WB_HARDENING_NONE_ELASTIC;
+    wb_json_set_text(simulation, "law", is_elastic ? "elastic" : "elastoplastic");
+    wb_json_set_number(simulation, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
+    wb_json_set_number(simulation, "poissons_ratio", material->poissons_ratio);
+    if (is_elastic)
+        return;
+    if (!is_parallel) {
+        wb_json_set_number(simulation, "yield_stress_MPa", material->yield_stress / WB_MPA);
+        wb_json_set_number(simulation, "strength_coefficient_MPa",
+                           material->strength_coefficient / WB_MPA);
+        wb_json_set_number(simulation, "hardening_exponent", material->hardening_exponent);
+    }
+    wb_json_set_text(simulation, "form", wb_law_form_name(law->form));
+    wb_json_set_text(simulation, "hardening", wb_law_rule_name(law));
+    wb_json_set_number(simulation, "isotropic_share", law->isotropic_share);
+    if (!is_parallel)
+        return;
+    struct wb_json *const parts = wb_json_set_array(simulation, "parts");
+    for (int i = 0; i < law->n_parts; i++) {
+        struct wb_json *const part = wb_json_append_object(parts);
+        wb_json_set_number(part, "modulus_MPa", law->parts[i].modulus / WB_MPA);
+        if (isfinite(law->parts[i].yield_strain))
+            wb_json_set_number(part, "yield_strain", law->parts[i].yield_strain);
+    }
+}
+
+static void describe(struct wb_json *document, const struct wb_test_info *info,
+                     const struct wb_loading_steps *loading,
+                     const struct wb_simulated_origin *origin)
+{
+    char name[128];
+    snprintf(name, sizeof name, "%s, simulated %s", info->wire, origin->model);
+    wb_json_set_text(document, "name", name);
+
+    struct wb_json *simulation = wb_json_set_object(document, "simulation");
+    wb_json_set_text(simulation, "model", origin->model);
+    describe_law(simulation, origin->law);
+    wb_json_set_text(simulation, "properties_source", origin->source);
+    wb_json_set_boolean(simulation, "converged", loading->converged);
+    wb_json_set_number(simulation, "zero_force_N", loading->zero_force);
+    wb_json_set_number(simulation, "wall_s", origin->wall);
+    wb_json_set_number(simulation, "cpu_s", origin->cpu);
+
+    wb_simulated_describe_tool(document);
+}
+
+enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,
+                                 const struct wb_loading_steps *loading, const double *shape_s,
+                                 const struct wb_simulated_origin *origin)
+{
+    dataset->info = *info;
+    dataset->info.is_simulation = true;
+    WB_TRY(add_rows(dataset, loading, shape_s));
+    describe(dataset->document, info, loading, origin);
+    return WB_OK;
+}

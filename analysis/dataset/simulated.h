@@ -1,0 +1,65 @@
+/* A simulated test as a dataset: the same rows and shapes as a measured one.
+ *
+ * Bench time is the time in which a stage at 1 mm/s would have made the way. Shapes hold as many
+ * equally spaced positions as the computation recorded, as if they were markers.
+ */
+#ifndef WB_ANALYSIS_SIMULATED_H
+#define WB_ANALYSIS_SIMULATED_H
+
+#include "analysis/dataset/dataset.h"
+#include "base/status.h"
+#include "fe/material/law.h"
+#include "fe/model/wire_model.h"
+#include "fe/trial/loading_steps.h"
+#include "fe/trial/wire3d.h"
+#include "fe/trial/wire_run.h"
+
+/* How the simulation was made, for dataset.json. */
+struct wb_simulated_origin {
+    const char *model;        /* "cantilever" */
+    const char *source;       /* where the properties come from */
+    const struct wb_law *law; /* an elastic one: Ludwik's form of an elastic material */
+    double wall, cpu;         /* s */
+};
+
+/* Fills an initialised dataset. `shape_s` are the arc lengths of the plan, m. */
+WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
+                                               const struct wb_test_info *info,
+                                               const struct wb_loading_steps *loading,
+                                               const double *shape_s,
+                                               const struct wb_simulated_origin *origin);
+
+/* A shape in space: n places (m) at the arc lengths s (m). */
+struct wb_simulated_shape {
+    int n;
+    const double *s;
+    double (*place)[3];
+};
+
+/* Appends a row of a free tip at that place (m), and its shape as that of n markers. Bench time
+ * goes on from the row before by the tip's way from `before` (NULL: of the first row), at least 1
+ * ms. The caller leaves time and tip_x to it. */
+WB_MUST_CHECK enum wb_status wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row,
+                                                  const double *before, const double *tip,
+                                                  const struct wb_simulated_shape *shape);
+
+/* dataset.json's `tool`: this program. */
+void wb_simulated_describe_tool(struct wb_json *document);
+
+/* How a wire model was computed. */
+struct wb_simulated_wire {
+    const char *solver; /* "wire3d" or "wire1d" */
+    const struct wb_wire_model *model;
+    const struct wb_wire_run *run;
+    const struct wb_wire3d_balance *balance; /* NULL: not known (wire1d) */
+    double wall, cpu;                        /* s */
+    double peak_memory;                      /* bytes; 0: not known */
+};
+
+/* Fills an initialised dataset with a computed wire. Bench time grows with the tip's way, by at
+ * least 1 ms a row. dataset.json's `simulation` says how the wire was computed and with which
+ * materials; its `steps` name the row with which each step of the model ended. */
+WB_MUST_CHECK enum wb_status wb_simulated_fill_wire(struct wb_dataset *dataset,
+                                                    const struct wb_simulated_wire *wire);
+
+#endif

@@ -1,0 +1,44 @@
+/* A computed bundle (fe/bundle/bundle_run.h) as a dataset, and its energies beside it.
+ *
+ * energies.csv in the dataset's folder has one row for each of force_deflection.csv:
+ *
+ *     t_s,deflection_mm,model_time_s,external_J,kinetic_J,stored_J,plastic_J,contact_J,cohesive_J,
+ *     friction_J,artificial_J,kinetic_over_internal,artificial_over_internal,imbalance_J
+ *
+ * (one line). Internal energy is stored + plastic + contact + cohesive; ratios are empty where it
+ * is zero.
+ */
+#ifndef WB_ANALYSIS_SIMULATED_BUNDLE_H
+#define WB_ANALYSIS_SIMULATED_BUNDLE_H
+
+#include "analysis/dataset/dataset.h"
+#include "base/status.h"
+#include "fe/bundle/bundle_run.h"
+#include "fe/model/bundle_model.h"
+#include "fe/model/bundle_override.h"
+
+struct wb_simulated_bundle {
+    const struct wb_bundle_model *model; /* as it was run: with what was overridden */
+    const struct wb_bundle_mesh *mesh;
+    const struct wb_bundle_result *result;
+    const struct wb_bundle_override *override; /* what was overridden; NULL: nothing */
+    double surface_deflection;                 /* m, of surface.csv; 0: there is none */
+    double wall, cpu;                          /* s */
+};
+
+/* Fills an initialised dataset. It is the homogenised beam's test: the outer diameter is the
+ * published one where the model has it, otherwise its own, and Poisson's ratio 0.3. Bench time goes
+ * on with the tip's way at 1 mm/s, at least 1 ms a row. */
+WB_MUST_CHECK enum wb_status wb_simulated_bundle_fill(struct wb_dataset *dataset,
+                                                      const struct wb_simulated_bundle *bundle);
+
+/* Writes energies.csv into the folder of the dataset that was filled from the same bundle. */
+WB_MUST_CHECK enum wb_status
+wb_simulated_bundle_write_energies(const struct wb_dataset *dataset,
+                                   const struct wb_simulated_bundle *bundle, const char *folder);
+
+/* Numbers of a run for JSON, of `simulation` and of the command alike: mesh, elements, steps,
+ * durations, energies at the end, largest ratios, times. */
+void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simulated_bundle *bundle);
+
+#endif

@@ -1,0 +1,184 @@
+#include "analysis/validation/marker_distance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/dataset/curve.h"
+#include "analysis/dataset/fit.h"
+
+#define WB_LOG_DOMAIN "marker_distance"
+
+/* Most different arc lengths at which markers sit. */
+#define MOST_POSITIONS 256
+
+/* Shapes of the model at equal steps of deflection or follower force, at every arc length that has
+ * a marker. */
+struct gallery {
+    int n_positions, n_frames, n_reached;
+    double s[MOST_POSITIONS];
+    double *x, *y; /* (n_frames * n_positions) */
+    double step;
+    bool is_follower;
+};
+
+/* Time at which the first loading ends. */
+static double end_of_loading(const struct wb_dataset *dataset)
+{
+    const size_t n = wb_curve_end_of_loading(dataset, 0.0);
+    return n > 0 ? dataset->rows[n - 1].t : -HUGE_VAL;
+}
+
+/* Force at a time, straight between the rows; NaN outside. Rows come by ascending time. */
+static double force_at(const struct wb_dataset *dataset, double t)
+{
+    const size_t n = dataset->n_rows;
+    const size_t at = n > 0 ? wb_fit_first_at(&dataset->rows->t, sizeof *dataset->rows, n, t) : 0;
+    if (at < n && dataset->rows[at].t == t)
+        return dataset->rows[at].force;
+    if (at == 0 || at == n)
+        return (double)NAN;
+    const struct wb_row *const a = &dataset->rows[at - 1], *const b = &dataset->rows[at];
+    return a->force + (b->force - a->force) * (t - a->t) / (b->t - a->t);
+}
+
+/* Where along the range a frame lies. */
+static double place_of(const struct wb_dataset *dataset, const struct wb_shape_row *row)
+{
+    return dataset->info.is_follower ? force_at(dataset, row->t) : row->deflection;
+}
+
+static bool counts(const struct wb_dataset *dataset, const struct wb_shape_row *row, double end,
+                   double last)
+{
+    if (!(row->t <= end && row->s > 0.0 && isfinite(row->x) && isfinite(row->y)))
+        return false;
+    const double place = place_of(dataset, row);
+    return place >= 0.0 && place <= last * (1.0 + 1e-9);
+}
+
+static int find_position(const struct gallery *gallery, double s)
+{
+    for (int i = 0; i < gallery->n_positions; i++) {
+        if (fabs(gallery->s[i] - s) < 1e-9)
+            return i;
+    }
+    return -1;
+}
+
+static enum wb_status collect_positions(struct gallery *gallery,
+                                        const struct wb_dataset *const *datasets, int n,
+                                        double last, struct wb_reason *why)
+{
+    for (int i = 0; i < n; i++) {
+        const double end = end_of_loading(datasets[i]);
+        for (size_t k = 0; k < datasets[i]->n_shape_rows; k++) {
+            const struct wb_shape_row *const row = &datasets[i]->shape_rows[k];
+            if (!counts(datasets[i], row, end, last) || find_position(gallery, row->s) >= 0)
+                continue;
+            if (gallery->n_positions == MOST_POSITIONS)
+                return wb_fail_to(why, WB_ERR_DATA,
+                                  "wire '%s': markers at more than %d arc lengths",
+                                  datasets[i]->info.wire, MOST_POSITIONS);
+            gallery->s[gallery->n_positions++] = row->s;
+        }
+    }
+    return WB_OK;
+}
+
+static enum wb_status fill(struct gallery *gallery, struct wb_computed *computed,
+                           const struct wb_material *material)
+{
+    enum wb_status (*const go)(struct wb_computed *, double, double *, bool *) =
+        gallery->is_follower ? wb_computed_push : wb_computed_move;
+    bool reached;
+    double found;
+    WB_TRY(wb_computed_start(computed, material, &reached));
+    for (int i = 0; reached && i < gallery->n_frames; i++) {
+        if (i > 0)
+            WB_TRY(go(computed, i * gallery->step, &found, &reached));
+        if (!reached)
+            break;
+        wb_computed_shape(computed, gallery->n_positions, gallery->s,
+                          gallery->x + i * gallery->n_positions,
+                          gallery->y + i * gallery->n_positions, NULL);
+        gallery->n_reached = i + 1;
+    }
+    return WB_OK;
+}
+
+/* Distance of one marker; false when the model did not get there. */
+static bool marker_distance(const struct gallery *gallery, const struct wb_dataset *dataset,
+                            const struct wb_shape_row *row, double *distance)
+{
+    const double place = place_of(dataset, row) / gallery->step;
+    int frame = (int)place;
+    if (frame == gallery->n_frames - 1)
+        frame--;
+    if (frame < 0 || frame + 1 >= gallery->n_reached)
+        return false;
+    const double part = place - frame;
+    const int at = frame * gallery->n_positions + find_position(gallery, row->s);
+    const int next = at + gallery->n_positions;
+    const double x = (1.0 - part) * gallery->x[at] + part * gallery->x[next];
+    const double y = (1.0 - part) * gallery->y[at] + part * gallery->y[next];
+    *distance = hypot(row->x - x, row->y - y);
+    return true;
+}
+
+static void compare(struct wb_marker_distance *distance, const struct gallery *gallery,
+                    const struct wb_dataset *const *datasets, int n, double last)
+{
+    double squares = 0.0;
+    distance->largest = 0.0;
+    for (int i = 0; i < n; i++) {
+        const double end = end_of_loading(datasets[i]);
+        for (size_t k = 0; k < datasets[i]->n_shape_rows; k++) {
+            const struct wb_shape_row *const row = &datasets[i]->shape_rows[k];
+            double d;
+            if (!counts(datasets[i], row, end, last) ||
+                !marker_distance(gallery, datasets[i], row, &d))
+                continue;
+            squares += d * d;
+            distance->largest = fmax(distance->largest, d);
+            distance->n_points++;
+        }
+    }
+    if (distance->n_points > 0)
+        distance->rms = sqrt(squares / distance->n_points);
+    else
+        distance->rms = distance->largest = (double)NAN;
+}
+
+enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
+                                       struct wb_computed *computed,
+                                       const struct wb_material *material,
+                                       const struct wb_dataset *const *datasets, int n,
+                                       const struct wb_marker_distance_range *range)
+{
+    const double step = range->step, last = range->last;
+    struct wb_marker_distance result = {(double)NAN, (double)NAN, 0};
+    struct gallery gallery = {.step = step, .is_follower = datasets[0]->info.is_follower};
+    struct wb_reason *const why = wb_computed_reason(computed);
+    WB_TRY(collect_positions(&gallery, datasets, n, last, why));
+    if (gallery.n_positions == 0) {
+        *distance = result;
+        return WB_OK;
+    }
+    gallery.n_frames = (int)ceil(last / step - 1e-9) + 1;
+    const size_t size = (size_t)gallery.n_frames * (size_t)gallery.n_positions;
+    gallery.x = malloc(size * sizeof *gallery.x);
+    gallery.y = malloc(size * sizeof *gallery.y);
+    enum wb_status status = WB_OK;
+    if (!gallery.x || !gallery.y)
+        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d shapes", gallery.n_frames);
+    if (status == WB_OK)
+        status = fill(&gallery, computed, material);
+    if (status == WB_OK) {
+        compare(&result, &gallery, datasets, n, last);
+        *distance = result;
+    }
+    free(gallery.x);
+    free(gallery.y);
+    return status;
+}

@@ -1,0 +1,538 @@
+#include "analysis/validation/validate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "analysis/calibration/computed.h"
+#include "analysis/dataset/errors.h"
+#include "analysis/validation/marker_distance.h"
+#include "analysis/calibration/scatter.h"
+#include "analysis/validation/validate_private.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "base/version.h"
+
+#define WB_LOG_DOMAIN "validate"
+
+/* Below this deflection the zero of force rules the error, m. */
+#define NEAR_ZERO (5.0 * WB_MM)
+/* Diameters further apart than this are different wires. */
+#define SAME_DIAMETER 0.01
+/* Deflection step on the way to one shape, m, and how many steps of force there are. */
+#define SHAPE_STEP (1.0 * WB_MM)
+#define FORCE_STEPS 100
+/* Frames of a follower test's model to a step of the grid, whose ends may be far from each other.
+ */
+#define FRAMES 4
+/* Part of ln k by which stiffness is changed to find what it changes. */
+#define SMALL 0.01
+/* Curvatures larger than the known ones by this factor are beyond. A test like the calibration's
+ * own, which is known as far as its least bent specimen, is not. */
+#define BEYOND 1.1
+
+static enum wb_status check_wire(const struct wb_properties *properties,
+                                 const struct wb_test_info *info, struct wb_reason *why)
+{
+    const double ratio = info->outer_diameter / properties->outer_diameter;
+    if (!(fabs(ratio - 1.0) <= SAME_DIAMETER))
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "the properties are of wire '%s' (%.4g mm across), the datasets of wire "
+                          "'%s' (%.4g mm across)",
+                          properties->wire, properties->outer_diameter / WB_MM, info->wire,
+                          info->outer_diameter / WB_MM);
+    if (strcmp(properties->wire, info->wire) != 0)
+        wb_warn("the properties are of wire '%s', the datasets of wire '%s' of the same diameter",
+                properties->wire, info->wire);
+    return WB_OK;
+}
+
+/* The first point beyond 5 mm; n when there is none. */
+static int beyond_zero(const struct wb_curve *curve)
+{
+    int first = 0;
+    if (!curve->is_follower)
+        return (int)ceil(NEAR_ZERO / curve->step - 1e-9);
+    while (first < curve->n && curve->deflection[first] < NEAR_ZERO)
+        first++;
+    return first;
+}
+
+static enum wb_status predict(struct wb_prediction *prediction, struct wb_computed *computed,
+                              const struct wb_material *material, const struct wb_curve *curve,
+                              struct wb_reason *why)
+{
+    const size_t size = (size_t)curve->n;
+    prediction->n = curve->n;
+    prediction->value = malloc(size * sizeof *prediction->value);
+    prediction->error = malloc(size * sizeof *prediction->error);
+    if (!prediction->value || !prediction->error)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for a prediction of %d points", curve->n);
+    WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, prediction->value,
+                             &prediction->n_reached));
+    wb_errors_curve(curve->n, curve->value, prediction->value, wb_curve_scale(curve),
+                    prediction->error);
+    /* Cut short, the errors are of the part that was reached; n_reached is their number. */
+    const int n = prediction->n_reached;
+    const int first = beyond_zero(curve);
+    prediction->rms = n >= 2 ? wb_errors_rms(n, prediction->error) : (double)NAN;
+    prediction->max_error = n >= 2 ? wb_errors_largest(n, prediction->error) : (double)NAN;
+    prediction->rms_from_5mm =
+        n >= first + 2 ? wb_errors_rms(n - first, prediction->error + first) : (double)NAN;
+    return WB_OK;
+}
+
+/* --- what scatter lets expect --- */
+
+/* The same law of a wire that is stiffer by a factor: so much larger is its moment at any
+ * curvature.
+ */
+static struct wb_law stiffer(const struct wb_law *law, double factor)
+{
+    struct wb_law scaled = *law;
+    scaled.material.youngs_modulus *= factor;
+    scaled.material.yield_stress *= factor;
+    scaled.material.strength_coefficient *= factor;
+    for (int i = 0; i < law->n_parts; i++)
+        scaled.parts[i].modulus *= factor;
+    return scaled;
+}
+
+/* G of validate.h: root mean square of dF/d ln k over F_max; NaN where the beam does not reach the
+ * end of the curve. */
+static enum wb_status find_sensitivity(double *G, const struct wb_validate_result *result,
+                                       const struct wb_law *law,
+                                       const struct wb_computed_settings *how)
+{
+    const struct wb_curve *const curve = &result->curve;
+    double *const value = malloc(2 * (size_t)curve->n * sizeof *value);
+    enum wb_status status = WB_OK;
+    bool complete = true;
+    if (!value)
+        return wb_fail_to(how->why, WB_ERR_MEMORY, "no memory for %d points", curve->n);
+    for (int side = 0; status == WB_OK && side < 2; side++) {
+        const struct wb_law scaled = stiffer(law, side == 0 ? exp(-SMALL) : exp(SMALL));
+        struct wb_computed_settings with = *how;
+        struct wb_computed *computed;
+        int reached = 0;
+        with.law = how->law ? &scaled : NULL;
+        status = wb_computed_create(&computed, &result->info, &scaled.material, &with);
+        if (status == WB_OK) {
+            status = wb_computed_curve(computed, &scaled.material, curve->n, curve->step,
+                                       value + side * curve->n, &reached);
+            wb_computed_destroy(computed);
+        }
+        complete = complete && reached == curve->n;
+    }
+    for (int i = 0; status == WB_OK && complete && i < curve->n; i++)
+        value[i] = (value[curve->n + i] - value[i]) / (2.0 * SMALL * wb_curve_scale(curve));
+    *G = status == WB_OK && complete ? wb_errors_rms(curve->n, value) : (double)NAN;
+    free(value);
+    return status;
+}
+
+/* s of specimens whose curves scatter so. What the model makes of bows that the specimens do not
+ * have is in the residual scatter alone, so that the smaller counts. */
+static double deviation_of(double scatter, double residual_scatter, double G)
+{
+    return isfinite(scatter) ? fmin(scatter, residual_scatter) / G : (double)NAN;
+}
+
+/* What scatter between specimens makes of a perfect model's error; see validate.h. Properties that
+ * do not say how much the calibration's specimens differ in stiffness say how much their curves do,
+ * and G changes little with the length. */
+static void judge_scatter(struct wb_validate_result *result, const struct wb_properties *properties,
+                          double G)
+{
+    const int n = result->curve.n_samples, m = properties->n_samples;
+    result->scatter_rms = wb_curve_scatter(&result->curve);
+    const double own = deviation_of(result->scatter_rms, result->residual_scatter_rms, G);
+    const double calibrated =
+        isfinite(properties->stiffness_deviation)
+            ? properties->stiffness_deviation
+            : deviation_of(properties->scatter_rms, properties->residual_scatter_rms, G);
+    double squares = 0.0;
+    int degrees = 0;
+    result->stiffness_deviation = (double)NAN;
+    result->expected_rms = result->expected_rms_95 = result->scatter_share = (double)NAN;
+    if (n > 1 && isfinite(own)) {
+        squares += (n - 1) * own * own;
+        degrees += n - 1;
+    }
+    if (m > 1 && isfinite(calibrated)) {
+        squares += (m - 1) * calibrated * calibrated;
+        degrees += m - 1;
+    }
+    if (degrees == 0)
+        return;
+    result->stiffness_degrees = degrees;
+    result->stiffness_deviation = sqrt(squares / degrees);
+    result->expected_rms =
+        result->stiffness_deviation * sqrt(1.0 / n + (m > 0 ? 1.0 / m : 0.0)) * G;
+    result->expected_rms_95 = gsl_cdf_tdist_Pinv(0.975, degrees) * result->expected_rms;
+    const double rms = result->elastoplastic.rms;
+    if (rms > 0.0)
+        result->scatter_share = fmin(1.0, pow(result->expected_rms / rms, 2));
+}
+
+/* A prediction that goes nowhere is an error, one that is cut short is warned about. */
+static enum wb_status check_reached(const struct wb_validate_result *result, struct wb_reason *why)
+{
+    const struct wb_curve *const curve = &result->curve;
+    const int n = result->elastoplastic.n_reached;
+    const char *const unit = curve->is_follower ? "N" : "mm";
+    const double size = curve->is_follower ? 1.0 : WB_MM;
+    if (n < 2)
+        return wb_fail_to(
+            why, WB_ERR_CONVERGENCE,
+            "wire '%s': the beam with the calibrated properties does not converge even "
+            "at %g %s",
+            result->info.wire, curve->step / size, unit);
+    if (n < curve->n)
+        wb_warn("wire '%s': the beam stops converging at %.2f of %.2f %s; errors are of that part",
+                result->info.wire, (n - 1) * curve->step / size,
+                (curve->n - 1) * curve->step / size, unit);
+    return WB_OK;
+}
+
+/* What is left of a plain law is its material, which runs are given. */
+static const struct wb_law *overlay_of(const struct wb_properties *properties)
+{
+    return wb_law_is_plain(&properties->law) ? NULL : &properties->law;
+}
+
+/* The elastic prediction beside it. */
+static enum wb_status predict_elastic(struct wb_validate_result *result,
+                                      const struct wb_material *material,
+                                      const struct wb_computed_settings *how)
+{
+    struct wb_computed_settings without = *how;
+    struct wb_material elastic = *material;
+    struct wb_computed *computed;
+    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+    without.law = NULL;
+    WB_TRY(wb_computed_create(&computed, &result->info, material, &without));
+    const enum wb_status status =
+        predict(&result->elastic, computed, &elastic, &result->curve, how->why);
+    wb_computed_destroy(computed);
+    return status;
+}
+
+static enum wb_status validate_curve(struct wb_validate_result *result,
+                                     const struct wb_properties *properties,
+                                     const struct wb_dataset *const *datasets, int n,
+                                     const struct wb_calibrate_settings *settings,
+                                     struct wb_reason *why)
+{
+    const struct wb_material *const material = &properties->law.material;
+    const struct wb_computed_settings how = {settings->straight, settings->n_elements,
+                                             settings->n_fibres, why, overlay_of(properties)};
+    struct wb_computed *computed;
+    struct wb_marker_distance distance;
+    double G;
+    WB_TRY(wb_computed_create(&computed, &result->info, material, &how));
+    const struct wb_curve *const curve = &result->curve;
+    const struct wb_marker_distance_range range = {
+        curve->is_follower ? curve->step / FRAMES : curve->step,
+        curve->is_follower ? curve->max_force : curve->max_deflection};
+    enum wb_status status = predict(&result->elastoplastic, computed, material, curve, why);
+    if (status == WB_OK)
+        status = predict_elastic(result, material, &how);
+    if (status == WB_OK)
+        status = wb_marker_distance_find(&distance, computed, material, datasets, n, &range);
+    wb_computed_destroy(computed);
+    if (status == WB_OK)
+        status =
+            wb_scatter_residual(&result->residual_scatter_rms, datasets, n, curve, material, &how);
+    if (status == WB_OK)
+        status = find_sensitivity(&G, result, &properties->law, &how);
+    WB_TRY(status);
+    judge_scatter(result, properties, G);
+    result->shape_rms = distance.rms;
+    result->shape_max = distance.largest;
+    result->n_shape_points = distance.n_points;
+    return check_reached(result, why);
+}
+
+/* The way back and later cycles; a test that has none is as good. */
+static enum wb_status validate_cycles(struct wb_validate_result *result,
+                                      const struct wb_properties *properties,
+                                      const struct wb_dataset *const *datasets, int n,
+                                      const struct wb_calibrate_settings *settings)
+{
+    const struct wb_validate_cycle_settings how = {settings->straight, settings->n_elements,
+                                                   settings->n_fibres, result->curve.max_force};
+    const double known = properties->largest_curvature;
+    result->is_rule_untested =
+        isfinite(known) ? !properties->is_rule_tested : wb_law_is_plain(&properties->law);
+    result->cycles.clamp_curvature = (double)NAN;
+    if (result->curve.is_follower)
+        return WB_OK;
+    WB_TRY(wb_validate_cycles_run(&result->cycles, &properties->law, datasets, n, &how));
+    result->is_beyond = result->cycles.clamp_curvature > BEYOND * known;
+    if (result->is_beyond)
+        wb_warn("wire '%s', L = %g mm: the clamp is bent to %.3g /m, the properties are known up "
+                "to %.3g /m: beyond, they are a guess",
+                result->info.wire, result->info.length / WB_MM, result->cycles.clamp_curvature,
+                known);
+    return WB_OK;
+}
+
+enum wb_status wb_validate_run(struct wb_validate_result *result,
+                               const struct wb_properties *properties,
+                               const struct wb_dataset *const *datasets, int n,
+                               const struct wb_calibrate_settings *settings, struct wb_reason *why)
+{
+    struct wb_calibrate_settings defaults;
+    const double started = wb_progress_thread_cpu();
+    struct wb_validate_result made = {0};
+    wb_calibrate_default_settings(&defaults);
+    if (!settings)
+        settings = &defaults;
+    const struct wb_curve_grid grid = {.step = settings->step,
+                                       .force_step = settings->force_step,
+                                       .largest_deflection = settings->largest_deflection};
+    WB_TRY(wb_curve_average_on(&made.curve, datasets, n, &grid, why));
+    wb_curve_mean_info(datasets, n, &made.info);
+    wb_curve_warn_unknown_shapes(datasets, n);
+    enum wb_status status = check_wire(properties, &made.info, why);
+    if (status == WB_OK && !(wb_curve_scale(&made.curve) > 0.0))
+        status = wb_fail_to(why, WB_ERR_DATA, "wire '%s': the measured %s is never positive",
+                            made.info.wire, made.curve.is_follower ? "deflection" : "force");
+    if (status == WB_OK)
+        status = validate_curve(&made, properties, datasets, n, settings, why);
+    if (status == WB_OK)
+        status = validate_cycles(&made, properties, datasets, n, settings);
+    if (status != WB_OK) {
+        wb_validate_result_release(&made);
+        return status;
+    }
+    made.cpu_s = wb_progress_thread_cpu() - started;
+    *result = made;
+    return WB_OK;
+}
+
+/* A number, or an empty field when there is none. */
+static void put_field(struct wb_text *text, double value, char end)
+{
+    char number[WB_NUMBER_TEXT];
+    wb_text_append(text, "%s%c", isfinite(value) ? wb_number_format(value, number) : "", end);
+}
+
+static void put_rows(struct wb_text *text, const struct wb_validate_result *result)
+{
+    const struct wb_curve *const curve = &result->curve;
+    const bool follows = curve->is_follower;
+    const double grid_unit = follows ? 1.0 : WB_MM, unit = follows ? WB_MM : 1.0;
+    wb_text_append(text, follows
+                             ? "force_N,measured_mm,low_mm,high_mm,deviation_mm,elastoplastic_mm,"
+                               "elastoplastic_error,elastic_mm,elastic_error\n"
+                             : "deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,"
+                               "elastoplastic_error,elastic_N,elastic_error\n");
+    for (int i = 0; i < curve->n; i++) {
+        put_field(text, i * (curve->step / grid_unit), ',');
+        put_field(text, curve->value[i] / unit, ',');
+        put_field(text, curve->low[i] / unit, ',');
+        put_field(text, curve->high[i] / unit, ',');
+        put_field(text, curve->deviation[i] / unit, ',');
+        put_field(text, result->elastoplastic.value[i] / unit, ',');
+        put_field(text, result->elastoplastic.error[i], ',');
+        put_field(text, result->elastic.value[i] / unit, ',');
+        put_field(text, result->elastic.error[i], '\n');
+    }
+}
+
+/* The wire's name without what would break a table. */
+static void plain_name(char *name, size_t size, const struct wb_validate_result *result)
+{
+    snprintf(name, size, "%s", result->info.wire);
+    for (char *c = name; *c; c++) {
+        if ((unsigned char)*c < 0x20 || *c == ',')
+            *c = ' ';
+    }
+}
+
+/* The first line: whose data they are. */
+static void put_origin(struct wb_text *text, const struct wb_validate_result *result)
+{
+    char wire[sizeof result->info.wire];
+    plain_name(wire, sizeof wire, result);
+    wb_text_append(text, "# %swire %s, L = %g mm, %d %s, wirebench %s (%s)\n",
+                   result->info.is_virtual      ? "virtual rig, "
+                   : result->info.is_simulation ? "simulation, "
+                                                : "",
+                   wire, result->info.length / WB_MM, result->curve.n_samples,
+                   result->curve.n_samples == 1 ? "sample" : "samples", wb_version(),
+                   wb_version_revision());
+}
+
+static enum wb_status write_text(struct wb_text *text, const char *path)
+{
+    const enum wb_status status = wb_file_write_text(path, text);
+    wb_text_release(text);
+    return status;
+}
+
+enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, const char *path)
+{
+    struct wb_text text = {0};
+    put_origin(&text, result);
+    put_rows(&text, result);
+    return write_text(&text, path);
+}
+
+enum wb_status wb_validate_write_unloading(const struct wb_validate_result *result,
+                                           const char *path)
+{
+    const struct wb_validate_cycles *const cycles = &result->cycles;
+    struct wb_text text = {0};
+    put_origin(&text, result);
+    wb_text_append(&text, "deflection_mm,measured_N,elastoplastic_N,elastoplastic_error\n");
+    for (int i = 0; i < cycles->n; i++) {
+        const double difference = cycles->measured[i] - cycles->computed[i];
+        put_field(&text, cycles->deflection[i] / WB_MM, ',');
+        put_field(&text, cycles->measured[i], ',');
+        put_field(&text, cycles->computed[i], ',');
+        put_field(&text, fabs(difference) / result->curve.max_force, '\n');
+    }
+    return write_text(&text, path);
+}
+
+/* A row of scores.csv; what is NaN stays empty. */
+static void put_score(struct wb_text *text, const struct wb_validate_result *result,
+                      const char *score, const double values[3], const char *unit)
+{
+    char wire[sizeof result->info.wire];
+    plain_name(wire, sizeof wire, result);
+    wb_text_append(text, "%s,%g,%s,", wire, result->info.length / WB_MM, score);
+    for (int i = 0; i < 3; i++)
+        put_field(text, values[i], ',');
+    wb_text_append(text, "%s\n", unit);
+}
+
+static void put_scores(struct wb_text *text, const struct wb_validate_result *result)
+{
+    const struct wb_validate_cycles *const cycles = &result->cycles;
+    const double none = (double)NAN;
+    put_score(text, result, "loading", (double[]){none, none, result->elastoplastic.rms}, "1");
+    put_score(text, result, "loading_perfect_model_95",
+              (double[]){none, none, result->expected_rms_95}, "1");
+    put_score(text, result, "shapes", (double[]){none, none, result->shape_rms / WB_MM}, "mm");
+    if (cycles->n_samples == 0)
+        return;
+    put_score(text, result, "unloading", (double[]){none, none, cycles->rms}, "1");
+    const double left = cycles->residual_measured, computed_left = cycles->residual_computed;
+    put_score(text, result, "residual_deflection",
+              (double[]){left / WB_MM, computed_left / WB_MM, (computed_left - left) / WB_MM},
+              "mm");
+    for (int i = 0; i < cycles->n_loops; i++) {
+        const struct wb_validate_loop *const loop = &cycles->loops[i];
+        char name[40];
+        snprintf(name, sizeof name, "loop_energy_cycle_%d", loop->cycle);
+        put_score(text, result, name,
+                  (double[]){loop->measured / WB_MJ, loop->computed / WB_MJ,
+                             loop->computed / loop->measured - 1.0},
+                  "mJ");
+    }
+}
+
+enum wb_status wb_validate_write_scores(const struct wb_validate_result *results, int n,
+                                        const char *path)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text, "wire,length_mm,score,measured,computed,error,unit\n");
+    for (int i = 0; i < n; i++)
+        put_scores(&text, &results[i]);
+    return write_text(&text, path);
+}
+
+void wb_validate_result_release(struct wb_validate_result *result)
+{
+    wb_curve_release(&result->curve);
+    free(result->elastoplastic.value);
+    free(result->elastoplastic.error);
+    free(result->elastic.value);
+    free(result->elastic.error);
+    wb_validate_cycles_release(&result->cycles);
+    memset(result, 0, sizeof *result);
+}
+
+/* Moves the virgin wire to a deflection in even steps. */
+static enum wb_status reach(struct wb_computed *computed, const struct wb_material *material,
+                            double deflection)
+{
+    bool reached;
+    double force;
+    const int steps = (int)fmin(ceil(fabs(deflection) / SHAPE_STEP), 10000.0);
+    WB_TRY(wb_computed_start(computed, material, &reached));
+    for (int i = 1; reached && i <= steps; i++)
+        WB_TRY(wb_computed_move(computed, deflection * i / steps, &force, &reached));
+    if (!reached)
+        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge on the way to %.2f mm",
+                       deflection / WB_MM);
+    return WB_OK;
+}
+
+/* The same to a follower force. */
+static enum wb_status push(struct wb_computed *computed, const struct wb_material *material,
+                           double force)
+{
+    bool reached;
+    double deflection;
+    WB_TRY(wb_computed_start(computed, material, &reached));
+    for (int i = 1; reached && i <= FORCE_STEPS; i++)
+        WB_TRY(wb_computed_push(computed, force * i / FORCE_STEPS, &deflection, &reached));
+    if (!reached)
+        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge on the way to %.4g N",
+                       force);
+    return WB_OK;
+}
+
+/* Goes there and takes the shape. */
+static enum wb_status
+find_shape(const struct wb_properties *properties, const struct wb_test_info *info,
+           enum wb_status (*go)(struct wb_computed *, const struct wb_material *, double),
+           double target, const struct wb_validate_points *points)
+{
+    const struct wb_computed_settings how = {.law = overlay_of(properties)};
+    const struct wb_material *const material = &properties->law.material;
+    struct wb_computed *computed;
+    if (points->n < 2 || !isfinite(target))
+        return wb_fail(WB_ERR_ARGUMENT, "a shape needs at least two points and a finite target");
+    double *const s = malloc((size_t)points->n * sizeof *s);
+    if (!s)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a shape of %d points", points->n);
+    enum wb_status status = wb_computed_create(&computed, info, material, &how);
+    if (status == WB_OK) {
+        for (int i = 0; i < points->n; i++)
+            s[i] = info->length * i / (points->n - 1);
+        status = go(computed, material, target);
+        if (status == WB_OK)
+            wb_computed_shape(computed, points->n, s, points->x, points->y, points->angle);
+        wb_computed_destroy(computed);
+    }
+    free(s);
+    return status;
+}
+
+enum wb_status wb_validate_shape(const struct wb_properties *properties,
+                                 const struct wb_test_info *info, double deflection, int n,
+                                 double *x, double *y)
+{
+    const struct wb_validate_points points = {.n = n, .x = x, .y = y};
+    return find_shape(properties, info, reach, deflection, &points);
+}
+
+enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
+                                          const struct wb_test_info *info, double force,
+                                          const struct wb_validate_points *points)
+{
+    return find_shape(properties, info, push, force, points);
+}

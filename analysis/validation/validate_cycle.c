@@ -1,0 +1,355 @@
+#include "analysis/validation/validate_cycle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/calibration/cycle_data.h"
+#include "analysis/calibration/cycle_model.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "validate"
+
+/* Between the points of the mean way back, and of the model where nothing was measured. */
+static const double step = 1.0 * WB_MM;
+
+/* One way of a test, measured and computed. */
+struct way {
+    int n, first; /* points, and where they begin in the path */
+    int n_before; /* points of the cycle's data before them */
+};
+
+/* A sample's cycles as one path of the tip from zero up and back, again and again. */
+struct sample {
+    int n_cycles;
+    struct wb_cycle_data data[WB_VALIDATE_MOST_LOOPS + 1]; /* of each cycle */
+    struct way up[WB_VALIDATE_MOST_LOOPS + 1], back[WB_VALIDATE_MOST_LOOPS + 1];
+    int end_of_first; /* of the path's points: those of the first cycle down to zero */
+    struct wb_cycle_data path;
+    double *tension; /* (path.n_points) N; beyond what was reached NaN */
+    double zero;     /* N: computed tension at zero deflection */
+    double curvature;
+    bool is_good; /* its first way back is computed */
+};
+
+static void release_sample(struct sample *sample)
+{
+    for (int k = 0; k < sample->n_cycles; k++)
+        wb_cycle_data_release(&sample->data[k]);
+    free(sample->path.points);
+    free(sample->tension);
+}
+
+static void add_point(struct wb_cycle_data *path, double deflection)
+{
+    path->points[path->n_points++].deflection = deflection;
+}
+
+static struct way add_way(struct wb_cycle_data *path, const struct wb_cycle_data *data, int begin,
+                          int end)
+{
+    const struct way way = {.n = end - begin, .first = path->n_points, .n_before = begin};
+    for (int i = begin; i < end; i++)
+        add_point(path, data->points[i].deflection);
+    return way;
+}
+
+/* On downwards to zero: the strand becomes slack on the way, and the tip stays. */
+static void add_descent(struct wb_cycle_data *path)
+{
+    while (path->points[path->n_points - 1].deflection > step)
+        add_point(path, path->points[path->n_points - 1].deflection - step);
+    add_point(path, 0.0);
+}
+
+static enum wb_status make_path(struct sample *sample)
+{
+    struct wb_cycle_data *const path = &sample->path;
+    size_t most = 1;
+    for (int k = 0; k < sample->n_cycles; k++)
+        most += (size_t)sample->data[k].n_points + (size_t)(sample->data[k].top / step) + 4;
+    path->info = sample->data[0].info;
+    path->top = sample->data[0].top;
+    path->points = calloc(most, sizeof *path->points);
+    sample->tension = malloc(most * sizeof *sample->tension);
+    if (!path->points || !sample->tension)
+        return wb_fail(WB_ERR_MEMORY, "no memory for a path of %zu points", most);
+    add_point(path, 0.0);
+    for (int k = 0; k < sample->n_cycles; k++) {
+        const struct wb_cycle_data *const data = &sample->data[k];
+        sample->up[k] = add_way(path, data, 0, data->n_loading);
+        if (k == 0)
+            path->n_loading = path->n_points; /* the model goes on to the turn by itself */
+        else
+            add_point(path, data->top);
+        sample->back[k] = add_way(path, data, data->n_loading, data->n_points);
+        if (sample->back[k].n > 0)
+            add_descent(path);
+        if (k == 0)
+            sample->end_of_first = path->n_points;
+    }
+    return WB_OK;
+}
+
+static bool is_finite(const struct sample *sample, int begin, int end)
+{
+    for (int i = begin; i < end; i++) {
+        if (!isfinite(sample->tension[i]))
+            return false;
+    }
+    return true;
+}
+
+/* Its later cycles as far as they are there, one after the other. */
+static void take_later(struct sample *sample, const struct wb_dataset *dataset)
+{
+    while (sample->n_cycles <= WB_VALIDATE_MOST_LOOPS) {
+        const struct wb_cycle_data_settings settings = {.cycle = sample->n_cycles + 1};
+        struct wb_cycle_data *const data = &sample->data[sample->n_cycles];
+        struct wb_reason why = {.text = ""};
+        if (wb_cycle_data_take(data, dataset, &settings, &why) != WB_OK)
+            return;
+        sample->n_cycles++;
+        if (data->n_points == data->n_loading)
+            return;
+    }
+}
+
+/* WB_OK with sample->is_good false: `why` says why. */
+static enum wb_status compute(struct sample *sample, const struct wb_law *law,
+                              const struct wb_dataset *dataset,
+                              const struct wb_validate_cycle_settings *settings,
+                              struct wb_reason *why)
+{
+    const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres};
+    const struct wb_test_info *const info = &dataset->info;
+    const struct wb_cycle_specimen specimen = {
+        .bow_angle = settings->straight ? 0.0 : 2.0 * wb_dataset_bow(info) / info->length};
+    struct wb_cycle_model *model;
+    struct wb_cycle_run run;
+
+    sample->curvature = (double)NAN;
+    const enum wb_status taken = wb_cycle_data_take(&sample->data[0], dataset, NULL, why);
+    if (taken != WB_OK)
+        return taken == WB_ERR_DATA ? WB_OK : taken;
+    sample->n_cycles = 1;
+    const bool has_way_back = sample->data[0].n_points > sample->data[0].n_loading;
+    if (has_way_back)
+        take_later(sample, dataset);
+    WB_TRY(make_path(sample));
+    WB_TRY(wb_cycle_model_create(&model, &sample->path, law, &how));
+    const enum wb_status status =
+        wb_cycle_model_run(model, law, &specimen, sample->tension, NULL, &run);
+    wb_cycle_model_destroy(model);
+    WB_TRY(status);
+    sample->curvature = run.clamp_curvature;
+    sample->zero = sample->tension[0];
+    sample->is_good = has_way_back && is_finite(sample, 0, sample->end_of_first);
+    if (has_way_back && !sample->is_good)
+        (void)wb_fail_to(why, WB_ERR_CONVERGENCE,
+                         "wire '%s', sample %d: the beam does not converge over the first cycle",
+                         info->wire, info->sample);
+    return WB_OK;
+}
+
+/* --- the way back --- */
+
+/* Measured and computed tension at a deflection of the first way back, between its points. */
+static void at_deflection(const struct sample *sample, double deflection, double *measured,
+                          double *computed)
+{
+    const struct way *const back = &sample->back[0];
+    const struct wb_cycle_data *const data = &sample->data[0];
+    const struct wb_cycle_point *const points = data->points + data->n_loading;
+    const double *const tension = sample->tension + back->first;
+    int i = 1;
+    while (i < back->n - 1 && points[i].deflection > deflection)
+        i++;
+    const double part =
+        (points[i - 1].deflection - deflection) / (points[i - 1].deflection - points[i].deflection);
+    *measured +=
+        (1.0 - part) * points[i - 1].tension + part * points[i].tension - data->zero_tension;
+    *computed += (1.0 - part) * tension[i - 1] + part * tension[i] - sample->zero;
+}
+
+/* Sum of the squared differences of a sample's points. */
+static double squares_of(const struct sample *sample)
+{
+    const struct wb_cycle_data *const data = &sample->data[0];
+    double sum = 0.0;
+    for (int i = 0; i < sample->back[0].n; i++) {
+        const double difference = data->points[data->n_loading + i].tension - data->zero_tension -
+                                  (sample->tension[sample->back[0].first + i] - sample->zero);
+        sum += difference * difference;
+    }
+    return sum;
+}
+
+static enum wb_status find_mean(struct wb_validate_cycles *cycles, const struct sample *samples,
+                                int n, double max_force)
+{
+    double high = (double)INFINITY, low = 0.0, squares = 0.0;
+    long points = 0;
+    for (int i = 0; i < n; i++) {
+        const struct wb_cycle_data *const data = &samples[i].data[0];
+        if (!samples[i].is_good)
+            continue;
+        high = fmin(high, data->points[data->n_loading].deflection);
+        low = fmax(low, data->points[data->n_points - 1].deflection);
+        squares += squares_of(&samples[i]);
+        points += samples[i].back[0].n;
+        cycles->n_samples++;
+    }
+    if (cycles->n_samples == 0)
+        return WB_OK;
+    cycles->sample_rms = sqrt(squares / (double)points) / max_force;
+    cycles->n = high >= low ? (int)((high - low) / step + 1e-9) + 1 : 0;
+    const size_t size = (size_t)cycles->n;
+    cycles->deflection = calloc(3 * size + 1, sizeof *cycles->deflection);
+    if (!cycles->deflection)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d points", cycles->n);
+    cycles->measured = cycles->deflection + size;
+    cycles->computed = cycles->measured + size;
+    squares = 0.0;
+    cycles->largest_error = 0.0;
+    for (int k = 0; k < cycles->n; k++) {
+        double *const measured = &cycles->measured[k], *const computed = &cycles->computed[k];
+        cycles->deflection[k] = high - k * step;
+        for (int i = 0; i < n; i++) {
+            if (samples[i].is_good)
+                at_deflection(&samples[i], cycles->deflection[k], measured, computed);
+        }
+        *measured /= cycles->n_samples;
+        *computed /= cycles->n_samples;
+        const double error = fabs(*measured - *computed) / max_force;
+        squares += error * error;
+        cycles->largest_error = fmax(cycles->largest_error, error);
+    }
+    if (cycles->n > 0)
+        cycles->rms = sqrt(squares / cycles->n);
+    return WB_OK;
+}
+
+/* --- the residual deflection --- */
+
+static double residual_of(const struct sample *sample)
+{
+    const struct wb_cycle_point *const points = sample->path.points;
+    const double *const tension = sample->tension;
+    for (int i = sample->back[0].first; i + 1 < sample->end_of_first; i++) {
+        if (tension[i] > sample->zero && tension[i + 1] <= sample->zero)
+            return points[i].deflection - (points[i].deflection - points[i + 1].deflection) *
+                                              (tension[i] - sample->zero) /
+                                              (tension[i] - tension[i + 1]);
+    }
+    return (double)NAN;
+}
+
+static void find_residual(struct wb_validate_cycles *cycles, const struct sample *samples, int n)
+{
+    double measured = 0.0, computed = 0.0;
+    int found = 0;
+    for (int i = 0; i < n; i++) {
+        const double one = samples[i].is_good ? residual_of(&samples[i]) : (double)NAN;
+        if (!isfinite(one) || !isfinite(samples[i].data[0].residual_deflection))
+            continue;
+        measured += samples[i].data[0].residual_deflection;
+        computed += one;
+        found++;
+    }
+    if (found > 0) {
+        cycles->residual_measured = measured / found;
+        cycles->residual_computed = computed / found;
+    }
+}
+
+/* --- later cycles --- */
+
+/* Work of the tension between two deflections on a way up, or got back on the way down. */
+static double work_of(const struct wb_cycle_point *points, const double *tension, int n, double low,
+                      double high)
+{
+    double sum = 0.0;
+    for (int i = 0; i + 1 < n; i++) {
+        const double x0 = points[i].deflection, x1 = points[i + 1].deflection;
+        const double y0 = tension ? tension[i] : points[i].tension;
+        const double y1 = tension ? tension[i + 1] : points[i + 1].tension;
+        const double begin = fmax(fmin(x0, x1), low), end = fmin(fmax(x0, x1), high);
+        if (end > begin)
+            sum += (end - begin) * (y0 + (y1 - y0) * (0.5 * (begin + end) - x0) / (x1 - x0));
+    }
+    return sum;
+}
+
+static void find_loop(struct wb_validate_loop *loop, const struct sample *samples, int n)
+{
+    const int k = loop->cycle - 1;
+    for (int i = 0; i < n; i++) {
+        const struct sample *const sample = &samples[i];
+        if (!sample->is_good || sample->n_cycles <= k || sample->back[k].n < 2)
+            continue;
+        const struct way *const up = &sample->up[k], *const back = &sample->back[k];
+        if (!is_finite(sample, up->first, back->first + back->n))
+            continue;
+        const struct wb_cycle_point *const p = sample->data[k].points;
+        const struct wb_cycle_point *const q = p + back->n_before;
+        const double low = fmax(p[0].deflection, q[back->n - 1].deflection);
+        const double high = fmin(p[up->n - 1].deflection, q[0].deflection);
+        loop->measured += work_of(p, NULL, up->n, low, high) - work_of(q, NULL, back->n, low, high);
+        loop->computed += work_of(p, sample->tension + up->first, up->n, low, high) -
+                          work_of(q, sample->tension + back->first, back->n, low, high);
+        loop->n_samples++;
+    }
+    loop->measured /= loop->n_samples;
+    loop->computed /= loop->n_samples;
+}
+
+static void find_loops(struct wb_validate_cycles *cycles, const struct sample *samples, int n)
+{
+    for (int cycle = 2; cycles->n_loops < WB_VALIDATE_MOST_LOOPS; cycle++) {
+        struct wb_validate_loop loop = {.cycle = cycle};
+        find_loop(&loop, samples, n);
+        if (loop.n_samples == 0)
+            return;
+        cycles->loops[cycles->n_loops++] = loop;
+    }
+}
+
+enum wb_status wb_validate_cycles_run(struct wb_validate_cycles *cycles, const struct wb_law *law,
+                                      const struct wb_dataset *const *datasets, int n,
+                                      const struct wb_validate_cycle_settings *settings)
+{
+    const double none = (double)NAN;
+    *cycles = (struct wb_validate_cycles){.clamp_curvature = none,
+                                          .rms = none,
+                                          .largest_error = none,
+                                          .sample_rms = none,
+                                          .residual_measured = none,
+                                          .residual_computed = none};
+    struct sample *const samples = calloc((size_t)n, sizeof *samples);
+    if (!samples)
+        return wb_fail(WB_ERR_MEMORY, "no memory for %d samples", n);
+    enum wb_status status = WB_OK;
+    for (int i = 0; status == WB_OK && i < n; i++) {
+        status = compute(&samples[i], law, datasets[i], settings, &cycles->why);
+        cycles->clamp_curvature = fmax(cycles->clamp_curvature, samples[i].curvature);
+    }
+    if (status == WB_OK)
+        status = find_mean(cycles, samples, n, settings->max_force);
+    if (status == WB_OK) {
+        find_residual(cycles, samples, n);
+        find_loops(cycles, samples, n);
+    }
+    for (int i = 0; i < n; i++)
+        release_sample(&samples[i]);
+    free(samples);
+    if (status != WB_OK)
+        wb_validate_cycles_release(cycles);
+    return status;
+}
+
+void wb_validate_cycles_release(struct wb_validate_cycles *cycles)
+{
+    free(cycles->deflection);
+    *cycles = (struct wb_validate_cycles){.n = 0};
+}

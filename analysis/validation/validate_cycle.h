@@ -1,0 +1,66 @@
+/* What properties predict of a test beyond its first loading: the way back, the deflection that is
+ * left, and the work that later cycles lose.
+ *
+ * Each sample is computed by itself (analysis/cycle_model.h) with its own bow as the alignment has
+ * it, over the deflections of all its cycles. Tensions are compared less their value at zero
+ * deflection on the first loading, measured and computed each with its own, so that an error of the
+ * bow does not count as one of the law. Scored is the mean over the samples, as of the loading
+ * curve, because a law is one of the product.
+ */
+#ifndef WB_ANALYSIS_VALIDATE_CYCLE_H
+#define WB_ANALYSIS_VALIDATE_CYCLE_H
+
+#include <stdbool.h>
+
+#include "analysis/dataset/dataset.h"
+#include "base/reason.h"
+#include "base/status.h"
+#include "fe/material/law.h"
+
+enum {
+    WB_VALIDATE_MOST_LOOPS = 16
+};
+
+/* A cycle after the first. Its work is that of the tension over the deflections that both of its
+ * ways have, J, as the mean over the samples. */
+struct wb_validate_loop {
+    int cycle, n_samples;
+    double measured, computed;
+};
+
+struct wb_validate_cycles {
+    double clamp_curvature; /* 1/m: largest computed one of all samples; NaN: not known */
+    int n_samples;          /* with a way back that is computed to its end; 0: none */
+    struct wb_reason why;   /* why one of them is not; empty */
+
+    /* The mean way back, downwards at every mm that all samples have. */
+    int n;
+    double *deflection;        /* (n) m; owned, and its memory also holds: */
+    double *measured;          /* (n) N, */
+    double *computed;          /* (n) N, both less the tension at zero deflection */
+    double rms, largest_error; /* of their differences over F_max */
+    double sample_rms;         /* of all samples each by itself, over F_max */
+
+    /* Where the tension on the way back has come down to that at zero deflection, m: means over the
+     * samples that reach it; NaN: none does. */
+    double residual_measured, residual_computed;
+
+    int n_loops;
+    struct wb_validate_loop loops[WB_VALIDATE_MOST_LOOPS];
+};
+
+struct wb_validate_cycle_settings {
+    bool straight;            /* ignore the bows */
+    int n_elements, n_fibres; /* 0: 50, 20 */
+    double max_force;         /* N: F_max, that errors are divided by */
+};
+
+/* Predicts the cycles of n datasets of one kind; a follower test has none. A sample that cannot be
+ * computed is left out, see `why`. Fails only for what makes no law, and without memory. */
+WB_MUST_CHECK enum wb_status
+wb_validate_cycles_run(struct wb_validate_cycles *cycles, const struct wb_law *law,
+                       const struct wb_dataset *const *datasets, int n,
+                       const struct wb_validate_cycle_settings *settings);
+void wb_validate_cycles_release(struct wb_validate_cycles *cycles); /* accepts a zeroed one */
+
+#endif

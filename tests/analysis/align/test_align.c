@@ -1,0 +1,602 @@
+/* Alignment of made-up recordings whose truth is known, with the faults that benches have. */
+#include "analysis/align/align.h"
+
+#include "base/file.h"
+#include "base/log.h"
+#include "tests/analysis/synthetic.h"
+#include "tests/messages.h"
+#include "tests/own_folder.h"
+
+static int n_recordings;
+
+static int start(void **state)
+{
+    keep_messages();
+    return make_folder(state);
+}
+
+/* What a test records, and what becomes of it. */
+static struct syn syn;
+static struct wb_dataset dataset;
+
+static int begin(void **state)
+{
+    (void)state;
+    syn_default(&syn);
+    memset(&dataset, 0, sizeof dataset);
+    return 0;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    wb_dataset_release(&dataset);
+    return 0;
+}
+
+/* A test of its own bench and dataset. */
+#define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
+
+static void record(char path[WB_PATH])
+{
+    snprintf(path, WB_PATH, "%s/test-%d.wbr", folder, ++n_recordings);
+    syn_record(&syn, path);
+}
+
+static enum wb_status run(const char *path, struct wb_reason *why)
+{
+    struct wb_align_settings settings;
+    wb_align_default_settings(&settings);
+    wb_dataset_release(&dataset);
+    return wb_align_run(&dataset, path, &settings, why);
+}
+
+/* Records and aligns. */
+static void align(void)
+{
+    char path[WB_PATH];
+    record(path);
+    if (run(path, NULL) != WB_OK)
+        fail_msg("not aligned: %s", kept.last);
+}
+
+/* The same text goes to the log, or to the reason and not to the log. The bench is as at first
+ * again. */
+static void refuse(const char *expected)
+{
+    struct wb_reason why = {.text = "of before"};
+    char path[WB_PATH];
+    record(path);
+    assert_int_equal(run(path, NULL), WB_ERR_DATA);
+    assert_message(expected);
+    assert_int_equal(run(path, &why), WB_ERR_DATA);
+    assert_string_equal(why.text, kept.error);
+    keep_messages();
+    assert_int_equal(run(path, &why), WB_ERR_DATA);
+    assert_string_equal(kept.error, "");
+    syn_default(&syn);
+}
+
+/* Overwrites the recording from that part of its length on. */
+static void overwrite(const char *path, double part)
+{
+    FILE *const file = fopen(path, "r+b");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    const long size = ftell(file), from = (long)(part * (double)size) / 4096 * 4096;
+    assert_int_equal(fseek(file, from, SEEK_SET), 0);
+    for (long i = from; i < size; i++)
+        assert_int_equal(fputc(0, file), 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* --- reading what alignment says of itself --- */
+
+static double correction(const struct wb_dataset *of, const char *name, const char *key)
+{
+    const struct wb_json *const list = wb_json_get(of->document, "corrections");
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const struct wb_json *const entry = wb_json_item(list, i);
+        const char *text;
+        double value;
+        if (wb_json_get_text(entry, "name", &text) && strcmp(text, name) == 0)
+            return wb_json_get_number(entry, key, &value) ? value : (double)NAN;
+    }
+    fail_msg("no correction '%s'", name);
+    return (double)NAN;
+}
+
+static double check(const char *group, const char *key)
+{
+    double value;
+    const struct wb_json *const object =
+        wb_json_get(wb_json_get(dataset.document, "checks"), group);
+    return wb_json_get_number(object, key, &value) ? value : (double)NAN;
+}
+
+static bool warns(const char *of)
+{
+    const struct wb_json *const list = wb_json_get(dataset.document, "warnings");
+    const char *text;
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        if (wb_json_text(wb_json_item(list, i), &text) && (!of || strstr(text, of)))
+            return true;
+    }
+    return false;
+}
+
+/* --- against the truth --- */
+
+struct errors {
+    int n;
+    double deflection_mean, deflection_rms, force_mean, force_rms, largest_force; /* SI */
+};
+
+/* Errors of the rows of one phase, without the settling of the filter after a jump or a turn. */
+static struct errors compare(enum wb_phase phase)
+{
+    struct errors errors = {0};
+    struct syn truth = syn;
+    truth.largest_y = SYN_REST;
+    const double zero = syn_carried() - truth.stiffness * truth.bow;
+    double changed = -1.0;
+    enum wb_phase before = WB_PHASE_SLACK;
+    for (size_t i = 0; i < dataset.n_rows; i++) {
+        const struct wb_row *const row = &dataset.rows[i];
+        const struct syn_state then = syn_move(&truth, row->t);
+        if (row->phase != before)
+            changed = row->t;
+        before = row->phase;
+        if (row->phase != phase || row->t < changed + 0.5)
+            continue;
+        const double dy = row->deflection - then.y;
+        const double df = row->force - (then.vertical - zero);
+        errors.n++;
+        errors.deflection_mean += dy;
+        errors.deflection_rms += dy * dy;
+        errors.force_mean += df;
+        errors.force_rms += df * df;
+        errors.largest_force = fmax(errors.largest_force, fabs(df));
+    }
+    errors.deflection_mean /= errors.n;
+    errors.force_mean /= errors.n;
+    errors.deflection_rms = sqrt(errors.deflection_rms / errors.n);
+    errors.force_rms = sqrt(errors.force_rms / errors.n);
+    return errors;
+}
+
+/* Noise of 0.1 mm and 98 uN, averaged over six frames and five readings. The vertical comes from
+ * 20 mm of noisy motion: 0.2 mrad, 0.02 mm at the tip, and as much force as that is worth. */
+static void assert_true_to_bench(void)
+{
+    for (int phase = WB_PHASE_LOAD; phase <= WB_PHASE_UNLOAD; phase++) {
+        const struct errors errors = compare((enum wb_phase)phase);
+        assert_true(errors.n > 100);
+        assert_close(errors.deflection_mean, 0.0, 0.05e-3);
+        assert_close(errors.deflection_rms, 0.0, 0.08e-3);
+        assert_close(errors.force_mean, 0.0, 0.1e-3);
+        assert_close(errors.force_rms, 0.0, 0.12e-3);
+    }
+}
+
+static void a_test_comes_back_as_it_was(void **state)
+{
+    (void)state;
+    align();
+    assert_true_to_bench();
+    assert_false(warns(NULL));
+
+    assert_string_equal(dataset.info.wire, "synthetic");
+    assert_int_equal(dataset.info.sample, 2);
+    assert_true(dataset.info.is_virtual && !dataset.info.is_simulation);
+    assert_close(dataset.info.length, SYN_LENGTH, 1e-12);
+    assert_close(dataset.info.strand_length, SYN_STRAND, 1e-12);
+    assert_close(dataset.info.counterweight, SYN_COUNTERWEIGHT, 1e-12);
+    assert_close(dataset.info.rest_level, SYN_REST, 0.05e-3);
+    assert_close(correction(&dataset, "filter delay", "value_ms"), 50.0, 1e-9);
+    assert_close(correction(&dataset, "tare", "value_mN"), 3.0, 1e-6);
+    assert_close(correction(&dataset, "force at zero deflection", "value_mN"),
+                 (syn_carried() - syn.stiffness * syn.bow) / WB_MN, 0.05);
+    /* Shapes: the markers lie on the axis of the true wire. */
+    assert_true(dataset.n_shape_rows > 40 * SYN_MARKERS);
+    double sum = 0.0;
+    for (size_t i = 0; i < dataset.n_shape_rows; i++) {
+        const struct wb_shape_row *const row = &dataset.shape_rows[i];
+        double x, y;
+        syn_point(&syn, syn_look_up(syn.table_y, syn.table_a, row->deflection), syn_s[row->marker],
+                  &x, &y);
+        sum += (row->x - x) * (row->x - x) + (row->y - y) * (row->y - y);
+    }
+    assert_close(sqrt(sum / (double)dataset.n_shape_rows), 0.0, 0.1e-3);
+}
+
+static void bows_are_found_within_what_is_stated(void **state)
+{
+    (void)state;
+    static const double bows[] = {-4e-3, -2.2e-3, 0.0, 2e-3, 3.7e-3};
+    for (size_t i = 0; i < sizeof bows / sizeof bows[0]; i++) {
+        syn_default(&syn);
+        syn.bow = bows[i];
+        align();
+        const double stated = correction(&dataset, "natural shape", "uncertainty_mm") * WB_MM;
+        const double bow = wb_dataset_bow(&dataset.info);
+        assert_true(stated < 0.4e-3);
+        assert_close(bow, bows[i], 2.0 * stated);
+        /* By the markers alone it is only just seen. */
+        assert_close(check("natural_shape", "bow_from_markers_mm") * WB_MM, bows[i],
+                     2.0 * WB_MM * check("natural_shape", "bow_from_markers_uncertainty_mm"));
+    }
+}
+
+static void an_elastic_loop_is_closed(void **state)
+{
+    (void)state;
+    syn.unloading = syn.stiffness;
+    syn.force_noise = 30e-6;
+    align();
+    /* Without the filter's delay taken off, the loop would be 2 v dt = 0.1 mm wide: 36 uN rms. */
+    const double width = check("timing", "loop_area_mJ") * 1e-3 / (syn.stiffness * 19e-3);
+    assert_close(width, 0.0, 0.01e-3);
+    assert_close(check("timing", "loop_width_error_mm"), 0.01, 0.001);
+    assert_close(check("timing", "speed_mm_s"), 1.0, 0.01);
+}
+
+static void drift_between_zero_loads_is_taken_off(void **state)
+{
+    (void)state;
+    syn.drift = 20e-6; /* 1.2 mN/min: a bad cell */
+    syn.cycles = 2;
+    align();
+    assert_true_to_bench();
+    assert_close(correction(&dataset, "zero drift", "value_mN"),
+                 syn.drift * 2.0 * syn_cycle_time(&syn) / WB_MN, 0.1);
+}
+
+/* Only the event differs: the weight that hung on the cell is taken off the tare again. */
+static void a_tare_with_the_counterweight_gives_the_same_tension(void **state)
+{
+    (void)state;
+    align();
+    struct wb_dataset unloaded = dataset;
+    memset(&dataset, 0, sizeof dataset);
+    syn_default(&syn);
+    syn.loaded_tare = true;
+    align();
+    assert_true_to_bench();
+    assert_close(correction(&dataset, "tare", "value_mN"),
+                 correction(&unloaded, "tare", "value_mN"), 1e-4);
+    assert_int_equal(dataset.n_rows, unloaded.n_rows);
+    assert_close(dataset.rows[dataset.n_rows / 2].tension,
+                 unloaded.rows[unloaded.n_rows / 2].tension, 1e-9);
+    wb_dataset_release(&unloaded);
+}
+
+static void drift_that_cannot_be_seen_is_bounded(void **state)
+{
+    (void)state;
+    char path[WB_PATH];
+    /* The cell falls silent before the strand goes slack again. */
+    syn.gap_from = 35.0;
+    syn.gap_until = 1e9;
+    record(path);
+    assert_int_equal(run(path, NULL), WB_OK);
+    const bool only_tare = warns("zero drift is not corrected");
+    const double value = correction(&dataset, "zero drift", "value_mN");
+    assert_true(only_tare);
+    assert_close(value, 0.0, 0.03);
+    assert_true(correction(&dataset, "zero drift", "uncertainty_mN") > 0.0);
+}
+
+static void cycles_and_phases_come_from_the_clamp(void **state)
+{
+    (void)state;
+    syn.cycles = 3;
+    syn.no_events = true;
+    align();
+    const double cycle_time = syn_cycle_time(&syn), down = syn.travel / SYN_SPEED;
+    assert_false(warns(NULL));
+    /* Without events time counts from the tare. */
+    int wrong = 0;
+    for (size_t i = 0; i < dataset.n_rows; i++) {
+        const struct wb_row *const row = &dataset.rows[i];
+        const double in = fmod(row->t, cycle_time);
+        if (fabs(in - down) < 0.2 || in > 2.0 * down - 0.2 || in < 0.2)
+            continue;
+        wrong += row->cycle != 1 + (int)(row->t / cycle_time);
+        wrong += row->phase == (in < down ? WB_PHASE_UNLOAD : WB_PHASE_LOAD);
+    }
+    assert_int_equal(wrong, 0);
+    assert_int_equal(dataset.rows[dataset.n_rows - 1].cycle, 3);
+}
+
+static void slack_rows_are_those_without_tension(void **state)
+{
+    (void)state;
+    align();
+    struct syn truth = syn;
+    truth.largest_y = SYN_REST;
+    int wrong = 0, slack = 0;
+    for (size_t i = 0; i < dataset.n_rows; i++) {
+        const struct wb_row *const row = &dataset.rows[i];
+        const double tension = syn_move(&truth, row->t).tension;
+        slack += row->phase == WB_PHASE_SLACK;
+        /* Between, where filter and noise blur it, either is right. */
+        if (tension == 0.0 || tension > 1e-3)
+            wrong += (row->phase == WB_PHASE_SLACK) != (tension == 0.0);
+    }
+    assert_true(slack > 80);
+    assert_true(wrong <= 6);
+}
+
+static void lost_steps_are_flagged_and_do_no_harm(void **state)
+{
+    (void)state;
+    align();
+    assert_close(check("stage", "slope"), 1.0, 1e-3);
+    assert_close(check("stage", "largest_residual_mm"), 0.0, 0.1);
+    assert_close(check("stage", "report_lag_ms"), 12.0, 5.0);
+
+    syn_default(&syn);
+    syn.lost = 0.8e-3;
+    syn.lost_at = 12e-3;
+    align();
+    assert_true(warns("lost steps"));
+    assert_close(check("stage", "not_returned_mm"), -0.8, 0.05);
+    assert_true_to_bench();
+}
+
+static void occlusions_strays_and_new_ids_leave_gaps_only(void **state)
+{
+    (void)state;
+    syn.stray = syn.ids_change = true;
+    syn.hidden_marker = 3;
+    syn.hidden_from = 8.0;
+    syn.hidden_until = 14.0;
+    align();
+    assert_true_to_bench();
+    for (size_t i = 0; i < dataset.n_shape_rows; i++) {
+        const struct wb_shape_row *const row = &dataset.shape_rows[i];
+        assert_false(row->marker == 3 && row->t > 8.03 && row->t < 13.97);
+    }
+
+    /* The tip's own marker, filled in by the server at a wrong place: no row. */
+    syn.hidden_marker = SYN_MARKERS - 1;
+    syn.model_filled = true;
+    align();
+    assert_true_to_bench();
+    assert_true(warns("in the rows"));
+    for (size_t i = 0; i < dataset.n_rows; i++)
+        assert_false(dataset.rows[i].t > 8.01 && dataset.rows[i].t < 13.99);
+}
+
+static void rows_beside_a_loss_of_the_clamp_are_right(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        syn_default(&syn);
+        syn.hidden_marker = 0;
+        syn.hidden_from = 8.0 + 0.0117 * k;
+        syn.hidden_until = 12.0 + 0.0083 * k;
+        align();
+        syn.largest_y = SYN_REST;
+        double worst = 0.0;
+        int beside = 0;
+        for (size_t i = 0; i < dataset.n_rows; i++) {
+            const struct wb_row *const row = &dataset.rows[i];
+            const double y = syn_move(&syn, row->t).y;
+            assert_false(row->t > syn.hidden_from + 0.05 && row->t < syn.hidden_until - 0.05);
+            if (row->t < 7.5 || row->t > 12.6)
+                continue;
+            worst = fmax(worst, fabs(row->deflection - y));
+            beside++;
+        }
+        assert_true(beside > 10);
+        assert_close(worst, 0.0, 0.15e-3);
+    }
+}
+
+static void a_silent_load_cell_leaves_a_gap(void **state)
+{
+    (void)state;
+    syn.gap_from = 10.0;
+    syn.gap_until = 13.0;
+    align();
+    bool complete = true;
+    assert_true_to_bench();
+    assert_true(wb_json_get_boolean(dataset.document, "complete", &complete) && !complete);
+    for (size_t i = 0; i < dataset.n_rows; i++)
+        assert_false(dataset.rows[i].t > 10.1 && dataset.rows[i].t < 12.8);
+}
+
+static void servers_without_echo_and_restarted_ones_serve(void **state)
+{
+    (void)state;
+    syn.version_major = 2;
+    syn.version_minor = 7;
+    align();
+    assert_true_to_bench();
+    assert_true(isnan(check("timing", "camera_clock_uncertainty_ms")));
+
+    syn_default(&syn);
+    syn.restart_at = 17.0;
+    align();
+    assert_true_to_bench();
+    assert_int_equal(
+        wb_json_length(wb_json_get(wb_json_get(dataset.document, "checks"), "camera_clock")), 2);
+}
+
+static void the_clock_is_mapped_by_the_probes(void **state)
+{
+    (void)state;
+    align();
+    const struct wb_json *const segment =
+        wb_json_item(wb_json_get(wb_json_get(dataset.document, "checks"), "camera_clock"), 0);
+    double skew, uncertainty;
+    assert_true(wb_json_get_number(segment, "skew_ppm", &skew));
+    assert_true(wb_json_get_number(segment, "uncertainty_ms", &uncertainty));
+    assert_close(skew, 50.0, 3.0);
+    assert_true(uncertainty > 0.0 && uncertainty < 0.3);
+}
+
+static void a_scaled_bench_keeps_its_own_time(void **state)
+{
+    (void)state;
+    syn.time_scale = 20.0;
+    align();
+    assert_true_to_bench();
+    assert_close(dataset.rows[dataset.n_rows - 1].t, syn_cycle_time(&syn), 0.3);
+}
+
+static void cameras_may_stand_anyhow(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        syn_default(&syn);
+        syn.z_up = i % 2;
+        syn.plane_angle = -2.5 + 1.4 * i;
+        align();
+        assert_true_to_bench();
+    }
+}
+
+static void a_busy_host_does_no_harm(void **state)
+{
+    (void)state;
+    syn.busy_from = 9.0;
+    syn.busy_until = 11.2;
+    align();
+    assert_true_to_bench();
+    assert_false(warns(NULL));
+}
+
+static void polled_readings_keep_their_arrival(void **state)
+{
+    (void)state;
+    syn.polled = true;
+    align();
+    assert_true_to_bench();
+    assert_true(isnan(check("load_cell_stream", "arrival_scatter_ms")));
+}
+
+static void what_cannot_serve_is_refused_with_the_reason(void **state)
+{
+    (void)state;
+    syn.no_tare = true;
+    refuse("no tare");
+    syn.sign = -1.0;
+    refuse("sign");
+    syn.no_motion = true;
+    refuse("moved");
+    syn.marker_noise = 20e-3;
+    refuse("markers not found");
+    syn.gap_from = -100.0;
+    syn.gap_until = 1e9;
+    refuse("no reading");
+    struct wb_align_settings settings;
+    wb_align_default_settings(&settings);
+    assert_int_equal(wb_align_run(&dataset, "/nonexistent/test.wbr", &settings, NULL),
+                     WB_ERR_NOT_FOUND);
+    settings.longest_gap = -1.0;
+    assert_int_equal(wb_align_run(&dataset, "/nonexistent/test.wbr", &settings, NULL),
+                     WB_ERR_ARGUMENT);
+}
+
+/* What could not be read stands before what that led to; of a recording that serves all the same it
+ * is logged. */
+static void what_is_lost_is_told_with_the_reason(void **state)
+{
+    (void)state;
+    char path[WB_PATH];
+    struct wb_reason why = {.text = ""};
+    record(path);
+    overwrite(path, 0.97);
+    keep_messages();
+    assert_int_equal(run(path, &why), WB_OK);
+    assert_non_null(strstr(kept.error, "table chunk breaks off"));
+    assert_string_equal(why.text, "");
+    assert_true(warns("the recording breaks off"));
+
+    overwrite(path, 0.1);
+    keep_messages();
+    assert_int_equal(run(path, &why), WB_ERR_DATA);
+    assert_string_equal(kept.error, "");
+    const char *const lost = strstr(why.text, "table chunk breaks off");
+    assert_non_null(lost);
+    const char *const failed = strstr(lost, "; ");
+    assert_non_null(failed);
+    assert_int_equal(run(path, NULL), WB_ERR_DATA);
+    assert_string_equal(failed + 2, kept.error);
+}
+
+static void wrong_bytes_never_crash_it(void **state)
+{
+    (void)state;
+    static const double parts[] = {0.003, 0.05, 0.5, 1.0};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        char path[WB_PATH];
+        syn_default(&syn);
+        syn.corrupt = parts[i];
+        syn.travel = 8e-3;
+        record(path);
+        const enum wb_status status = run(path, NULL);
+        assert_true(status == WB_OK || status == WB_ERR_DATA);
+        /* A few wrong bytes are what a bad cable does; the test is still worth something. */
+        if (i == 0)
+            assert_int_equal(status, WB_OK);
+    }
+}
+
+static void the_same_recording_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"dataset.json", "force_deflection.csv", "shape.csv"};
+    char path[WB_PATH], outputs[2][WB_PATH];
+    record(path);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(run(path, NULL), WB_OK);
+        snprintf(outputs[i], WB_PATH, "%.200s/output-%d", folder, i);
+        assert_int_equal(wb_dataset_write(&dataset, outputs[i], false), WB_OK);
+    }
+    for (size_t k = 0; k < 3; k++) {
+        char *bytes[2], name[2][WB_PATH];
+        size_t size[2];
+        for (int i = 0; i < 2; i++) {
+            assert_int_equal(wb_file_join(name[i], outputs[i], files[k]), WB_OK);
+            assert_int_equal(wb_file_read(name[i], &bytes[i], &size[i]), WB_OK);
+        }
+        assert_int_equal(size[0], size[1]);
+        assert_memory_equal(bytes[0], bytes[1], size[0]);
+        assert_null(strstr(bytes[0], folder));
+        free(bytes[0]);
+        free(bytes[1]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(a_test_comes_back_as_it_was),
+        TEST(bows_are_found_within_what_is_stated),
+        TEST(an_elastic_loop_is_closed),
+        TEST(drift_between_zero_loads_is_taken_off),
+        TEST(a_tare_with_the_counterweight_gives_the_same_tension),
+        TEST(drift_that_cannot_be_seen_is_bounded),
+        TEST(cycles_and_phases_come_from_the_clamp),
+        TEST(slack_rows_are_those_without_tension),
+        TEST(lost_steps_are_flagged_and_do_no_harm),
+        TEST(occlusions_strays_and_new_ids_leave_gaps_only),
+        TEST(rows_beside_a_loss_of_the_clamp_are_right),
+        TEST(a_silent_load_cell_leaves_a_gap),
+        TEST(servers_without_echo_and_restarted_ones_serve),
+        TEST(the_clock_is_mapped_by_the_probes),
+        TEST(a_scaled_bench_keeps_its_own_time),
+        TEST(cameras_may_stand_anyhow),
+        TEST(a_busy_host_does_no_harm),
+        TEST(polled_readings_keep_their_arrival),
+        TEST(what_cannot_serve_is_refused_with_the_reason),
+        TEST(what_is_lost_is_told_with_the_reason),
+        TEST(wrong_bytes_never_crash_it),
+        TEST(the_same_recording_gives_the_same_bytes),
+    };
+    return cmocka_run_group_tests(tests, start, remove_folder);
+}

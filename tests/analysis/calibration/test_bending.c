@@ -1,0 +1,174 @@
+/* What a law says of a wire under pure bending, against closed forms of the circle. */
+#include "analysis/calibration/bending.h"
+#include "tests/check.h"
+
+#define DIAMETER 1.25e-3
+
+static const double largest = 30.0; /* 1/m */
+
+/* Moment of an elastic, perfectly plastic part over the circle: elastic within y = c. */
+static double part_moment(double modulus, double yield_strain, double kappa)
+{
+    const double R = 0.5 * DIAMETER;
+    const double u = fmin(1.0, yield_strain / (kappa * R));
+    const double core =
+        R * R * R * R / 8.0 * (asin(u) - u * sqrt(1.0 - u * u) * (1.0 - 2.0 * u * u));
+    const double rim = R * R * R / 3.0 * pow(1.0 - u * u, 1.5);
+    return 4.0 * modulus * (kappa * core + (u < 1.0 ? yield_strain * rim : 0.0));
+}
+
+static double second_moment(void)
+{
+    return M_PI * pow(DIAMETER, 4.0) / 64.0;
+}
+
+static struct wb_law bilinear(double modulus, double yield_strain, double rest)
+{
+    const struct wb_law_part parts[] = {{modulus, yield_strain}, {rest, (double)INFINITY}};
+    struct wb_law law;
+    wb_law_init_parallel(&law, parts, rest > 0.0 ? 2 : 1, 0.0, 0.39);
+    return law;
+}
+
+static double bilinear_moment(const struct wb_law *law, double kappa)
+{
+    double M = part_moment(law->parts[0].modulus, law->parts[0].yield_strain, kappa);
+    if (law->n_parts > 1)
+        M += law->parts[1].modulus * second_moment() * kappa;
+    return M;
+}
+
+static void a_perfectly_plastic_circle_springs_back_as_the_closed_form_says(void **unused)
+{
+    (void)unused;
+    const struct wb_law law = bilinear(5e9, 2e-3, 0.0);
+    struct wb_bending bending;
+    assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
+    const double EI = 5e9 * second_moment();
+    assert_close_relative(bending.flexural_rigidity, EI, 1e-9);
+    /* It is let go elastically: at most twice the yield moment is taken off. */
+    const double expected = 1.0 - bilinear_moment(&law, largest) / (EI * largest);
+    assert_true(expected > 0.5);
+    assert_close(bending.springback, expected, 2e-4);
+}
+
+static void an_elastic_circle_keeps_nothing(void **unused)
+{
+    (void)unused;
+    const struct wb_law law = bilinear(1e9, 0.5, 2e9);
+    struct wb_bending bending;
+    assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
+    assert_close(bending.springback, 0.0, 1e-12);
+    assert_close(bending.loop_energy, 0.0, 1e-12 * 3e9 * second_moment() * largest * largest);
+}
+
+/* Masing: the way back is the first loading at twice the size from the turn on. */
+static void a_hardening_circle_springs_back_by_masings_rule(void **unused)
+{
+    (void)unused;
+    const struct wb_law law = bilinear(4e9, 1e-3, 1e9);
+    struct wb_bending bending;
+    assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
+    const double M = bilinear_moment(&law, largest);
+    double low = 0.0, high = largest;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        if (M - 2.0 * bilinear_moment(&law, 0.5 * (largest - middle)) > 0.0)
+            high = middle;
+        else
+            low = middle;
+    }
+    assert_true(low / largest > 0.1);
+    assert_close(bending.springback, low / largest, 3e-4);
+}
+
+/* The loop between both branches, by integrals of the closed form of a first loading. */
+static void the_loops_energy_is_the_integral_between_its_branches(void **unused)
+{
+    (void)unused;
+    enum {
+        STEPS = 20000
+    };
+    const struct wb_law law = bilinear(4e9, 1e-3, 1e9);
+    const double half = 0.5 * largest;
+    struct wb_bending bending;
+    double under = 0.0;
+    assert_int_equal(wb_bending_describe(&law, DIAMETER, largest, &bending), WB_OK);
+    for (int i = 0; i < STEPS; i++)
+        under += bilinear_moment(&law, (i + 0.5) * half / STEPS) * half / STEPS;
+    const double expected = 8.0 * under - 2.0 * largest * bilinear_moment(&law, half);
+    assert_true(expected > 0.1 * under);
+    assert_close_relative(bending.loop_energy, expected, 1e-3);
+}
+
+static void moments_are_those_of_a_first_loading_each(void **unused)
+{
+    (void)unused;
+    const struct wb_law law = bilinear(4e9, 1e-3, 1e9);
+    const double curvature[] = {30.0, 0.0, 3.0, 10.0};
+    double moment[4];
+    assert_int_equal(wb_bending_moments(&law, DIAMETER, 4, curvature, moment), WB_OK);
+    assert_close(moment[1], 0.0, 1e-15);
+    for (int i = 0; i < 4; i++) {
+        if (i != 1)
+            assert_close_relative(moment[i], bilinear_moment(&law, curvature[i]), 2e-4);
+    }
+}
+
+static void the_equivalent_of_ludwiks_law_is_itself(void **unused)
+{
+    (void)unused;
+    static const struct wb_material materials[] = {
+        {WB_HARDENING_ISOTROPIC_POWER, 5641e6, 0.39, 4.95e6, 850e6, 0.78},
+        {WB_HARDENING_ISOTROPIC_POWER, 4528e6, 0.39, 4.52e6, 1327e6, 0.90},
+        {WB_HARDENING_ISOTROPIC_POWER, 9000e6, 0.30, 12e6, 200e6, 0.40},
+    };
+    for (int i = 0; i < 3; i++) {
+        const struct wb_material *const given = &materials[i];
+        struct wb_material found;
+        struct wb_law law;
+        double misfit;
+        wb_law_init_ludwik(&law, given);
+        assert_int_equal(wb_bending_ludwik(&law, DIAMETER, largest, &found, &misfit), WB_OK);
+        assert_true(misfit < 1e-6);
+        assert_close_relative(found.youngs_modulus, given->youngs_modulus, 1e-4);
+        assert_close_relative(found.yield_stress, given->yield_stress, 1e-3);
+        assert_close_relative(found.strength_coefficient, given->strength_coefficient, 1e-3);
+        assert_close(found.hardening_exponent, given->hardening_exponent, 1e-4);
+    }
+}
+
+/* Another form bends alike on a first loading, not exactly. */
+static void the_equivalent_of_parallel_parts_bends_like_them(void **unused)
+{
+    (void)unused;
+    static const struct wb_law_part parts[] = {
+        {2.5e9, 2e-4}, {1.5e9, 8e-4}, {0.8e9, 3e-3}, {0.5e9, 9e-3}, {0.3e9, (double)INFINITY}};
+    struct wb_law law, ludwik;
+    struct wb_material found;
+    double misfit, M[2], other[2];
+    const double curvature[] = {3.0, 25.0};
+    wb_law_init_parallel(&law, parts, 5, 0.3, 0.39);
+    assert_int_equal(wb_bending_ludwik(&law, DIAMETER, largest, &found, &misfit), WB_OK);
+    assert_true(misfit > 1e-4 && misfit < 0.03);
+    assert_close(found.poissons_ratio, 0.39, 0.0);
+    wb_law_init_ludwik(&ludwik, &found);
+    assert_int_equal(wb_bending_moments(&law, DIAMETER, 2, curvature, M), WB_OK);
+    assert_int_equal(wb_bending_moments(&ludwik, DIAMETER, 2, curvature, other), WB_OK);
+    for (int i = 0; i < 2; i++)
+        assert_close_relative(other[i], M[i], 3.0 * misfit);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_perfectly_plastic_circle_springs_back_as_the_closed_form_says),
+        cmocka_unit_test(an_elastic_circle_keeps_nothing),
+        cmocka_unit_test(a_hardening_circle_springs_back_by_masings_rule),
+        cmocka_unit_test(the_loops_energy_is_the_integral_between_its_branches),
+        cmocka_unit_test(moments_are_those_of_a_first_loading_each),
+        cmocka_unit_test(the_equivalent_of_ludwiks_law_is_itself),
+        cmocka_unit_test(the_equivalent_of_parallel_parts_bends_like_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

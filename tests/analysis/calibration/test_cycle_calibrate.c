@@ -1,0 +1,244 @@
+/* Calibration of one wire on whole cycles of specimens of the virtual rig. */
+#include <stdlib.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "analysis/calibration/cycle_calibrate.h"
+#include "base/units.h"
+#include "tests/analysis/fast_rig.h"
+#include "tests/check.h"
+
+enum {
+    SPECIMENS = 3
+};
+
+static struct wb_dataset datasets[SPECIMENS];
+static const struct wb_dataset *list[SPECIMENS];
+static struct wb_cycle_calibration all; /* of all three */
+
+static enum wb_status calibrate(struct wb_cycle_calibration *c, int n, double pooled, int degrees,
+                                struct wb_reason *why)
+{
+    struct wb_cycle_calibrate_settings settings;
+    wb_cycle_calibrate_default_settings(&settings);
+    settings.pooled_deviation = pooled;
+    settings.pooled_degrees = degrees;
+    return wb_cycle_calibrate_run(c, list, n, &settings, why);
+}
+
+static int start(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < SPECIMENS; i++) {
+        struct fast_rig fast;
+        fast_rig_init(&fast, 2, 85.0 * WB_MM, 300 + (uint64_t)i);
+        if (fast_rig_run(&fast, &datasets[i]) != WB_OK)
+            return -1;
+        datasets[i].info.sample = i + 1;
+        list[i] = &datasets[i];
+    }
+    return calibrate(&all, SPECIMENS, 0.0, 0, NULL) == WB_OK ? 0 : -1;
+}
+
+static int finish(void **unused)
+{
+    (void)unused;
+    wb_cycle_calibrate_release(&all);
+    for (int i = 0; i < SPECIMENS; i++)
+        wb_dataset_release(&datasets[i]);
+    return 0;
+}
+
+static void the_same_data_twice_are_refused(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    struct wb_reason why = {.text = ""};
+    list[2] = &datasets[0];
+    assert_int_equal(calibrate(&c, SPECIMENS, 0.0, 0, &why), WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "1 and 3"));
+    assert_non_null(strstr(why.text, "twice"));
+    list[2] = &datasets[2];
+}
+
+static void another_wire_is_refused(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    struct wb_reason why = {.text = ""};
+    const double diameter = datasets[1].info.outer_diameter;
+    datasets[1].info.outer_diameter = 1.1 * diameter;
+    assert_int_equal(calibrate(&c, SPECIMENS, 0.0, 0, &why), WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "expected one wire"));
+    datasets[1].info.outer_diameter = diameter;
+    datasets[1].info.wire[0] = 'x';
+    why.text[0] = '\0';
+    assert_int_equal(calibrate(&c, SPECIMENS, 0.0, 0, &why), WB_ERR_DATA);
+    assert_non_null(strstr(why.text, "expected one wire"));
+    datasets[1].info.wire[0] = datasets[0].info.wire[0];
+}
+
+static double rigidity_of(int member)
+{
+    return all.members[member].answers[all.chosen].bending.flexural_rigidity;
+}
+
+static double ln_deviation(double *mean)
+{
+    double squares = 0.0;
+    *mean = 0.0;
+    for (int i = 0; i < SPECIMENS; i++)
+        *mean += log(rigidity_of(i)) / SPECIMENS;
+    for (int i = 0; i < SPECIMENS; i++)
+        squares += pow(log(rigidity_of(i)) - *mean, 2.0);
+    return sqrt(squares / (SPECIMENS - 1));
+}
+
+static void the_interval_is_students_of_the_logarithms(void **unused)
+{
+    (void)unused;
+    double mean;
+    const double s = ln_deviation(&mean), half = 4.302653 * s / sqrt(3.0); /* t of 2, 97.5 % */
+    assert_close_relative(all.rigidity.value, exp(mean), 1e-9);
+    assert_close_relative(all.rigidity.deviation, s, 1e-6);
+    assert_close_relative(all.rigidity.low, exp(mean - half), 1e-6);
+    assert_close_relative(all.rigidity.high, exp(mean + half), 1e-6);
+    assert_true(all.specimens_for_5_percent >= 2);
+    const int n = all.specimens_for_5_percent;
+    assert_true(gsl_cdf_tdist_Qinv(0.025, n - 1) * s / sqrt(n) <= log(1.05));
+    assert_true(n == 2 || gsl_cdf_tdist_Qinv(0.025, n - 2) * s / sqrt(n - 1) > log(1.05));
+}
+
+static void a_pooled_deviation_takes_the_place_of_the_own(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    double mean;
+    (void)ln_deviation(&mean);
+    assert_int_equal(calibrate(&c, SPECIMENS, 0.04, 12, NULL), WB_OK);
+    const double half = 2.178813 * 0.04 / sqrt(3.0); /* t of 12 */
+    assert_close_relative(c.rigidity.low, exp(mean - half), 1e-6);
+    assert_close_relative(c.rigidity.high, exp(mean + half), 1e-6);
+    assert_close(c.rigidity.deviation, 0.04, 1e-12);
+    wb_cycle_calibrate_release(&c);
+}
+
+static void one_specimen_has_a_range_and_no_interval(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    assert_int_equal(calibrate(&c, 1, 0.0, 0, NULL), WB_OK);
+    assert_true(isfinite(c.rigidity.value));
+    assert_true(isnan(c.rigidity.low) && isnan(c.rigidity.high) && isnan(c.rigidity.deviation));
+    assert_true(c.rigidity.candidates_low < c.rigidity.value);
+    assert_true(c.rigidity.candidates_high > c.rigidity.value);
+    assert_int_equal(c.specimens_for_5_percent, 0);
+    wb_cycle_calibrate_release(&c);
+}
+
+static void the_ranking_is_by_misfit_and_the_choice_by_the_f_test(void **unused)
+{
+    (void)unused;
+    const struct wb_cycle_rank *chosen = NULL, *simplest = NULL;
+    assert_int_equal(all.n_ranked, WB_CANDIDATES);
+    for (int i = 0; i < all.n_ranked; i++) {
+        const struct wb_cycle_rank *const rank = &all.ranked[i];
+        double sum = 0.0;
+        int n = 0;
+        for (int k = 0; k < SPECIMENS; k++) {
+            const struct wb_cycle_member *const member = &all.members[k];
+            const double misfit = member->answers[rank->candidate].fit.misfit;
+            sum += member->data.n_points * misfit * misfit;
+            n += member->data.n_points;
+        }
+        assert_close_relative(rank->misfit, sqrt(sum / n), 1e-9);
+        assert_true(i == 0 || rank->misfit >= all.ranked[i - 1].misfit);
+        assert_int_equal(rank->counts, rank->misfit <= 2.0 * all.ranked[0].misfit);
+        assert_int_equal(rank->is_rejected, rank->f_ratio > rank->f_limit);
+        if (rank->candidate == all.chosen)
+            chosen = rank;
+        if (!rank->is_rejected && (!simplest || rank->candidate < simplest->candidate))
+            simplest = rank;
+    }
+    assert_non_null(chosen);
+    if (simplest)
+        assert_int_equal(all.chosen, simplest->candidate);
+    /* The rig's wire moves its yield surface: what grows it is far off. */
+    assert_int_equal(all.chosen, WB_CANDIDATE_PARALLEL_KINEMATIC);
+    assert_int_equal(all.ranked[WB_CANDIDATES - 1].candidate, WB_CANDIDATE_LUDWIK_ISOTROPIC);
+    assert_true(all.is_supported && all.has_unloading);
+}
+
+static void the_range_holds_the_candidates_that_count(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < all.n_ranked; i++) {
+        const struct wb_cycle_rank *const rank = &all.ranked[i];
+        if (!rank->counts)
+            continue;
+        assert_true(all.rigidity.candidates_low < rank->rigidity.value);
+        assert_true(all.rigidity.candidates_high > rank->rigidity.value);
+        assert_true(all.springback.candidates_low < rank->springback.value);
+        assert_true(all.springback.candidates_high > rank->springback.value);
+    }
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
+        assert_true(all.moment[k].candidates_low < all.moment[k].value);
+        assert_true(all.moment[k].candidates_high > all.moment[k].value);
+        assert_close_relative(all.curvature[k], wb_cycle_moment_parts[k] * all.largest_curvature,
+                              1e-12);
+    }
+}
+
+/* Without the way back there is no rule to tell. */
+static void a_wire_without_a_way_back_is_ludwiks_and_not_supported(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    const size_t n_rows = datasets[0].n_rows;
+    size_t loading = 0;
+    while (loading < n_rows && datasets[0].rows[loading].phase != WB_PHASE_UNLOAD)
+        loading++;
+    datasets[0].n_rows = loading;
+    assert_int_equal(calibrate(&c, 1, 0.0, 0, NULL), WB_OK);
+    assert_false(c.has_unloading);
+    assert_false(c.is_supported);
+    assert_int_equal(c.chosen, WB_CANDIDATE_LUDWIK_ISOTROPIC);
+    assert_int_equal(c.n_ranked, 1);
+    wb_cycle_calibrate_release(&c);
+    datasets[0].n_rows = n_rows;
+}
+
+static void what_is_said_is_near_the_truth(void **unused)
+{
+    (void)unused;
+    struct fast_rig fast;
+    double rigidity, sum = 0.0, moment[WB_CYCLE_MOMENTS], sums[WB_CYCLE_MOMENTS] = {0.0};
+    for (int i = 0; i < SPECIMENS; i++) {
+        fast_rig_init(&fast, 2, 85.0 * WB_MM, 300 + (uint64_t)i);
+        fast_rig_truth(&fast, WB_CYCLE_MOMENTS, all.curvature, moment, &rigidity, NULL);
+        sum += log(rigidity) / SPECIMENS;
+        for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+            sums[k] += log(moment[k]) / SPECIMENS;
+    }
+    assert_close_relative(all.rigidity.value, exp(sum), 0.08);
+    for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
+        assert_close_relative(all.moment[k].value, exp(sums[k]), 0.02);
+    assert_true(all.ludwik_misfit < 0.1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_same_data_twice_are_refused),
+        cmocka_unit_test(another_wire_is_refused),
+        cmocka_unit_test(the_interval_is_students_of_the_logarithms),
+        cmocka_unit_test(a_pooled_deviation_takes_the_place_of_the_own),
+        cmocka_unit_test(one_specimen_has_a_range_and_no_interval),
+        cmocka_unit_test(the_ranking_is_by_misfit_and_the_choice_by_the_f_test),
+        cmocka_unit_test(the_range_holds_the_candidates_that_count),
+        cmocka_unit_test(a_wire_without_a_way_back_is_ludwiks_and_not_supported),
+        cmocka_unit_test(what_is_said_is_near_the_truth),
+    };
+    wb_log_set_sink(discard_message, NULL);
+    return cmocka_run_group_tests(tests, start, finish);
+}

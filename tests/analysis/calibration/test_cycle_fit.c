@@ -1,0 +1,360 @@
+/* A law fitted to a cycle that a beam of a known law computed: no noise, the same mesh. */
+#include <stdlib.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "analysis/calibration/cycle_fit.h"
+#include "analysis/calibration/cycle_model.h"
+#include "base/units.h"
+#include "tests/check.h"
+
+enum {
+    ELEMENTS = 12,
+    FIBRES = 20,
+    MOST_POINTS = 128
+};
+
+static const double top = 53.0 * WB_MM;
+
+struct specimen {
+    struct wb_cycle_point points[MOST_POINTS];
+    struct wb_cycle_data data;
+};
+
+static struct wb_test_info test_info(void)
+{
+    struct wb_test_info info = {
+        .sample = 1,
+        .length = 85.0 * WB_MM,
+        .outer_diameter = 1.25 * WB_MM,
+        .mass_per_length = 5e-3,
+        .poissons_ratio = 0.39,
+        .strand_length = 760.0 * WB_MM,
+        .counterweight = 2.7 * WB_G,
+        .gravity = WB_STANDARD_GRAVITY,
+        .rest_level = (double)NAN,
+    };
+    snprintf(info.wire, sizeof info.wire, "computed");
+    return info;
+}
+
+static void add(struct specimen *s, double deflection, bool unloading)
+{
+    s->points[s->data.n_points++] = (struct wb_cycle_point){
+        .deflection = deflection, .is_unloading = unloading, .n_rows = 20, .deviation = 1e-5};
+}
+
+/* The cycle of a wire of this law and natural angle of the tip. */
+static void compute(struct specimen *s, const struct wb_law *law, double bow_angle)
+{
+    const struct wb_cycle_model_settings mesh = {ELEMENTS, FIBRES};
+    const struct wb_cycle_specimen specimen = {bow_angle, 0.0};
+    double tension[MOST_POINTS];
+    struct wb_cycle_model *model;
+    struct wb_cycle_run run;
+
+    *s = (struct specimen){.data = {.info = test_info(), .top = top}};
+    s->data.points = s->points;
+    for (double d = 0.5 * WB_MM; d < top; d += (d < 4.0 * WB_MM ? 0.5 : 1.0) * WB_MM)
+        add(s, d, false);
+    s->data.n_loading = s->data.n_points;
+    for (double d = top - 1.0 * WB_MM; d > 20.0 * WB_MM; d -= 1.0 * WB_MM)
+        add(s, d, true);
+    assert_int_equal(wb_cycle_model_create(&model, &s->data, law, &mesh), WB_OK);
+    assert_int_equal(wb_cycle_model_run(model, law, &specimen, tension, NULL, &run), WB_OK);
+    assert_true(run.reached);
+    wb_cycle_model_destroy(model);
+    int kept = 0;
+    for (int i = 0; i < s->data.n_points && tension[i] > 2.5e-3; i++, kept++) {
+        s->points[i].tension = tension[i];
+        s->data.max_force = fmax(s->data.max_force, tension[i] - tension[0]);
+    }
+    s->data.n_points = kept;
+    assert_true(kept > s->data.n_loading + 8);
+}
+
+static void default_settings(struct wb_cycle_fit_settings *settings)
+{
+    wb_cycle_fit_default_settings(settings);
+    settings->n_elements = settings->n_final_elements = ELEMENTS;
+    settings->n_fibres = FIBRES;
+}
+
+/* Grid of parallel parts that span this test. */
+static struct wb_cycle_grid test_grid(void)
+{
+    return (struct wb_cycle_grid){1.3e-4, 1.8e-2};
+}
+
+static struct wb_law ludwik(double isotropic_share, double exponent)
+{
+    const struct wb_material m = {
+        WB_HARDENING_ISOTROPIC_POWER, 5641e6, 0.39, 4.95e6, 850e6, exponent};
+    struct wb_law law;
+    wb_law_init_ludwik(&law, &m);
+    law.isotropic_share = isotropic_share;
+    return law;
+}
+
+static struct wb_law parallel(double isotropic_share)
+{
+    static const double moduli[WB_FIT_PARTS] = {0.9e9, 1.4e9, 1.5e9, 0.9e9, 0.4e9, 0.15e9, 0.3e9};
+    const struct wb_cycle_grid grid = test_grid();
+    struct wb_law_part parts[WB_FIT_PARTS];
+    struct wb_law law;
+    for (int i = 0; i < WB_FIT_PARTS; i++)
+        parts[i] = (struct wb_law_part){
+            moduli[i], i == WB_FIT_PARTS - 1
+                           ? (double)INFINITY
+                           : grid.first_strain * pow(grid.last_strain / grid.first_strain,
+                                                     (double)i / (WB_FIT_PARTS - 1))};
+    wb_law_init_parallel(&law, parts, WB_FIT_PARTS, isotropic_share, 0.39);
+    return law;
+}
+
+/* A start a factor off in all of Ludwik's numbers. */
+static struct wb_law start_off(double factor)
+{
+    struct wb_law law = ludwik(1.0, 0.7);
+    law.material.youngs_modulus *= factor;
+    law.material.yield_stress *= factor;
+    law.material.strength_coefficient *= factor;
+    return law;
+}
+
+static void fit(struct wb_cycle_fit *found, const struct specimen *s, enum wb_candidate candidate,
+                double factor, const struct wb_cycle_fit_settings *settings)
+{
+    const struct wb_cycle_grid grid = test_grid();
+    const struct wb_law start = start_off(factor);
+    assert_int_equal(wb_cycle_fit_run(found, &s->data, candidate, &start, &grid, settings, NULL),
+                     WB_OK);
+    assert_true(found->is_converged);
+}
+
+static void ludwiks_law_is_found_again(void **unused)
+{
+    (void)unused;
+    static const struct {
+        enum wb_candidate candidate;
+        double share, exponent;
+    } cases[] = {
+        {WB_CANDIDATE_LUDWIK_ISOTROPIC, 1.0, 0.78},
+        {WB_CANDIDATE_LUDWIK_KINEMATIC, 0.0, 0.78},
+        {WB_CANDIDATE_LUDWIK_MIXED, 0.3, 0.78},
+        {WB_CANDIDATE_LUDWIK_MIXED, 0.7, 0.60},
+    };
+    struct wb_cycle_fit_settings settings;
+    default_settings(&settings);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct specimen s;
+        struct wb_cycle_fit found;
+        const struct wb_law law = ludwik(cases[i].share, cases[i].exponent);
+        compute(&s, &law, 0.03);
+        fit(&found, &s, cases[i].candidate, 1.2, &settings);
+        const struct wb_material *const m = &found.law.material;
+        assert_true(found.misfit < 2e-5);
+        assert_close_relative(m->youngs_modulus, 5641e6, 1e-3);
+        assert_close_relative(m->yield_stress, 4.95e6, 3e-3);
+        assert_close_relative(m->strength_coefficient, 850e6, 1e-2);
+        assert_close(m->hardening_exponent, cases[i].exponent, 2e-3);
+        assert_close(found.law.isotropic_share, cases[i].share, 1e-3);
+        assert_close(found.bow_angle, 0.03, 5e-5);
+        assert_close(found.level, 0.0, 0.005 * WB_MM);
+        assert_false(found.is_at_bound);
+        assert_int_equal(found.n_outliers, 0);
+        wb_cycle_fit_release(&found);
+    }
+}
+
+static void parallel_parts_are_found_again(void **unused)
+{
+    (void)unused;
+    static const double shares[] = {0.0, 0.3, 0.7};
+    struct wb_cycle_fit_settings settings;
+    default_settings(&settings);
+    settings.modulus_prior = 50.0; /* the moduli given here are not smooth */
+    for (int i = 0; i < 3; i++) {
+        const enum wb_candidate candidate =
+            shares[i] > 0.0 ? WB_CANDIDATE_PARALLEL_MIXED : WB_CANDIDATE_PARALLEL_KINEMATIC;
+        struct specimen s;
+        struct wb_cycle_fit found;
+        const struct wb_law law = parallel(shares[i]);
+        compute(&s, &law, -0.02);
+        fit(&found, &s, candidate, 1.0, &settings);
+        assert_true(found.misfit < 1e-4);
+        assert_close(found.law.isotropic_share, shares[i], 3e-3);
+        assert_close_relative(found.law.material.youngs_modulus, law.material.youngs_modulus, 0.01);
+        for (int k = 1; k < WB_FIT_PARTS; k++)
+            assert_close(found.law.parts[k].modulus, law.parts[k].modulus,
+                         0.02 * law.material.youngs_modulus);
+        wb_cycle_fit_release(&found);
+    }
+}
+
+/* The larger start over the smaller is 1.65 squared. */
+static void starts_on_either_side_find_the_same_minimum(void **unused)
+{
+    (void)unused;
+    static const enum wb_candidate candidates[] = {WB_CANDIDATE_LUDWIK_KINEMATIC,
+                                                   WB_CANDIDATE_PARALLEL_KINEMATIC};
+    struct wb_cycle_fit_settings settings;
+    struct specimen s;
+    const struct wb_law law = parallel(0.0);
+    default_settings(&settings);
+    compute(&s, &law, 0.01);
+    for (int i = 0; i < 2; i++) {
+        struct wb_cycle_fit low, high;
+        fit(&low, &s, candidates[i], 1.0 / 1.65, &settings);
+        fit(&high, &s, candidates[i], 1.65, &settings);
+        assert_close(low.misfit, high.misfit, 2e-5);
+        assert_close_relative(low.law.material.youngs_modulus, high.law.material.youngs_modulus,
+                              0.01);
+        assert_close(low.bow_angle, high.bow_angle, 3e-4);
+        wb_cycle_fit_release(&low);
+        wb_cycle_fit_release(&high);
+    }
+}
+
+static void points_far_off_count_little_and_are_counted(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_fit_settings settings;
+    struct specimen s;
+    struct wb_cycle_fit found;
+    const struct wb_law law = ludwik(0.0, 0.78);
+    default_settings(&settings);
+    compute(&s, &law, 0.03);
+    s.points[20].tension += 0.05;
+    s.points[40].tension += 0.03;
+    s.points[s.data.n_loading + 5].tension -= 0.04;
+    fit(&found, &s, WB_CANDIDATE_LUDWIK_KINEMATIC, 1.0, &settings);
+    assert_int_equal(found.n_outliers, 3);
+    /* A point far off still pulls like one of 2.5 standard deviations. */
+    assert_close_relative(found.law.material.youngs_modulus, 5641e6, 0.08);
+    assert_close_relative(found.law.material.strength_coefficient, 850e6, 0.08);
+    assert_true(found.misfit > 0.01); /* which counts them */
+    wb_cycle_fit_release(&found);
+}
+
+static void the_level_of_zero_deflection_is_found(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_fit_settings settings;
+    struct specimen s;
+    struct wb_cycle_fit found;
+    const struct wb_law law = ludwik(0.0, 0.78);
+    default_settings(&settings);
+    settings.level_prior = 1.0 * WB_MM; /* of forces alone the usual one would win */
+    compute(&s, &law, 0.03);
+    for (int i = 0; i < s.data.n_points; i++)
+        s.points[i].deflection += 0.05 * WB_MM;
+    s.data.top += 0.05 * WB_MM;
+    fit(&found, &s, WB_CANDIDATE_LUDWIK_KINEMATIC, 1.0, &settings);
+    assert_close(found.level, 0.05 * WB_MM, 0.01 * WB_MM);
+    assert_close_relative(found.law.material.youngs_modulus, 5641e6, 0.005);
+    wb_cycle_fit_release(&found);
+}
+
+/* What the rule is worth: the other one misses the way back by far. */
+static void the_wrong_rule_shows_in_the_misfit(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_fit_settings settings;
+    struct specimen s;
+    struct wb_cycle_fit found;
+    const struct wb_law law = ludwik(1.0, 0.78);
+    const struct wb_law start = start_off(1.0);
+    default_settings(&settings);
+    compute(&s, &law, 0.0);
+    assert_int_equal(wb_cycle_fit_run(&found, &s.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL,
+                                      &settings, NULL),
+                     WB_OK);
+    assert_true(found.misfit > 0.01);
+    wb_cycle_fit_release(&found);
+
+    /* A fit that is to be given up there costs less. */
+    const int runs = found.runs;
+    settings.hopeless = 0.005;
+    assert_int_equal(wb_cycle_fit_run(&found, &s.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL,
+                                      &settings, NULL),
+                     WB_OK);
+    assert_true(found.runs < runs && !found.is_converged && found.misfit > 0.01);
+    wb_cycle_fit_release(&found);
+}
+
+/* A normal number of standard deviation 1, from uniform ones that repeat. */
+static double normal(uint64_t *state)
+{
+    double sum = -6.0;
+    for (int i = 0; i < 12; i++) {
+        *state = *state * 6364136223846793005u + 1442695040888963407u;
+        sum += (double)(*state >> 11) / 9007199254740992.0;
+    }
+    return sum;
+}
+
+/* Of many tests of one wire that differ by their noise alone. */
+static void correlations_are_those_of_repeated_tests(void **unused)
+{
+    (void)unused;
+    enum {
+        TESTS = 60
+    };
+    struct specimen exact, noisy;
+    struct wb_cycle_fit_settings settings;
+    const struct wb_law law = ludwik(0.0, 0.75);
+    const struct wb_cycle_grid grid = test_grid();
+    double x[TESTS], y[TESTS], mean_x = 0.0, mean_y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0,
+                               stated = 0.0, error = 0.0;
+    uint64_t state = 5;
+    char text[24];
+    default_settings(&settings);
+    compute(&exact, &law, 0.05);
+    for (int k = 0; k < TESTS; k++) {
+        struct wb_cycle_fit fit;
+        noisy = exact;
+        noisy.data.points = noisy.points;
+        for (int i = 0; i < noisy.data.n_points; i++)
+            noisy.points[i].tension += 1e-4 * normal(&state);
+        assert_int_equal(wb_cycle_fit_run(&fit, &noisy.data, WB_CANDIDATE_LUDWIK_KINEMATIC, &law,
+                                          &grid, &settings, NULL),
+                         WB_OK);
+        assert_int_equal(fit.n_numbers, 4);
+        assert_string_equal(wb_cycle_fit_number(&fit, 2, text), "K");
+        x[k] = log(fit.law.material.strength_coefficient);
+        y[k] = fit.law.material.hardening_exponent;
+        mean_x += x[k] / TESTS;
+        mean_y += y[k] / TESTS;
+        stated += fit.correlation[2][3] / TESTS;
+        error += fit.exponent_error / TESTS;
+        for (int i = 0; i < 4; i++)
+            assert_close(fit.correlation[i][i], 1.0, 1e-12);
+        wb_cycle_fit_release(&fit);
+    }
+    for (int k = 0; k < TESTS; k++) {
+        xx += (x[k] - mean_x) * (x[k] - mean_x);
+        xy += (x[k] - mean_x) * (y[k] - mean_y);
+        yy += (y[k] - mean_y) * (y[k] - mean_y);
+    }
+    print_message("    ln K and n: %.3f found, %.3f stated\n", xy / sqrt(xx * yy), stated);
+    const double found = sqrt(yy / (TESTS - 1));
+    print_message("    n: standard deviation %.5f found, %.5f stated\n", found, error);
+    assert_close(xy / sqrt(xx * yy), stated, 0.002);
+    assert_close_relative(found, error, 0.3);
+}
+
+int main(void)
+{
+    gsl_set_error_handler_off();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ludwiks_law_is_found_again),
+        cmocka_unit_test(parallel_parts_are_found_again),
+        cmocka_unit_test(starts_on_either_side_find_the_same_minimum),
+        cmocka_unit_test(points_far_off_count_little_and_are_counted),
+        cmocka_unit_test(the_level_of_zero_deflection_is_found),
+        cmocka_unit_test(the_wrong_rule_shows_in_the_misfit),
+        cmocka_unit_test(correlations_are_those_of_repeated_tests),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,185 @@
+#include "tests/analysis/beam_data.h"
+
+#include <unistd.h>
+
+#include "analysis/calibration/properties.h"
+#include "base/file.h"
+#include "tests/own_folder.h"
+
+static char path[WB_PATH];
+
+static int set_up(void **state)
+{
+    keep_messages();
+    if (make_folder(state) != 0)
+        return -1;
+    return wb_file_join(path, folder, "properties.yaml") == WB_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    unlink(path);
+    return rmdir(folder);
+}
+
+static struct wb_calibrate_result some_result(void)
+{
+    struct wb_calibrate_result result = {
+        .material = beam_material(1),
+        .info = beam_info(1, 0.085, 0.0),
+        .first_strength_coefficient = 1.2e9,
+        .first_hardening_exponent = 0.81,
+        .n_samples = 3,
+        .max_force = 0.1278,
+        .max_deflection = 0.053,
+        .deviation = {50e6, 0.06e6, 0.31, 0.011},
+        .end = WB_CALIBRATE_SIZE,
+        .restarted = true,
+        .restart_moved = 1e-4,
+        .evaluations = 120,
+        .rms = 2.1e-3,
+        .max_error = 6.3e-3,
+        .scatter_rms = 0.031,
+        .residual_scatter_rms = 0.018,
+    };
+    result.info.is_virtual = true;
+    result.info.is_simulation = false;
+    return result;
+}
+
+static void write_some(const struct wb_calibrate_result *result)
+{
+    struct wb_calibrate_settings settings;
+    const char *const names[] = {"data/type2 \"a\"", "data\\b"};
+    wb_calibrate_default_settings(&settings);
+    settings.yield_point = 0.04;
+    assert_int_equal(wb_properties_write(path, result, &settings, names, 2, true), WB_OK);
+}
+
+static void what_was_written_is_read(void **state)
+{
+    (void)state;
+    const struct wb_calibrate_result result = some_result();
+    struct wb_properties written, read;
+    write_some(&result);
+    wb_properties_from_result(&result, &written);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    assert_string_equal(read.wire, "type2");
+    const double tiny = 1e-14;
+    assert_close_relative(read.outer_diameter, written.outer_diameter, tiny);
+    assert_close_relative(read.mass_per_length, written.mass_per_length, tiny);
+    assert_close_relative(read.material.youngs_modulus, written.material.youngs_modulus, tiny);
+    assert_close_relative(read.material.yield_stress, written.material.yield_stress, tiny);
+    assert_close_relative(read.material.strength_coefficient, written.material.strength_coefficient,
+                          tiny);
+    assert_close_relative(read.material.hardening_exponent, written.material.hardening_exponent,
+                          tiny);
+    assert_close_relative(read.material.poissons_ratio, written.material.poissons_ratio, tiny);
+    assert_int_equal(read.material.hardening, WB_HARDENING_ISOTROPIC_POWER);
+    for (int k = 0; k < 4; k++)
+        assert_close_relative(read.deviation[k], written.deviation[k], tiny);
+    assert_close_relative(read.calibration_length, 0.085, tiny);
+    assert_close_relative(read.rms, 2.1e-3, tiny);
+    assert_close_relative(read.residual_scatter_rms, 0.018, tiny);
+    assert_int_equal(read.n_samples, 3);
+    assert_true(read.is_virtual);
+    assert_true(wb_law_is_plain(&read.law) && wb_law_is_plain(&written.law));
+    assert_close_relative(read.law.material.youngs_modulus, written.law.material.youngs_modulus,
+                          tiny);
+}
+
+static void the_file_says_virtual_rig_and_how_it_was_made(void **state)
+{
+    (void)state;
+    const struct wb_calibrate_result result = some_result();
+    char *text;
+    write_some(&result);
+    assert_int_equal(wb_file_read(path, &text, NULL), WB_OK);
+    assert_non_null(strstr(text, "virtual rig"));
+    assert_non_null(strstr(text, "virtual_rig: true"));
+    assert_non_null(strstr(text, "yield_point: 0.04\n"));
+    assert_non_null(strstr(text, "elastic_zone: 0.05\n"));
+    assert_non_null(strstr(text, "stopped: the simplex became small"));
+    assert_non_null(strstr(text, "data/type2 \\\"a\\\""));
+    free(text);
+}
+
+static void what_is_not_known_stays_unknown(void **state)
+{
+    (void)state;
+    struct wb_calibrate_result result = some_result();
+    struct wb_properties read;
+    for (int k = 0; k < 4; k++)
+        result.deviation[k] = (double)NAN;
+    result.n_samples = 1;
+    write_some(&result);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    for (int k = 0; k < 4; k++)
+        assert_true(isnan(read.deviation[k]));
+    assert_true(isnan(read.residual_scatter_rms));
+}
+
+static void a_file_by_hand_needs_the_properties_only(void **state)
+{
+    (void)state;
+    static const char text[] = "wire: mine\nouter_diameter_mm: 2\nmass_per_length_kg_m: 0.01\n"
+                               "youngs_modulus_MPa: 1000\nyield_stress_MPa: 2\n"
+                               "strength_coefficient_MPa: 500\nhardening_exponent: 0.5\n"
+                               "poissons_ratio: 0.4\n";
+    struct wb_properties read;
+    assert_int_equal(wb_file_write(path, text, sizeof text - 1), WB_OK);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    assert_close_relative(read.material.strength_coefficient, 500e6, 1e-15);
+    assert_true(isnan(read.rms) && isnan(read.calibration_length));
+    assert_false(read.is_virtual);
+    /* Its law is the paper's, and no more is known of it. */
+    assert_true(wb_law_is_plain(&read.law));
+    assert_close_relative(read.law.material.strength_coefficient, 500e6, 1e-15);
+    assert_true(isnan(read.largest_curvature) && isnan(read.rigidity.value));
+    assert_true(isnan(read.springback.candidates_low) && isnan(read.ludwik_misfit));
+    assert_int_equal(read.n_specimens, 0);
+    assert_int_equal(read.n_moments, 0);
+    assert_false(read.is_rule_tested || read.is_rule_supported);
+}
+
+static void an_existing_file_is_kept_without_force(void **state)
+{
+    (void)state;
+    const struct wb_calibrate_result result = some_result();
+    struct wb_calibrate_settings settings;
+    wb_calibrate_default_settings(&settings);
+    write_some(&result);
+    assert_int_equal(wb_properties_write(path, &result, &settings, NULL, 0, false), WB_ERR_EXISTS);
+    assert_message("--force");
+}
+
+static void errors_name_file_line_and_key(void **state)
+{
+    (void)state;
+    struct wb_properties read;
+    static const char unknown[] = "wire: mine\ncolour: red\n";
+    assert_int_equal(wb_file_write(path, unknown, sizeof unknown - 1), WB_OK);
+    assert_int_equal(wb_properties_read(path, &read), WB_ERR_FORMAT);
+    assert_message("properties.yaml:2");
+    assert_message("colour");
+    static const char negative[] = "wire: mine\nouter_diameter_mm: 2\nmass_per_length_kg_m: 0.01\n"
+                                   "youngs_modulus_MPa: -5\n";
+    assert_int_equal(wb_file_write(path, negative, sizeof negative - 1), WB_OK);
+    assert_int_equal(wb_properties_read(path, &read), WB_ERR_FORMAT);
+    assert_message("youngs_modulus_MPa");
+    assert_int_not_equal(wb_properties_read("/nonexistent/p.yaml", &read), WB_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_was_written_is_read),
+        cmocka_unit_test(the_file_says_virtual_rig_and_how_it_was_made),
+        cmocka_unit_test(what_is_not_known_stays_unknown),
+        cmocka_unit_test(a_file_by_hand_needs_the_properties_only),
+        cmocka_unit_test(an_existing_file_is_kept_without_force),
+        cmocka_unit_test(errors_name_file_line_and_key),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
