@@ -96,6 +96,8 @@ struct wb_recording_stream {
 int wb_recording_n_streams(const struct wb_recording *recording);
 const struct wb_recording_stream *wb_recording_stream_at(const struct wb_recording *recording,
                                                          int index);
+/* The settings text the stream was declared with; "" when none. */
+const char *wb_recording_stream_settings(const struct wb_recording *recording, int index);
 
 /* One read of a port, or one datagram. */
 struct wb_chunk {

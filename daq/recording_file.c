@@ -8,14 +8,12 @@
 #include <unistd.h>
 #include <zstd.h>
 
+#include "base/compress.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "daq/recording_private.h"
 
 #define WB_LOG_DOMAIN "recording"
-
-/* Stored once, read often: decompression is as fast at any level. */
-#define COMPRESSION_LEVEL 19
 
 bool wb_recording_is_zstd(const uint8_t *bytes, size_t n)
 {
@@ -221,24 +219,14 @@ enum wb_status wb_recording_compress(const char *path, const char *target)
         free(bytes);
         return wb_fail(WB_ERR_FORMAT, "'%s' is not a recording", path);
     }
-    size_t bound = ZSTD_compressBound(size);
-    void *packed = malloc(bound);
-    ZSTD_CCtx *context = ZSTD_createCCtx();
-    enum wb_status status = WB_OK;
-    if (!packed || !context) {
-        status = wb_fail(WB_ERR_MEMORY, "out of memory compressing '%s'", path);
-    } else {
-        ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, COMPRESSION_LEVEL);
-        ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
-        size_t n = ZSTD_compress2(context, packed, bound, bytes, size);
-        if (ZSTD_isError(n))
-            status =
-                wb_fail(WB_ERR_IO, "'%s' cannot be compressed: %s", path, ZSTD_getErrorName(n));
-        else
-            status = write_compressed(target, packed, n);
+    void *packed;
+    size_t packed_size;
+    enum wb_status status =
+        wb_compress(bytes, size, WB_COMPRESS_STORED, path, &packed, &packed_size, NULL);
+    if (status == WB_OK) {
+        status = write_compressed(target, packed, packed_size);
+        free(packed);
     }
-    ZSTD_freeCCtx(context);
-    free(packed);
     free(bytes);
     return status;
 }

@@ -72,7 +72,4 @@ WB_MUST_CHECK enum wb_status wb_recording_decompress(int from, int to, const cha
  * recording was not closed. */
 WB_MUST_CHECK enum wb_status wb_recording_compress(const char *path, const char *target);
 
-/* The settings text the stream was declared with; "" when none. */
-const char *wb_recording_stream_settings(const struct wb_recording *recording, int index);
-
 #endif

@@ -1,0 +1,781 @@
+#include "base/text_table.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/config.h"
+#include "base/number.h"
+
+#define WB_LOG_DOMAIN "table"
+
+enum {
+    MOST_COLUMNS = 256,
+    MOST_LINES = 50000000,
+    SAMPLE = 2000, /* lines that are looked at to find the delimiter */
+    NUMBER = 64    /* bytes of a number, at most */
+};
+
+/* --- encodings --- */
+
+const char *wb_text_encoding_name(enum wb_text_encoding encoding)
+{
+    static const char *const names[] = {"UTF-8", "UTF-16 little endian", "UTF-16 big endian",
+                                        "Latin-1"};
+    return names[encoding];
+}
+
+/* Text as it was found in a file. */
+struct decoded_text {
+    char *bytes; /* UTF-8 without byte order mark, NUL-terminated; owned, to be freed */
+    size_t size; /* without the NUL */
+    enum wb_text_encoding encoding;
+    bool byte_order_mark;
+    bool cut; /* the last bytes were no whole character, and are left out */
+};
+
+/* Length of the UTF-8 character at `at`, 0 where there is none; overlong forms, surrogates and what
+ * is beyond Unicode are none. */
+static size_t utf8_length(const uint8_t *at, size_t n)
+{
+    if (at[0] < 0x80)
+        return 1;
+    const size_t length = at[0] >= 0xc2 && at[0] <= 0xdf   ? 2
+                          : (at[0] & 0xf0) == 0xe0         ? 3
+                          : at[0] >= 0xf0 && at[0] <= 0xf4 ? 4
+                                                           : 0;
+    if (length == 0 || length > n)
+        return 0;
+    for (size_t i = 1; i < length; i++) {
+        if ((at[i] & 0xc0) != 0x80)
+            return 0;
+    }
+    if ((at[0] == 0xe0 && at[1] < 0xa0) || (at[0] == 0xed && at[1] > 0x9f) ||
+        (at[0] == 0xf0 && at[1] < 0x90) || (at[0] == 0xf4 && at[1] > 0x8f))
+        return 0;
+    return length;
+}
+
+static bool is_utf8(const uint8_t *bytes, size_t n)
+{
+    for (size_t i = 0; i < n;) {
+        const size_t length = utf8_length(bytes + i, n - i);
+        if (length == 0)
+            return false;
+        i += length;
+    }
+    return true;
+}
+
+/* Text in Latin letters as UTF-16 has a zero in every other byte. */
+static bool has_zeros_in(const uint8_t *bytes, size_t n, size_t odd)
+{
+    size_t zeros[2] = {0, 0};
+    const size_t looked_at = n < 8192 ? n : 8192;
+    for (size_t i = 0; i < looked_at; i++)
+        zeros[i & 1] += bytes[i] == 0;
+    return zeros[odd] * 10 > looked_at * 3 && zeros[1 - odd] * 20 < looked_at;
+}
+
+static size_t find_encoding(const uint8_t *bytes, size_t n, struct decoded_text *text)
+{
+    text->byte_order_mark = true;
+    if (n >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
+        text->encoding = is_utf8(bytes + 3, n - 3) ? WB_ENCODING_UTF8 : WB_ENCODING_LATIN1;
+        return 3;
+    }
+    if (n >= 2 && memcmp(bytes, "\xff\xfe", 2) == 0) {
+        text->encoding = WB_ENCODING_UTF16_LE;
+        return 2;
+    }
+    if (n >= 2 && memcmp(bytes, "\xfe\xff", 2) == 0) {
+        text->encoding = WB_ENCODING_UTF16_BE;
+        return 2;
+    }
+    text->byte_order_mark = false;
+    text->encoding = has_zeros_in(bytes, n, 1)   ? WB_ENCODING_UTF16_LE
+                     : has_zeros_in(bytes, n, 0) ? WB_ENCODING_UTF16_BE
+                     : is_utf8(bytes, n)         ? WB_ENCODING_UTF8
+                                                 : WB_ENCODING_LATIN1;
+    return 0;
+}
+
+static size_t put_utf8(char *to, uint32_t c)
+{
+    if (c < 0x80) {
+        to[0] = (char)c;
+        return 1;
+    }
+    if (c < 0x800) {
+        to[0] = (char)(0xc0 | c >> 6);
+        to[1] = (char)(0x80 | (c & 0x3f));
+        return 2;
+    }
+    if (c < 0x10000) {
+        to[0] = (char)(0xe0 | c >> 12);
+        to[1] = (char)(0x80 | (c >> 6 & 0x3f));
+        to[2] = (char)(0x80 | (c & 0x3f));
+        return 3;
+    }
+    to[0] = (char)(0xf0 | c >> 18);
+    to[1] = (char)(0x80 | (c >> 12 & 0x3f));
+    to[2] = (char)(0x80 | (c >> 6 & 0x3f));
+    to[3] = (char)(0x80 | (c & 0x3f));
+    return 4;
+}
+
+/* Line and character of the end of a text, from 1, for messages. */
+static void place_of(const char *text, size_t n, int *line, int *column)
+{
+    *line = *column = 1;
+    for (size_t i = 0; i < n; i++) {
+        if (text[i] == '\n' || (text[i] == '\r' && (i + 1 == n || text[i + 1] != '\n'))) {
+            ++*line;
+            *column = 1;
+        } else if (((uint8_t)text[i] & 0xc0) != 0x80) {
+            ++*column;
+        }
+    }
+}
+
+static enum wb_status refuse_character(const struct decoded_text *text, const char *name,
+                                       uint32_t c, const char *what, struct wb_reason *why)
+{
+    int line, column;
+    place_of(text->bytes, text->size, &line, &column);
+    return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: character %d (0x%02x) is %s: expected text in %s",
+                      name, line, column, (unsigned)c, what, wb_text_encoding_name(text->encoding));
+}
+
+static bool is_text(uint32_t c)
+{
+    return c >= 0x20 ? c != 0x7f : c == '\t' || c == '\n' || c == '\r';
+}
+
+static enum wb_status decode_utf16(const uint8_t *bytes, size_t n, const char *name,
+                                   struct decoded_text *text, struct wb_reason *why)
+{
+    const size_t low = text->encoding == WB_ENCODING_UTF16_LE ? 0 : 1;
+    for (size_t i = 0; i + 1 < n; i += 2) {
+        uint32_t c = (uint32_t)bytes[i + low] | (uint32_t)bytes[i + 1 - low] << 8;
+        if (c >= 0xd800 && c < 0xe000) {
+            const uint32_t next =
+                i + 3 < n ? (uint32_t)bytes[i + 2 + low] | (uint32_t)bytes[i + 3 - low] << 8 : 0;
+            if (c >= 0xdc00 || next < 0xdc00 || next >= 0xe000)
+                return refuse_character(text, name, c, "half of a pair", why);
+            c = 0x10000 + ((c & 0x3ff) << 10) + (next & 0x3ff);
+            i += 2;
+        }
+        if (!is_text(c))
+            return refuse_character(text, name, c, "no text", why);
+        text->size += put_utf8(text->bytes + text->size, c);
+    }
+    text->cut = n % 2 != 0;
+    return WB_OK;
+}
+
+static enum wb_status decode_bytes(const uint8_t *bytes, size_t n, const char *name,
+                                   struct decoded_text *text, struct wb_reason *why)
+{
+    for (size_t i = 0; i < n; i++) {
+        const bool latin1 = text->encoding == WB_ENCODING_LATIN1;
+        if (!is_text(bytes[i]) && !(bytes[i] == 0x1a && i + 1 == n)) /* the end mark of DOS */
+            return refuse_character(text, name, bytes[i], "no text", why);
+        if (bytes[i] == 0x1a)
+            continue;
+        if (latin1)
+            text->size += put_utf8(text->bytes + text->size, bytes[i]);
+        else
+            text->bytes[text->size++] = (char)bytes[i];
+    }
+    return WB_OK;
+}
+
+static enum wb_status decode(const void *bytes, size_t size, const char *name,
+                             struct decoded_text *text, struct wb_reason *why)
+{
+    struct decoded_text decoded = {NULL, 0, WB_ENCODING_UTF8, false, false};
+    if (size >= 4 &&
+        (memcmp(bytes, "\xff\xfe\0\0", 4) == 0 || memcmp(bytes, "\0\0\xfe\xff", 4) == 0))
+        return wb_fail_to(why, WB_ERR_UNSUPPORTED, "%s: UTF-32: save it as UTF-8 or UTF-16", name);
+    const size_t start = find_encoding(bytes, size, &decoded);
+    decoded.bytes = malloc(2 * size + 1);
+    if (!decoded.bytes)
+        return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory for %zu bytes", name, size);
+    const uint8_t *const from = (const uint8_t *)bytes + start;
+    const bool wide =
+        decoded.encoding == WB_ENCODING_UTF16_LE || decoded.encoding == WB_ENCODING_UTF16_BE;
+    const enum wb_status status = wide ? decode_utf16(from, size - start, name, &decoded, why)
+                                       : decode_bytes(from, size - start, name, &decoded, why);
+    if (status != WB_OK) {
+        free(decoded.bytes);
+        return status;
+    }
+    decoded.bytes[decoded.size] = '\0';
+    *text = decoded;
+    return WB_OK;
+}
+
+/* --- lines --- */
+
+struct line {
+    char *text; /* NUL-terminated */
+    int number;
+};
+
+struct lines {
+    struct line *items;
+    size_t n, room;
+};
+
+static bool add_line(struct lines *lines, char *text, int number)
+{
+    if (lines->n == lines->room) {
+        const size_t room = lines->room ? 2 * lines->room : 256;
+        struct line *const items = realloc(lines->items, room * sizeof *items);
+        if (!items)
+            return false;
+        lines->items = items;
+        lines->room = room;
+    }
+    lines->items[lines->n++] = (struct line){text, number};
+    return true;
+}
+
+/* Cuts the text in place. Carriage returns before a line feed belong to it. */
+static enum wb_status cut_lines(struct wb_text_table *table, size_t size, const char *name,
+                                struct lines *lines, struct wb_reason *why)
+{
+    char *at = table->text, *const end = at + size;
+    int number = 0;
+    while (at < end) {
+        char *stop = at;
+        while (stop < end && *stop != '\n' && *stop != '\r')
+            stop++;
+        char *next = stop;
+        while (next < end && *next == '\r')
+            next++;
+        if (next < end && *next == '\n')
+            next++;
+        else if (next > stop)
+            next = stop + 1;
+        table->ends_without_end = stop == end;
+        if (number == MOST_LINES)
+            return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d lines", name, MOST_LINES);
+        if (!add_line(lines, at, ++number))
+            return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory for its lines", name);
+        if (stop < end)
+            *stop = '\0';
+        at = next;
+    }
+    table->n_lines = number;
+    return WB_OK;
+}
+
+/* --- fields --- */
+
+struct field {
+    const char *text;
+    size_t n;
+    bool quoted;
+};
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+/* The bytes C2 A0: a blank that does not break lines. */
+static bool is_hard_blank(const char *at)
+{
+    return (uint8_t)at[0] == 0xc2 && (uint8_t)at[1] == 0xa0;
+}
+
+static void trim(struct field *field, char delimiter)
+{
+    for (;;) {
+        if (field->n > 0 && is_blank(*field->text) && *field->text != delimiter) {
+            field->text++;
+            field->n--;
+        } else if (field->n > 1 && is_hard_blank(field->text)) {
+            field->text += 2;
+            field->n -= 2;
+        } else {
+            break;
+        }
+    }
+    for (;;) {
+        if (field->n > 0 && is_blank(field->text[field->n - 1]))
+            field->n--;
+        else if (field->n > 1 && is_hard_blank(field->text + field->n - 2))
+            field->n -= 2;
+        else
+            break;
+    }
+}
+
+/* Takes the next field off a line, which `*rest` points into; `*rest` becomes NULL after the last.
+ * Blanks as delimiters count once where several stand together, and not at the ends of a line. */
+static bool next_field(const char **rest, char delimiter, struct field *field)
+{
+    const char *at = *rest;
+    if (!at)
+        return false;
+    if (delimiter == ' ') {
+        while (is_blank(*at))
+            at++;
+        if (*at == '\0')
+            return false;
+    }
+    const char *skipped = at;
+    while (is_blank(*skipped) && *skipped != delimiter)
+        skipped++;
+    if (*skipped == '"') {
+        const char *close = skipped + 1;
+        while (*close && !(close[0] == '"' && close[1] != '"'))
+            close += close[0] == '"' ? 2 : 1;
+        const char *after = close + (*close == '"');
+        while (is_blank(*after) && *after != delimiter)
+            after++;
+        if (*close == '"' && (*after == delimiter || *after == '\0' || delimiter == ' ')) {
+            *field = (struct field){skipped + 1, (size_t)(close - skipped - 1), true};
+            trim(field, '\0');
+            *rest = *after == '\0' ? NULL : delimiter == ' ' ? after : after + 1;
+            return true;
+        }
+    }
+    const char *stop = at;
+    while (*stop && *stop != delimiter && !(delimiter == ' ' && *stop == '\t'))
+        stop++;
+    *field = (struct field){at, (size_t)(stop - at), false};
+    trim(field, delimiter);
+    *rest = *stop ? stop + 1 : NULL;
+    return true;
+}
+
+static bool is_missing_word(const char *text, size_t n)
+{
+    static const char *const words[] = {"nan",  "-nan", "n/a", "na", "#n/a",
+                                        "null", "none", "-",   "--", "---"};
+    for (size_t i = 0; i < WB_COUNT(words); i++) {
+        if (strlen(words[i]) == n && strncasecmp(text, words[i], n) == 0)
+            return true;
+    }
+    return false;
+}
+
+static enum wb_text_field classify(const char *text, size_t n, char decimal, double *value)
+{
+    char number[NUMBER];
+    if (n == 0 || is_missing_word(text, n))
+        return WB_FIELD_EMPTY;
+    if (n >= sizeof number || memchr(text, decimal == ',' ? '.' : ',', n))
+        return WB_FIELD_TEXT;
+    memcpy(number, text, n);
+    number[n] = '\0';
+    char *const comma = decimal == ',' ? memchr(number, ',', n) : NULL;
+    if (comma)
+        *comma = '.';
+    return wb_number_parse(number, value) ? WB_FIELD_NUMBER : WB_FIELD_TEXT;
+}
+
+/* What a line holds when it is cut by a delimiter; numbers of either decimal sign count. Fields
+ * that are empty at its end do not. */
+struct content {
+    int fields, numbers, texts;
+};
+
+static struct content look(const char *line, char delimiter)
+{
+    struct content content = {0, 0, 0};
+    struct field field;
+    int n = 0;
+    while (next_field(&line, delimiter, &field)) {
+        double value;
+        enum wb_text_field kind = classify(field.text, field.n, '.', &value);
+        if (kind == WB_FIELD_TEXT && (delimiter != ',' || field.quoted))
+            kind = classify(field.text, field.n, ',', &value);
+        n++;
+        if (field.n == 0)
+            continue;
+        content.fields = n;
+        content.numbers += kind == WB_FIELD_NUMBER;
+        content.texts += kind == WB_FIELD_TEXT;
+    }
+    return content;
+}
+
+/* --- delimiter, columns, body --- */
+
+struct layout {
+    char delimiter;
+    int columns;     /* of most rows */
+    bool some_texts; /* rows have texts beside numbers */
+};
+
+static bool is_row(const struct content *content, bool some_texts)
+{
+    return some_texts ? content->numbers >= 2 : content->numbers >= 1 && content->texts == 0;
+}
+
+/* Most lines that are rows of one number of columns under this delimiter, and that number. */
+static size_t score(const struct lines *lines, char delimiter, bool some_texts, int *columns)
+{
+    size_t count[MOST_COLUMNS + 1] = {0};
+    const size_t stride = 1 + lines->n / SAMPLE;
+    *columns = 0;
+    for (size_t i = 0; i < lines->n; i += stride) {
+        const struct content content = look(lines->items[i].text, delimiter);
+        if (is_row(&content, some_texts) && content.fields <= MOST_COLUMNS)
+            count[content.fields]++;
+    }
+    for (int k = 1; k <= MOST_COLUMNS; k++) {
+        if (count[k] > count[*columns])
+            *columns = k;
+    }
+    return count[*columns];
+}
+
+/* Two columns are better than one, more rows than fewer. */
+static bool find_layout(const struct lines *lines, char given, bool some_texts,
+                        struct layout *layout)
+{
+    static const char candidates[] = {'\t', ';', '|', ',', ' '};
+    size_t best = 0;
+    for (size_t i = 0; i < sizeof candidates; i++) {
+        int columns;
+        if (given && candidates[i] != given)
+            continue;
+        const size_t rows = score(lines, candidates[i], some_texts, &columns);
+        const bool wider = best > 0 && layout->columns == 1 && columns > 1 && 2 * rows > best;
+        if (rows > 0 && (wider || rows > best) && !(best > 0 && columns == 1)) {
+            best = rows;
+            *layout = (struct layout){candidates[i], columns, some_texts};
+        }
+    }
+    return best > 0;
+}
+
+/* The first line of the rows: the next one with anything in it is a row, too, or there is none. */
+static size_t find_body(const struct lines *lines, const struct layout *layout)
+{
+    size_t candidate = lines->n;
+    for (size_t i = 0; i < lines->n; i++) {
+        const struct content content = look(lines->items[i].text, layout->delimiter);
+        if (content.fields == 0)
+            continue;
+        if (!is_row(&content, layout->some_texts)) {
+            candidate = lines->n;
+            continue;
+        }
+        if (candidate < lines->n)
+            return candidate;
+        candidate = i;
+    }
+    return candidate;
+}
+
+/* --- the decimal sign --- */
+
+/* 1,234 or 12,345,678: commas that may be those of thousands. 0,123 is not. */
+static bool may_be_thousands(const struct field *field)
+{
+    const char *at = field->text;
+    const char *const end = at + field->n;
+    if (at < end && (*at == '-' || *at == '+'))
+        at++;
+    const char *const comma = memchr(at, ',', (size_t)(end - at));
+    if (!comma || comma == at || comma - at > 3 || *at == '0')
+        return false;
+    for (; at < comma; at++) {
+        if (*at < '0' || *at > '9')
+            return false;
+    }
+    while (at < end && *at == ',') {
+        for (int i = 1; i <= 3; i++) {
+            if (at + i >= end || at[i] < '0' || at[i] > '9')
+                return false;
+        }
+        at += 4;
+    }
+    return at == end;
+}
+
+struct signs {
+    bool point, comma, sure_comma;
+    int comma_line, comma_column; /* of the first that has one */
+    char comma_text[NUMBER];
+};
+
+static void look_for_signs(const struct line *line, char delimiter, struct signs *signs)
+{
+    const char *rest = line->text;
+    struct field field;
+    for (int column = 1; next_field(&rest, delimiter, &field); column++) {
+        double value;
+        if (classify(field.text, field.n, '.', &value) == WB_FIELD_NUMBER) {
+            signs->point = signs->point || memchr(field.text, '.', field.n);
+        } else if (classify(field.text, field.n, ',', &value) == WB_FIELD_NUMBER ||
+                   may_be_thousands(&field)) {
+            if (!signs->comma) {
+                signs->comma_line = line->number;
+                signs->comma_column = column;
+                snprintf(signs->comma_text, sizeof signs->comma_text, "%.*s", (int)field.n,
+                         field.text);
+            }
+            signs->comma = true;
+            signs->sure_comma = signs->sure_comma || !may_be_thousands(&field);
+        }
+    }
+}
+
+static enum wb_status find_decimal(struct wb_text_table *table, const struct lines *lines,
+                                   size_t body, const char *name, struct wb_reason *why)
+{
+    struct signs signs = {false, false, false, 0, 0, ""};
+    for (size_t i = body; i < lines->n; i++)
+        look_for_signs(&lines->items[i], table->delimiter, &signs);
+    if (signs.comma && signs.point)
+        return wb_fail_to(
+            why, WB_ERR_FORMAT,
+            "%s:%d: column %d: '%s' has a comma where other numbers have a point: say "
+            "which is the decimal sign",
+            name, signs.comma_line, signs.comma_column, signs.comma_text);
+    if (signs.comma && !signs.sure_comma)
+        return wb_fail_to(why, WB_ERR_FORMAT,
+                          "%s:%d: column %d: the comma in '%s' may be that of a decimal or of "
+                          "thousands: say which is the decimal sign",
+                          name, signs.comma_line, signs.comma_column, signs.comma_text);
+    table->decimal = signs.comma ? ',' : '.';
+    return WB_OK;
+}
+
+/* --- the header --- */
+
+/* Words as short as units are, or in brackets, none of them a number. */
+static bool is_line_of_units(const char *line, char delimiter)
+{
+    struct field field;
+    bool any = false;
+    while (next_field(&line, delimiter, &field)) {
+        if (field.n == 0)
+            continue;
+        const bool bracketed = (*field.text == '(' && field.text[field.n - 1] == ')') ||
+                               (*field.text == '[' && field.text[field.n - 1] == ']');
+        if (!bracketed && (field.n > 6 || memchr(field.text, ' ', field.n)))
+            return false;
+        any = true;
+    }
+    return any;
+}
+
+/* Where the header stands among the lines above the rows, and a line of units below it; both
+ * `lines->n` where there is none. */
+static enum wb_status find_header(const struct lines *lines, size_t body,
+                                  const struct layout *layout, const char *name, size_t *header,
+                                  size_t *units, struct wb_reason *why)
+{
+    struct content content = {0, 0, 0};
+    size_t above[2] = {lines->n, lines->n};
+    *header = *units = lines->n;
+    for (size_t i = body, found = 0; i-- > 0 && found < 2;) {
+        content = look(lines->items[i].text, layout->delimiter);
+        if (content.fields > 0)
+            above[found++] = i;
+    }
+    if (above[0] == lines->n)
+        return WB_OK;
+    /* A row that stands above words would be lost without a word. */
+    for (size_t i = 0; i < above[0]; i++) {
+        content = look(lines->items[i].text, layout->delimiter);
+        if (layout->columns > 1 && content.fields == layout->columns &&
+            content.numbers == content.fields)
+            return wb_fail_to(why, WB_ERR_FORMAT,
+                              "%s:%d: this line stands between rows of numbers: expected a row",
+                              name, lines->items[above[0]].number);
+    }
+    content = look(lines->items[above[0]].text, layout->delimiter);
+    const bool as_wide = content.fields >= layout->columns;
+    if (content.numbers > 0 && (as_wide || content.texts > 1))
+        return wb_fail_to(
+            why, WB_ERR_FORMAT,
+            "%s:%d: numbers and words in one line: neither names of columns nor a row", name,
+            lines->items[above[0]].number);
+    if (content.numbers > 0)
+        return WB_OK;
+    if (!as_wide) {
+        if (content.texts > 1)
+            return wb_fail_to(why, WB_ERR_FORMAT,
+                              "%s:%d: %d names above rows of %d fields: are they cut by another "
+                              "delimiter, or is the comma the decimal sign?",
+                              name, lines->items[above[0]].number, content.fields, layout->columns);
+        return WB_OK;
+    }
+    *header = above[0];
+    if (above[1] == lines->n || !is_line_of_units(lines->items[above[0]].text, layout->delimiter))
+        return WB_OK;
+    const struct content upper = look(lines->items[above[1]].text, layout->delimiter);
+    if (upper.numbers == 0 && upper.texts >= content.texts && upper.fields >= layout->columns) {
+        *header = above[1];
+        *units = above[0];
+    }
+    return WB_OK;
+}
+
+/* --- the table --- */
+
+/* Fields of a line in place, at most `most`; the number of those up to the last that is not empty,
+ * or one more than `most` where there are more. */
+static int cut_fields(char *line, char delimiter, int most, char **fields)
+{
+    const char *rest = line;
+    struct field field;
+    int n = 0, last = 0;
+    while (next_field(&rest, delimiter, &field)) {
+        char *const text = line + (field.text - line);
+        if (field.n > 0)
+            last = n + 1;
+        if (n < most)
+            fields[n] = text;
+        n++;
+        /* The byte after a field is a delimiter, a quote, a blank or the end: looked at already. */
+        text[field.n] = '\0';
+    }
+    return last > most ? most + 1 : last;
+}
+
+static enum wb_status fill_names(struct wb_text_table *table, const struct lines *lines,
+                                 size_t header, size_t units)
+{
+    char *fields[MOST_COLUMNS];
+    for (int k = 0; k < table->n_columns; k++)
+        table->columns[k] = (struct wb_text_table_column){"", ""};
+    if (header < lines->n) {
+        table->header_line = lines->items[header].number;
+        const int n = cut_fields(lines->items[header].text, table->delimiter, MOST_COLUMNS, fields);
+        for (int k = 0; k < n && k < table->n_columns; k++)
+            table->columns[k].name = fields[k];
+    }
+    if (units < lines->n) {
+        const int n = cut_fields(lines->items[units].text, table->delimiter, MOST_COLUMNS, fields);
+        for (int k = 0; k < n && k < table->n_columns; k++)
+            table->columns[k].unit = fields[k];
+    }
+    return WB_OK;
+}
+
+static enum wb_status fill_rows(struct wb_text_table *table, struct lines *lines, size_t first,
+                                size_t body, const char *name, struct wb_reason *why)
+{
+    for (size_t i = first; i < lines->n; i++) {
+        struct line *const line = &lines->items[i];
+        char **const fields = table->fields + table->n_rows * (size_t)table->n_columns;
+        if (i < body) {
+            table->n_empty_lines += look(line->text, table->delimiter).fields == 0;
+            continue;
+        }
+        for (int k = 0; k < table->n_columns; k++)
+            fields[k] = NULL;
+        const int n = cut_fields(line->text, table->delimiter, table->n_columns, fields);
+        if (n > table->n_columns)
+            return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: column %d: more fields than the %d %s",
+                              name, line->number, n, table->n_columns,
+                              table->header_line ? "columns of the header" : "of other rows");
+        if (n == 0) {
+            table->n_empty_lines++;
+            continue;
+        }
+        table->lines[table->n_rows++] = line->number;
+        if (i + 1 == lines->n && table->ends_without_end && n < table->n_columns)
+            table->cut = true;
+    }
+    return WB_OK;
+}
+
+static enum wb_status fill(struct wb_text_table *table, struct lines *lines,
+                           const struct wb_text_table_form *form, const char *name,
+                           struct wb_reason *why)
+{
+    struct layout layout = {'\t', 1, false};
+    size_t header, units;
+    if (!find_layout(lines, form->delimiter, false, &layout) &&
+        !find_layout(lines, form->delimiter, true, &layout))
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: no row of numbers up to the end", name,
+                          table->n_lines > 0 ? table->n_lines : 1);
+    const size_t body = find_body(lines, &layout);
+    table->delimiter = layout.delimiter;
+    table->decimal = form->decimal;
+    if (body == lines->n)
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: no rows of numbers one after another", name);
+    if (!form->decimal)
+        WB_TRY(find_decimal(table, lines, body, name, why));
+    WB_TRY(find_header(lines, body, &layout, name, &header, &units, why));
+    table->n_columns = layout.columns;
+    if (header < lines->n) {
+        const int named = look(lines->items[header].text, table->delimiter).fields;
+        table->n_columns = named > layout.columns ? named : layout.columns;
+    }
+    if (table->n_columns > MOST_COLUMNS)
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: more than %d columns", name, MOST_COLUMNS);
+    const size_t n = lines->n - body;
+    table->columns = calloc((size_t)table->n_columns, sizeof *table->columns);
+    table->fields = calloc(n * (size_t)table->n_columns, sizeof *table->fields);
+    table->lines = calloc(n, sizeof *table->lines);
+    if (!table->columns || !table->fields || !table->lines)
+        return wb_fail_to(why, WB_ERR_MEMORY, "%s: out of memory for %zu rows", name, n);
+    WB_TRY(fill_names(table, lines, header, units));
+    const size_t first = units < lines->n ? units + 1 : header < lines->n ? header + 1 : body;
+    return fill_rows(table, lines, first, body, name, why);
+}
+
+enum wb_status wb_text_table_parse(struct wb_text_table *table, const void *bytes, size_t size,
+                                   const char *name, const struct wb_text_table_form *form,
+                                   struct wb_reason *why)
+{
+    static const struct wb_text_table_form unknown = {'\0', '\0'};
+    struct wb_text_table read = {0};
+    struct decoded_text text;
+    struct lines lines = {NULL, 0, 0};
+    WB_TRY(decode(bytes, size, name, &text, why));
+    read.text = text.bytes;
+    read.encoding = text.encoding;
+    read.byte_order_mark = text.byte_order_mark;
+    read.cut = text.cut;
+    enum wb_status status = cut_lines(&read, text.size, name, &lines, why);
+    if (status == WB_OK)
+        status = fill(&read, &lines, form ? form : &unknown, name, why);
+    free(lines.items);
+    if (status != WB_OK)
+        wb_text_table_release(&read);
+    else
+        *table = read;
+    return status;
+}
+
+void wb_text_table_release(struct wb_text_table *table)
+{
+    free(table->columns);
+    free(table->fields);
+    free(table->lines);
+    free(table->text);
+    memset(table, 0, sizeof *table);
+}
+
+enum wb_text_field wb_text_table_number(const struct wb_text_table *table, size_t row, int column,
+                                        double *value)
+{
+    const char *const text = table->fields[row * (size_t)table->n_columns + (size_t)column];
+    return text ? classify(text, strlen(text), table->decimal, value) : WB_FIELD_EMPTY;
+}
+
+enum wb_status wb_text_table_refuse(const struct wb_text_table *table, const char *name, size_t row,
+                                    int column, const char *message, struct wb_reason *why)
+{
+    const char *const text = table->fields[row * (size_t)table->n_columns + (size_t)column];
+    const char *const header = table->columns[column].name;
+    return wb_fail_to(why, WB_ERR_FORMAT, "%s:%d: column %d%s%.40s%s: %s, not '%.40s'", name,
+                      table->lines[row], column + 1, *header ? " '" : "", header,
+                      *header ? "'" : "", message, text ? text : "");
+}

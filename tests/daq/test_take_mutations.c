@@ -1,0 +1,277 @@
+/* Five hundred structural changes of a take in each format (rows, columns, separators, encodings,
+ * truncations) end in a refusal with a reason, or in a take that counts what is missing: of the
+ * frames that it has, no place is anywhere but where the file has it, or where another row or
+ * column of the file has it. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "daq/take_reader.h"
+#include "tests/daq/take_example.h"
+#include "tests/messages.h"
+
+#define FRAMES 12
+#define MUTATIONS 500
+
+static uint64_t state_of_random;
+
+static size_t below(size_t n)
+{
+    state_of_random ^= state_of_random << 13;
+    state_of_random ^= state_of_random >> 7;
+    state_of_random ^= state_of_random << 17;
+    return n ? (size_t)(state_of_random % n) : 0;
+}
+
+struct text {
+    char *bytes;
+    size_t n;
+};
+
+/* Replaces bytes from..to by others. */
+static void splice(struct text *text, size_t from, size_t to, const void *by, size_t n)
+{
+    char *const made = malloc(text->n - (to - from) + n + 1);
+    char *const copy = malloc(n + 1);
+    memcpy(copy, by, n);
+    memcpy(made, text->bytes, from);
+    memcpy(made + from, copy, n);
+    memcpy(made + from + n, text->bytes + to, text->n - to);
+    free(copy);
+    free(text->bytes);
+    text->bytes = made;
+    text->n = text->n - (to - from) + n;
+}
+
+/* A part between two separators: a line, or a cell of a random line. */
+static void part(const struct text *text, char separator, size_t *from, size_t *to)
+{
+    *from = below(text->n + 1);
+    while (*from > 0 && text->bytes[*from - 1] != separator && text->bytes[*from - 1] != '\n')
+        --*from;
+    *to = *from;
+    while (*to < text->n && text->bytes[*to] != separator && text->bytes[*to] != '\n')
+        ++*to;
+    *to += *to < text->n;
+}
+
+static void widen(struct text *text, bool big)
+{
+    char *const wide = malloc(2 * text->n + 1);
+    for (size_t i = 0; i < text->n; i++) {
+        wide[2 * i] = big ? 0 : text->bytes[i];
+        wide[2 * i + 1] = big ? text->bytes[i] : 0;
+    }
+    free(text->bytes);
+    text->bytes = wide;
+    text->n *= 2;
+}
+
+static void replace_all(struct text *text, char from, char to)
+{
+    for (size_t i = 0; i < text->n; i++)
+        if (text->bytes[i] == from)
+            text->bytes[i] = to;
+}
+
+static void mutate_text(struct text *text, char separator)
+{
+    static const char *const words[] = {"",     "NaN", "abc",  "-",        "1e400",       "\"",
+                                        "0x10", "1,5", "\xE9", "\xFF\xFE", "999999999999"};
+    const char *const word = words[below(sizeof words / sizeof words[0])];
+    size_t a, b, c, d;
+    part(text, '\n', &a, &b);
+    part(text, separator, &c, &d);
+    switch (below(12)) {
+    case 0: /* a line goes */
+        splice(text, a, b, "", 0);
+        break;
+    case 1: /* a line twice */
+        splice(text, b, b, text->bytes + a, b - a);
+        break;
+    case 2: { /* two lines change places */
+        size_t e = b, f = b;
+        while (f < text->n && text->bytes[f] != '\n')
+            f++;
+        f += f < text->n;
+        char *const first = malloc(b - a + 1);
+        memcpy(first, text->bytes + a, b - a);
+        const size_t n = b - a;
+        splice(text, f, f, first, n);
+        splice(text, a, b, "", 0);
+        free(first);
+        (void)e;
+        break;
+    }
+    case 3: /* a cell goes */
+        splice(text, c, d, "", 0);
+        break;
+    case 4: /* a cell twice */
+        splice(text, d, d, text->bytes + c, d - c);
+        break;
+    case 5: /* a cell is another thing */
+        splice(text, c, d > c ? d - 1 : c, word, strlen(word));
+        break;
+    case 6: /* all separators are others */
+        replace_all(text, separator, "\t;, |"[below(5)]);
+        break;
+    case 7: /* line ends */
+        replace_all(text, '\n', "\r\n;\0"[below(4)]);
+        break;
+    case 8: /* the file is cut */
+        text->n = below(text->n + 1);
+        break;
+    case 9:
+        widen(text, below(2));
+        break;
+    case 10: /* a decimal comma */
+        replace_all(text, '.', ',');
+        break;
+    default: /* an empty line, or one of separators */
+        splice(text, a, a, below(2) ? ",,,,\n" : "\n", below(2) ? 1 : 0);
+        break;
+    }
+}
+
+static bool is_value_of_file(double value, int axis)
+{
+    for (int f = 0; f < FRAMES; f++)
+        for (int m = 0; m < EXAMPLE_MARKERS; m++)
+            if (fabs(value - example_at(f, m, axis)) < 3e-5)
+                return true;
+    return false;
+}
+
+/* True when it was read. Any place must be one of the file's on each axis, unless the mutation
+ * itself wrote a number there. */
+static bool read_and_check(const struct text *text, size_t *n_frames, size_t *strange)
+{
+    struct wb_take take;
+    struct wb_reason why = {.text = ""};
+    uint8_t *const copy = malloc(text->n ? text->n : 1);
+    memcpy(copy, text->bytes, text->n);
+    const enum wb_status status = wb_take_read(&take, "a", copy, text->n, NULL, &why);
+    free(copy);
+    if (status != WB_OK) {
+        assert_true(why.text[0] != '\0');
+        assert_null(take.frames);
+        return false;
+    }
+    *n_frames = take.n_frames;
+    assert_true(take.n_frames > 0);
+    /* What is not there is counted. */
+    if (take.n_frames < FRAMES && take.declared_frames == FRAMES)
+        assert_true(take.n_frames + take.skipped_rows + take.jumped <= FRAMES + 2);
+    for (size_t i = 0; i < take.n_places; i++)
+        for (int k = 0; k < 3; k++)
+            *strange += !is_value_of_file((double)take.places[i].position[k], k);
+    wb_take_release(&take);
+    return true;
+}
+
+static void mutate_format(const struct wb_text *seed, char separator, const char *name,
+                          size_t most_strange)
+{
+    size_t n_read = 0, strange = 0;
+    for (int i = 0; i < MUTATIONS; i++) {
+        struct text text = {.bytes = malloc(seed->length + 1), .n = seed->length};
+        size_t n_frames = 0;
+        memcpy(text.bytes, seed->bytes, seed->length);
+        mutate_text(&text, separator);
+        n_read += read_and_check(&text, &n_frames, &strange);
+        free(text.bytes);
+    }
+    printf("%s: %zu of %d changed files are read, %zu strange places\n", name, n_read, MUTATIONS,
+           strange);
+    assert_true(n_read > 0 && n_read < MUTATIONS);
+    assert_true(strange <= most_strange);
+}
+
+static void changed_motive_files_are_refused_or_counted(void **state)
+{
+    (void)state;
+    for (int version = 21; version <= 25; version += 2) {
+        const struct example_csv form = {version, "Meters", 1.0, ',', '.', "\n"};
+        struct wb_text text = {0};
+        example_motive(&text, &form, FRAMES);
+        mutate_format(&text, ',', "Motive CSV", 0);
+        wb_text_release(&text);
+    }
+}
+
+static void changed_rows_of_motive_are_refused_or_counted(void **state)
+{
+    (void)state;
+    const struct example_csv form = {11, "Meters", 1.0, ',', '.', "\n"};
+    struct wb_text text = {0};
+    example_motive(&text, &form, FRAMES);
+    mutate_format(&text, ',', "Motive CSV 1.1", 0);
+    wb_text_release(&text);
+}
+
+static void changed_trc_files_are_refused_or_counted(void **state)
+{
+    (void)state;
+    struct wb_text text = {0};
+    example_trc(&text, FRAMES, "\n");
+    /* Of the cells that became "1,5" some are positions, with a decimal comma. */
+    mutate_format(&text, '\t', "TRC", 3);
+    wb_text_release(&text);
+}
+
+/* Bytes of header and parameters, words turned round, cuts. */
+static void changed_c3d_files_are_refused_or_counted(void **state)
+{
+    (void)state;
+    static struct example_bytes seed;
+    size_t n_read = 0, strange = 0;
+    for (int i = 0; i < MUTATIONS; i++) {
+        const struct example_c3d form = {.processor = 84 + i % 3, .real = i % 2};
+        example_c3d(&seed, &form, FRAMES);
+        struct text text = {.bytes = malloc(seed.n + 1), .n = seed.n};
+        memcpy(text.bytes, seed.bytes, seed.n);
+        const size_t at = below(3 * 512);
+        size_t n_frames = 0;
+        switch (below(4)) {
+        case 0:
+            text.bytes[at] = (char)below(256);
+            break;
+        case 1: {
+            const char byte = text.bytes[at];
+            text.bytes[at] = text.bytes[at + 1];
+            text.bytes[at + 1] = byte;
+            break;
+        }
+        case 2:
+            text.n = below(text.n);
+            break;
+        default:
+            splice(&text, at, at + 1 + below(4), "", 0);
+        }
+        size_t ignored = 0;
+        n_read += read_and_check(&text, &n_frames, &ignored);
+        strange += ignored > 0;
+        free(text.bytes);
+    }
+    /* A changed scale or rate is another file that is right in itself: no reader can tell. */
+    printf("C3D: %zu of %d changed files are read, %zu of them otherwise\n", n_read, MUTATIONS,
+           strange);
+    assert_true(n_read > 0 && n_read < MUTATIONS);
+}
+
+static int begin(void **state)
+{
+    (void)state;
+    state_of_random = UINT64_C(0x9e3779b97f4a7c15);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(changed_motive_files_are_refused_or_counted, begin),
+        cmocka_unit_test_setup(changed_rows_of_motive_are_refused_or_counted, begin),
+        cmocka_unit_test_setup(changed_trc_files_are_refused_or_counted, begin),
+        cmocka_unit_test_setup(changed_c3d_files_are_refused_or_counted, begin),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
