@@ -18,17 +18,44 @@ struct options {
     struct wb_align_settings settings;
 };
 
+enum {
+    KEY_RIG = WB_KEY_OWN,
+    KEY_SPECIMEN
+};
+
 static const struct argp_option other_options[] = {
     {"output", 'o', "DATASET", 0, "Folder to write; of several recordings, a folder in it for each",
+     0},
+    {"rig", KEY_RIG, "FILE", 0,
+     "Rig file in place of the recorded one, where that was wrong; what differs is written into "
+     "the "
+     "dataset",
+     0},
+    {"specimen", KEY_SPECIMEN, "FILE", 0, "Specimen file in place of the recorded one, likewise",
      0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const options = state->input;
+    switch (key) {
+    case KEY_RIG:
+        options->settings.rig_path = argument;
+        return 0;
+    case KEY_SPECIMEN:
+        options->settings.specimen_path = argument;
+        return 0;
+    default:
+        return wb_command_parse_common(key, argument, state, &options->common);
+    }
+}
+
 static const struct argp argp = {
     .options = other_options,
-    .parser = wb_command_parse_only_common,
+    .parser = parse,
     .args_doc = "REC.wbr...",
     .doc = "Turns recordings (.wbr or .wbr.zst) into datasets: clocks mapped, markers identified, "
            "tare, drift, filter delay and marker offset corrected, the clamp at the origin, cycles "

@@ -210,6 +210,8 @@ static int print_json(const struct wb_bend_test_result *result, const char *outp
     wb_json_set_integer(root, "mocap_frames", (int64_t)result->samples[WB_ROLE_MOCAP]);
     wb_json_set_integer(root, "stage_reports", (int64_t)result->samples[WB_ROLE_STAGE]);
     wb_json_set_integer(root, "drops", (int64_t)result->drops);
+    wb_json_set_integer(root, "load_readings_missing", (int64_t)result->loss[WB_ROLE_LOAD].missing);
+    wb_json_set_integer(root, "mocap_frames_missing", (int64_t)result->loss[WB_ROLE_MOCAP].missing);
     return wb_command_print_json(root);
 }
 
@@ -224,7 +226,8 @@ static void print_summary(const struct wb_bend_test_result *result, const char *
 
 static int exit_code(const struct wb_bend_test_result *result, enum wb_status status)
 {
-    if (result->end == WB_SEQUENCE_DONE && status == WB_OK && result->drops == 0)
+    if (result->end == WB_SEQUENCE_DONE && status == WB_OK && result->drops == 0 &&
+        !result->is_losing[WB_ROLE_LOAD] && !result->is_losing[WB_ROLE_MOCAP])
         return WB_EXIT_OK;
     if (result->end == WB_SEQUENCE_INTERRUPTED && result->recorded)
         return WB_EXIT_INCOMPLETE;
@@ -256,6 +259,15 @@ int wb_cmd_record(int argc, char **argv)
         tell_stop(&result, options.request.rig_path);
     if (result.drops > 0)
         wb_warn("%" PRIu64 " reads are missing from the recording", result.drops);
+    for (int role = 0; role < WB_INTERLOCK_ROLES; role++) {
+        if (result.is_losing[role])
+            wb_warn("%.2g %% of what the %s sent never came: %" PRIu64 " in %" PRIu64
+                    " places, the longest of %.3g s: look at its cable or network, and at what "
+                    "else this computer does",
+                    wb_loss_share(&result.loss[role]) / WB_PERCENT,
+                    wb_role_name((enum wb_role)role), result.loss[role].missing,
+                    result.loss[role].gaps, result.loss[role].longest_gap);
+    }
     if (!result.recorded)
         wb_info("nothing was recorded: '%s' was not kept", options.request.output_path);
     const int code = exit_code(&result, status);

@@ -18,8 +18,8 @@ static const struct argp argp = {
     .parser = wb_command_parse_only_common,
     .args_doc = "REC.wbr...",
     .doc = "Checks recordings (.wbr or .wbr.zst): the CRC-32 of every chunk, gaps in the sequence "
-           "numbers, drops noted while recording, silent or missing streams, and whether the file "
-           "was closed properly.\v"
+           "numbers, frames and lines that never came, drops noted while recording, silent or "
+           "missing streams, and whether the file was closed properly.\v"
            "Exit codes: 0 all is there; 1 a file could not be opened; 3 something is missing or "
            "damaged, the rest is usable.",
 };
@@ -48,6 +48,10 @@ static void add_streams(struct wb_json *object, const struct wb_survey *survey)
         wb_json_set_integer(item, "missing_chunks", (int64_t)s->missing);
         wb_json_set_integer(item, "gaps", (int64_t)s->gaps);
         wb_json_set_integer(item, "repeated_chunks", (int64_t)s->repeated);
+        wb_json_set_integer(item, "samples", (int64_t)s->samples);
+        wb_json_set_integer(item, "missing_samples", (int64_t)s->loss.missing);
+        wb_json_set_integer(item, "repeated_samples", (int64_t)s->loss.repeated);
+        wb_json_set_integer(item, "overtaken_samples", (int64_t)s->loss.overtaken);
     }
 }
 
@@ -81,7 +85,7 @@ static enum wb_status look(const char *path, struct wb_survey *survey, char sha2
 {
     struct wb_recording *recording = NULL;
     WB_TRY(wb_recording_open(&recording, path));
-    enum wb_status status = wb_survey_run(recording, false, survey);
+    enum wb_status status = wb_survey_run(recording, true, survey);
     enum wb_status closed = wb_recording_close(recording);
     if (status == WB_OK && wb_recording_sha256(path, sha256, NULL) != WB_OK)
         sha256[0] = '\0';

@@ -26,6 +26,8 @@
 #define READS_A_STEP 64
 /* Being late by more than this is a stall. */
 #define STALL_NS (30 * WB_NS_PER_MS)
+/* A stall that is told: the stage may have gone on for a whole second, unwatched. */
+#define TOLD_STALL_NS (1000 * WB_NS_PER_MS)
 #define RATE_PERIOD_NS (500 * WB_NS_PER_MS)
 
 /* One open stream with its driver. */
@@ -44,6 +46,7 @@ struct line {
     bool has_rate;
     struct wb_remark_gate gate;
     uint64_t kernel_drops; /* datagrams the kernel lost, as far as told */
+    struct wb_loss loss;   /* by frames' stamps, or by the arrival of lines */
 };
 
 struct wb_acquisition {
@@ -354,6 +357,8 @@ static void on_load(void *context, const struct wb_load_sample *sample)
     if (wb_interlock_load(&a->interlock, sample))
         hold_now(a);
     a->latest.stream[WB_ROLE_LOAD].samples++;
+    a->latest.unit_contradicts = sample->unit_contradicts;
+    wb_loss_add(&line->loss, wb_seconds_from_ns(sample->t_ns));
     if (sample->valid) {
         line->counted++;
         a->latest.has_load = true;
@@ -367,6 +372,7 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
     struct line *const line = context;
     struct wb_acquisition *const a = line->owner;
     wb_interlock_mocap(&a->interlock, frame->t_ns);
+    wb_loss_add(&line->loss, frame->t_device);
     a->latest.stream[WB_ROLE_MOCAP].samples++;
     line->counted++;
     a->latest.has_mocap = true;
@@ -516,6 +522,17 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
             line->reported_lost = lost;
         }
         state->lost = lost;
+        state->loss = wb_loss_counts(&line->loss);
+        if (wb_loss_is_told(&line->loss) && !state->is_losing) {
+            char text[160];
+            snprintf(text, sizeof text, "%s: of %" PRIu64 " samples %" PRIu64 " never came",
+                     wb_role_name(line->role), state->loss.received + state->loss.missing,
+                     state->loss.missing);
+            push_event(a, now_ns, "loss", text);
+            wb_warn("samples of the %s stream are lost on the way: %" PRIu64 " so far",
+                    wb_role_name(line->role), state->loss.missing);
+            state->is_losing = true;
+        }
         state->ready = !state->gone && line->driver->ready(line->state);
         state->drops = line->kernel_drops;
         if (a->writer)
@@ -586,6 +603,14 @@ static void forgive_stall(struct wb_acquisition *a, int64_t stalled_ns)
         return;
     a->deaf_ns += stalled_ns;
     wb_interlock_forgive(&a->interlock, stalled_ns);
+    if (stalled_ns < TOLD_STALL_NS || !a->interlock.armed)
+        return;
+    char text[160];
+    snprintf(text, sizeof text,
+             "the recorder stood still for %.1f s: no limit was watched in that time",
+             wb_seconds_from_ns(stalled_ns));
+    push_event(a, wb_acquisition_now_ns(), "stall", text);
+    wb_warn("%s", text);
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -667,6 +692,7 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
     struct line *const line = &a->lines[a->n_lines];
     line->owner = a;
     line->role = role;
+    wb_loss_init(&line->loss, role == WB_ROLE_MOCAP, 0.0);
     line->id = a->n_lines;
     line->driver = wb_drivers_find(role, protocol);
     if (!line->driver)

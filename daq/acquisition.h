@@ -20,6 +20,7 @@
 #include "base/status.h"
 #include "daq/driver.h"
 #include "daq/interlock.h"
+#include "daq/loss.h"
 #include "daq/rig.h"
 #include "daq/sample.h"
 #include "daq/writer.h"
@@ -98,13 +99,16 @@ struct wb_acquisition_stream_state {
     double rate;      /* valid samples/s, smoothed over about a second */
     uint64_t samples; /* decoded, valid or not */
     uint64_t chunks, bytes;
-    uint64_t drops; /* reads lost by the writer, and datagrams lost in the kernel */
+    uint64_t drops;             /* reads lost by the writer, and datagrams lost in the kernel */
+    struct wb_loss_counts loss; /* samples that the instrument sent and that never came */
+    bool is_losing;             /* and they are more than chance */
 };
 
 struct wb_acquisition_latest {
     struct wb_acquisition_stream_state stream[WB_INTERLOCK_ROLES]; /* by role */
     bool has_load, has_mocap, has_stage;
     struct wb_load_sample load; /* the last valid one */
+    bool unit_contradicts;      /* the last reading's unit, valid or not: see sample.h */
     int markers_seen;           /* measured ones in the last frame */
     int64_t mocap_ns;           /* arrival of the last frame */
     struct wb_stage_report stage;

@@ -88,7 +88,9 @@ static enum wb_status set_circumstances(struct wb_recording *recording,
     struct tm utc;
     gmtime_r(&now, &utc);
     strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    WB_TRY(wb_recording_set_meta(recording, "start_utc", text));
+    /* When an imported test was made, its files do not say. */
+    WB_TRY(wb_recording_set_meta(recording, description->imported ? "imported_utc" : "start_utc",
+                                 text));
     snprintf(text, sizeof text, "%" PRId64, description->monotonic_start_ns);
     WB_TRY(wb_recording_set_meta(recording, "monotonic_start_ns", text));
     if (gethostname(text, sizeof text) != 0)
@@ -135,6 +137,8 @@ static enum wb_status set_meta(struct wb_recording *recording,
     WB_TRY(set_truth(recording, d));
     WB_TRY(set_check(recording, d));
     WB_TRY(set_number(recording, "g", d->rig->gravity));
+    if (d->imported)
+        return WB_OK;
     WB_TRY(set_number(recording, "travel_mm", d->travel / WB_MM));
     snprintf(text, sizeof text, "%d", d->cycles);
     return wb_recording_set_meta(recording, "cycles", text);
@@ -157,7 +161,7 @@ enum wb_status wb_bend_recording_create(struct wb_recording **out,
     struct wb_recording *recording;
     WB_TRY(wb_recording_create(&recording, description->path));
     enum wb_status status = set_meta(recording, description);
-    if (status == WB_OK)
+    if (status == WB_OK && !description->imported)
         status = add_streams(recording, description->rig);
     if (status == WB_OK)
         status = wb_recording_flush(recording);

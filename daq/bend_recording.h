@@ -2,6 +2,8 @@
 #ifndef WB_DAQ_BEND_RECORDING_H
 #define WB_DAQ_BEND_RECORDING_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 #include "daq/recording.h"
 #include "daq/rig.h"
@@ -16,6 +18,8 @@ struct wb_bend_recording {
     int cycles;
     double travel; /* m */
     int64_t monotonic_start_ns;
+    bool imported; /* from files: made elsewhere at another time, and the caller adds the streams;
+                      cycles and travel are not known */
 };
 
 /* Creates the file with streams load, mocap and stage (numbers 0 to 2) and the meta values of

@@ -210,6 +210,7 @@ static void step_connect(struct wb_bend_test *test)
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
     const int64_t allowed_ns =
         wb_ns_from_seconds(test->request.connect_timeout) + test->run.rig.load_cell.settle_ns;
+    char text[WB_START_CHECK_TEXT];
     if (gone(test, WB_ROLE_LOAD))
         wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
                             "the load cell's port %s went away: check its cable and power",
@@ -221,12 +222,15 @@ static void step_connect(struct wb_bend_test *test)
     else if (wb_writer_status(test->writer) != WB_OK)
         wb_sequence_give_up(&test->run, WB_INTERLOCK_DISK,
                             "the recording cannot be written: the message before says why");
-    else if (latest->has_load && latest->has_mocap && latest->has_stage &&
-             latest->stream[WB_ROLE_MOCAP].ready && latest->stream[WB_ROLE_LOAD].ready &&
-             latest->stream[WB_ROLE_STAGE].ready) {
+    else if (!wb_start_check_unit(latest->unit_contradicts, &test->run.rig, test->rig_path, text)) {
+        /* Before there is a valid reading: in kg for g all of them may be beyond the range. */
+        test->result.recorded = true;
+        refuse(test, text);
+    } else if (latest->has_load && latest->has_mocap && latest->has_stage &&
+               latest->stream[WB_ROLE_MOCAP].ready && latest->stream[WB_ROLE_LOAD].ready &&
+               latest->stream[WB_ROLE_STAGE].ready) {
         test->result.recorded = true;
         /* Before the interlock, whose message would be the poorer one. */
-        char text[WB_START_CHECK_TEXT];
         if (!wb_start_check_stage(&latest->stage, test->rig_path, text)) {
             refuse(test, text);
             return;
@@ -561,6 +565,8 @@ enum wb_status wb_bend_test_close(struct wb_bend_test *test, struct wb_bend_test
         test->result.samples[role] = latest->stream[role].samples;
         test->result.bytes += latest->stream[role].bytes;
         test->result.drops += latest->stream[role].drops;
+        test->result.loss[role] = latest->stream[role].loss;
+        test->result.is_losing[role] = latest->stream[role].is_losing;
     }
     wb_acquisition_close(test->run.acquisition);
     const enum wb_status status = wb_writer_finish(test->writer);

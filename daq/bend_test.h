@@ -83,6 +83,8 @@ struct wb_bend_test_result {
     double travel;       /* m, where the stage stands */
     double duration;     /* s of host time */
     uint64_t samples[WB_INTERLOCK_ROLES], bytes, drops;
+    struct wb_loss_counts loss[WB_INTERLOCK_ROLES]; /* what instruments sent and never came */
+    bool is_losing[WB_INTERLOCK_ROLES];             /* more than chance */
     bool soft_reset;
     double hold_latency, confirm_latency; /* s; NaN when no hold was sent */
 };

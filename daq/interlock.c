@@ -95,6 +95,11 @@ bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_samp
     if (sample->unit_changed)
         return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
                     "the load cell changed its unit while it was read: set the unit back");
+    /* Where something is loaded and about to be freed, the line's unit is good enough. */
+    if (sample->unit_contradicts && !limit->overload_allowed)
+        return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
+                    "the load cell prints another unit than load_cell.unit of the rig file: set "
+                    "one of the two right");
     if (sample->overload && !limit->overload_allowed)
         return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
                     "the load cell reports overload: it is loaded beyond its range");

@@ -69,6 +69,22 @@ static bool watch_unit(struct wb_loadcell *loadcell, int64_t t_ns, const char *u
     return strcmp(loadcell->first_unit, unit) != 0;
 }
 
+/* A contradiction is remarked once: it stays as long as nobody mends it. */
+static bool contradicts(struct wb_loadcell *loadcell, int64_t t_ns,
+                        const struct wb_line_reading *reading, const struct wb_sink *sink)
+{
+    const char *const of_rig = loadcell->rig.load_cell.unit;
+    if (!wb_line_unit_contradicts(reading, &loadcell->rig.load_cell))
+        return false;
+    if (!loadcell->contradicted)
+        wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "unit",
+                         "the load cell prints %s, the rig file says load_cell.unit: %s; its own "
+                         "unit is used: set one of the two right",
+                         reading->unit, of_rig);
+    loadcell->contradicted = true;
+    return true;
+}
+
 static void pass_on(struct wb_loadcell *loadcell, const struct wb_load_sample *sample,
                     const struct wb_sink *sink)
 {
@@ -124,14 +140,13 @@ void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
         return;
     }
     sample.unit_changed = watch_unit(loadcell, t_ns, reading->unit, sink);
+    sample.unit_contradicts = contradicts(loadcell, t_ns, &complete, sink);
     if (cell->overload > 0.0 && !(fabs(force) <= cell->overload)) {
         deliver_overload(loadcell, &sample, sink);
         return;
     }
-    /* With a unit of the rig file's own, a line in another unit than before is worth nothing. */
-    sample.valid = !(sample.unit_changed && cell->unit[0]);
-    if (sample.valid)
-        sample.force = force;
+    sample.valid = true;
+    sample.force = force;
     loadcell->overloaded = false;
     pass_on(loadcell, &sample, sink);
 }

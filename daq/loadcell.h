@@ -24,6 +24,7 @@ struct wb_loadcell {
     uint64_t n_refused, n_overloads;
     char first_unit[16], last_unit[16]; /* as printed */
     bool overloaded;                    /* the last sample was */
+    bool contradicted;                  /* the rig file's unit, and that was remarked */
 };
 
 /* `init` and `ready` of the drivers. `state` points to a struct wb_loadcell. */

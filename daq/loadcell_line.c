@@ -66,10 +66,21 @@ bool wb_line_force(const struct wb_line_reading *reading, const struct wb_rig_lo
                    double gravity, double *force)
 {
     double newtons;
-    if (!wb_line_unit_factor(cell->unit[0] ? cell->unit : reading->unit, gravity, &newtons))
+    if (!wb_line_unit_factor(reading->unit, gravity, &newtons) &&
+        !wb_line_unit_factor(cell->unit, gravity, &newtons))
         return false;
     *force = cell->sign * (cell->scale * reading->value + cell->offset) * newtons;
     return true;
+}
+
+bool wb_line_unit_contradicts(const struct wb_line_reading *reading,
+                              const struct wb_rig_load_cell *cell)
+{
+    double of_line, of_rig;
+    /* Any gravity does: gf is g wherever the bench stands, and N is none of them. */
+    return wb_line_unit_factor(reading->unit, WB_STANDARD_GRAVITY, &of_line) &&
+           wb_line_unit_factor(cell->unit, WB_STANDARD_GRAVITY, &of_rig) &&
+           !(fabs(of_line - of_rig) <= 1e-9 * of_rig);
 }
 
 /* --- overload --- */

@@ -39,9 +39,14 @@ void wb_line_decode(const char *bytes, size_t length, const struct wb_rig_load_c
  * kg, mg, t, lb, oz, ct) under `gravity` (m/s2). False when the unit is not known. */
 bool wb_line_unit_factor(const char *unit, double gravity, double *newtons);
 
-/* Force in N: sign x (scale x value + offset) x unit, with the unit of the rig file if it has one,
- * else the line's own. False when there is no unit, or an unknown one. */
+/* Force in N: sign x (scale x value + offset) x unit, with the unit on the line where it is a known
+ * one, else the rig file's. What the instrument prints beside its number is believed: a rig file
+ * may be of another day. False when there is no unit, or an unknown one. */
 bool wb_line_force(const struct wb_line_reading *reading, const struct wb_rig_load_cell *cell,
                    double gravity, double *force);
+
+/* True when the line and the rig file each name a known unit, and not the same one. */
+bool wb_line_unit_contradicts(const struct wb_line_reading *reading,
+                              const struct wb_rig_load_cell *cell);
 
 #endif

@@ -3,25 +3,40 @@
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
+#include "base/hash.h"
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
 #include "daq/drivers.h"
+#include "daq/foreign.h"
+#include "daq/recording_foreign.h"
 #include "daq/stream.h"
 
 #define WB_LOG_DOMAIN "replay"
 
-/* One recorded stream with the driver that decodes it; `driver` is NULL when there is none. */
+/* A file of another program, put together again from its pieces. */
+struct file {
+    struct wb_foreign foreign;
+    uint8_t *bytes; /* (foreign.size) owned */
+    size_t n;
+    bool lost; /* a piece is not there: nothing of it can be read */
+};
+
+/* One recorded stream with the driver that decodes it, or the file it holds; both are NULL when
+ * there is none. */
 struct channel {
     int id;
     const struct wb_driver *driver;
     void *state;
     struct wb_stream *stream;
+    struct file *file;
 };
 
 struct replay {
+    const struct wb_rig *rig;
     const struct wb_sink *sink;
     struct wb_sink counting; /* between the drivers and the sink */
     struct wb_replay_counts *counts;
@@ -76,11 +91,26 @@ static void pass_remark(void *context, enum wb_log_level level, int64_t t_ns, co
 
 /* --- channels --- */
 
+static enum wb_status open_file(struct channel *channel, const char *settings)
+{
+    channel->file = calloc(1, sizeof *channel->file);
+    if (!channel->file)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for a file in the recording");
+    struct wb_reason why = {.text = ""};
+    if (wb_foreign_parse(&channel->file->foreign, settings, &why) != WB_OK) {
+        wb_warn("stream %d is left out: %s", channel->id, why.text);
+        channel->file->lost = true;
+    }
+    return WB_OK;
+}
+
 static enum wb_status open_channel(struct channel *channel,
-                                   const struct wb_recording_stream *recorded,
+                                   const struct wb_recording_stream *recorded, const char *settings,
                                    const struct wb_rig *rig)
 {
     channel->id = recorded->id;
+    if (wb_recording_foreign_is(recorded))
+        return open_file(channel, settings);
     const struct wb_driver *driver = wb_drivers_find(recorded->role, recorded->protocol);
     if (!driver) {
         wb_warn("stream %d (%s) speaks the protocol '%s', which is not known here: it is left out",
@@ -106,7 +136,8 @@ static enum wb_status open_channels(struct replay *replay, struct wb_recording *
         return wb_fail(WB_ERR_MEMORY, "out of memory for the replay");
     replay->n_channels = n;
     for (int i = 0; i < n; i++)
-        WB_TRY(open_channel(&replay->channels[i], wb_recording_stream_at(recording, i), rig));
+        WB_TRY(open_channel(&replay->channels[i], wb_recording_stream_at(recording, i),
+                            wb_recording_stream_settings(recording, i), rig));
     return WB_OK;
 }
 
@@ -115,6 +146,9 @@ static void close_channels(struct replay *replay)
     for (int i = 0; i < replay->n_channels; i++) {
         free(replay->channels[i].state);
         wb_stream_close(replay->channels[i].stream);
+        if (replay->channels[i].file)
+            free(replay->channels[i].file->bytes);
+        free(replay->channels[i].file);
     }
     free(replay->channels);
     free(replay->buffer);
@@ -164,6 +198,67 @@ static void remark_damage(struct replay *replay, const struct wb_chunk *chunk)
     pass_remark(replay, WB_LOG_WARNING, chunk->t_ns, "damage", text);
 }
 
+static void lose_file(struct replay *replay, struct file *file, int64_t t_ns, const char *reason)
+{
+    char text[1200];
+    if (!file->lost) {
+        snprintf(text, sizeof text, "the file '%s' cannot be read: %s", file->foreign.name, reason);
+        wb_warn("%s", text);
+        pass_remark(replay, WB_LOG_WARNING, t_ns, "damage", text);
+    }
+    file->lost = true;
+}
+
+/* Files whose last piece never came. */
+static void lose_unfinished(struct replay *replay)
+{
+    for (int i = 0; i < replay->n_channels; i++) {
+        struct file *const file = replay->channels[i].file;
+        if (file && !file->lost) {
+            replay->counts->damaged_chunks++;
+            lose_file(replay, file, 0, "pieces of it are not there");
+        }
+    }
+}
+
+/* Adds a piece; with the last one the file is read. */
+static enum wb_status play_piece(struct replay *replay, struct file *file,
+                                 const struct wb_chunk *chunk)
+{
+    char sha256[WB_SHA256_TEXT];
+    struct wb_reason why = {.text = ""};
+    if (file->lost)
+        return WB_OK;
+    if (!file->bytes) /* with the first piece: of a file that is not there none is taken */
+        file->bytes = malloc(file->foreign.size + 1);
+    if (!file->bytes)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for the file '%s'", file->foreign.name);
+    if (wb_recording_foreign_unpack(chunk->bytes, chunk->n, file->bytes, &file->n,
+                                    file->foreign.size) != WB_OK) {
+        replay->counts->damaged_chunks++;
+        lose_file(replay, file, chunk->t_ns, "a piece of it is damaged");
+        return WB_OK;
+    }
+    if (file->n < file->foreign.size)
+        return WB_OK;
+    wb_hash_bytes(file->bytes, file->n, sha256);
+    if (strcmp(sha256, file->foreign.sha256) != 0) {
+        replay->counts->damaged_chunks++;
+        lose_file(replay, file, chunk->t_ns, "its bytes are not those that were imported");
+        return WB_OK;
+    }
+    const enum wb_status status =
+        wb_foreign_play(&file->foreign, file->bytes, replay->rig, &replay->counting, &why);
+    if (status == WB_ERR_MEMORY)
+        return wb_fail(status, "%s", why.text);
+    if (status != WB_OK)
+        lose_file(replay, file, chunk->t_ns, why.text);
+    free(file->bytes);
+    file->bytes = NULL;
+    file->lost = true; /* further pieces are none of it */
+    return WB_OK;
+}
+
 static enum wb_status play_chunk(void *context, const struct wb_chunk *chunk)
 {
     struct replay *replay = context;
@@ -173,11 +268,15 @@ static enum wb_status play_chunk(void *context, const struct wb_chunk *chunk)
     }
     replay->counts->chunks++;
     replay->counts->bytes += chunk->n;
+    struct channel *channel = find_channel(replay, chunk->stream);
     if (!chunk->intact) {
         remark_damage(replay, chunk);
+        if (channel && channel->file)
+            lose_file(replay, channel->file, chunk->t_ns, "a piece of it is damaged");
         return WB_OK;
     }
-    struct channel *channel = find_channel(replay, chunk->stream);
+    if (channel && channel->file)
+        return play_piece(replay, channel->file, chunk);
     if (!channel || !channel->driver)
         return WB_OK;
     WB_TRY(wb_stream_memory_push(channel->stream, chunk->bytes, chunk->n));
@@ -195,7 +294,7 @@ enum wb_status wb_replay_run(struct wb_recording *recording, const struct wb_rig
                              struct wb_replay_counts *counts)
 {
     struct wb_replay_counts counted = {0};
-    struct replay replay = {.sink = sink, .rate = rate, .counts = &counted};
+    struct replay replay = {.rig = rig, .sink = sink, .rate = rate, .counts = &counted};
     replay.counting = (struct wb_sink){.context = &replay,
                                        .load = pass_load,
                                        .mocap = pass_mocap,
@@ -207,6 +306,8 @@ enum wb_status wb_replay_run(struct wb_recording *recording, const struct wb_rig
         status = wb_recording_each_chunk(recording, play_chunk, &replay);
     if (replay.interrupted)
         status = WB_OK;
+    else
+        lose_unfinished(&replay);
     close_channels(&replay);
     *counts = counted;
     return status;

@@ -10,13 +10,15 @@
 /* One reading of a load cell. `force` is as the instrument sent it, times sign and scale of the
  * rig file: not tared, no drift or delay removed. */
 struct wb_load_sample {
-    int64_t t_ns;      /* host monotonic, arrival of the read that completed the line */
-    uint64_t index;    /* counts decoded readings of this stream from 0 */
-    double force;      /* N, tension positive; NaN when not valid */
-    bool valid;        /* false: overload, underload or an error line */
-    bool unstable;     /* the instrument called it unstable; still valid */
-    bool overload;     /* over or under range: an interlock, never a number */
-    bool unit_changed; /* the unit on the line differs from the first one seen: an alarm */
+    int64_t t_ns;          /* host monotonic, arrival of the read that completed the line */
+    uint64_t index;        /* counts decoded readings of this stream from 0 */
+    double force;          /* N, tension positive; NaN when not valid */
+    bool valid;            /* false: overload, underload or an error line */
+    bool unstable;         /* the instrument called it unstable; still valid */
+    bool overload;         /* over or under range: an interlock, never a number */
+    bool unit_changed;     /* the unit on the line differs from the first one seen: an alarm */
+    bool unit_contradicts; /* the unit on the line is not the rig file's: the line's is used, and no
+                              test begins */
 };
 
 /* Marker parameter bits of NatNet (2.6 and later). */

@@ -73,6 +73,18 @@ bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_
     return false;
 }
 
+bool wb_start_check_unit(bool contradicts, const struct wb_rig *rig, const char *rig_path,
+                         char text[WB_START_CHECK_TEXT])
+{
+    if (!contradicts)
+        return true;
+    snprintf(text, WB_START_CHECK_TEXT,
+             "the load cell prints another unit than load_cell.unit: %s of %s: remove that key if "
+             "the instrument is right, or set the instrument's unit; force limits would be wrong",
+             rig->load_cell.unit, rig_path);
+    return false;
+}
+
 bool wb_start_check_markers(const struct wb_start_check *check, const struct wb_specimen *specimen,
                             char text[WB_START_CHECK_TEXT])
 {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "daq/recording_foreign.h"
 #include "daq/replay.h"
 
 #define WB_LOG_DOMAIN "survey"
@@ -54,7 +55,7 @@ static void note_alone(struct looking *looking, int i, int64_t t_ns)
     struct wb_survey_stream *const stream = &looking->survey->streams[i];
     const double all = wb_survey_seconds(stream->last_ns, t_ns);
     const double shared = looking->quiet - looking->quiet_before[i];
-    if (stream->chunks > 0 && all < 1e9 &&
+    if (!stream->is_file && stream->chunks > 0 && all < 1e9 &&
         all - shared > wb_seconds_from_ns(stream->alone_silent_ns))
         stream->alone_silent_ns = wb_ns_from_seconds(all - shared);
 }
@@ -152,13 +153,37 @@ static enum wb_status note_walk(struct wb_survey *survey, enum wb_status status)
 
 /* --- samples --- */
 
+/* What frames and lines say of those that never came. */
+struct losses {
+    struct wb_loss load, mocap;
+};
+
+static void count_load(void *context, const struct wb_load_sample *sample)
+{
+    wb_loss_add(&((struct losses *)context)->load, wb_seconds_from_ns(sample->t_ns));
+}
+
+static void count_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    wb_loss_add(&((struct losses *)context)->mocap, frame->t_device);
+}
+
+static void note_loss(struct wb_survey_stream *stream, const struct wb_loss *loss)
+{
+    stream->loss = wb_loss_counts(loss);
+    stream->is_losing = wb_loss_is_told(loss);
+}
+
 static enum wb_status decode_all(struct wb_recording *recording, struct wb_survey *survey)
 {
     /* A recording without its rig holds bytes all the same; that is told elsewhere. */
     struct wb_rig rig;
     if (!survey->has_rig || wb_replay_rig(recording, &rig) != WB_OK)
         return WB_OK;
-    struct wb_sink sink = {0};
+    struct losses losses;
+    wb_loss_init(&losses.load, false, 0.0);
+    wb_loss_init(&losses.mocap, true, 0.0);
+    struct wb_sink sink = {.context = &losses, .load = count_load, .mocap = count_mocap};
     struct wb_replay_counts counts;
     WB_TRY(note_walk(survey, wb_replay_run(recording, &rig, &sink, 0.0, &counts)));
     survey->decoded = true;
@@ -168,6 +193,10 @@ static enum wb_status decode_all(struct wb_recording *recording, struct wb_surve
     for (int i = 0; i < survey->n_streams; i++) {
         struct wb_survey_stream *stream = &survey->streams[i];
         stream->samples = samples[stream->role];
+        if (stream->role == WB_ROLE_LOAD)
+            note_loss(stream, &losses.load);
+        else if (stream->role == WB_ROLE_MOCAP)
+            note_loss(stream, &losses.mocap);
         double seconds = wb_survey_seconds(stream->first_ns, stream->last_ns);
         stream->rate = seconds > 0.0 ? (double)stream->samples / seconds : 0.0;
     }
@@ -192,7 +221,8 @@ enum wb_status wb_survey_run(struct wb_recording *recording, bool decode, struct
     int n = wb_recording_n_streams(recording);
     for (int i = 0; i < n && i < WB_SURVEY_STREAMS; i++) {
         const struct wb_recording_stream *stream = wb_recording_stream_at(recording, i);
-        survey->streams[i] = (struct wb_survey_stream){.id = stream->id, .role = stream->role};
+        survey->streams[i] = (struct wb_survey_stream){
+            .id = stream->id, .role = stream->role, .is_file = wb_recording_foreign_is(stream)};
         survey->n_streams++;
     }
     struct looking looking = {.survey = survey};
@@ -223,7 +253,7 @@ double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
 /* --- what is wrong --- */
 
 #define FILE_PROBLEMS 9
-#define STREAM_PROBLEMS 5
+#define STREAM_PROBLEMS 6
 
 static const char *plural(uint64_t n)
 {
@@ -252,6 +282,14 @@ static bool stream_problem(const struct wb_survey *survey, int which, char *text
                  stream->id, wb_seconds_from_ns(stream->alone_silent_ns),
                  wb_seconds_from_ns(survey->silence_limit_ns));
         return survey->silence_limit_ns > 0 && stream->alone_silent_ns > survey->silence_limit_ns;
+    case 4:
+        snprintf(text, size,
+                 "%s stream %d: %.2g %% of its %s never came: %" PRIu64 " in %" PRIu64
+                 " place%s, the longest of %.3g s",
+                 role, stream->id, wb_loss_share(&stream->loss) / WB_PERCENT,
+                 stream->role == WB_ROLE_MOCAP ? "frames" : "lines", stream->loss.missing,
+                 stream->loss.gaps, plural(stream->loss.gaps), stream->loss.longest_gap);
+        return stream->is_losing;
     default:
         snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s repeated or out of order", role,
                  stream->id, stream->repeated, plural(stream->repeated));

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
+#include "daq/loss.h"
 #include "daq/recording.h"
 
 #define WB_SURVEY_STREAMS 16
@@ -14,6 +15,7 @@
 struct wb_survey_stream {
     int id;
     enum wb_role role;
+    bool is_file; /* a file of another program: its pieces come at times of no meaning */
     uint64_t chunks, bytes;
     uint64_t damaged;  /* chunks whose CRC does not fit */
     uint64_t missing;  /* sequence numbers that are not there */
@@ -25,6 +27,8 @@ struct wb_survey_stream {
                                    when the recording computer stood still and read them later */
     uint64_t samples;           /* decoded; 0 unless decoding was asked for and worked */
     double rate;                /* samples/s between first and last chunk; 0 unknown */
+    struct wb_loss_counts loss; /* samples that the instrument sent and that never came */
+    bool is_losing;             /* and they are more than chance */
 };
 
 struct wb_survey {

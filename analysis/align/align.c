@@ -62,6 +62,7 @@ const struct wb_setting_table wb_align_table = {.rows = setting_rows, .n = WB_CO
 void wb_align_default_settings(struct wb_align_settings *settings)
 {
     wb_setting_fill(&wb_align_table, settings);
+    settings->rig_path = settings->specimen_path = NULL;
 }
 
 /* To 1e-9 m, N, s and rad: far below all noise, and short in the file. */

@@ -32,6 +32,10 @@ struct wb_align_settings {
     double row_rate;    /* rows a second of bench time; 0: one row a mocap frame thinned to 20/s */
     double shape_step;  /* m of deflection between stored shapes */
     double lost_steps;  /* m: a larger residual of the stage is reported as lost steps */
+    /* Paths of files that hold in place of the recording's own, where those were wrong; NULL: the
+     * recording's own. Each key that differs is warned of and listed in dataset.json. The caller
+     * keeps the texts. */
+    const char *rig_path, *specimen_path;
 };
 extern const struct wb_setting_table wb_align_table;
 
@@ -39,7 +43,7 @@ extern const struct wb_setting_table wb_align_table;
  * prints one line for all recordings. */
 #define WB_ALIGN_GAPS_TEXT "in the rows, the longest of"
 
-/* Fills in the defaults. */
+/* Fills in the defaults; the recording's own rig and specimen. */
 void wb_align_default_settings(struct wb_align_settings *settings);
 
 /* Aligns one recording. The dataset's document lists everything that was done, and under "warnings"

@@ -1,6 +1,7 @@
 /* What the parts of the alignment share: one recording on its way to a dataset.
  *
  * The order: align_recording.c decodes the recording and puts everything on the bench's clock,
+ * align_given.c tells how files that were given differ from what was recorded,
  * align_rows.c makes rows of it in the clamp's frame, compares the stage and cuts cycles,
  * align_force.c turns readings into tension and force, align_natural.c finds the natural shape, and
  * align.c, which calls them all, fills the dataset. align_report.c, which all call, writes what was
@@ -14,9 +15,10 @@
 #include <stdint.h>
 
 #include "analysis/align/align.h"
-#include "analysis/dataset/dataset.h"
 #include "analysis/align/frame.h"
 #include "analysis/align/markers.h"
+#include "analysis/dataset/dataset.h"
+#include "base/file.h"
 #include "base/json.h"
 #include "base/status.h"
 #include "daq/clock.h"
@@ -93,7 +95,8 @@ struct wb_align {
     struct wb_align_list probes;   /* struct wb_clock_probe */
     struct wb_point_cloud cloud;
     struct wb_replay_counts counts;
-    uint64_t n_invalid; /* readings that were no numbers */
+    uint64_t n_invalid;      /* readings that were no numbers */
+    bool is_losing_readings; /* of the load cell: lines that never came, more than chance */
     bool out_of_memory;
 
     /* Events. */
@@ -112,7 +115,10 @@ struct wb_align {
     const char *method;                            /* of the camera's clock */
     double camera_uncertainty;                     /* s, bench time; NaN unknown */
     double filter_delay, filter_delay_uncertainty; /* s, bench time */
-    double load_scatter; /* s, bench time: lateness of arrivals that was removed */
+    bool camera_times_given, load_times_given;     /* by files: no line is drawn through them */
+    double
+        import_uncertainty; /* s, of the lag between two files; NaN: not imported, or not known */
+    double load_scatter;    /* s, bench time: lateness of arrivals that was removed */
 
     struct wb_marker_tracks tracks;
     struct wb_bench_frame frame;
@@ -180,6 +186,23 @@ void wb_align_correct(struct wb_align *align, const struct wb_align_correction *
 
 /* Sets a number rounded to six digits: what stands in a document is for reading. */
 void wb_align_set(struct wb_json *object, const char *key, double value);
+
+/* The text of the recording's meta `key` ("rig", "specimen"), or of the file `given` where that is
+ * not NULL, into an allocated string; `origin` names where it is from in messages. */
+WB_MUST_CHECK enum wb_status wb_align_given_text(const struct wb_align *align,
+                                                 struct wb_recording *recording, const char *key,
+                                                 const char *given, char **text,
+                                                 char origin[WB_PATH]);
+
+/* Writes which keys of the files that were given differ from the recording's own into the
+ * recording's entry of dataset.json, and warns of each. */
+WB_MUST_CHECK enum wb_status wb_align_given_describe(struct wb_align *align,
+                                                     struct wb_recording *recording,
+                                                     struct wb_json *entry);
+
+/* The tare once more, from the readings that it was made of: the recorded number was read with the
+ * unit and scale of the recorded rig. */
+WB_MUST_CHECK enum wb_status wb_align_given_tare(struct wb_align *align);
 
 /* Provenance: recording, settings, specimen, rig. */
 void wb_align_describe(struct wb_align *align);

@@ -9,6 +9,9 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "daq/foreign.h"
+#include "daq/loss.h"
+#include "daq/recording_foreign.h"
 
 #define WB_LOG_DOMAIN "align"
 
@@ -119,6 +122,42 @@ static enum wb_status decode(struct wb_align *align, struct wb_recording *record
     return WB_OK;
 }
 
+/* --- what never came --- */
+
+static void note_loss(struct wb_align *align, struct wb_json *losses, const char *what,
+                      const struct wb_loss *loss)
+{
+    const struct wb_loss_counts counts = wb_loss_counts(loss);
+    struct wb_json *const object = wb_json_set_object(losses, what);
+    wb_json_set_integer(object, "received", (int64_t)counts.received);
+    wb_json_set_integer(object, "missing", (int64_t)counts.missing);
+    wb_json_set_integer(object, "gaps", (int64_t)counts.gaps);
+    wb_json_set_integer(object, "repeated", (int64_t)counts.repeated);
+    wb_json_set_integer(object, "overtaken", (int64_t)counts.overtaken);
+    wb_align_set(object, "longest_gap_s", counts.longest_gap);
+    if (wb_loss_is_told(loss))
+        wb_align_warn(
+            align, "%.2g %% of the %s never came: %llu in %llu place%s, the longest of %.3g s",
+            wb_loss_share(&counts) / WB_PERCENT, what, (unsigned long long)counts.missing,
+            (unsigned long long)counts.gaps, counts.gaps == 1 ? "" : "s", counts.longest_gap);
+}
+
+/* Before frames are put in order and readings on a line. */
+static void note_losses(struct wb_align *align)
+{
+    struct wb_loss frames, readings;
+    wb_loss_init(&frames, true, 0.0);
+    for (size_t i = 0; i < align->cloud.n_frames; i++)
+        wb_loss_add(&frames, align->cloud.frames[i].t_device);
+    wb_loss_init(&readings, false, 0.0);
+    for (size_t i = 0; i < align->readings.n; i++)
+        wb_loss_add(&readings, wb_seconds_from_ns(wb_align_readings(align)[i].t_ns));
+    struct wb_json *const losses = wb_json_set_object(align->checks, "losses");
+    note_loss(align, losses, "frames", &frames);
+    note_loss(align, losses, "readings", &readings);
+    align->is_losing_readings = wb_loss_is_told(&readings);
+}
+
 /* Imported recordings may have their probes in the table only. */
 static enum wb_status take_clock_row(void *context, const struct wb_clock_row *row)
 {
@@ -171,6 +210,8 @@ static enum wb_status take_event(void *context, const struct wb_event *event)
         align->n_lost++;
     } else if (strcmp(event->kind, "drop") == 0) {
         align->n_drops++;
+    } else if (strcmp(event->kind, "stall") == 0) {
+        wb_align_warn(align, "%.200s", event->text);
     }
     return WB_OK;
 }
@@ -201,27 +242,34 @@ static enum wb_status load_events(struct wb_align *align, struct wb_recording *r
 
 /* --- meta --- */
 
-static enum wb_status need_meta(struct wb_align *align, struct wb_recording *recording,
-                                const char *key, char **text, char origin[192])
-{
-    const enum wb_status status = wb_recording_meta(recording, key, text);
-    snprintf(origin, 192, "%s: %s", align->name, key);
-    if (status == WB_ERR_NOT_FOUND)
-        return wb_fail_to(align->why, WB_ERR_DATA, "%s: the recording has no meta '%s'",
-                          align->name, key);
-    return status;
-}
-
 static enum wb_status load_rig_and_specimen(struct wb_align *align, struct wb_recording *recording)
 {
-    char *text, origin[192];
-    WB_TRY(need_meta(align, recording, "rig", &text, origin));
+    char *text, origin[WB_PATH];
+    WB_TRY(wb_align_given_text(align, recording, "rig", align->settings.rig_path, &text, origin));
     enum wb_status status = wb_rig_parse(text, origin, &align->rig, align->why);
     free(text);
     WB_TRY(status);
-    WB_TRY(need_meta(align, recording, "specimen", &text, origin));
+    WB_TRY(wb_align_given_text(align, recording, "specimen", align->settings.specimen_path, &text,
+                               origin));
     status = wb_specimen_parse(text, origin, &align->specimen, align->why);
     free(text);
+    return status;
+}
+
+/* True when the specimen is of the wire that was recorded: its name is, where a specimen file was
+ * given. */
+static enum wb_status is_recorded_wire(const struct wb_align *align, struct wb_recording *recording,
+                                       bool *is_it)
+{
+    struct wb_specimen recorded;
+    char *text, origin[WB_PATH];
+    *is_it = true;
+    if (!align->settings.specimen_path)
+        return WB_OK;
+    WB_TRY(wb_align_given_text(align, recording, "specimen", NULL, &text, origin));
+    const enum wb_status status = wb_specimen_parse(text, origin, &recorded, align->why);
+    free(text);
+    *is_it = status == WB_OK && strcmp(recorded.wire, align->specimen.wire) == 0;
     return status;
 }
 
@@ -230,7 +278,10 @@ static enum wb_status load_rig_and_specimen(struct wb_align *align, struct wb_re
 static enum wb_status load_wire(struct wb_align *align, struct wb_recording *recording)
 {
     char *text, origin[192], path[WB_PATH];
-    const enum wb_status found = wb_recording_meta(recording, "wire", &text);
+    bool is_recorded;
+    WB_TRY(is_recorded_wire(align, recording, &is_recorded));
+    const enum wb_status found =
+        is_recorded ? wb_recording_meta(recording, "wire", &text) : WB_ERR_NOT_FOUND;
     if (found == WB_OK) {
         snprintf(origin, sizeof origin, "%s: wire", align->name);
         const enum wb_status status = wb_wire_parse(text, origin, &align->wire, align->why);
@@ -239,7 +290,14 @@ static enum wb_status load_wire(struct wb_align *align, struct wb_recording *rec
     }
     if (found != WB_ERR_NOT_FOUND)
         return found;
-    WB_TRY(wb_file_find_named(path, "wires", align->specimen.wire, NULL, NULL, align->why));
+    char named_in[WB_PATH + 32], folder[WB_PATH];
+    const char *const given = align->settings.specimen_path;
+    if (given) {
+        wb_file_folder(folder, given);
+        snprintf(named_in, sizeof named_in, "%s:%d: wire", given, align->specimen.wire_line);
+    }
+    WB_TRY(wb_file_find_named(path, "wires", align->specimen.wire, given ? folder : NULL,
+                              given ? named_in : NULL, align->why));
     return wb_wire_read(path, &align->wire, align->why);
 }
 
@@ -258,6 +316,8 @@ static void load_gravity(struct wb_align *align, struct wb_recording *recording)
 {
     char *text;
     align->gravity = align->rig.gravity;
+    if (align->settings.rig_path)
+        return;
     if (wb_recording_meta(recording, "g", &text) == WB_OK) {
         if (!wb_number_parse(text, &align->gravity))
             wb_align_warn(align, "meta 'g' is no number; gravity is taken from the rig file");
@@ -273,6 +333,39 @@ static bool says_virtual(struct wb_recording *recording)
     const bool is_virtual = strcmp(text, "true") == 0;
     free(text);
     return is_virtual;
+}
+
+/* Streams that hold a file of another program: their samples carry the file's own times. */
+static enum wb_status look_at_files(struct wb_align *align, struct wb_recording *recording)
+{
+    align->import_uncertainty = (double)NAN;
+    for (int i = 0; i < wb_recording_n_streams(recording); i++) {
+        const struct wb_recording_stream *const stream = wb_recording_stream_at(recording, i);
+        struct wb_foreign foreign;
+        if (!wb_recording_foreign_is(stream))
+            continue;
+        WB_TRY(wb_foreign_parse(&foreign, wb_recording_stream_settings(recording, i), align->why));
+        align->camera_times_given |= stream->role == WB_ROLE_MOCAP;
+        align->load_times_given |= stream->role == WB_ROLE_LOAD || foreign.channel[0] != '\0';
+        if (stream->role == WB_ROLE_LOAD)
+            align->import_uncertainty = foreign.uncertainty;
+    }
+    return WB_OK;
+}
+
+/* What the import found, into the dataset. */
+static void copy_import(struct wb_align *align, struct wb_recording *recording)
+{
+    struct wb_json *json;
+    char *text;
+    if (wb_recording_meta(recording, "import", &text) != WB_OK)
+        return;
+    struct wb_reason why = {.text = ""};
+    if (wb_json_parse_with_reason(&json, text, "import", &why) == WB_OK) {
+        wb_json_set_copy(align->checks, "import", json);
+        wb_json_destroy(json);
+    }
+    free(text);
 }
 
 static enum wb_status load_all(struct wb_align *align, struct wb_recording *recording)
@@ -292,6 +385,9 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
     copy_meta(recording, entry, "notes", "notes");
     copy_meta(recording, entry, "tool_version", "recorded_with_version");
     copy_meta(recording, entry, "tool_revision", "recorded_with_revision");
+    WB_TRY(wb_align_given_describe(align, recording, entry));
+    WB_TRY(look_at_files(align, recording));
+    copy_import(align, recording);
     WB_TRY(load_events(align, recording));
     if (!wb_recording_is_complete(recording) && !align->is_cut_short) {
         align->is_cut_short = true;
@@ -299,6 +395,9 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
                              "missing");
     }
     WB_TRY(decode(align, recording));
+    note_losses(align);
+    if (align->settings.rig_path)
+        WB_TRY(wb_align_given_tare(align));
     if (align->probes.n == 0)
         WB_TRY(wb_recording_each_clock(recording, take_clock_row, align));
     if (align->out_of_memory)
@@ -352,20 +451,30 @@ static bool choose_stamp(const struct wb_align *align, bool *on_probe_clock)
     return *on_probe_clock || 2 * n_device > align->cloud.n_frames;
 }
 
-/* Keeps the frames that have a stamp and come after all before: repeated frames and datagrams that
- * were overtaken go. A jump back by more than JUMP is a restart and stays. */
-static size_t drop_disordered(struct wb_align *align, bool on_probe_clock)
+/* Puts frames of datagrams that were overtaken in their place, and drops those without a stamp and
+ * repeated ones. A jump back by more than JUMP is a restart: what follows it stays behind it. */
+static size_t order_frames(struct wb_align *align, bool on_probe_clock)
 {
     struct wb_point_frame *const frames = align->cloud.frames;
     const double back = JUMP * align->rig.time_scale;
-    double last = -HUGE_VAL;
     size_t n = 0;
     for (size_t i = 0; i < align->cloud.n_frames; i++) {
-        const double stamp = stamp_of(&frames[i], on_probe_clock);
-        if (!isfinite(stamp) || (stamp <= last && stamp > last - back))
+        const struct wb_point_frame frame = frames[i];
+        const double stamp = stamp_of(&frame, on_probe_clock);
+        if (!isfinite(stamp))
             continue;
-        last = stamp;
-        frames[n++] = frames[i];
+        const double last = n > 0 ? stamp_of(&frames[n - 1], on_probe_clock) : -HUGE_VAL;
+        size_t place = n;
+        if (stamp > last - back) {
+            while (place > 0 && stamp_of(&frames[place - 1], on_probe_clock) > stamp &&
+                   stamp_of(&frames[place - 1], on_probe_clock) < stamp + back)
+                place--;
+        }
+        if (place > 0 && stamp_of(&frames[place - 1], on_probe_clock) == stamp)
+            continue;
+        memmove(frames + place + 1, frames + place, (n - place) * sizeof *frames);
+        frames[place] = frame;
+        n++;
     }
     const size_t dropped = align->cloud.n_frames - n;
     align->cloud.n_frames = n;
@@ -477,13 +586,21 @@ static void drop_backward(struct wb_align *align)
     align->cloud.n_frames = n;
 }
 
+static void use_file_times(struct wb_align *align)
+{
+    for (size_t i = 0; i < align->cloud.n_frames; i++)
+        align->frame_t[i] = bench_time(align, align->cloud.frames[i].t_ns);
+    align->method = "times of the file";
+    align->camera_uncertainty = align->import_uncertainty * align->rig.time_scale;
+}
+
 static enum wb_status map_cameras(struct wb_align *align)
 {
     bool on_probe_clock;
     const bool has_stamps = choose_stamp(align, &on_probe_clock);
     size_t n_dropped = 0;
     if (has_stamps)
-        n_dropped = drop_disordered(align, on_probe_clock);
+        n_dropped = order_frames(align, on_probe_clock);
     const size_t n = align->cloud.n_frames;
     struct stamps stamps = {
         .device = malloc((n + 1) * sizeof *stamps.device),
@@ -495,6 +612,8 @@ static enum wb_status map_cameras(struct wb_align *align)
     enum wb_status status = WB_OK;
     if (!stamps.device || !stamps.host_ns || !align->frame_t) {
         status = wb_fail_to(align->why, WB_ERR_MEMORY, "out of memory for %zu frames", n);
+    } else if (align->camera_times_given) {
+        use_file_times(align);
     } else if (!has_stamps) {
         use_arrivals(align);
     } else {
@@ -515,8 +634,9 @@ static enum wb_status map_cameras(struct wb_align *align)
 
 /* --- the load cell --- */
 
-/* Readings that were asked for one by one keep their arrival; a stream's arrivals are put on a
- * line over the readings' number, which takes out the host's jitter. */
+/* Readings that were asked for one by one keep their arrival, and so do those of a stream that lost
+ * many, whose number no longer tells their time. The arrivals of any other stream are put on a line
+ * over the readings' number, which takes out the host's jitter. */
 static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, double *number,
                                  size_t *n_used)
 {
@@ -545,19 +665,23 @@ static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, doubl
     return WB_OK;
 }
 
-static void describe_load(struct wb_align *align, bool polled, size_t n_segments)
+static void describe_load(struct wb_align *align, bool by_arrival, size_t n_segments)
 {
     const struct wb_align_reading *const readings = wb_align_readings(align);
     const size_t n = align->readings.n;
     const double span = n > 1 ? readings[n - 1].t - readings[0].t : 0.0;
     struct wb_json *const object = wb_json_set_object(align->checks, "load_cell_stream");
-    wb_json_set_text(object, "method", polled ? "arrival of each answer" : "lower envelope");
+    wb_json_set_text(object, "method",
+                     align->load_times_given ? "times of the file"
+                     : by_arrival            ? "arrival of each reading"
+                                             : "lower envelope");
     wb_json_set_integer(object, "readings", (int64_t)n);
     wb_json_set_integer(object, "invalid_readings", (int64_t)align->n_invalid);
     wb_json_set_integer(object, "segments", (int64_t)n_segments);
     if (span > 0.0)
         wb_align_set(object, "rate_per_s", (double)(n - 1) / span);
-    wb_align_set(object, "arrival_scatter_ms", polled ? (double)NAN : align->load_scatter * 1e3);
+    wb_align_set(object, "arrival_scatter_ms",
+                 by_arrival ? (double)NAN : align->load_scatter * 1e3);
 }
 
 static void drop_invalid_readings(struct wb_align *align)
@@ -576,9 +700,13 @@ static enum wb_status map_load(struct wb_align *align)
 {
     struct wb_align_reading *const readings = wb_align_readings(align);
     const size_t n = align->readings.n;
-    const bool polled = align->rig.load_cell.poll_command[0] != '\0';
+    /* Times of a file, and of readings that were asked for one by one or of which many are lost,
+     * are taken as they are. */
+    const bool by_arrival = align->load_times_given ||
+                            align->rig.load_cell.poll_command[0] != '\0' ||
+                            align->is_losing_readings;
     size_t n_segments = 1;
-    if (polled) {
+    if (by_arrival) {
         for (size_t i = 0; i < n; i++)
             readings[i].t = bench_time(align, readings[i].t_ns);
     } else {
@@ -593,9 +721,11 @@ static enum wb_status map_load(struct wb_align *align)
             return wb_fail_to(align->why, status,
                               "%s: the load cell's readings cannot be put on a clock", align->name);
     }
-    describe_load(align, polled, n_segments);
+    describe_load(align, by_arrival, n_segments);
     align->filter_delay = align->rig.load_cell.filter_delay;
-    align->filter_delay_uncertainty = align->rig.load_cell.filter_delay_uncertainty;
+    /* A lag found by what both files show holds the filter's delay, whatever it is. */
+    align->filter_delay_uncertainty =
+        isfinite(align->import_uncertainty) ? 0.0 : align->rig.load_cell.filter_delay_uncertainty;
     for (size_t i = 0; i < n; i++)
         readings[i].t -= align->filter_delay;
     drop_invalid_readings(align);

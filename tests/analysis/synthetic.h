@@ -52,14 +52,20 @@ struct syn {
     double gap_from, gap_until;   /* load cell silent */
     double busy_from, busy_until; /* the host takes nothing; then all that waited at once */
     double corrupt;               /* part of the chunks that get wrong bytes */
-    double restart_at;            /* s: the server's clock restarts then; 0: never */
-    double sign;                  /* of the load cell; 0 means 1 */
+    double vanish;                /* part of the frames and lines that never arrive */
+    bool overtaken;               /* each tenth frame comes after the next one, and twice */
+    uint64_t vanished_frames, vanished_lines; /* so many did not */
+    double restart_at;                        /* s: the server's clock restarts then; 0: never */
+    double sign;                              /* of the load cell; 0 means 1 */
     /* The bench. */
     double time_scale; /* 0 means 1 */
     int version_major, version_minor;
     double plane_angle; /* rad */
     bool z_up, no_motion;
     bool polled; /* the load cell is asked for each reading */
+    /* What the recording says wrongly. */
+    double scale;         /* of readings in the rig; 0: none, which is right */
+    const char *specimen; /* NULL: the right one */
 
     /* Work. */
     uint64_t seed;
@@ -218,6 +224,14 @@ static inline void syn_chunk(struct syn *syn, struct wb_recording *recording, in
         abort();
 }
 
+/* Whether a frame or line is lost; draws nothing where none is. */
+static inline bool syn_vanishes(struct syn *syn, uint64_t *count)
+{
+    const bool gone = syn->vanish > 0.0 && syn_uniform(syn) < syn->vanish;
+    *count += gone;
+    return gone;
+}
+
 static inline void syn_to_lab(const struct syn *syn, double x, double y, double travel,
                               float position[3], double noise[3])
 {
@@ -297,8 +311,12 @@ static inline void syn_write_mocap(struct syn *syn, struct wb_recording *recordi
         const double u = syn_uniform(syn);
         syn_frame(syn, &frame, i, t, &state);
         size = wb_natnet_encode_frame(bytes, sizeof bytes, version, &frame);
-        syn_chunk(syn, recording, stream, &seq,
-                  syn_host(syn, t) + (int64_t)(1e6 * (0.3 + 2.0 * u * u * u)), bytes, size);
+        const bool gone = i > 0 && i < n - 1 && syn_vanishes(syn, &syn->vanished_frames);
+        const int64_t late_ns = syn->overtaken && i % 10 == 9 ? 12000000 : 0;
+        for (int k = 0; k < (late_ns > 0 ? 2 : 1) && !gone; k++)
+            syn_chunk(syn, recording, stream, &seq,
+                      syn_host(syn, t) + late_ns + (int64_t)(1e6 * (0.3 + 2.0 * u * u * u)), bytes,
+                      size);
         if (syn->version_major >= 3 && i % 60 == 0) {
             const int64_t sent = syn_host(syn, t + 1e-3);
             const int64_t there = (int64_t)(1e5 * (1.0 + syn_uniform(syn)));
@@ -333,6 +351,8 @@ static inline void syn_write_load(struct syn *syn, struct wb_recording *recordin
         const double u = syn_uniform(syn);
         if (t >= syn->gap_from && t < syn->gap_until)
             continue;
+        if (i > 0 && i < n - 1 && syn_vanishes(syn, &syn->vanished_lines))
+            continue;
         syn_chunk(syn, recording, stream, &seq, syn_host(syn, t) + (int64_t)(2e6 * u * u), line,
                   (size_t)length);
     }
@@ -366,7 +386,8 @@ static inline void syn_write_events(const struct syn *syn, struct wb_recording *
 {
     char text[160];
     snprintf(text, sizeof text, "{\"force_N\": %.9g, \"samples\": 160, \"sd_N\": %.9g}",
-             syn->sign * 3e-3 + (syn->loaded_tare ? SYN_COUNTERWEIGHT * SYN_GRAVITY : 0.0),
+             (syn->scale != 0.0 ? syn->scale : 1.0) *
+                 (syn->sign * 3e-3 + (syn->loaded_tare ? SYN_COUNTERWEIGHT * SYN_GRAVITY : 0.0)),
              syn->force_noise);
     if (!syn->no_tare)
         syn_event(syn, recording, -0.01, "tare", text);
@@ -391,10 +412,13 @@ static const char syn_specimen[] = "wire: synthetic\n"
                                    "marker_offset_mm: 1.0\n"
                                    "marker_offset_uncertainty_mm: 0.05\n";
 
-static inline void syn_write_meta(const struct syn *syn, struct wb_recording *recording)
+/* The rig file of the bench, with that scale of readings (0: none). */
+static inline void syn_rig(const struct syn *syn, double scale, char rig[2048])
 {
-    char rig[2048];
-    snprintf(rig, sizeof rig,
+    char scaled[48] = "";
+    if (scale != 0.0)
+        snprintf(scaled, sizeof scaled, "  scale: %g\n", scale);
+    snprintf(rig, 2048,
              "name: synthetic bench\n"
              "load_cell:\n"
              "  address: memory:load\n"
@@ -405,7 +429,7 @@ static inline void syn_write_meta(const struct syn *syn, struct wb_recording *re
              "  filter_delay_uncertainty_ms: 5\n"
              "  noise_mg: 10\n"
              "  tare: %s\n"
-             "%s"
+             "%s%s"
              "mocap:\n"
              "  address: memory:mocap\n"
              "  protocol: natnet\n"
@@ -424,10 +448,17 @@ static inline void syn_write_meta(const struct syn *syn, struct wb_recording *re
              "virtual: true\n"
              "time_scale: %g\n",
              SYN_FILTER * 1e3, syn->loaded_tare ? "counterweight" : "unloaded",
-             syn->polled ? "  poll_command: \"W\\r\"\n  poll_period_ms: 12.5\n" : "",
+             syn->polled ? "  poll_command: \"W\\r\"\n  poll_period_ms: 12.5\n" : "", scaled,
              syn->z_up ? 'z' : 'y', syn->time_scale);
+}
+
+static inline void syn_write_meta(const struct syn *syn, struct wb_recording *recording)
+{
+    char rig[2048];
+    syn_rig(syn, syn->scale, rig);
     if (wb_recording_set_meta(recording, "rig", rig) != WB_OK ||
-        wb_recording_set_meta(recording, "specimen", syn_specimen) != WB_OK ||
+        wb_recording_set_meta(recording, "specimen",
+                              syn->specimen ? syn->specimen : syn_specimen) != WB_OK ||
         wb_recording_set_meta(recording, "wire", syn_wire) != WB_OK ||
         wb_recording_set_meta(recording, "g", "9.80665") != WB_OK ||
         wb_recording_set_meta(recording, "virtual", "true") != WB_OK ||

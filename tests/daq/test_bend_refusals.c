@@ -70,6 +70,21 @@ static void a_stray_reflection_does_not_hurt(void **state)
     assert_int_equal(wb_bend_test_close(test, NULL), WB_OK);
 }
 
+/* In grams the rig file would allow a thousand times the force. */
+static void a_unit_that_contradicts_the_rig_file_is_refused(void **state)
+{
+    struct fixture *const fixture = *state;
+    char command[256];
+    snprintf(command, sizeof command, "sed -i 's/^  noise_mg: 10/  unit: g\\n&/' %s", fixture->rig);
+    assert_int_equal(system(command), 0);
+    fixture->bench->other_unit = true;
+    assert_refused(fixture, "prints another unit than load_cell.unit: g", true);
+    unlink(fixture->output);
+    /* Within the cell's range as well. */
+    fixture->bench->force_mg = 0;
+    assert_refused(fixture, "prints another unit than load_cell.unit: g", true);
+}
+
 static void a_loaded_zero_is_refused(void **state)
 {
     struct fixture *const fixture = *state;
@@ -192,6 +207,7 @@ int main(void)
         TEST(a_silent_stage_is_told),
         TEST(a_missing_marker_is_named),
         TEST(a_stray_reflection_does_not_hurt),
+        TEST(a_unit_that_contradicts_the_rig_file_is_refused),
         TEST(a_loaded_zero_is_refused),
         TEST(a_stage_in_alarm_or_on_hold_is_refused_with_the_way_out),
         TEST(a_tare_with_the_counterweight_adds_its_weight),

@@ -264,11 +264,15 @@ static void a_stall_of_our_own_is_not_taken_for_silence(void **state)
     fake_write_rig(fixture->bench, fixture->rig, 40.0, 10.0);
     open_and_get_down(fixture, &test);
     /* Longer than the stage, which is asked for its reports, may be silent. */
-    usleep(800000);
+    usleep(1200000);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     if (result.end != WB_SEQUENCE_DONE)
         fail_msg("ended early: %s", result.text);
+    /* But the stage went on unwatched, and that is told. */
+    read_events(fixture);
+    if (!strstr(fixture->events, "stall: the recorder stood still for "))
+        fail_msg("no stall in: %s", fixture->events);
 }
 
 struct sleeper {

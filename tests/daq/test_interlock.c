@@ -97,6 +97,19 @@ static void unit_change_trips(void **state)
     assert_int_equal(interlock.reason, WB_INTERLOCK_UNIT);
 }
 
+static void a_unit_that_contradicts_trips_unless_something_is_to_be_freed(void **state)
+{
+    (void)state;
+    struct wb_interlock interlock = armed();
+    struct wb_load_sample sample = reading(0.01, 11 * S);
+    sample.unit_contradicts = true;
+    interlock.settings.overload_allowed = true;
+    assert_false(wb_interlock_load(&interlock, &sample));
+    interlock.settings.overload_allowed = false;
+    assert_true(wb_interlock_load(&interlock, &sample));
+    assert_int_equal(interlock.reason, WB_INTERLOCK_UNIT);
+}
+
 static void travel_is_counted_from_the_start_and_downwards(void **state)
 {
     (void)state;
@@ -317,6 +330,7 @@ int main(void)
         cmocka_unit_test(the_cell_saying_overload_trips_without_a_number),
         cmocka_unit_test(a_reading_that_is_not_a_number_trips),
         cmocka_unit_test(unit_change_trips),
+        cmocka_unit_test(a_unit_that_contradicts_trips_unless_something_is_to_be_freed),
         cmocka_unit_test(travel_is_counted_from_the_start_and_downwards),
         cmocka_unit_test(alarm_and_unasked_hold_trip),
         cmocka_unit_test(silence_trips_at_its_expiry_and_not_before),

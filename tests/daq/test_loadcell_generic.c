@@ -94,17 +94,23 @@ static void change_of_unit_is_an_alarm(void **state)
     free(driver);
 }
 
-static void change_of_unit_under_a_fixed_unit_is_invalid(void **state)
+static void a_unit_that_contradicts_the_rig_file_is_believed_and_told_once(void **state)
 {
     (void)state;
     struct collect collect = {0};
     const struct wb_rig rig = rig_of("g");
     void *const driver = collect_open(&wb_loadcell_generic, &rig);
-    feed(driver, 0, "\n1 g\n0.002 kg\n", &collect);
-    assert_int_equal(collect.n_load, 2);
-    assert_true(collect.load[0].valid);
-    assert_true(collect.load[1].unit_changed && !collect.load[1].valid);
-    assert_true(isnan(collect.load[1].force));
+    feed(driver, 0, "\n1 g\n2\n0.002 kg\n0.003\n0.031 kg\n", &collect);
+    assert_int_equal(collect.n_load, 5);
+    assert_false(collect.load[0].unit_contradicts || collect.load[1].unit_contradicts);
+    for (int i = 2; i < 4; i++) {
+        assert_true(collect.load[i].unit_contradicts && collect.load[i].valid);
+        assert_close(collect.load[i].force, i * 1e-3 * 9.81, 1e-16);
+    }
+    /* The cell's range is watched in the unit that it prints. */
+    assert_true(collect.load[4].overload && !collect.load[4].valid);
+    assert_non_null(strstr(collect_text(&collect, "unit"), "kg"));
+    assert_int_equal(collect_count(&collect, "unit"), 2); /* the change, the contradiction */
     free(driver);
 }
 
@@ -236,7 +242,7 @@ int main(void)
         cmocka_unit_test(first_partial_line_is_dropped_and_told),
         cmocka_unit_test(overload_is_an_invalid_sample_and_one_remark),
         cmocka_unit_test(change_of_unit_is_an_alarm),
-        cmocka_unit_test(change_of_unit_under_a_fixed_unit_is_invalid),
+        cmocka_unit_test(a_unit_that_contradicts_the_rig_file_is_believed_and_told_once),
         cmocka_unit_test(readings_without_any_unit_are_refused),
         cmocka_unit_test(garbage_is_counted_without_a_flood_of_remarks),
         cmocka_unit_test(bytes_before_settling_are_ignored),

@@ -207,9 +207,22 @@ static void force_is_scaled_shifted_and_signed(void **state)
     const struct wb_line_reading reading = decode("10 g");
     assert_true(wb_line_force(&reading, &cell, 9.80665, &force));
     assert_close(force, -(0.5 * 10.0 + 2.0) * 9.80665e-3, 1e-15);
-    strcpy(cell.unit, "mN"); /* wins over the line's */
+    /* The rig file's unit is for lines without one, or with one that nobody knows. */
+    assert_false(wb_line_unit_contradicts(&reading, &cell));
+    strcpy(cell.unit, "mN");
     assert_true(wb_line_force(&reading, &cell, 9.80665, &force));
+    assert_close(force, -7.0 * 9.80665e-3, 1e-15);
+    assert_true(wb_line_unit_contradicts(&reading, &cell));
+    const struct wb_line_reading without = decode("10"), unknown = decode("10 pcs");
+    assert_true(wb_line_force(&without, &cell, 9.80665, &force));
     assert_close(force, -7e-3, 1e-15);
+    assert_true(wb_line_force(&unknown, &cell, 9.80665, &force));
+    assert_close(force, -7e-3, 1e-15);
+    assert_false(wb_line_unit_contradicts(&without, &cell));
+    assert_false(wb_line_unit_contradicts(&unknown, &cell));
+    /* One force by two names. */
+    strcpy(cell.unit, "gf");
+    assert_false(wb_line_unit_contradicts(&reading, &cell));
     const struct wb_line_reading bare = decode("10");
     assert_false(wb_line_force(&bare, &plain, 9.80665, &force));
 }

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
+#include "daq/survey.h"
 #include "tests/analysis/synthetic.h"
 #include "tests/messages.h"
 #include "tests/own_folder.h"
@@ -408,6 +409,69 @@ static void a_silent_load_cell_leaves_a_gap(void **state)
         assert_false(dataset.rows[i].t > 10.1 && dataset.rows[i].t < 12.8);
 }
 
+/* What aligning says was lost of frames or readings. */
+static double loss(const char *what, const char *key)
+{
+    double value;
+    const struct wb_json *const losses =
+        wb_json_get(wb_json_get(wb_json_get(dataset.document, "checks"), "losses"), what);
+    return wb_json_get_number(losses, key, &value) ? value : (double)NAN;
+}
+
+/* What verify finds from the data alone: no sequence number is missing. */
+static void assert_problem(const char *path, const char *words)
+{
+    struct wb_recording *recording;
+    struct wb_survey survey;
+    char text[256], all[2048] = "";
+    assert_int_equal(wb_recording_open(&recording, path), WB_OK);
+    assert_int_equal(wb_survey_run(recording, true, &survey), WB_OK);
+    assert_int_equal(wb_recording_close(recording), WB_OK);
+    for (int at = 0; wb_survey_problem(&survey, &at, text, sizeof text);) {
+        if (strstr(text, words))
+            return;
+        strncat(all, text, sizeof all - strlen(all) - 1);
+    }
+    fail_msg("no '%s' in: %s", words, all);
+}
+
+static void frames_and_lines_that_never_came_are_counted(void **state)
+{
+    (void)state;
+    align();
+    assert_true(loss("frames", "missing") == 0.0);
+    assert_true(loss("readings", "missing") == 0.0);
+    char path[WB_PATH];
+    syn_default(&syn);
+    syn.vanish = 0.3;
+    record(path);
+    assert_int_equal(run(path, NULL), WB_OK);
+    assert_true(loss("frames", "missing") == (double)syn.vanished_frames);
+    assert_close(loss("readings", "missing"), (double)syn.vanished_lines,
+                 0.03 * (double)syn.vanished_lines);
+    assert_true(warns("% of the frames never came") && warns("% of the readings never came"));
+    assert_true_to_bench();
+    assert_problem(path, "mocap stream 1: 30 % of its frames never came");
+    assert_problem(path, "load stream 0: 30 % of its lines never came");
+}
+
+static void overtaken_and_repeated_frames_are_put_in_order(void **state)
+{
+    (void)state;
+    align();
+    const double rows = (double)dataset.n_rows, frames = loss("frames", "received");
+    syn_default(&syn);
+    syn.overtaken = true;
+    align();
+    assert_true(loss("frames", "missing") == 0.0);
+    assert_true(loss("frames", "received") == frames);
+    assert_close(loss("frames", "overtaken"), frames / 10.0, 1.0);
+    assert_close(loss("frames", "repeated"), frames / 10.0, 1.0);
+    assert_false(warns(NULL));
+    assert_true((double)dataset.n_rows == rows);
+    assert_true_to_bench();
+}
+
 static void servers_without_echo_and_restarted_ones_serve(void **state)
 {
     (void)state;
@@ -476,6 +540,120 @@ static void polled_readings_keep_their_arrival(void **state)
     align();
     assert_true_to_bench();
     assert_true(isnan(check("load_cell_stream", "arrival_scatter_ms")));
+}
+
+/* --- with files that correct the recording --- */
+
+static void write_text(char path[WB_PATH], const char *name, const char *text)
+{
+    snprintf(path, WB_PATH, "%s/%s", folder, name);
+    assert_int_equal(wb_file_write(path, text, strlen(text)), WB_OK);
+}
+
+static enum wb_status run_corrected(const char *path, const char *rig, const char *specimen,
+                                    struct wb_reason *why)
+{
+    struct wb_align_settings settings;
+    wb_align_default_settings(&settings);
+    settings.rig_path = rig;
+    settings.specimen_path = specimen;
+    wb_dataset_release(&dataset);
+    return wb_align_run(&dataset, path, &settings, why);
+}
+
+/* What dataset.json says of key `key` of the corrected rig or specimen. */
+static void assert_difference(const char *what, const char *key, const char *recorded,
+                              const char *given)
+{
+    const struct wb_json *const entry =
+        wb_json_item(wb_json_get(dataset.document, "recordings"), 0);
+    const struct wb_json *const list =
+        wb_json_get(wb_json_get(wb_json_get(entry, "corrected"), what), "differences");
+    const char *text;
+    for (size_t i = 0; i < wb_json_length(list); i++) {
+        const struct wb_json *const item = wb_json_item(list, i);
+        assert_true(wb_json_get_text(item, "key", &text));
+        if (strcmp(text, key) != 0)
+            continue;
+        assert_true(wb_json_get_text(item, "recorded", &text));
+        assert_string_equal(text, recorded);
+        assert_true(wb_json_get_text(item, "given", &text));
+        assert_string_equal(text, given);
+        return;
+    }
+    fail_msg("no difference in '%s' of %zu", key, wb_json_length(list));
+}
+
+static void a_specimen_of_wrong_length_is_mended_afterwards(void **state)
+{
+    (void)state;
+    char path[WB_PATH], right[WB_PATH];
+    syn.specimen = "wire: synthetic\n"
+                   "length_mm: 100\n"
+                   "sample: 2\n"
+                   "markers_mm: [0, 16.7, 33.3, 50, 66.7, 83.3, 100]\n"
+                   "marker_offset_mm: 1.0\n"
+                   "marker_offset_uncertainty_mm: 0.050\n";
+    record(path);
+    assert_int_equal(run(path, NULL), WB_ERR_DATA);
+    write_text(right, "right.yaml", syn_specimen);
+    assert_int_equal(run_corrected(path, NULL, right, NULL), WB_OK);
+    assert_true_to_bench();
+    assert_close(dataset.info.length, SYN_LENGTH, 1e-12);
+    assert_difference("specimen", "length_mm", "100", "85");
+    assert_difference("specimen", "markers_mm", "[0, 16.7, 33.3, 50, 66.7, 83.3, 100]",
+                      "[0, 14.2, 28.3, 42.5, 56.7, 70.8, 85]");
+    assert_true(warns("specimen corrected: length_mm is 85 in place of the recorded 100"));
+    /* 0.05 and 0.050 are one number. */
+    assert_false(warns("uncertainty"));
+}
+
+static void a_wrong_scale_of_the_load_cell_is_mended_with_its_tare(void **state)
+{
+    (void)state;
+    char path[WB_PATH], right[WB_PATH], rig[2048];
+    syn.scale = 0.5;
+    record(path);
+    syn_rig(&syn, 0.0, rig);
+    write_text(right, "right-rig.yaml", rig);
+    assert_int_equal(run_corrected(path, right, NULL, NULL), WB_OK);
+    assert_true_to_bench();
+    assert_close(correction(&dataset, "tare", "value_mN"), 3.0, 0.05);
+    assert_difference("rig", "load_cell.scale", "0.5", "none");
+    assert_true(warns("rig corrected: load_cell.scale is none in place of the recorded 0.5"));
+}
+
+static void a_virtual_recording_stays_one_whatever_corrects_it(void **state)
+{
+    (void)state;
+    char path[WB_PATH], right[WB_PATH], rig[2048];
+    record(path);
+    syn_rig(&syn, 0.0, rig);
+    char *const flag = strstr(rig, "virtual: true\n");
+    assert_non_null(flag);
+    flag[0] = '\0';
+    write_text(right, "no-longer-virtual.yaml", rig);
+    assert_int_equal(run_corrected(path, right, NULL, NULL), WB_OK);
+    assert_true(dataset.info.is_virtual);
+    assert_difference("rig", "virtual", "true", "none");
+}
+
+static void files_that_correct_are_read_like_any(void **state)
+{
+    (void)state;
+    char path[WB_PATH], wrong[WB_PATH];
+    struct wb_reason why = {.text = ""};
+    record(path);
+    assert_int_equal(run_corrected(path, "/nonexistent/rig.yaml", NULL, &why), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(why.text, "/nonexistent/rig.yaml"));
+    write_text(wrong, "wrong.yaml", "wire: synthetic\nlength_mm: many\n");
+    assert_int_equal(run_corrected(path, NULL, wrong, &why), WB_ERR_FORMAT);
+    assert_non_null(strstr(why.text, "wrong.yaml:2: length_mm"));
+    write_text(wrong, "other-wire.yaml",
+               "wire: no-such-wire\nlength_mm: 85\nsample: 2\n"
+               "markers_mm: [0, 14.2, 28.3, 42.5, 56.7, 70.8, 85]\nmarker_offset_mm: 1.0\n");
+    assert_int_equal(run_corrected(path, NULL, wrong, &why), WB_ERR_NOT_FOUND);
+    assert_non_null(strstr(why.text, "other-wire.yaml:1: wire"));
 }
 
 static void what_cannot_serve_is_refused_with_the_reason(void **state)
@@ -587,12 +765,18 @@ int main(void)
         TEST(occlusions_strays_and_new_ids_leave_gaps_only),
         TEST(rows_beside_a_loss_of_the_clamp_are_right),
         TEST(a_silent_load_cell_leaves_a_gap),
+        TEST(frames_and_lines_that_never_came_are_counted),
+        TEST(overtaken_and_repeated_frames_are_put_in_order),
         TEST(servers_without_echo_and_restarted_ones_serve),
         TEST(the_clock_is_mapped_by_the_probes),
         TEST(a_scaled_bench_keeps_its_own_time),
         TEST(cameras_may_stand_anyhow),
         TEST(a_busy_host_does_no_harm),
         TEST(polled_readings_keep_their_arrival),
+        TEST(a_specimen_of_wrong_length_is_mended_afterwards),
+        TEST(a_wrong_scale_of_the_load_cell_is_mended_with_its_tare),
+        TEST(a_virtual_recording_stays_one_whatever_corrects_it),
+        TEST(files_that_correct_are_read_like_any),
         TEST(what_cannot_serve_is_refused_with_the_reason),
         TEST(what_is_lost_is_told_with_the_reason),
         TEST(wrong_bytes_never_crash_it),
