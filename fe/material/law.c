@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/units.h"
 #include "fe/material/hardening.h"
 #include "fe/material/law_private.h"
 
@@ -239,4 +240,22 @@ const char *wb_law_rule_name(const struct wb_law *law)
     return law->isotropic_share == 1.0   ? "isotropic"
            : law->isotropic_share == 0.0 ? "kinematic"
                                          : "mixed";
+}
+
+void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law)
+{
+    const struct wb_material *const m = &law->material;
+    if (law->form == WB_LAW_LUDWIK)
+        wb_text_append(text, "E %.4g MPa, sigma_Y %.4g MPa, K %.4g MPa, n %.3g",
+                       m->youngs_modulus / WB_MPA, m->yield_stress / WB_MPA,
+                       m->strength_coefficient / WB_MPA, m->hardening_exponent);
+    for (int i = 0; i < law->n_parts; i++)
+        wb_text_append(text, "%s%.4g", i == 0 ? "moduli " : ", ", law->parts[i].modulus / WB_MPA);
+    const char *before = " MPa, yielding at strains ";
+    for (int i = 0; i < law->n_parts && isfinite(law->parts[i].yield_strain); i++) {
+        wb_text_append(text, "%s%.2e", before, law->parts[i].yield_strain);
+        before = ", ";
+    }
+    if (law->isotropic_share > 0.0 && law->isotropic_share < 1.0)
+        wb_text_append(text, "; isotropic share %.2f", law->isotropic_share);
 }

@@ -24,6 +24,7 @@
 
 #include "base/reason.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "fe/material/material.h"
 
 enum wb_law_form {
@@ -85,5 +86,9 @@ double wb_law_virgin_stress(const struct wb_law *law, double strain, double *tan
 /* "ludwik" or "parallel"; "isotropic", "kinematic" or "mixed". */
 const char *wb_law_form_name(enum wb_law_form form);
 const char *wb_law_rule_name(const struct wb_law *law);
+
+/* Appends the law's numbers in one line of words: "E 4527 MPa, sigma_Y 4.52 MPa, K 1325 MPa, n
+ * 0.9", or the parts' moduli and yield strains, and the isotropic share of a mixed rule. */
+void wb_law_append_numbers(struct wb_text *text, const struct wb_law *law);
 
 #endif

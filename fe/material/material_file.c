@@ -7,7 +7,7 @@
 #include "fe/material/hardening.h"
 
 enum {
-    WITHOUT_PARAMETERS = 9 /* keys of a file */
+    WITHOUT_PARAMETERS = 11 /* keys of a file */
 };
 
 /* Which of the optional keys were given. */
@@ -56,6 +56,39 @@ static enum wb_status check(const struct wb_config_node *root, const struct give
     return given->yield ? check_parameters(root, given, law) : WB_OK;
 }
 
+/* Intervals of the numbers, each [least, most]. */
+static enum wb_status read_intervals(const struct wb_config_node *map,
+                                     struct wb_material_file *file)
+{
+    static const struct {
+        const char *key;
+        double unit;
+    } numbers[WB_MATERIAL_NUMBERS] = {
+        {"youngs_modulus_MPa", WB_MPA},
+        {"yield_stress_MPa", WB_MPA},
+        {"strength_coefficient_MPa", WB_MPA},
+        {"hardening_exponent", 1.0},
+    };
+    const struct wb_config_node *nodes[WB_MATERIAL_NUMBERS];
+    struct wb_config_key keys[WB_MATERIAL_NUMBERS];
+    for (int i = 0; i < WB_MATERIAL_NUMBERS; i++) {
+        const struct wb_config_key key = WB_CONFIG_OPTIONAL_NODE(numbers[i].key, &nodes[i]);
+        keys[i] = key;
+    }
+    WB_TRY(wb_config_map(map, keys, WB_MATERIAL_NUMBERS));
+    for (int i = 0; i < WB_MATERIAL_NUMBERS; i++) {
+        const struct wb_config_key key =
+            WB_CONFIG_NUMBER(numbers[i].key, NULL, numbers[i].unit, 0.0, 1e8);
+        int n;
+        if (!nodes[i])
+            continue;
+        WB_TRY(wb_config_numbers(nodes[i], &key, 2, 2, file->interval[i], &n));
+        if (!(file->interval[i][1] >= file->interval[i][0]))
+            return wb_config_refuse(map, numbers[i].key, "expected the least first");
+    }
+    return WB_OK;
+}
+
 static enum wb_status read_root(const struct wb_config_node *root, struct wb_material_file *file)
 {
     struct wb_material *const m = &file->material;
@@ -63,6 +96,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_mat
     /* The laws that yield, by name; the first is that of files that name none. */
     const char *names[WB_HARDENING_LAWS + 1] = {NULL};
     enum wb_hardening laws[WB_HARDENING_LAWS] = {0};
+    const struct wb_config_node *intervals = NULL;
     int hardening = 0, n_laws = 0;
     struct wb_config_key keys[WITHOUT_PARAMETERS + WB_HARDENING_PARAMETERS] = {
         WB_CONFIG_TEXT("name", file->name),
@@ -74,6 +108,8 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_mat
         WB_CONFIG_NUMBER("density_g_cm3", &file->density, WB_G_PER_CM3, 1e-3, 30.0),
         WB_CONFIG_OPTIONAL_NUMBER("thickness_of_two_layers_mm", &file->thickness, WB_MM, 1e-3,
                                   10.0),
+        WB_CONFIG_OPTIONAL_TEXT("origin", file->origin),
+        WB_CONFIG_OPTIONAL_NODE("intervals", &intervals),
         WB_CONFIG_OPTIONAL_NUMBER("yield_stress_MPa", &m->yield_stress, WB_MPA, 1e-6, 1e6),
         WB_CONFIG_OPTIONAL_CHOICE("hardening", &hardening, names),
     };
@@ -96,7 +132,11 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_mat
     m->poissons_ratio = (double)NAN;
     m->hardening_exponent = 1.0;
 
+    for (int i = 0; i < WB_MATERIAL_NUMBERS; i++)
+        file->interval[i][0] = file->interval[i][1] = (double)NAN;
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
+    if (intervals)
+        WB_TRY(read_intervals(intervals, file));
     WB_TRY(check(root, &given, &wb_hardening_laws[laws[hardening]]));
     m->hardening = given.yield ? laws[hardening] : WB_HARDENING_NONE_ELASTIC;
     return WB_OK;

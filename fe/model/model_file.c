@@ -10,12 +10,39 @@
 /* Beyond this a solid is as good as incompressible. */
 static const double largest_poisson = 0.499;
 
+/* Where a material's numbers are from, and how well they are known, changes nothing that is
+ * computed: a dataset stays that of its model when somebody writes it down. */
+static bool is_provenance(const char *line, size_t n)
+{
+    static const char *const keys[] = {"origin:", "intervals:"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        if (n >= strlen(keys[i]) && memcmp(line, keys[i], strlen(keys[i])) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Keeps all lines but those of the provenance and what is indented below them. */
+static void append_what_computes(struct wb_text *texts, const char *bytes, size_t size)
+{
+    bool leaves_out = false;
+    for (size_t at = 0; at < size;) {
+        const char *const end = memchr(bytes + at, '\n', size - at);
+        const size_t n = end ? (size_t)(end - bytes) + 1 - at : size - at;
+        if (bytes[at] != ' ')
+            leaves_out = is_provenance(bytes + at, n);
+        if (!leaves_out)
+            wb_text_append_bytes(texts, bytes + at, n);
+        at += n;
+    }
+}
+
 static enum wb_status keep_text(struct wb_model_file *file, const char *path)
 {
     char *bytes;
     size_t size;
     WB_TRY(wb_file_read(path, &bytes, &size));
-    wb_text_append_bytes(&file->texts, bytes, size);
+    append_what_computes(&file->texts, bytes, size);
     free(bytes);
     return WB_OK;
 }

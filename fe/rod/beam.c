@@ -29,6 +29,10 @@ struct strain {
     double eps, gamma;
 };
 
+struct resultants {
+    double N, Q, M, k; /* N, N, N m; t', 1/m */
+};
+
 struct wb_beam {
     int n_elements, n_nodes;
     double length, element_length;
@@ -43,8 +47,11 @@ struct wb_beam {
     struct strain *trial_strain, *committed_strain, *earlier_strain, *saved_strain,
         *saved_earlier_strain;
     double *history, *trial_history, *saved_history;
+    /* Resultants of the committed state, for the work of a step. */
+    struct resultants *committed_resultants, *saved_resultants; /* (n_elements x POINTS) each */
 
     struct wb_beam_point *points; /* (n_elements x POINTS) */
+    bool has_turns;               /* cosines and sines of the points are the trial state's */
     double (*residual)[3];        /* (n_nodes) */
     struct middle *middles;       /* (n_elements) */
     struct wb_banded banded;      /* end nodes of the elements without the clamp */
@@ -141,6 +148,10 @@ static bool take_memory(struct wb_beam *beam)
         wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->trial_history);
     beam->saved_history =
         wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->saved_history);
+    beam->committed_resultants =
+        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->committed_resultants);
+    beam->saved_resultants =
+        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->saved_resultants);
     beam->points = wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->points);
     beam->residual = wb_memory_take(&beam->memory, nodes, sizeof *beam->residual);
     beam->middles = wb_memory_take(&beam->memory, elements, sizeof *beam->middles);
@@ -227,9 +238,12 @@ void wb_beam_reset(struct wb_beam *beam)
     memset(beam->committed_strain, 0, points * sizeof *beam->committed_strain);
     memset(beam->earlier_strain, 0, points * sizeof *beam->earlier_strain);
     copy_nodes(beam, beam->trial, beam->reference);
+    beam->has_turns = false;
     copy_nodes(beam, beam->committed, beam->reference);
     copy_nodes(beam, beam->earlier, beam->reference);
     memset(beam->history, 0, beam->history_size * sizeof *beam->history);
+    for (size_t i = 0; i < points; i++)
+        beam->committed_resultants[i] = (struct resultants){.k = beam->points[i].reference_k};
 }
 
 void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *materials)
@@ -289,7 +303,9 @@ void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_b
             struct wb_beam_point *p = &beam->points[at];
             struct wb_fibres_response r;
 
-            wb_beam_element_rotation(&beam->shape, g, beam->trial + 2 * e, p);
+            if (!beam->has_turns)
+                wb_beam_element_turn(&beam->shape, g, beam->trial + 2 * e, p);
+            p->k = wb_beam_element_curvature(&beam->shape, g, beam->trial + 2 * e);
             p->a = p->reference_a + beam->trial_strain[at].eps;
             p->b = p->reference_b + beam->trial_strain[at].gamma;
             wb_fibres_respond(beam->fibres, beam->trial_strain[at].eps, p->k - p->reference_k,
@@ -309,6 +325,7 @@ void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_b
                 beam->residual[2 * e + i][k] += f[3 * i + k];
         }
     }
+    beam->has_turns = true;
     subtract_load(beam, load_factor);
 
     balance->largest_force = largest;
@@ -388,7 +405,8 @@ static inline void add_product(double *restrict v, double sign, const double *A,
 }
 
 /* Positions of an element's middle and last node from its first node, its rotations and its
- * strains: (x', y') = R(t) (a, b), and x' is linear within the element. */
+ * strains: (x', y') = R(t) (a, b), and x' is linear within the element. Leaves the rotation of its
+ * points behind. */
 static void place_nodes(struct wb_beam *beam, int e)
 {
     const double h = beam->element_length;
@@ -396,15 +414,12 @@ static void place_nodes(struct wb_beam *beam, int e)
     double x_[POINTS], y_[POINTS];
 
     for (int g = 0; g < POINTS; g++) {
-        const double *N = beam->shape.N[g];
-        const double t = N[0] * node[0].t + N[1] * node[1].t + N[2] * node[2].t;
-        const double c = cos(t), s = sin(t);
-        const double a =
-            beam->points[e * POINTS + g].reference_a + beam->trial_strain[e * POINTS + g].eps;
-        const double b =
-            beam->points[e * POINTS + g].reference_b + beam->trial_strain[e * POINTS + g].gamma;
-        x_[g] = a * c - b * s;
-        y_[g] = a * s + b * c;
+        struct wb_beam_point *const p = &beam->points[e * POINTS + g];
+        const struct strain *const strain = &beam->trial_strain[e * POINTS + g];
+        wb_beam_element_turn(&beam->shape, g, node, p);
+        const double a = p->reference_a + strain->eps, b = p->reference_b + strain->gamma;
+        x_[g] = a * p->cosine - b * p->sine;
+        y_[g] = a * p->sine + b * p->cosine;
     }
     const double mean_x = 0.5 * (x_[0] + x_[1]), mean_y = 0.5 * (y_[0] + y_[1]);
     const double slope_x = 0.5 * sqrt(3.0) * (x_[1] - x_[0]);
@@ -415,9 +430,31 @@ static void place_nodes(struct wb_beam *beam, int e)
     node[2].y = node[0].y + h * mean_y;
 }
 
-/* An increment is applied to rotations and strains, not to positions, which then follow from them.
+/* Moves an element whose first node has moved, by `scale` times the increments of its three nodes.
+ * An increment is applied to rotations and strains, not to positions, which then follow from them.
  * Adding it to positions would stretch a turning element by half the square of its turn, far beyond
  * yield, and the next tangent would be that of a wire torn in tension. */
+static void advance_element(struct wb_beam *beam, int e, double scale,
+                            const double *const increment[WB_BEAM_ELEMENT_NODES])
+{
+    const double *first = increment[0], *middle = increment[1], *last = increment[2];
+
+    for (int g = 0; g < POINTS; g++) {
+        const struct wb_beam_point *p = &beam->points[e * POINTS + g];
+        struct strain *strain = &beam->trial_strain[e * POINTS + g];
+        const double *N = beam->shape.N[g], *dN = beam->shape.dN[g];
+        const double x_ = dN[0] * (first[0] - middle[0]) + dN[2] * (last[0] - middle[0]);
+        const double y_ = dN[0] * (first[1] - middle[1]) + dN[2] * (last[1] - middle[1]);
+        const double t = N[0] * first[2] + N[1] * middle[2] + N[2] * last[2];
+        strain->eps += scale * (p->cosine * x_ + p->sine * y_ + p->b * t);
+        strain->gamma += scale * (p->cosine * y_ - p->sine * x_ - p->a * t);
+    }
+    struct wb_beam_node *node = beam->trial + 2 * e;
+    node[1].t += scale * middle[2];
+    node[2].t += scale * last[2];
+    place_nodes(beam, e);
+}
+
 double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rotation)
 {
     static const double clamp[3] = {0.0, 0.0, 0.0};
@@ -438,22 +475,27 @@ double wb_beam_advance(struct wb_beam *beam, const double *tip, double most_rota
         double middle[3] = {-m->w[0], -m->w[1], -m->w[2]};
         add_product(middle, -1.0, m->W1, first);
         add_product(middle, -1.0, m->W3, last);
-
-        for (int g = 0; g < POINTS; g++) {
-            const struct wb_beam_point *p = &beam->points[e * POINTS + g];
-            struct strain *strain = &beam->trial_strain[e * POINTS + g];
-            const double *N = beam->shape.N[g], *dN = beam->shape.dN[g];
-            const double x_ = dN[0] * (first[0] - middle[0]) + dN[2] * (last[0] - middle[0]);
-            const double y_ = dN[0] * (first[1] - middle[1]) + dN[2] * (last[1] - middle[1]);
-            const double t = N[0] * first[2] + N[1] * middle[2] + N[2] * last[2];
-            strain->eps += scale * (p->cosine * x_ + p->sine * y_ + p->b * t);
-            strain->gamma += scale * (p->cosine * y_ - p->sine * x_ - p->a * t);
-        }
-        struct wb_beam_node *node = beam->trial + 2 * e;
-        node[1].t += scale * middle[2];
-        node[2].t += scale * last[2];
-        place_nodes(beam, e);
+        advance_element(beam, e, scale, (const double *[]){first, middle, last});
     }
+    return scale;
+}
+
+double wb_beam_advance_nodes(struct wb_beam *beam, const double (*increment)[3],
+                             double most_rotation)
+{
+    double turn = 0.0;
+    for (int i = 0; i < beam->n_nodes; i++)
+        turn = larger(turn, fabs(increment[i][2]));
+    const double scale = turn > most_rotation ? most_rotation / turn : 1.0;
+
+    beam->trial[0].x += scale * increment[0][0];
+    beam->trial[0].y += scale * increment[0][1];
+    beam->trial[0].t += scale * increment[0][2];
+    for (int e = 0; e < beam->n_elements; e++) {
+        const double(*d)[3] = increment + 2 * e;
+        advance_element(beam, e, scale, (const double *[]){d[0], d[1], d[2]});
+    }
+    beam->has_turns = true;
     return scale;
 }
 
@@ -461,6 +503,7 @@ void wb_beam_revert(struct wb_beam *beam)
 {
     copy_nodes(beam, beam->trial, beam->committed);
     copy_strains(beam, beam->trial_strain, beam->committed_strain);
+    beam->has_turns = false;
 }
 
 void wb_beam_extrapolate(struct wb_beam *beam, double ratio)
@@ -470,12 +513,15 @@ void wb_beam_extrapolate(struct wb_beam *beam, double ratio)
         beam->trial_strain[i].eps = now.eps + ratio * (now.eps - was.eps);
         beam->trial_strain[i].gamma = now.gamma + ratio * (now.gamma - was.gamma);
     }
-    for (int i = 1; i < beam->n_nodes; i++) {
-        const double now = beam->committed[i].t, was = beam->earlier[i].t;
-        beam->trial[i].t = now + ratio * (now - was);
-    }
+    const struct wb_beam_node now = beam->committed[0], was = beam->earlier[0];
+    beam->trial[0].x = now.x + ratio * (now.x - was.x);
+    beam->trial[0].y = now.y + ratio * (now.y - was.y);
+    for (int i = 0; i < beam->n_nodes; i++)
+        beam->trial[i].t =
+            beam->committed[i].t + ratio * (beam->committed[i].t - beam->earlier[i].t);
     for (int e = 0; e < beam->n_elements; e++)
         place_nodes(beam, e);
+    beam->has_turns = true;
 }
 
 void wb_beam_commit(struct wb_beam *beam)
@@ -492,6 +538,10 @@ void wb_beam_commit(struct wb_beam *beam)
     copy_strains(beam, beam->committed_strain, beam->trial_strain);
     beam->history = beam->trial_history;
     beam->trial_history = old;
+    for (int i = 0; i < beam->n_elements * POINTS; i++) {
+        const struct wb_beam_point *p = &beam->points[i];
+        beam->committed_resultants[i] = (struct resultants){p->N, p->Q, p->M, p->k};
+    }
 }
 
 void wb_beam_save(struct wb_beam *beam)
@@ -501,6 +551,8 @@ void wb_beam_save(struct wb_beam *beam)
     copy_strains(beam, beam->saved_strain, beam->committed_strain);
     copy_strains(beam, beam->saved_earlier_strain, beam->earlier_strain);
     memcpy(beam->saved_history, beam->history, beam->history_size * sizeof *beam->history);
+    memcpy(beam->saved_resultants, beam->committed_resultants,
+           (size_t)(beam->n_elements * POINTS) * sizeof *beam->saved_resultants);
 }
 
 void wb_beam_restore(struct wb_beam *beam)
@@ -510,7 +562,69 @@ void wb_beam_restore(struct wb_beam *beam)
     copy_strains(beam, beam->committed_strain, beam->saved_strain);
     copy_strains(beam, beam->earlier_strain, beam->saved_earlier_strain);
     memcpy(beam->history, beam->saved_history, beam->history_size * sizeof *beam->history);
+    memcpy(beam->committed_resultants, beam->saved_resultants,
+           (size_t)(beam->n_elements * POINTS) * sizeof *beam->saved_resultants);
     wb_beam_revert(beam);
+}
+
+int wb_beam_count_nodes(const struct wb_beam *beam)
+{
+    return beam->n_nodes;
+}
+
+double wb_beam_element_length(const struct wb_beam *beam)
+{
+    return beam->element_length;
+}
+
+const struct wb_beam_point *wb_beam_section(const struct wb_beam *beam, double s)
+{
+    /* The two points of an element lie one in each of its halves. */
+    const double halves = floor(2.0 * s / beam->element_length);
+    return &beam->points[(int)fmin(fmax(halves, 0.0), beam->n_elements * POINTS - 1)];
+}
+
+void wb_beam_place(struct wb_beam *beam, const struct wb_beam_node *first)
+{
+    const double turn = first->t - beam->trial[0].t;
+
+    beam->trial[0] = *first;
+    for (int i = 1; i < beam->n_nodes; i++)
+        beam->trial[i].t += turn;
+    for (int e = 0; e < beam->n_elements; e++)
+        place_nodes(beam, e);
+    copy_nodes(beam, beam->committed, beam->trial);
+    copy_nodes(beam, beam->earlier, beam->trial);
+}
+
+const struct wb_beam_node *wb_beam_nodes(const struct wb_beam *beam)
+{
+    return beam->trial;
+}
+
+const double (*wb_beam_residuals(const struct wb_beam *beam))[3]
+{
+    return (const double(*)[3])beam->residual;
+}
+
+void wb_beam_element_tangent(const struct wb_beam *beam, int e,
+                             struct wb_beam_element_stiffness *stiffness)
+{
+    wb_beam_element_stiffness(&beam->shape, &beam->points[e * POINTS], stiffness);
+}
+
+double wb_beam_step_work(const struct wb_beam *beam)
+{
+    double work = 0.0;
+    for (int i = 0; i < beam->n_elements * POINTS; i++) {
+        const struct wb_beam_point *p = &beam->points[i];
+        const struct resultants *was = &beam->committed_resultants[i];
+        const struct strain *to = &beam->trial_strain[i], *from = &beam->committed_strain[i];
+        work += 0.5 * beam->shape.weight *
+                ((p->N + was->N) * (to->eps - from->eps) +
+                 (p->Q + was->Q) * (to->gamma - from->gamma) + (p->M + was->M) * (p->k - was->k));
+    }
+    return work;
 }
 
 const struct wb_beam_node *wb_beam_tip(const struct wb_beam *beam)

@@ -1,5 +1,6 @@
-/* A beam clamped at its first end: mesh, displacements, plastic history, and the assembly of
- * fe/rod/beam_element.h's elements, seen from its free end.
+/* A beam: mesh, displacements, plastic history, and the assembly of fe/rod/beam_element.h's
+ * elements. It is seen either from its free end, with its first end clamped, or by all its nodes,
+ * of which none is held.
  *
  * The state has a trial and a committed part. A Newton iteration is evaluate, condense, and, with
  * the tip's increment found by the caller, advance. Converged, the trial is committed; else it is
@@ -78,6 +79,38 @@ void wb_beam_commit(struct wb_beam *beam);
 /* Copies the committed state into the second slot and back. */
 void wb_beam_save(struct wb_beam *beam);
 void wb_beam_restore(struct wb_beam *beam);
+
+/* --- all nodes, none of them held: for loads and supports along the beam --- */
+
+int wb_beam_count_nodes(const struct wb_beam *beam); /* 2 n_elements + 1 */
+
+double wb_beam_element_length(const struct wb_beam *beam); /* m */
+
+/* The Gauss point nearest to arc length s, of the state last evaluated. */
+const struct wb_beam_point *wb_beam_section(const struct wb_beam *beam, double s);
+
+/* Moves the whole beam without strain: its first node to that position and rotation. All states
+ * but the saved ones stand there then; for a beam that was just reset. */
+void wb_beam_place(struct wb_beam *beam, const struct wb_beam_node *first);
+
+/* Trial positions, (n_nodes). */
+const struct wb_beam_node *wb_beam_nodes(const struct wb_beam *beam);
+
+/* Internal less distributed forces of the trial state last evaluated, (n_nodes): x, y (N), t (N m).
+ */
+const double (*wb_beam_residuals(const struct wb_beam *beam))[3];
+
+/* Tangent of element `e`, whose nodes are 2 e, 2 e + 1 and 2 e + 2, of that state. */
+void wb_beam_element_tangent(const struct wb_beam *beam, int e,
+                             struct wb_beam_element_stiffness *stiffness);
+
+/* As wb_beam_advance(), by an increment of every node (n_nodes; x, y, t), the first one's too. */
+double wb_beam_advance_nodes(struct wb_beam *beam, const double (*increment)[3],
+                             double most_rotation);
+
+/* Work of the resultants on the strains from the last committed state to the trial state last
+ * evaluated, by the trapezoidal rule, J. */
+double wb_beam_step_work(const struct wb_beam *beam);
 
 /* Trial position of the tip. */
 const struct wb_beam_node *wb_beam_tip(const struct wb_beam *beam);

@@ -2,17 +2,21 @@
 
 #include <math.h>
 
-void wb_beam_element_rotation(const struct wb_rod_shape *shape, int g,
-                              const struct wb_beam_node *nodes, struct wb_beam_point *point)
+void wb_beam_element_turn(const struct wb_rod_shape *shape, int g, const struct wb_beam_node *nodes,
+                          struct wb_beam_point *point)
 {
     const double *N = shape->N[g];
-    const double d0 = shape->dN[g][0], d2 = shape->dN[g][2];
     const double t = N[0] * nodes[0].t + N[1] * nodes[1].t + N[2] * nodes[2].t;
-
-    /* The derivatives add to zero, so they may act on differences, which lose fewer digits. */
-    point->k = d0 * (nodes[0].t - nodes[1].t) + d2 * (nodes[2].t - nodes[1].t);
     point->cosine = cos(t);
     point->sine = sin(t);
+}
+
+double wb_beam_element_curvature(const struct wb_rod_shape *shape, int g,
+                                 const struct wb_beam_node *nodes)
+{
+    /* The derivatives add to zero, so they may act on differences, which lose fewer digits. */
+    const double d0 = shape->dN[g][0], d2 = shape->dN[g][2];
+    return d0 * (nodes[0].t - nodes[1].t) + d2 * (nodes[2].t - nodes[1].t);
 }
 
 void wb_beam_element_kinematics(const struct wb_rod_shape *shape, int g,
@@ -20,7 +24,8 @@ void wb_beam_element_kinematics(const struct wb_rod_shape *shape, int g,
 {
     const double d0 = shape->dN[g][0], d2 = shape->dN[g][2];
 
-    wb_beam_element_rotation(shape, g, nodes, point);
+    wb_beam_element_turn(shape, g, nodes, point);
+    point->k = wb_beam_element_curvature(shape, g, nodes);
     const double x_ = d0 * (nodes[0].x - nodes[1].x) + d2 * (nodes[2].x - nodes[1].x);
     const double y_ = d0 * (nodes[0].y - nodes[1].y) + d2 * (nodes[2].y - nodes[1].y);
     point->a = x_ * point->cosine + y_ * point->sine;
@@ -68,36 +73,40 @@ static void point_tangent(const struct wb_beam_point *p, double w, struct point_
     k->kk = w * p->D22;
 }
 
-/* K_ij += B_i^T k B_j with B_i = (dN_i, dN_i, N_i, dN_i). */
-static inline void add_block(double *restrict K, const struct point_tangent *k, double Ni,
-                             double dNi, double Nj, double dNj)
+/* K_ij = sum of B_i^T k B_j over the Gauss points, with B_i = (dN_i, dN_i, N_i, dN_i). */
+static inline void set_block(double *restrict K, const struct wb_rod_shape *shape,
+                             const struct point_tangent *k, int i, int j)
 {
-    const double dd = dNi * dNj, dn = dNi * Nj, nd = Ni * dNj;
+    double sum[9] = {0};
+    for (int g = 0; g < WB_BEAM_ELEMENT_POINTS; g++, k++) {
+        const double Ni = shape->N[g][i], dNi = shape->dN[g][i];
+        const double Nj = shape->N[g][j], dNj = shape->dN[g][j];
+        const double dd = dNi * dNj, dn = dNi * Nj, nd = Ni * dNj;
 
-    K[0] += dd * k->xx;
-    K[1] += dd * k->xy;
-    K[2] += dn * k->xt + dd * k->xk;
-    K[3] += dd * k->xy;
-    K[4] += dd * k->yy;
-    K[5] += dn * k->yt + dd * k->yk;
-    K[6] += nd * k->xt + dd * k->xk;
-    K[7] += nd * k->yt + dd * k->yk;
-    K[8] += Ni * Nj * k->tt + (nd + dn) * k->tk + dd * k->kk;
+        sum[0] += dd * k->xx;
+        sum[1] += dd * k->xy;
+        sum[2] += dn * k->xt + dd * k->xk;
+        sum[4] += dd * k->yy;
+        sum[5] += dn * k->yt + dd * k->yk;
+        sum[6] += nd * k->xt + dd * k->xk;
+        sum[7] += nd * k->yt + dd * k->yk;
+        sum[8] += Ni * Nj * k->tt + (nd + dn) * k->tk + dd * k->kk;
+    }
+    sum[3] = sum[1];
+    for (int e = 0; e < 9; e++)
+        K[e] = sum[e];
 }
 
 void wb_beam_element_stiffness(const struct wb_rod_shape *shape, const struct wb_beam_point *points,
                                struct wb_beam_element_stiffness *restrict K)
 {
-    *K = (struct wb_beam_element_stiffness){0};
-    for (int g = 0; g < WB_BEAM_ELEMENT_POINTS; g++) {
-        const double *N = shape->N[g], *dN = shape->dN[g];
-        struct point_tangent k;
-        point_tangent(&points[g], shape->weight, &k);
-        add_block(K->K11, &k, N[0], dN[0], N[0], dN[0]);
-        add_block(K->K12, &k, N[0], dN[0], N[1], dN[1]);
-        add_block(K->K13, &k, N[0], dN[0], N[2], dN[2]);
-        add_block(K->K22, &k, N[1], dN[1], N[1], dN[1]);
-        add_block(K->K23, &k, N[1], dN[1], N[2], dN[2]);
-        add_block(K->K33, &k, N[2], dN[2], N[2], dN[2]);
-    }
+    struct point_tangent k[WB_BEAM_ELEMENT_POINTS];
+    for (int g = 0; g < WB_BEAM_ELEMENT_POINTS; g++)
+        point_tangent(&points[g], shape->weight, &k[g]);
+    set_block(K->K11, shape, k, 0, 0);
+    set_block(K->K12, shape, k, 0, 1);
+    set_block(K->K13, shape, k, 0, 2);
+    set_block(K->K22, shape, k, 1, 1);
+    set_block(K->K23, shape, k, 1, 2);
+    set_block(K->K33, shape, k, 2, 2);
 }

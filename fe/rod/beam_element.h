@@ -39,9 +39,13 @@ struct wb_beam_element_stiffness {
     double K11[9], K12[9], K13[9], K22[9], K23[9], K33[9];
 };
 
-/* Rotation at Gauss point g: fills cosine, sine, k. */
-void wb_beam_element_rotation(const struct wb_rod_shape *shape, int g,
-                              const struct wb_beam_node *nodes, struct wb_beam_point *point);
+/* Rotation at Gauss point g: fills cosine and sine. */
+void wb_beam_element_turn(const struct wb_rod_shape *shape, int g, const struct wb_beam_node *nodes,
+                          struct wb_beam_point *point);
+
+/* Its derivative there, t'. */
+double wb_beam_element_curvature(const struct wb_rod_shape *shape, int g,
+                                 const struct wb_beam_node *nodes);
 
 /* All kinematics of Gauss point g, from positions: fills cosine, sine, a, b, k. */
 void wb_beam_element_kinematics(const struct wb_rod_shape *shape, int g,

@@ -46,7 +46,9 @@ struct wb_fibres {
     double shear_stiffness;
     struct wb_overlay *overlay; /* of a section that has one; owned; its fibres are of one batch */
     int overlay_capacity;       /* parts that the history has room for */
-    double tail[WB_OVERLAY_MOST_PARTS + 1]; /* Pa: sum of the moduli from a part on */
+    double tail[WB_OVERLAY_MOST_PARTS + 1]; /* Pa: sum of the moduli from a part on, */
+    double full[WB_OVERLAY_MOST_PARTS + 1]; /* and stress of all parts before it once they yield */
+    double compliance;                      /* 1/Pa: of all parts while they are elastic */
     const struct wb_point_law *point_laws;  /* (n_materials) of a section that has them; borrowed */
     int point_history;                      /* rows of the history that the largest needs */
     void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *before,
@@ -106,6 +108,10 @@ enum wb_status wb_fibres_set_overlay(struct wb_fibres *f, const struct wb_overla
     f->tail[overlay->n] = 0.0;
     for (int i = overlay->n - 1; i >= 0; i--)
         f->tail[i] = f->tail[i + 1] + overlay->modulus[i];
+    f->compliance = 1.0 / f->tail[0];
+    f->full[0] = 0.0;
+    for (int i = 0; i < overlay->n; i++)
+        f->full[i + 1] = f->full[i] + overlay->modulus[i] * overlay->yield_strain[i];
     const struct wb_material elastic = {
         .hardening = WB_HARDENING_NONE_ELASTIC,
         .youngs_modulus = f->tail[0],
@@ -205,6 +211,18 @@ static WB_ALWAYS_INLINE lanes absolute(lanes v)
 static WB_ALWAYS_INLINE lanes with_sign(lanes size, lanes sign)
 {
     return (lanes)(((masks)size & ~sign_bit) | ((masks)sign & sign_bit));
+}
+
+static WB_ALWAYS_INLINE double smallest_of(lanes v)
+{
+    const double a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
+    return a < b ? a : b;
+}
+
+static WB_ALWAYS_INLINE double largest_of(lanes v)
+{
+    const double a = v[0] > v[1] ? v[0] : v[1], b = v[2] > v[3] ? v[2] : v[3];
+    return a > b ? a : b;
 }
 
 static WB_ALWAYS_INLINE bool any(masks mask)
@@ -408,37 +426,45 @@ static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct stra
 /* The share of an overlay with isotropic hardening: the stress is the virgin curve's at the strain
  * e = |trial| / E + p at which a first loading would have come as far. The third row is the stress
  * reached so far. */
-static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_overlay *o,
-                                                              const double *tail, lanes strain,
-                                                              const struct rows *h)
+static WB_ALWAYS_INLINE struct answer respond_overlay_growing(const struct wb_fibres *f,
+                                                              lanes strain, const struct rows *h)
 {
-    const double E = tail[0];
+    const struct wb_overlay *const o = f->overlay;
+    const double E = f->tail[0];
     const lanes plastic = load(h->plastic), p0 = load(h->accumulated), yield = load(h->third);
     const lanes trial = E * (strain - plastic);
     const lanes size = absolute(trial);
     const masks yields = size - yield > on_surface * yield;
-    const lanes virgin = size * (1.0 / E) + p0;
-    lanes reached = {0}, tangent = {0};
-
-    /* Parts beyond that of the largest strain are elastic, all together. */
-    int i = 0;
-    for (; i < o->n; i++) {
-        const lanes corner = o->yield_strain[i] + (lanes){0};
-        const masks below = virgin < corner;
-        if (!any(~below))
-            break;
-        const lanes modulus = o->modulus[i] + (lanes){0};
-        reached += modulus * select_lanes(below, virgin, corner);
-        tangent += select_lanes(below, modulus, (lanes){0});
+    if (!any(yields)) {
+        store(h->plastic_after, plastic);
+        store(h->accumulated_after, p0);
+        store(h->third_after, yield);
+        return (struct answer){trial, E - (lanes){0}};
     }
-    reached += tail[i] * virgin;
-    tangent += tail[i];
-    const lanes p = virgin - reached * (1.0 / E);
+
+    /* Parts below that of the smallest strain all yield, parts beyond that of the largest are
+     * elastic, all together. */
+    const lanes virgin = size * f->compliance + p0;
+    const double least = smallest_of(virgin), most = largest_of(virgin);
+    int i = 0;
+    while (i < o->n && o->yield_strain[i] <= least)
+        i++;
+    lanes reached = f->full[i] - (lanes){0}, tangent = {0};
+    for (; i < o->n && o->yield_strain[i] <= most; i++) {
+        const lanes corner = o->yield_strain[i] - (lanes){0};
+        const masks below = virgin < corner;
+        const lanes modulus = o->modulus[i] - (lanes){0};
+        reached += modulus * select_lanes(below, virgin, corner);
+        tangent += (lanes)(below & (masks)modulus);
+    }
+    reached += f->tail[i] * virgin;
+    tangent += f->tail[i];
+    const lanes p = virgin - reached * f->compliance;
     store(h->plastic_after, select_lanes(yields, plastic + with_sign(p - p0, trial), plastic));
     store(h->accumulated_after, select_lanes(yields, p, p0));
     store(h->third_after, select_lanes(yields, reached, yield));
     return (struct answer){select_lanes(yields, with_sign(reached, trial), trial),
-                           select_lanes(yields, tangent, E + (lanes){0})};
+                           select_lanes(yields, tangent, E - (lanes){0})};
 }
 
 /* Which parts of an overlay a step looks at one by one: those that yielded before have rows of the
@@ -447,27 +473,36 @@ struct active_parts {
     int before, now;
 };
 
-/* The share with kinematic hardening: each part is elastic up to its yield strain and perfectly
- * plastic beyond; a row of the history is its plastic strain. */
-static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fibres *f, int at,
+/* Adds a part with kinematic hardening, elastic up to its yield strain and perfectly plastic
+ * beyond; returns its plastic strain. */
+static WB_ALWAYS_INLINE lanes add_moving_part(struct answer *answer, const struct wb_overlay *o,
+                                              int part, lanes strain, lanes plastic)
+{
+    const lanes modulus = o->modulus[part] - (lanes){0}, most = o->yield_strain[part] - (lanes){0};
+    const lanes elastic = strain - plastic;
+    const masks stays = absolute(elastic) < most;
+    const lanes limit = (lanes)((masks)most | ((masks)elastic & sign_bit));
+    const lanes kept = select_lanes(stays, elastic, limit);
+    answer->stress += modulus * kept;
+    answer->tangent += (lanes)(stays & (masks)modulus);
+    return select_lanes(stays, plastic, strain - kept);
+}
+
+/* The share with kinematic hardening: a row of the history for each part's plastic strain. */
+static WB_ALWAYS_INLINE struct answer respond_overlay_moving(const struct wb_fibres *f,
                                                              struct active_parts active,
                                                              lanes strain, const double *rows,
                                                              double *rows_after)
 {
     const struct wb_overlay *const o = f->overlay;
-    struct answer answer = {f->tail[active.now] * strain, f->tail[active.now] + (lanes){0}};
-
-    for (int i = 0; i < active.now; i++) {
-        const lanes plastic = i < active.before ? load(rows + i * f->n + at) : (lanes){0};
-        const lanes elastic = strain - plastic;
-        const lanes most = o->yield_strain[i] + (lanes){0};
-        const lanes modulus = o->modulus[i] + (lanes){0};
-        const masks stays = absolute(elastic) < most;
-        const lanes kept = select_lanes(stays, elastic, with_sign(most, elastic));
-        answer.stress += modulus * kept;
-        answer.tangent += select_lanes(stays, modulus, (lanes){0});
-        store(rows_after + i * f->n + at, select_lanes(stays, plastic, strain - kept));
-    }
+    const lanes tail = f->tail[active.now] - (lanes){0};
+    const ptrdiff_t n = f->n;
+    struct answer answer = {tail * strain, tail};
+    int part = 0;
+    for (; part < active.before; part++, rows += n, rows_after += n)
+        store(rows_after, add_moving_part(&answer, o, part, strain, load(rows)));
+    for (; part < active.now; part++, rows_after += n)
+        store(rows_after, add_moving_part(&answer, o, part, strain, (lanes){0}));
     return answer;
 }
 
@@ -502,12 +537,12 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
         lanes force = {0}, stiffness = {0};
         if (beta < 1.0) {
             const struct answer moving =
-                respond_overlay_moving(f, i, active, strain, rows, rows_after);
+                respond_overlay_moving(f, active, strain, rows + i, rows_after + i);
             force += (1.0 - beta) * moving.stress * area;
             stiffness += (1.0 - beta) * moving.tangent * area;
         }
         if (beta > 0.0) {
-            const struct answer growing = respond_overlay_growing(f->overlay, f->tail, strain, &h);
+            const struct answer growing = respond_overlay_growing(f, strain, &h);
             force += beta * growing.stress * area;
             stiffness += beta * growing.tangent * area;
         }

@@ -7,11 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "analysis/calibration/calibrate.h"
 #include "analysis/calibration/computed.h"
 #include "base/units.h"
+#include "tests/bench/clock.h"
 
 static const double goal_s = 3.0;
 static const double step = 0.5 * WB_MM;
@@ -19,13 +19,6 @@ static const double step = 0.5 * WB_MM;
 enum {
     POINTS = 107
 };
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static struct wb_test_info test_info(void)
 {

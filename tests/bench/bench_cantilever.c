@@ -3,9 +3,9 @@
  * every fibre through the exact material law with its logarithms and powers. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "fe/trial/loading_steps.h"
+#include "tests/bench/clock.h"
 #include "tests/twin/fibres_swap.h"
 
 enum {
@@ -18,13 +18,6 @@ struct timing {
     double force;      /* at the largest deflection, N */
     int iterations;
 };
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static bool time_test(bool slow, struct timing *timing)
 {

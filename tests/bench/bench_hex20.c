@@ -3,8 +3,8 @@
  * point by point. 64 elements in turn, as a body would. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "tests/bench/clock.h"
 #include "tests/fe/solid/hex20_cases.h"
 #include "tests/fe/solid/hex20_twin.h"
 
@@ -21,13 +21,6 @@ struct element {
 
 static const struct wb_material material = {
     WB_HARDENING_ISOTROPIC_POWER, 68.2e9, 0.34, 182e6, 600e6, 0.4};
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static bool make_element(struct element *e, enum wb_integration integration)
 {

@@ -8,11 +8,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "fe/linear/layered.h"
 #include "fe/linear/layered_private.h"
 #include "fe/solid/solid_mesh.h"
+#include "tests/bench/clock.h"
 
 enum {
     UNKNOWNS = 60, /* of an element */
@@ -32,13 +32,6 @@ struct timing {
     double operations, memory, band_memory, difference;
     int n, n_elements, band, most; /* half-band, unknowns of the largest block */
 };
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void keep_least(double *least, double start)
 {

@@ -5,11 +5,11 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "fe/model/packing.h"
 #include "fe/swept/swept_contact.h"
 #include "fe/swept/swept_private.h"
+#include "tests/bench/clock.h"
 
 enum {
     MOST_WIRES = 32,
@@ -41,13 +41,6 @@ struct timing {
 };
 
 static const double wire_radius = 0.7e-3, length = 0.114;
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* Wires keep their lengths in a circular bend, so they slip. In odd steps all is bent a little
  * more. */

@@ -5,12 +5,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "fe/swept/swept_cohesion.h"
 #include "fe/swept/swept_step.h"
 #include "fe/swept/swept_tape.h"
 #include "fe/swept/swept_tape_contact.h"
+#include "tests/bench/clock.h"
 
 enum {
     NODES = 32,
@@ -29,13 +29,6 @@ struct sleeve {
     double *position, *director, *velocity, *turning;
     void *force, *moment;
 };
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void destroy(struct sleeve *s)
 {

@@ -8,13 +8,13 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/file.h"
 #include "base/units.h"
 #include "fe/solid/solid.h"
 #include "fe/trial/wire3d.h"
+#include "tests/bench/clock.h"
 
 /* CPU seconds of CalculiX 2.20 on one 2.6 GHz Zen 4 core, 720 C3D20R. */
 static const double stored_ccx = 249.0;
@@ -24,13 +24,6 @@ struct cost {
     int elements, unknowns, iterations;
     double tension, residual; /* N at 53 mm, m after unloading */
 };
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static bool read_model(struct wb_wire_model *model)
 {

@@ -1,7 +1,7 @@
 /* Beams whose sections answer by the slow twin: to be included by one file of a program that is
  * linked with -Wl,--wrap=wb_fibres_respond. While `slow_section` is not NULL, it answers for all
- * sections. Its histories then stand in the rows that a beam keeps for its fibres; virgin ones are
- * zero in both ways.
+ * sections; all answers are counted. Its histories stand in the rows that a beam keeps for its
+ * fibres; virgin ones are zero in both ways.
  */
 #ifndef WB_TESTS_TWIN_FIBRES_SWAP_H
 #define WB_TESTS_TWIN_FIBRES_SWAP_H
@@ -12,6 +12,7 @@
 _Static_assert(sizeof(struct wb_material_state) == 3 * sizeof(double), "histories fit");
 
 static const struct wb_section *slow_section;
+static long section_updates;
 
 void __real_wb_fibres_respond(const struct wb_fibres *fibres, double eps, double kappa,
                               const double *restrict before, double *restrict after,
@@ -24,6 +25,7 @@ void __wrap_wb_fibres_respond(const struct wb_fibres *fibres, double eps, double
                               const double *restrict before, double *restrict after,
                               struct wb_fibres_response *restrict response)
 {
+    section_updates++;
     if (slow_section)
         wb_fibres_twin_respond(slow_section, eps, kappa, (const struct wb_material_state *)before,
                                (struct wb_material_state *)after, response);

@@ -22,6 +22,26 @@ static enum wb_status read_text(const char *text, struct wb_material_file *file)
 
 #define HEAD "name: m\nsource: s\nyoungs_modulus_MPa: 100\ndensity_g_cm3: 2\n"
 
+static void origin_and_intervals_are_read(void **state)
+{
+    (void)state;
+    struct wb_material_file file;
+    assert_int_equal(read_text(HEAD "origin: tensile tests\nintervals:\n"
+                                    "  youngs_modulus_MPa: [90, 110]\n"
+                                    "  hardening_exponent: [0.2, 0.8]\n",
+                               &file),
+                     WB_OK);
+    assert_string_equal(file.origin, "tensile tests");
+    assert_close_relative(file.interval[WB_MATERIAL_MODULUS][0], 90e6, 1e-15);
+    assert_close_relative(file.interval[WB_MATERIAL_EXPONENT][1], 0.8, 1e-15);
+    assert_true(isnan(file.interval[WB_MATERIAL_YIELD][0]));
+    assert_int_equal(read_text(HEAD "intervals: {hardening_exponent: [0.8, 0.2]}\n", &file),
+                     WB_ERR_FORMAT);
+    assert_message("hardening_exponent: expected the least first");
+    assert_int_equal(read_text(HEAD "intervals: {density: [1, 2]}\n", &file), WB_ERR_FORMAT);
+    assert_message("density: unknown key");
+}
+
 static void every_key_is_read(void **state)
 {
     (void)state;
@@ -118,6 +138,7 @@ static int remove_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(origin_and_intervals_are_read),
         cmocka_unit_test(every_key_is_read),
         cmocka_unit_test(what_is_left_out_has_a_meaning),
         cmocka_unit_test(refusals_name_line_and_key),

@@ -257,6 +257,26 @@ static void contact_is_as_stiff_as_the_jacket_by_default(void **state)
                           41e6 * 0.57 / (1.43 * 0.14) / 0.8e-3, 1e-12);
 }
 
+/* Where numbers are from changes nothing that is computed. */
+static void checksum_leaves_out_where_numbers_are_from(void **state)
+{
+    (void)state;
+    char before[WB_SHA256_TEXT], text[1024];
+    read_text(full);
+    strcpy(before, model.sha256);
+    snprintf(text, sizeof text,
+             "origin: tensile tests\nintervals:\n  # of four\n  yield_stress_MPa: [1, 3]\n%s",
+             soft);
+    write_beside("soft.yaml", text);
+    read_text(full);
+    assert_string_equal(model.sha256, before);
+    snprintf(text, sizeof text, "%sintervals:\n  yield_stress_MPa: [1, 3]\n# then this\n", soft);
+    write_beside("soft.yaml", text);
+    read_text(full);
+    assert_string_not_equal(model.sha256, before);
+    write_beside("soft.yaml", soft);
+}
+
 static void checksum_covers_all_files(void **state)
 {
     (void)state;
@@ -287,6 +307,10 @@ static void checksum_covers_all_files(void **state)
         assert_int_equal(wb_file_find_data(path, shipped[i]), WB_OK);
         assert_int_equal(wb_file_read(path, &text[i + 1], &size[i + 1]), WB_OK);
     }
+    /* Without where its numbers are from, which stands at its end. */
+    const char *const origin = strstr(text[2], "origin:");
+    assert_non_null(origin);
+    size[2] = (size_t)(origin - text[2]);
     text[3] = strdup(soft);
     size[3] = strlen(soft);
     for (int i = 0; i < 4; i++) {
@@ -572,6 +596,7 @@ int main(void)
         cmocka_unit_test(rules_of_mixtures_give_the_papers_wire),
         cmocka_unit_test(elastic_law_takes_yield_from_all_parts),
         cmocka_unit_test(contact_is_as_stiff_as_the_jacket_by_default),
+        cmocka_unit_test(checksum_leaves_out_where_numbers_are_from),
         cmocka_unit_test(checksum_covers_all_files),
         cmocka_unit_test(models_know_whether_they_are_a_bending_test),
         cmocka_unit_test(smaller_and_reversed_loads_unload),

@@ -88,6 +88,39 @@ static double wavy_curvature(void *context, double s)
     return *(const double *)context * cos(60.0 * s);
 }
 
+/* What is remembered of a trial state that is given up must not enter the next evaluation. */
+static void a_state_that_is_given_up_leaves_nothing_behind(void **unused)
+{
+    (void)unused;
+    const struct test_wire wire = test_wire_type(3);
+    struct wb_section s = test_section(&wire);
+    struct wb_beam *beam = make_beam(&s, 8);
+    const double force[3] = {0.02, 0.09, 1e-4}, far[3] = {-2e-3, 3e-3, 0.1};
+    struct wb_beam_balance before, after;
+    double K[9], right[3], place[3];
+
+    load_tip(beam, force, place, K);
+    wb_beam_commit(beam);
+    for (int way = 0; way < 2; way++) {
+        wb_beam_revert(beam);
+        wb_beam_evaluate(beam, 1.0, &before);
+        wb_beam_condense(beam, K, right);
+        if (way == 1)
+            wb_beam_save(beam);
+        wb_beam_advance(beam, far, 0.5);
+        wb_beam_evaluate(beam, 1.0, &after);
+        assert_true(after.largest_residual > 10.0 * before.largest_residual);
+        if (way == 1)
+            wb_beam_restore(beam);
+        else
+            wb_beam_revert(beam);
+        wb_beam_evaluate(beam, 1.0, &after);
+        assert_memory_equal(&after, &before, sizeof after);
+    }
+    wb_beam_destroy(beam);
+    wb_section_release(&s);
+}
+
 static void natural_curvature_is_free_of_stress(void **unused)
 {
     (void)unused;
@@ -177,6 +210,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(condensed_stiffness_is_the_derivative_of_the_tip_forces),
+        cmocka_unit_test(a_state_that_is_given_up_leaves_nothing_behind),
         cmocka_unit_test(natural_curvature_is_free_of_stress),
         cmocka_unit_test(advance_keeps_a_turning_beam_from_stretching),
         cmocka_unit_test(load_adds_up_to_weight),
