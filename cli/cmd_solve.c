@@ -27,6 +27,8 @@ static const struct kind {
     {"BUNDLE.yaml",
      "Computes a bundle file (fixtures/bundles, by name or path), wires with contact and tape, in "
      "explicit dynamics."},
+    {"WIRE.yaml --span-mm=L --deflection-mm=D",
+     "Computes a wire (fixtures/wires, by name or path) in three-point bending on round rollers."},
 };
 
 static const struct wb_settings_source sources[] = {
@@ -67,7 +69,8 @@ static void take_argument(struct argp_state *state, const char *argument,
         argp_error(state, "one model at a time, not '%s' too", argument);
     const int kind = find_kind(argument);
     if (kind < 0) {
-        argp_error(state, "no model '%s'; there are cantilever, wire3d, wire1d, bundle", argument);
+        argp_error(state, "no model '%s'; there are cantilever, wire3d, wire1d, bundle, bending3p",
+                   argument);
         return;
     }
     s->kind = 1U << kind;
@@ -76,13 +79,17 @@ static void take_argument(struct argp_state *state, const char *argument,
 static void check(struct argp_state *state, const struct wb_solve_settings *s)
 {
     if (s->kind == 0)
-        argp_error(state, "name the model: cantilever, wire3d, wire1d or bundle");
+        argp_error(state, "name the model: cantilever, wire3d, wire1d, bundle or bending3p");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every is for --vtk");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
         argp_error(state, "--checkpoint-minutes is for --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
-        argp_error(state, "name the model file: %s MODEL.yaml", wb_solve_settings_kind(s));
+        argp_error(state, "name the %s file: %s %s.yaml",
+                   s->kind == WB_SOLVE_BENDING3P ? "wire's" : "model", wb_solve_settings_kind(s),
+                   s->kind == WB_SOLVE_BENDING3P ? "WIRE" : "MODEL");
+    if (s->kind == WB_SOLVE_BENDING3P && (s->span == 0.0 || s->deflection == 0.0))
+        argp_error(state, "--span-mm and --deflection-mm are needed");
     if (s->kind == WB_SOLVE_CANTILEVER && (!s->wire || s->length == 0.0 || s->deflection == 0.0))
         argp_error(state, "--wire, --length-mm and --deflection-mm are needed");
 }
@@ -159,8 +166,64 @@ static void parse_options(int argc, char **argv, struct options *options)
 
 /* --- the curve --- */
 
+/* What is printed of a row of three-point bending, besides cycle and phase. */
+struct bending_column {
+    const char *name;
+    double value;
+};
+
+enum {
+    BENDING_COLUMNS = 12
+};
+
+static void bending_columns(const struct wb_bending3p_point *p,
+                            struct bending_column columns[BENDING_COLUMNS])
+{
+    const struct bending_column all[BENDING_COLUMNS] = {
+        {"deflection_mm", p->travel / WB_MM},
+        {"force_N", p->force},
+        {"nose_mm", p->deflection / WB_MM},
+        {"middle_mm", p->middle / WB_MM},
+        {"contact_angle_rad", p->contact_angle},
+        {"draw_in_mm", p->draw_in / WB_MM},
+        {"wrapped_rad", p->wrapped},
+        {"friction_N", p->tension},
+        {"middle_curvature_1_m", p->middle_curvature},
+        {"work_J", p->work},
+        {"internal_work_J", p->internal_work},
+        {"friction_work_J", p->friction_work},
+    };
+    memcpy(columns, all, sizeof all);
+}
+
+static void print_bending_csv(const struct wb_solve *solve)
+{
+    struct bending_column columns[BENDING_COLUMNS];
+    for (int i = -1; i < wb_solve_count(solve); i++) {
+        struct wb_solve_row row;
+        wb_solve_row(solve, i < 0 ? 0 : i, &row);
+        bending_columns(row.bending, columns);
+        if (i < 0)
+            printf("cycle,phase");
+        else
+            printf("%d,%s", row.cycle, wb_trial_phase_name(row.phase));
+        for (size_t k = 0; k < BENDING_COLUMNS; k++) {
+            char text[WB_NUMBER_TEXT];
+            printf(",%s", i < 0 ? columns[k].name : wb_number_format(columns[k].value, text));
+        }
+        putchar('\n');
+    }
+}
+
 static void print_csv(const struct wb_solve *solve)
 {
+    struct wb_solve_row first;
+    if (wb_solve_count(solve) > 0)
+        wb_solve_row(solve, 0, &first);
+    if (wb_solve_count(solve) > 0 && first.bending) {
+        print_bending_csv(solve);
+        return;
+    }
     puts("cycle,phase,deflection_mm,tension_N,force_N,tip_x_mm,tip_angle_rad");
     for (int i = 0; i < wb_solve_count(solve); i++) {
         struct wb_solve_row row;
@@ -186,6 +249,13 @@ static int print_json(const struct wb_solve *solve)
         wb_solve_row(solve, i, &row);
         wb_json_set_integer(object, "cycle", row.cycle);
         wb_json_set_text(object, "phase", wb_trial_phase_name(row.phase));
+        if (row.bending) {
+            struct bending_column columns[BENDING_COLUMNS];
+            bending_columns(row.bending, columns);
+            for (size_t k = 0; k < BENDING_COLUMNS; k++)
+                wb_json_set_number(object, columns[k].name, columns[k].value);
+            continue;
+        }
         wb_json_set_number(object, "deflection_mm", row.deflection / WB_MM);
         wb_json_set_number(object, "tension_N", row.tension);
         wb_json_set_number(object, "force_N", row.force);

@@ -160,6 +160,12 @@ static void set_info(struct wb_json *document, const struct wb_test_info *info)
     set_scaled(test, "natural_bow_mm", wb_dataset_bow(info), WB_MM);
     wb_json_set_boolean(test, "virtual_rig", info->is_virtual);
     wb_json_set_boolean(test, "simulation", info->is_simulation);
+    if (info->kind != WB_TEST_CANTILEVER)
+        wb_json_set_text(test, "kind", wb_machine_kind_name(info->kind));
+    if (!info->has_machine)
+        return;
+    wb_machine_set_json(&info->machine, wb_json_set_object(document, "machine"));
+    wb_test_piece_set_json(&info->piece, wb_json_set_object(document, "test_piece"));
 }
 
 static enum wb_status get_number(const struct wb_json *test, const char *path, const char *key,
@@ -222,6 +228,29 @@ static enum wb_status get_loading(const struct wb_json *test, const char *path,
     return WB_OK;
 }
 
+/* Datasets without the key are of cantilevers. */
+static enum wb_status get_kind(const struct wb_json *document, const struct wb_json *test,
+                               const char *path, struct wb_test_info *info, struct wb_reason *why)
+{
+    const char *name = wb_machine_kind_name(WB_TEST_CANTILEVER);
+    if (wb_json_get(test, "kind") && !wb_json_get_text(test, "kind", &name))
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: test.kind: expected a text", path);
+    if (!wb_machine_kind_find(name, &info->kind))
+        return wb_fail_to(why, WB_ERR_FORMAT,
+                          "%s: test.kind: expected cantilever, three-point or tensile, not '%.40s'",
+                          path, name);
+    const struct wb_json *const machine = wb_json_get(document, "machine");
+    info->has_machine = machine != NULL;
+    if (!machine && info->kind == WB_TEST_CANTILEVER)
+        return WB_OK;
+    WB_TRY(wb_machine_get_json(&info->machine, machine, path, why));
+    WB_TRY(wb_test_piece_get_json(&info->piece, wb_json_get(document, "test_piece"), path, why));
+    if (info->machine.kind != info->kind)
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: machine.kind: expected %s, as test.kind", path,
+                          name);
+    return WB_OK;
+}
+
 static enum wb_status get_info(const struct wb_json *document, const char *path,
                                struct wb_test_info *info, struct wb_reason *why)
 {
@@ -255,7 +284,8 @@ static enum wb_status get_info(const struct wb_json *document, const char *path,
                           "%s: test.length_mm and test.outer_diameter_mm must be positive", path);
     WB_TRY(get_shape(test, path, info, why));
     WB_TRY(get_flag(test, path, "virtual_rig", &info->is_virtual, why));
-    return get_flag(test, path, "simulation", &info->is_simulation, why);
+    WB_TRY(get_flag(test, path, "simulation", &info->is_simulation, why));
+    return get_kind(document, test, path, info, why);
 }
 
 /* --- the tables --- */
@@ -287,6 +317,15 @@ static const struct column row_columns[] = {
     {"tip_angle_rad", KIND_OPTIONAL, offsetof(struct wb_row, tip_angle), 0},
     {0},
 };
+
+/* A testing machine's file may have no time; all else of a row is the same. */
+static void columns_of(const struct wb_test_info *info,
+                       struct column columns[sizeof row_columns / sizeof row_columns[0]])
+{
+    memcpy(columns, row_columns, sizeof row_columns);
+    if (info->kind != WB_TEST_CANTILEVER)
+        columns[0].kind = KIND_OPTIONAL;
+}
 
 static const struct column shape_columns[] = {
     {"t_s", KIND_NUMBER, offsetof(struct wb_shape_row, t), 0},
@@ -370,7 +409,9 @@ static enum wb_status format_tables(const struct wb_dataset *dataset, struct wb_
         wb_text_append(rows, "# virtual rig\n");
         wb_text_append(shapes, "# virtual rig\n");
     }
-    WB_TRY(append_table(rows, row_columns, dataset->rows, dataset->n_rows, sizeof *dataset->rows));
+    struct column columns[sizeof row_columns / sizeof row_columns[0]];
+    columns_of(&dataset->info, columns);
+    WB_TRY(append_table(rows, columns, dataset->rows, dataset->n_rows, sizeof *dataset->rows));
     return append_table(shapes, shape_columns, dataset->shape_rows, dataset->n_shape_rows,
                         sizeof *dataset->shape_rows);
 }
@@ -534,9 +575,12 @@ enum wb_status wb_dataset_parse_rows(struct wb_dataset *dataset, const char *pat
 {
     struct reader reader;
     char *line;
-    WB_TRY(start_reading(&reader, path, text, n, row_columns, why));
+    struct column columns[sizeof row_columns / sizeof row_columns[0]];
+    columns_of(&dataset->info, columns);
+    WB_TRY(start_reading(&reader, path, text, n, columns, why));
     while ((line = next_line(&reader))) {
-        struct wb_row row = {.tension = (double)NAN,
+        struct wb_row row = {.t = (double)NAN,
+                             .tension = (double)NAN,
                              .stage = (double)NAN,
                              .tip_x = (double)NAN,
                              .tip_angle = (double)NAN};
@@ -661,7 +705,27 @@ static enum wb_status read_table(struct wb_dataset *dataset, const char *folder,
     return status;
 }
 
-static enum wb_status read_all(struct wb_dataset *dataset, const char *folder,
+/* The message says what came and what is wanted. */
+static enum wb_status check_kind(const struct wb_test_info *info, const char *folder,
+                                 unsigned kinds, struct wb_reason *why)
+{
+    char wanted[128];
+    size_t n = 0;
+    if (kinds & WB_TEST_BIT(info->kind))
+        return WB_OK;
+    for (int i = 0; i < WB_TEST_KINDS; i++) {
+        if (kinds & WB_TEST_BIT(i))
+            n += (size_t)snprintf(wanted + n, sizeof wanted - n, "%s%s", n > 0 ? " or " : "",
+                                  wb_machine_kind_name((enum wb_test_kind)i));
+    }
+    return wb_fail_to(why, WB_ERR_UNSUPPORTED, "'%s' is a %s test: a %s test is expected here%s",
+                      folder, wb_machine_kind_name(info->kind), wanted,
+                      info->kind == WB_TEST_TENSILE
+                          ? "; `wirebench calibrate --tensile` takes tensile tests"
+                          : "");
+}
+
+static enum wb_status read_all(struct wb_dataset *dataset, const char *folder, unsigned kinds,
                                struct wb_reason *why)
 {
     char path[WB_PATH];
@@ -676,6 +740,7 @@ static enum wb_status read_all(struct wb_dataset *dataset, const char *folder,
                           "%s: dataset schema %lld, this program reads %d: use a newer wirebench",
                           path, (long long)schema, SCHEMA);
     WB_TRY(get_info(dataset->document, path, &dataset->info, why));
+    WB_TRY(check_kind(&dataset->info, folder, kinds, why));
     WB_TRY(read_table(dataset, folder, "force_deflection.csv", wb_dataset_parse_rows, why));
     return read_table(dataset, folder, "shape.csv", wb_dataset_parse_shapes, why);
 }
@@ -683,8 +748,14 @@ static enum wb_status read_all(struct wb_dataset *dataset, const char *folder,
 enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder,
                                struct wb_reason *why)
 {
+    return wb_dataset_read_kinds(dataset, folder, WB_TEST_BIT(WB_TEST_CANTILEVER), why);
+}
+
+enum wb_status wb_dataset_read_kinds(struct wb_dataset *dataset, const char *folder, unsigned kinds,
+                                     struct wb_reason *why)
+{
     struct wb_dataset read = {0};
-    const enum wb_status status = read_all(&read, folder, why);
+    const enum wb_status status = read_all(&read, folder, kinds, why);
     if (status != WB_OK) {
         wb_dataset_release(&read);
         memset(dataset, 0, sizeof *dataset);

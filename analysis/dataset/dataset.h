@@ -11,6 +11,10 @@
  * Frame: clamp at the origin, x along the straight wire, y upwards. Deflection is the tip's y.
  * `tension` is the strand's; `force` is its vertical part less its value at zero deflection on the
  * first loading. Slack rows are left out of every fit.
+ *
+ * Of other kinds than the cantilever, which come from testing machines, `deflection` is the travel
+ * as the machine printed it (tensile: the elongation), not zeroed at the first contact, and `force`
+ * the load, not zeroed either; both rise where the specimen is loaded. Shapes there are none.
  */
 #ifndef WB_ANALYSIS_DATASET_H
 #define WB_ANALYSIS_DATASET_H
@@ -19,6 +23,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "analysis/dataset/machine.h"
+#include "analysis/dataset/test_piece.h"
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
@@ -28,7 +34,8 @@
  * t_s,cycle,phase,deflection_mm,tension_N,force_N,stage_mm,tip_x_mm,tip_angle_rad
  * Columns a source does not have are NaN, written as empty fields. */
 struct wb_row {
-    double t;  /* s since the first row's clock zero, bench time */
+    double t;  /* s since the first row's clock zero, bench time; NaN in a test that is not of a
+                  cantilever and whose file has no time */
     int cycle; /* from 1 */
     enum wb_phase phase;
     double deflection; /* m */
@@ -54,9 +61,9 @@ struct wb_shape_row {
 struct wb_test_info {
     char wire[64];          /* name of the product */
     int sample;             /* 0 for an average or a simulation without samples */
-    double length;          /* m */
+    double length;          /* m: free length; span between rollers; gauge length */
     double outer_diameter;  /* m */
-    double mass_per_length; /* kg/m */
+    double mass_per_length; /* kg/m; 0: not known, in a test from a machine */
     double poissons_ratio;  /* 1 */
     double strand_length;   /* m; 0: vertical dead force, no strand */
     bool is_follower;       /* the tip force stays normal to the wire; `force` is its size, and a
@@ -72,6 +79,10 @@ struct wb_test_info {
     double natural_shape[4];
     bool is_virtual;    /* from a virtual rig */
     bool is_simulation; /* from `solve` */
+    enum wb_test_kind kind;
+    bool has_machine;           /* a testing machine's: the two below are filled */
+    struct wb_machine machine;  /* of the same kind */
+    struct wb_test_piece piece; /* what else is known of the specimen */
 };
 
 struct wb_dataset {
@@ -117,6 +128,12 @@ WB_MUST_CHECK enum wb_status wb_dataset_finish(const struct wb_dataset *dataset,
                                                const char *folder);
 WB_MUST_CHECK enum wb_status wb_dataset_read(struct wb_dataset *dataset, const char *folder,
                                              struct wb_reason *why);
+
+/* The same for those who can serve other kinds than the cantilever, which wb_dataset_read() refuses
+ * (WB_ERR_UNSUPPORTED, with what is expected): `kinds` is made of WB_TEST_BIT()s. */
+#define WB_TEST_BIT(kind) (1u << (kind))
+WB_MUST_CHECK enum wb_status wb_dataset_read_kinds(struct wb_dataset *dataset, const char *folder,
+                                                   unsigned kinds, struct wb_reason *why);
 
 /* Rows farther apart than this, s, have a gap between them, which a drawn line leaves open: several
  * times their mean interval; infinite with fewer than two rows. */

@@ -113,9 +113,9 @@ static void describe_law(struct wb_json *simulation, const struct wb_law *law)
     }
 }
 
-static void describe(struct wb_json *document, const struct wb_test_info *info,
-                     const struct wb_loading_steps *loading,
-                     const struct wb_simulated_origin *origin)
+/* `zero_force` (N) may be NaN: there is none. */
+static void describe(struct wb_json *document, const struct wb_test_info *info, bool converged,
+                     double zero_force, const struct wb_simulated_origin *origin)
 {
     char name[128];
     snprintf(name, sizeof name, "%s, simulated %s", info->wire, origin->model);
@@ -125,8 +125,9 @@ static void describe(struct wb_json *document, const struct wb_test_info *info,
     wb_json_set_text(simulation, "model", origin->model);
     describe_law(simulation, origin->law);
     wb_json_set_text(simulation, "properties_source", origin->source);
-    wb_json_set_boolean(simulation, "converged", loading->converged);
-    wb_json_set_number(simulation, "zero_force_N", loading->zero_force);
+    wb_json_set_boolean(simulation, "converged", converged);
+    if (isfinite(zero_force))
+        wb_json_set_number(simulation, "zero_force_N", zero_force);
     wb_json_set_number(simulation, "wall_s", origin->wall);
     wb_json_set_number(simulation, "cpu_s", origin->cpu);
 
@@ -140,6 +141,36 @@ enum wb_status wb_simulated_fill(struct wb_dataset *dataset, const struct wb_tes
     dataset->info = *info;
     dataset->info.is_simulation = true;
     WB_TRY(add_rows(dataset, loading, shape_s));
-    describe(dataset->document, info, loading, origin);
+    describe(dataset->document, info, loading->converged, loading->zero_force, origin);
+    return WB_OK;
+}
+
+enum wb_status wb_simulated_fill_bending3p(struct wb_dataset *dataset,
+                                           const struct wb_test_info *info,
+                                           const struct wb_simulated_bending *bending,
+                                           const struct wb_simulated_origin *origin)
+{
+    double travelled = 0.0;
+
+    dataset->info = *info;
+    dataset->info.is_simulation = true;
+    for (int i = 0; i < bending->n_rows; i++) {
+        const struct wb_simulated_bending_row *const row = &bending->rows[i];
+        if (i > 0)
+            travelled += fabs(row->point.travel - bending->rows[i - 1].point.travel);
+        const struct wb_row out = {
+            .t = travelled / stage_speed,
+            .cycle = row->cycle,
+            .phase = row->phase,
+            .deflection = row->point.travel,
+            .tension = row->point.force,
+            .force = row->point.force,
+            .stage = (double)NAN,
+            .tip_x = (double)NAN,
+            .tip_angle = (double)NAN,
+        };
+        WB_TRY(wb_dataset_add_row(dataset, &out));
+    }
+    describe(dataset->document, info, bending->converged, (double)NAN, origin);
     return WB_OK;
 }

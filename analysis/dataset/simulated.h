@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "fe/material/law.h"
 #include "fe/model/wire_model.h"
+#include "fe/trial/bending3p.h"
 #include "fe/trial/loading_steps.h"
 #include "fe/trial/wire3d.h"
 #include "fe/trial/wire_run.h"
@@ -22,12 +23,30 @@ struct wb_simulated_origin {
     double wall, cpu;         /* s */
 };
 
+/* The rows of a three-point bending test. */
+struct wb_simulated_bending {
+    int n_rows;
+    const struct wb_simulated_bending_row {
+        int cycle;
+        enum wb_phase phase;
+        struct wb_bending3p_point point;
+    } * rows; /* (n_rows) */
+    bool converged;
+};
+
 /* Fills an initialised dataset. `shape_s` are the arc lengths of the plan, m. */
 WB_MUST_CHECK enum wb_status wb_simulated_fill(struct wb_dataset *dataset,
                                                const struct wb_test_info *info,
                                                const struct wb_loading_steps *loading,
                                                const double *shape_s,
                                                const struct wb_simulated_origin *origin);
+
+/* The same of three-point bending: `info` is of that kind, with its machine. Rows are those of a
+ * testing machine, deflection the travel. */
+WB_MUST_CHECK enum wb_status wb_simulated_fill_bending3p(struct wb_dataset *dataset,
+                                                         const struct wb_test_info *info,
+                                                         const struct wb_simulated_bending *bending,
+                                                         const struct wb_simulated_origin *origin);
 
 /* A shape in space: n places (m) at the arc lengths s (m). */
 struct wb_simulated_shape {

@@ -5,8 +5,8 @@
 
 #include <stdbool.h>
 
-#include "analysis/solve/solve_time.h"
 #include "analysis/dataset/surface.h"
+#include "analysis/solve/solve_time.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_run.h"
 #include "fe/output/bundle_fields.h"

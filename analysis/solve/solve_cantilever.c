@@ -4,6 +4,7 @@
 
 #include "analysis/dataset/simulated.h"
 #include "analysis/solve/solve_kind.h"
+#include "analysis/solve/solve_law.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"
@@ -31,25 +32,13 @@ static enum wb_status prepare(void *context)
 {
     struct run *const run = context;
     const struct wb_solve_settings *const o = run->solve.settings;
-    char path[WB_PATH];
 
-    WB_TRY(wb_file_find_fixture(path, "wires", o->wire, NULL));
-    WB_TRY(wb_wire_read(path, &run->wire, NULL));
+    WB_TRY(wb_solve_law_prepare(o->wire, o->law == WB_SOLVE_ELASTIC, &run->wire, &run->law,
+                                &run->section));
     run->solve.name = run->wire.name;
-    if (!run->wire.has_properties)
-        return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);
-    run->law = run->wire.law;
 
     struct wb_cantilever_model model;
     wb_cantilever_default_model(&model);
-    if (o->law == WB_SOLVE_ELASTIC) {
-        struct wb_material elastic = run->law.material;
-        elastic.hardening = WB_HARDENING_NONE_ELASTIC;
-        wb_law_init_ludwik(&run->law, &elastic);
-        WB_TRY(wb_section_init_circle(&run->section, run->wire.outer_diameter, &elastic, 0));
-    } else {
-        WB_TRY(wb_section_init_law(&run->section, run->wire.outer_diameter, &run->law, 0));
-    }
     model.section = &run->section;
     model.length = o->length;
     model.strand_length = o->strand;

@@ -43,6 +43,7 @@ struct wb_solve_kind {
     void (*release)(void *run);         /* accepts one that was prepared in part */
 };
 
-extern const struct wb_solve_kind wb_solve_cantilever, wb_solve_wire, wb_solve_bundle;
+extern const struct wb_solve_kind wb_solve_cantilever, wb_solve_wire, wb_solve_bundle,
+    wb_solve_bending3p;
 
 #endif

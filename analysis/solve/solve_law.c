@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "analysis/calibration/bending.h"
+#include "base/file.h"
 #include "base/log.h"
 
 #define WB_LOG_DOMAIN "solve"
@@ -39,4 +40,21 @@ enum wb_status wb_solve_law_tell(const struct wb_wire *wire)
             "loading within %.2g %%, the way back is not the law's",
             wire->name, 100.0 * difference);
     return WB_OK;
+}
+
+enum wb_status wb_solve_law_prepare(const char *name, bool is_elastic, struct wb_wire *wire,
+                                    struct wb_law *law, struct wb_section *section)
+{
+    char path[WB_PATH];
+    WB_TRY(wb_file_find_fixture(path, "wires", name, NULL));
+    WB_TRY(wb_wire_read(path, wire, NULL));
+    if (!wire->has_properties)
+        return wb_fail(WB_ERR_DATA, "%s: the wire has no `properties` to compute with", path);
+    *law = wire->law;
+    if (!is_elastic)
+        return wb_section_init_law(section, wire->outer_diameter, law, 0);
+    struct wb_material elastic = law->material;
+    elastic.hardening = WB_HARDENING_NONE_ELASTIC;
+    wb_law_init_ludwik(law, &elastic);
+    return wb_section_init_circle(section, wire->outer_diameter, &elastic, 0);
 }

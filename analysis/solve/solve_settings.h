@@ -14,10 +14,12 @@ enum {
     WB_SOLVE_WIRE3D = 2,
     WB_SOLVE_WIRE1D = 4,
     WB_SOLVE_BUNDLE = 8,
-    WB_SOLVE_KINDS = 4 /* how many */
+    WB_SOLVE_BENDING3P = 16,
+    WB_SOLVE_KINDS = 5 /* how many */
 };
 
-/* Their names by bit, NULL-terminated: "cantilever", "wire3d", "wire1d", "bundle". */
+/* Their names by bit, NULL-terminated: "cantilever", "wire3d", "wire1d", "bundle",
+ * "bending3p". */
 extern const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1];
 
 enum {
@@ -36,7 +38,13 @@ struct wb_solve_settings {
     int law;                           /* WB_SOLVE_ELASTOPLASTIC or WB_SOLVE_ELASTIC */
     int cycles, points;
     bool weight;
-    /* Of the wires, and of bundles. */
+    /* Of three-point bending, beside some of the cantilever's. */
+    double span, overhang;             /* m; overhang 0: 0.3 span */
+    double roller_radius, nose_radius; /* m */
+    double friction, compliance;       /* 1; m/N */
+    double bow;                        /* m: rise of the natural shape's arc over the span */
+    bool whole;                        /* compute both halves */
+    /* Of the wires, of bundles, and of three-point bending: a wire's. */
     const char *model; /* name or file */
     const char *vtk;   /* folder; NULL: none; not of wire1d */
     /* Of bundles. */

@@ -4,9 +4,9 @@
 #include <sys/resource.h>
 
 #include "analysis/dataset/simulated.h"
+#include "analysis/dataset/wire_fields.h"
 #include "analysis/solve/solve_kind.h"
 #include "analysis/solve/solve_law.h"
-#include "analysis/dataset/wire_fields.h"
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/units.h"

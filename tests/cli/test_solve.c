@@ -242,9 +242,65 @@ static void bad_input_gives_one_message_and_its_exit_code(void **unused)
     expect_refused(cases, sizeof cases / sizeof cases[0]);
 }
 
+/* A wire on two rollers: a curve, its dataset as a testing machine's, and how it ends. */
+static void three_point_bending_is_a_machine_test(void **unused)
+{
+    (void)unused;
+    char arguments[512];
+    snprintf(
+        arguments, sizeof arguments,
+        "solve bending3p type2 --span-mm 20 --deflection-mm 6 --roller-radius-mm 2 "
+        "--nose-radius-mm 4.5 --roller-friction 0.3 --compliance-mm-n 0.1 --cycles 1 --points 12 "
+        "--json -o %s/three",
+        folder);
+    tool(arguments);
+    assert_int_equal(o.code, 0);
+    assert_string_equal(o.err, "");
+    struct wb_json *root = parse_output();
+    const struct wb_json *points = wb_json_get(root, "points");
+    const struct wb_json *top = wb_json_item(points, 12);
+    const size_t n = wb_json_length(points);
+    const char *phase = NULL;
+    assert_close_relative(number(top, "nose_mm"), 6.0, 1e-12);
+    assert_close_relative(number(top, "deflection_mm"), 6.0 + 0.1 * number(top, "force_N"), 1e-12);
+    assert_close_relative(number(top, "work_J"),
+                          number(top, "internal_work_J") + number(top, "friction_work_J"), 5e-3);
+    assert_true(n > 14 && n < 25);
+    assert_true(wb_json_get_text(wb_json_item(points, n - 1), "phase", &phase));
+    assert_string_equal(phase, "slack");
+    assert_close(number(wb_json_item(points, n - 1), "force_N"), 0.0, 0.0);
+
+    struct wb_dataset dataset;
+    char three[256];
+    snprintf(three, sizeof three, "%s/three", folder);
+    assert_int_equal(wb_dataset_read_kinds(&dataset, three, WB_TEST_BIT(WB_TEST_THREE_POINT), NULL),
+                     WB_OK);
+    assert_int_equal(dataset.n_rows, n);
+    assert_close(dataset.info.machine.span, 20e-3, 1e-12);
+    assert_close(dataset.info.machine.nose_radius.value, 4.5e-3, 1e-12);
+    assert_close_relative(dataset.rows[12].deflection, 1e-3 * number(top, "deflection_mm"), 1e-12);
+    assert_close_relative(dataset.rows[12].force, number(top, "force_N"), 1e-12);
+    wb_dataset_release(&dataset);
+    wb_json_destroy(root);
+
+    tool("solve bending3p type2 --span-mm 20 --deflection-mm 6 --overhang-mm 0.1");
+    assert_int_equal(o.code, 3);
+    assert_non_null(strstr(o.err, "comes to a roller"));
+    tool("solve bending3p type2 --span-mm 20 --deflection-mm 12 --nose-radius-mm 9 "
+         "--roller-radius-mm 5");
+    assert_int_equal(o.code, 3);
+    assert_non_null(strstr(o.err, "pinched"));
+    tool("solve bending3p type2 --span-mm 20");
+    assert_int_equal(o.code, 2);
+    tool("solve bending3p type2 --span-mm 20 --deflection-mm 6 --bow-mm 50");
+    assert_int_equal(o.code, 2);
+    assert_non_null(strstr(o.err, "at most half"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(three_point_bending_is_a_machine_test),
         cmocka_unit_test(json_holds_the_reference_curve),
         cmocka_unit_test(law_and_cycles_are_obeyed),
         cmocka_unit_test(dataset_is_one_like_any_other),

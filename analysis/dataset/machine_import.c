@@ -1,0 +1,406 @@
+#include "analysis/dataset/machine_import.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/compress.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/units.h"
+#include "base/version.h"
+#include "daq/table_columns.h"
+
+#define WB_LOG_DOMAIN "import"
+
+/* A turn of the travel is a way back of this part of its range. */
+#define TURN 0.02
+/* Fewer rows are no curve. */
+#define LEAST_ROWS 5
+
+struct import {
+    const struct wb_machine_import *from;
+    struct wb_dataset *dataset;
+    struct wb_text_table table;
+    struct wb_table_columns columns;
+    struct wb_machine_import_report report;
+    enum wb_measured travel; /* the column that becomes the deflection: travel or strain */
+    double travel_factor;    /* a strain times the gauge length */
+    int force_sign, travel_sign;
+    size_t bytes;
+    char hash[WB_SHA256_TEXT];
+    struct wb_reason *why;
+};
+
+/* --- columns --- */
+
+/* A tensile test's strain is that of an extensometer; where the machine file says so it comes
+ * first, else the crosshead's travel. */
+static enum wb_status choose_columns(struct import *import)
+{
+    const struct wb_machine *const machine = import->from->machine;
+    const int *const column = import->columns.column;
+    WB_TRY(wb_table_columns_find(&import->columns, &import->table, import->from->columns,
+                                 WB_MEASURED_BIT(WB_MEASURED_FORCE), WB_STANDARD_GRAVITY,
+                                 import->from->path, import->why));
+    const bool tensile = machine->kind == WB_TEST_TENSILE;
+    const bool has_strain = tensile && column[WB_MEASURED_STRAIN] >= 0;
+    const bool has_travel = column[WB_MEASURED_TRAVEL] >= 0;
+    import->travel = WB_MEASURED_TRAVEL;
+    import->travel_factor = 1.0;
+    if (has_strain && (machine->own_elongation || !has_travel)) {
+        import->travel = WB_MEASURED_STRAIN;
+        import->travel_factor = machine->gauge_length;
+        return WB_OK;
+    }
+    if (!has_travel)
+        return wb_table_columns_find(&import->columns, &import->table, import->from->columns,
+                                     WB_MEASURED_BIT(WB_MEASURED_FORCE) |
+                                         WB_MEASURED_BIT(WB_MEASURED_TRAVEL),
+                                     WB_STANDARD_GRAVITY, import->from->path, import->why);
+    return WB_OK;
+}
+
+/* --- rows --- */
+
+static enum wb_status take_row(struct import *import, size_t index)
+{
+    struct wb_machine_import_report *const report = &import->report;
+    const char *const path = import->from->path;
+    const struct wb_table_columns *const columns = &import->columns;
+    struct wb_row row = {.t = (double)NAN,
+                         .cycle = 1,
+                         .phase = WB_PHASE_LOAD,
+                         .stage = (double)NAN,
+                         .tip_x = (double)NAN,
+                         .tip_angle = (double)NAN};
+    WB_TRY(wb_table_columns_value(columns, &import->table, index, WB_MEASURED_FORCE, &row.force,
+                                  path, import->why));
+    WB_TRY(wb_table_columns_value(columns, &import->table, index, import->travel, &row.deflection,
+                                  path, import->why));
+    WB_TRY(wb_table_columns_value(columns, &import->table, index, WB_MEASURED_TIME, &row.t, path,
+                                  import->why));
+    report->largest_force = fmax(report->largest_force, row.force);
+    report->largest_travel = fmax(report->largest_travel, row.deflection * import->travel_factor);
+    const bool has_force = isfinite(row.force), has_travel = isfinite(row.deflection);
+    const bool has_time = isfinite(row.t) || columns->column[WB_MEASURED_TIME] < 0;
+    if (!has_force && !has_travel) {
+        report->empty++; /* a time alone says nothing */
+        return WB_OK;
+    }
+    report->without_force += !has_force;
+    report->without_travel += !has_travel;
+    report->without_time += !has_time;
+    if (!has_force || !has_travel || !has_time) {
+        report->partial++;
+        return WB_OK;
+    }
+    row.deflection *= import->travel_factor;
+    row.tension = row.force;
+    const size_t n = import->dataset->n_rows;
+    if (n > 0 && row.t < import->dataset->rows[n - 1].t)
+        return wb_fail_to(import->why, WB_ERR_DATA,
+                          "%s:%d: column %d: time goes back from %g s to %g s: the rows are not in "
+                          "order",
+                          path, import->table.lines[index], columns->column[WB_MEASURED_TIME] + 1,
+                          import->dataset->rows[n - 1].t, row.t);
+    return wb_dataset_add_row(import->dataset, &row);
+}
+
+/* --- signs, times, phases --- */
+
+/* The sign under which values rise from the first to the one that is farthest from it. */
+static int rising_sign(const struct wb_dataset *dataset, size_t offset, double *largest)
+{
+    double first, farthest = 0.0;
+    memcpy(&first, (const char *)&dataset->rows[0] + offset, sizeof first);
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        double value;
+        memcpy(&value, (const char *)&dataset->rows[i] + offset, sizeof value);
+        if (fabs(value - first) > fabs(farthest))
+            farthest = value - first;
+    }
+    *largest = fabs(farthest);
+    return farthest < 0.0 ? -1 : 1;
+}
+
+static enum wb_status turn_signs(struct import *import)
+{
+    struct wb_dataset *const dataset = import->dataset;
+    double range, force;
+    import->travel_sign = rising_sign(dataset, offsetof(struct wb_row, deflection), &range);
+    import->force_sign = rising_sign(dataset, offsetof(struct wb_row, force), &force);
+    if (!(range > 0.0) || !(force > 0.0))
+        return wb_fail_to(import->why, WB_ERR_DATA,
+                          "%s: the %s is the same in all %zu rows: this is no test",
+                          import->from->path, range > 0.0 ? "force" : "travel", dataset->n_rows);
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        struct wb_row *const row = &dataset->rows[i];
+        /* Plus nought: the sign of a nought is not turned. */
+        row->deflection = import->travel_sign * row->deflection + 0.0;
+        row->force = import->force_sign * row->force + 0.0;
+        row->tension = row->force;
+    }
+    return WB_OK;
+}
+
+/* Where the file has no time and the machine's speed is known, its way tells the time. */
+static enum wb_status take_times(struct import *import)
+{
+    const struct wb_machine *const machine = import->from->machine;
+    struct wb_dataset *const dataset = import->dataset;
+    if (import->columns.column[WB_MEASURED_TIME] >= 0)
+        return WB_OK;
+    if (!machine->speed.known) {
+        if (machine->kind == WB_TEST_CANTILEVER)
+            return wb_fail_to(import->why, WB_ERR_DATA,
+                              "%s: no column of the time: name it in --columns, or give the "
+                              "machine's speed_mm_s",
+                              import->from->path);
+        return WB_OK;
+    }
+    dataset->rows[0].t = 0.0;
+    for (size_t i = 1; i < dataset->n_rows; i++)
+        dataset->rows[i].t = dataset->rows[i - 1].t +
+                             fabs(dataset->rows[i].deflection - dataset->rows[i - 1].deflection) /
+                                 machine->speed.value;
+    return WB_OK;
+}
+
+static void mark(struct wb_dataset *dataset, size_t from, size_t to, bool load, int cycle)
+{
+    for (size_t i = from; i < to; i++) {
+        dataset->rows[i].phase = load ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
+        dataset->rows[i].cycle = cycle;
+    }
+}
+
+/* Cuts at the turns: where the travel has come back from its farthest by TURN of its range. */
+static void cut_phases(struct wb_dataset *dataset)
+{
+    double least = dataset->rows[0].deflection, most = least;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        least = fmin(least, dataset->rows[i].deflection);
+        most = fmax(most, dataset->rows[i].deflection);
+    }
+    const double back = TURN * (most - least);
+    size_t start = 0, extreme = 0;
+    bool load = true;
+    int cycle = 1;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const double way = dataset->rows[i].deflection - dataset->rows[extreme].deflection;
+        const double ahead = load ? way : -way;
+        if (ahead >= 0.0) {
+            extreme = i;
+        } else if (-ahead > back) {
+            mark(dataset, start, extreme + 1, load, cycle);
+            start = extreme + 1;
+            extreme = i;
+            load = !load;
+            cycle += load;
+        }
+    }
+    mark(dataset, start, dataset->n_rows, load, cycle);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* A pause of the machine looks the same as rows that are lost; both are told. */
+static enum wb_status count_gaps(struct import *import)
+{
+    const struct wb_dataset *const dataset = import->dataset;
+    struct wb_machine_import_report *const report = &import->report;
+    const size_t n = dataset->n_rows - 1;
+    if (import->columns.column[WB_MEASURED_TIME] < 0)
+        return WB_OK;
+    double *const steps = malloc(n * sizeof *steps);
+    if (!steps)
+        return wb_fail_to(import->why, WB_ERR_MEMORY, "out of memory for %zu rows", n);
+    for (size_t i = 0; i < n; i++)
+        steps[i] = dataset->rows[i + 1].t - dataset->rows[i].t;
+    qsort(steps, n, sizeof *steps, by_size);
+    const double limit = 5.0 * steps[n / 2];
+    for (size_t i = 0; i < n; i++) {
+        if (steps[i] > limit && limit > 0.0) {
+            report->gaps++;
+            report->longest_gap = steps[i];
+        }
+    }
+    free(steps);
+    return WB_OK;
+}
+
+/* --- the document --- */
+
+static void set_column(struct wb_json *object, const struct import *import, enum wb_measured m)
+{
+    const int column = import->columns.column[m];
+    if (column < 0 || (m != import->travel && (m == WB_MEASURED_TRAVEL || m == WB_MEASURED_STRAIN)))
+        return;
+    struct wb_json *const entry = wb_json_set_object(object, wb_table_columns_name(m));
+    wb_json_set_integer(entry, "column", column + 1);
+    wb_json_set_text(entry, "header", import->table.columns[column].name);
+    wb_json_set_text(entry, "unit", import->columns.unit[m]);
+}
+
+static void set_document(const struct import *import)
+{
+    const struct wb_machine_import_report *const report = &import->report;
+    struct wb_json *const document = import->dataset->document;
+    const struct wb_text_table *const table = &import->table;
+    char delimiter[2] = {table->delimiter, '\0'}, decimal[2] = {table->decimal, '\0'};
+    wb_json_set_text(document, "name", wb_file_name(import->from->path));
+    struct wb_json *const tool = wb_json_set_object(document, "tool");
+    wb_json_set_text(tool, "name", "wirebench import force");
+    wb_json_set_text(tool, "version", wb_version());
+    wb_json_set_text(tool, "revision", wb_version_revision());
+    struct wb_json *const from = wb_json_set_object(document, "import");
+    wb_json_set_text(from, "file", wb_file_name(import->from->path));
+    wb_json_set_integer(from, "bytes", (int64_t)import->bytes);
+    wb_json_set_text(from, "sha256", import->hash);
+    wb_json_set_text(from, "encoding", wb_text_encoding_name(table->encoding));
+    wb_json_set_boolean(from, "byte_order_mark", table->byte_order_mark);
+    wb_json_set_text(from, "delimiter",
+                     table->delimiter == '\t'  ? "tab"
+                     : table->delimiter == ' ' ? "blanks"
+                                               : delimiter);
+    wb_json_set_text(from, "decimal_sign", decimal);
+    wb_json_set_integer(from, "header_line", table->header_line);
+    struct wb_json *const columns = wb_json_set_object(from, "columns");
+    for (int m = 0; m < WB_MEASURED_COUNT; m++)
+        set_column(columns, import, (enum wb_measured)m);
+    wb_json_set_integer(from, "lines", (int64_t)report->lines);
+    wb_json_set_integer(from, "rows", (int64_t)report->rows);
+    wb_json_set_integer(from, "empty_rows", (int64_t)report->empty);
+    wb_json_set_integer(from, "partial_rows", (int64_t)report->partial);
+    wb_json_set_integer(from, "rows_without_force", (int64_t)report->without_force);
+    wb_json_set_integer(from, "rows_without_travel", (int64_t)report->without_travel);
+    wb_json_set_integer(from, "rows_without_time", (int64_t)report->without_time);
+    wb_json_set_number(from, "largest_force_N", report->largest_force);
+    wb_json_set_number(from, "largest_travel_mm", report->largest_travel / WB_MM);
+    wb_json_set_integer(from, "gaps", report->gaps);
+    wb_json_set_number(from, "longest_gap_s", report->longest_gap);
+    wb_json_set_boolean(from, "cut", report->cut);
+    wb_json_set_boolean(from, "last_line_has_no_end", table->ends_without_end);
+    wb_json_set_boolean(from, "force_turned", import->force_sign < 0);
+    wb_json_set_boolean(from, "travel_turned", import->travel_sign < 0);
+    wb_json_set_boolean(document, "complete", !report->cut && report->gaps == 0);
+}
+
+static void set_info(const struct import *import)
+{
+    struct wb_test_info *const info = &import->dataset->info;
+    const struct wb_machine *const machine = import->from->machine;
+    const struct wb_test_piece *const piece = import->from->piece;
+    snprintf(info->wire, sizeof info->wire, "%s", piece->wire);
+    info->sample = piece->sample;
+    info->kind = machine->kind;
+    info->has_machine = true;
+    info->machine = *machine;
+    info->piece = *piece;
+    info->length = machine->kind == WB_TEST_THREE_POINT ? machine->span
+                   : machine->kind == WB_TEST_TENSILE   ? machine->gauge_length
+                                                        : piece->length;
+    /* Of a tensile specimen without a diameter, that of a circle of its area. */
+    info->outer_diameter =
+        isfinite(piece->outer_diameter) ? piece->outer_diameter : sqrt(4.0 * piece->area / M_PI);
+    info->mass_per_length = piece->mass_per_length;
+    /* Where nobody says it, as `align` has it. */
+    info->poissons_ratio = piece->poissons_ratio > 0.0 ? piece->poissons_ratio : 0.3;
+    if (machine->kind == WB_TEST_CANTILEVER && piece->mass_per_length > 0.0)
+        info->gravity = machine->bends == WB_BENDS_UP     ? WB_STANDARD_GRAVITY
+                        : machine->bends == WB_BENDS_DOWN ? -WB_STANDARD_GRAVITY
+                                                          : 0.0;
+}
+
+/* The force of a cantilever is compared with a model's, which is nought at no deflection. */
+static void zero_force(struct wb_dataset *dataset)
+{
+    const double zero = dataset->rows[0].force, start = dataset->rows[0].deflection;
+    if (dataset->info.kind != WB_TEST_CANTILEVER)
+        return;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        dataset->rows[i].force -= zero;
+        dataset->rows[i].deflection -= start;
+    }
+}
+
+static enum wb_status fill(struct import *import)
+{
+    struct wb_dataset *const dataset = import->dataset;
+    WB_TRY(choose_columns(import));
+    import->report.largest_force = import->report.largest_travel = (double)NAN;
+    for (size_t i = 0; i < import->table.n_rows; i++)
+        WB_TRY(take_row(import, i));
+    import->report.lines = (size_t)import->table.n_lines;
+    import->report.empty += import->table.n_empty_lines;
+    import->report.rows = dataset->n_rows;
+    import->report.cut = import->table.cut;
+    if (dataset->n_rows < LEAST_ROWS)
+        return wb_fail_to(import->why, WB_ERR_DATA,
+                          "%s: %zu whole rows in %d lines, %zu rows lack something: too few for a "
+                          "curve",
+                          import->from->path, dataset->n_rows, import->table.n_lines,
+                          import->report.partial);
+    WB_TRY(turn_signs(import));
+    WB_TRY(take_times(import));
+    cut_phases(dataset);
+    WB_TRY(count_gaps(import));
+    set_info(import);
+    zero_force(dataset);
+    set_document(import);
+    return WB_OK;
+}
+
+enum wb_status wb_machine_import(struct wb_dataset *dataset, const void *bytes, size_t size,
+                                 const struct wb_machine_import *from,
+                                 struct wb_machine_import_report *report, struct wb_reason *why)
+{
+    struct wb_dataset made;
+    struct import import;
+    memset(&import, 0, sizeof import);
+    import.from = from;
+    import.dataset = &made;
+    import.bytes = size;
+    import.why = why;
+    wb_hash_bytes(bytes, size, import.hash);
+    WB_TRY(wb_dataset_init(&made));
+    enum wb_status status =
+        wb_text_table_parse(&import.table, bytes, size, from->path, from->form, why);
+    if (status == WB_OK)
+        status = fill(&import);
+    wb_text_table_release(&import.table);
+    if (status != WB_OK) {
+        wb_dataset_release(&made);
+        return status;
+    }
+    *dataset = made;
+    *report = import.report;
+    return WB_OK;
+}
+
+static enum wb_status write_original(const void *bytes, size_t size, const char *folder)
+{
+    char target[WB_PATH];
+    size_t packed_size;
+    void *packed;
+    WB_TRY(wb_file_join(target, folder, "original.zst"));
+    WB_TRY(wb_compress(bytes, size, WB_COMPRESS_QUICK, target, &packed, &packed_size, NULL));
+    const enum wb_status status = wb_file_write(target, packed, packed_size);
+    free(packed);
+    return status;
+}
+
+enum wb_status wb_machine_import_write(const struct wb_dataset *dataset, const void *bytes,
+                                       size_t size, const char *folder, bool force)
+{
+    WB_TRY(wb_dataset_begin(folder, force));
+    WB_TRY(write_original(bytes, size, folder));
+    return wb_dataset_finish(dataset, folder);
+}

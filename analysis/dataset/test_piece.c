@@ -1,0 +1,326 @@
+#include "analysis/dataset/test_piece.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/dataset/test_piece_private.h"
+#include "base/config.h"
+#include "base/file.h"
+#include "base/units.h"
+#include "fe/model/wire.h"
+
+#define WB_LOG_DOMAIN "specimen"
+
+#define SQUARE_MM (WB_MM * WB_MM)
+#define GRAM_PER_METRE 1e-3
+
+static const char *const constituent_names[] = {"conductor", "jacket", "tape", NULL};
+
+const char *wb_test_piece_constituent_name(enum wb_constituent constituent)
+{
+    return constituent_names[constituent];
+}
+
+static const struct wb_band unknown = {false, (double)NAN, (double)NAN, (double)NAN};
+
+static void clear(struct wb_test_piece *piece)
+{
+    memset(piece, 0, sizeof *piece);
+    piece->outer_diameter = piece->length = piece->area = (double)NAN;
+    piece->usable_travel = unknown;
+}
+
+/* What a file says before it is made into a piece: NaN and 0 where it says nothing. */
+struct said {
+    const struct wb_config_node *usable;
+    double area, strand_diameter, inner_diameter, width, thickness;
+    int strands, constituent;
+    bool has_constituent;
+};
+
+static double circle(double diameter)
+{
+    return 0.25 * M_PI * diameter * diameter;
+}
+
+/* --- area --- */
+
+static enum wb_status take_area(const struct wb_config_node *root, const struct said *said,
+                                struct wb_test_piece *piece)
+{
+    const bool by_strands = said->strands > 0 || isfinite(said->strand_diameter);
+    const bool by_jacket = isfinite(said->inner_diameter);
+    const bool by_tape = isfinite(said->width) || isfinite(said->thickness);
+    const int ways = isfinite(said->area) + by_strands + by_jacket + by_tape;
+    if (ways != 1)
+        return wb_config_refuse(
+            root, NULL,
+            "expected the area that carries the load in one way: area_mm2; strands and "
+            "strand_diameter_mm; outer_diameter_mm and inner_diameter_mm; width_mm and "
+            "thickness_mm");
+    if (isfinite(said->area)) {
+        piece->area = said->area;
+        return WB_OK;
+    }
+    if (by_strands) {
+        if (said->strands == 0 || !isfinite(said->strand_diameter))
+            return wb_config_refuse(root, NULL, "expected strands and strand_diameter_mm together");
+        piece->area = said->strands * circle(said->strand_diameter);
+        return WB_OK;
+    }
+    if (by_tape) {
+        if (!isfinite(said->width) || !isfinite(said->thickness))
+            return wb_config_refuse(root, NULL, "expected width_mm and thickness_mm together");
+        piece->area = said->width * said->thickness;
+        return WB_OK;
+    }
+    if (!(piece->outer_diameter > said->inner_diameter))
+        return wb_config_refuse(root, "inner_diameter_mm",
+                                "expected less than outer_diameter_mm, which is %s",
+                                isfinite(piece->outer_diameter) ? "no larger" : "missing");
+    piece->area = circle(piece->outer_diameter) - circle(said->inner_diameter);
+    return WB_OK;
+}
+
+/* --- the file --- */
+
+/* A number, or a list of the least and the most. */
+static enum wb_status read_usable(const struct wb_config_node *node, struct wb_band *band)
+{
+    static const char name[] = "usable_travel_mm";
+    double numbers[2];
+    int n = 1;
+    const struct wb_config_key number = WB_CONFIG_NUMBER(name, &numbers[0], WB_MM, 1e-6, 1e5);
+    if (wb_config_length(node) < 0)
+        WB_TRY(wb_config_value(node, &number));
+    else
+        WB_TRY(wb_config_numbers(node, &number, 2, 2, numbers, &n));
+    if (n == 1)
+        numbers[1] = numbers[0];
+    if (!(numbers[1] >= numbers[0]))
+        return wb_config_refuse(node, name, "expected the least first");
+    *band = (struct wb_band){true, n == 1 ? numbers[0] : 0.5 * (numbers[0] + numbers[1]),
+                             numbers[0], numbers[1]};
+    return WB_OK;
+}
+
+/* The wire's own file, where the specimen's does not say all itself. */
+static enum wb_status take_wire(const struct wb_config_node *root, struct wb_test_piece *piece,
+                                struct wb_reason *why)
+{
+    char path[WB_PATH], folder[WB_PATH], named_in[WB_PATH + 32];
+    struct wb_wire wire;
+    wb_file_folder(folder, wb_config_origin(root));
+    snprintf(named_in, sizeof named_in, "%s:%d: wire", wb_config_origin(root),
+             wb_config_line(wb_config_find(root, "wire")));
+    WB_TRY(wb_file_find_named(path, "wires", piece->wire, folder, named_in, why));
+    WB_TRY(wb_wire_read(path, &wire, why));
+    snprintf(piece->wire, sizeof piece->wire, "%s", wire.name);
+    piece->outer_diameter = wire.outer_diameter;
+    piece->poissons_ratio = wire.has_properties ? wire.material.poissons_ratio : 0.0;
+    if (piece->mass_per_length == 0.0)
+        piece->mass_per_length = wb_wire_mass_per_length(&wire);
+    return WB_OK;
+}
+
+static enum wb_status check_kind(const struct wb_config_node *root, const struct said *said,
+                                 enum wb_test_kind kind, struct wb_test_piece *piece)
+{
+    static const char *const tensile_only[] = {
+        "area_mm2",          "strands",  "strand_diameter_mm",
+        "inner_diameter_mm", "width_mm", "thickness_mm",
+    };
+    if (kind == WB_TEST_CANTILEVER && !isfinite(piece->length))
+        return wb_config_refuse(root, "length_mm", "this key is missing for a cantilever test");
+    if (kind == WB_TEST_TENSILE) {
+        if (!said->has_constituent)
+            return wb_config_refuse(root, "constituent",
+                                    "this key is missing for a tensile test: conductor, jacket or "
+                                    "tape");
+        piece->constituent = (enum wb_constituent)said->constituent;
+        return take_area(root, said, piece);
+    }
+    for (size_t i = 0; i < WB_COUNT(tensile_only); i++) {
+        if (wb_config_find(root, tensile_only[i]))
+            return wb_config_refuse(root, tensile_only[i], "only a tensile test has this");
+    }
+    return WB_OK;
+}
+
+static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_kind kind,
+                                struct wb_test_piece *piece, struct wb_reason *why)
+{
+    const double none = (double)NAN;
+    struct said said = {NULL, none, none, none, none, none, 0, 0, false};
+    const struct wb_config_key table[] = {
+        WB_CONFIG_TEXT("wire", piece->wire),
+        WB_CONFIG_INTEGER("sample", &piece->sample, 1, 100000),
+        WB_CONFIG_OPTIONAL_TEXT("series", piece->series),
+        WB_CONFIG_OPTIONAL_NUMBER("outer_diameter_mm", &piece->outer_diameter, WB_MM, 0.001, 1000),
+        WB_CONFIG_OPTIONAL_NUMBER("length_mm", &piece->length, WB_MM, 0.1, 100000.0),
+        WB_CONFIG_OPTIONAL_NUMBER("mass_per_length_g_m", &piece->mass_per_length, GRAM_PER_METRE,
+                                  1e-6, 1e6),
+        WB_CONFIG_OPTIONAL_NODE("usable_travel_mm", &said.usable),
+        {.name = "constituent",
+         .type = WB_CONFIG_TYPE_CHOICE,
+         .optional = true,
+         .target = &said.constituent,
+         .choices = constituent_names,
+         .present = &said.has_constituent},
+        WB_CONFIG_OPTIONAL_NUMBER("area_mm2", &said.area, SQUARE_MM, 1e-9, 1e6),
+        WB_CONFIG_OPTIONAL_INTEGER("strands", &said.strands, 1, 100000),
+        WB_CONFIG_OPTIONAL_NUMBER("strand_diameter_mm", &said.strand_diameter, WB_MM, 1e-4, 1000),
+        WB_CONFIG_OPTIONAL_NUMBER("inner_diameter_mm", &said.inner_diameter, WB_MM, 1e-4, 1000),
+        WB_CONFIG_OPTIONAL_NUMBER("width_mm", &said.width, WB_MM, 1e-4, 1e5),
+        WB_CONFIG_OPTIONAL_NUMBER("thickness_mm", &said.thickness, WB_MM, 1e-5, 1e4),
+        WB_CONFIG_IGNORED("markers_mm"),
+        WB_CONFIG_IGNORED("marker_offset_mm"),
+        WB_CONFIG_IGNORED("marker_offset_uncertainty_mm"),
+    };
+    WB_TRY(wb_config_map(root, table, WB_COUNT(table)));
+    if (piece->wire[0] == '\0')
+        return wb_config_refuse(root, "wire", "expected the name of the product");
+    if (said.usable)
+        WB_TRY(read_usable(said.usable, &piece->usable_travel));
+    WB_TRY(check_kind(root, &said, kind, piece));
+    if (kind != WB_TEST_TENSILE && !isfinite(piece->outer_diameter))
+        return take_wire(root, piece, why);
+    return WB_OK;
+}
+
+static enum wb_status take(struct wb_config *config, enum wb_test_kind kind,
+                           struct wb_test_piece *piece, struct wb_reason *why)
+{
+    struct wb_test_piece read;
+    clear(&read);
+    const enum wb_status status = read_root(wb_config_root(config), kind, &read, why);
+    wb_config_destroy(config);
+    if (status == WB_OK)
+        *piece = read;
+    return status;
+}
+
+enum wb_status wb_test_piece_read(const char *path, enum wb_test_kind kind,
+                                  struct wb_test_piece *piece, struct wb_reason *why)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_read(&config, path, why));
+    return take(config, kind, piece, why);
+}
+
+enum wb_status wb_test_piece_parse(const char *text, const char *origin, enum wb_test_kind kind,
+                                   struct wb_test_piece *piece, struct wb_reason *why)
+{
+    struct wb_config *config;
+    WB_TRY(wb_config_parse(&config, text, origin, why));
+    return take(config, kind, piece, why);
+}
+
+/* --- the document of a dataset --- */
+
+static double rounded(double value)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.15g", value);
+    return strtod(text, NULL);
+}
+
+static void set(struct wb_json *object, const char *key, double value, double unit)
+{
+    if (isfinite(value))
+        wb_json_set_number(object, key, rounded(value / unit));
+}
+
+void wb_test_piece_set_json(const struct wb_test_piece *piece, struct wb_json *object)
+{
+    if (piece->series[0])
+        wb_json_set_text(object, "series", piece->series);
+    set(object, "outer_diameter_mm", piece->outer_diameter, WB_MM);
+    set(object, "length_mm", piece->length, WB_MM);
+    set(object, "mass_per_length_g_m",
+        piece->mass_per_length > 0.0 ? piece->mass_per_length : (double)NAN, GRAM_PER_METRE);
+    if (piece->usable_travel.known) {
+        struct wb_json *const list = wb_json_set_array(object, "usable_travel_mm");
+        wb_json_append_number(list, rounded(piece->usable_travel.least / WB_MM));
+        wb_json_append_number(list, rounded(piece->usable_travel.most / WB_MM));
+    }
+    if (isfinite(piece->area)) {
+        wb_json_set_text(object, "constituent", wb_test_piece_constituent_name(piece->constituent));
+        set(object, "area_mm2", piece->area, SQUARE_MM);
+    }
+}
+
+/* A positive number, or none. */
+static bool get(const struct wb_json *object, const char *key, double unit, double *value)
+{
+    double read;
+    if (!wb_json_get(object, key))
+        return true;
+    if (!wb_json_get_number(object, key, &read) || !(read > 0.0))
+        return false;
+    *value = read * unit;
+    return true;
+}
+
+static bool get_usable(const struct wb_json *object, struct wb_band *band)
+{
+    const struct wb_json *const list = wb_json_get(object, "usable_travel_mm");
+    double least, most;
+    if (!list)
+        return true;
+    if (wb_json_length(list) != 2 || !wb_json_number(wb_json_item(list, 0), &least) ||
+        !wb_json_number(wb_json_item(list, 1), &most) || !(least > 0.0) || !(most >= least))
+        return false;
+    least *= WB_MM;
+    most *= WB_MM;
+    *band = (struct wb_band){true, least == most ? least : 0.5 * (least + most), least, most};
+    return true;
+}
+
+static bool get_constituent(const struct wb_json *object, struct wb_test_piece *piece)
+{
+    const char *name;
+    if (!isfinite(piece->area))
+        return true;
+    if (!wb_json_get_text(object, "constituent", &name))
+        return false;
+    for (int i = 0; constituent_names[i]; i++) {
+        if (strcmp(constituent_names[i], name) == 0) {
+            piece->constituent = (enum wb_constituent)i;
+            return true;
+        }
+    }
+    return false;
+}
+
+enum wb_status wb_test_piece_get_json(struct wb_test_piece *piece, const struct wb_json *object,
+                                      const char *path, struct wb_reason *why)
+{
+    struct wb_test_piece read;
+    const char *series = "", *wrong = NULL;
+    clear(&read);
+    if (!object)
+        wrong = "this object is missing";
+    else if (wb_json_get(object, "series") &&
+             (!wb_json_get_text(object, "series", &series) || strlen(series) >= sizeof read.series))
+        wrong = "series: expected a short text";
+    else if (!get(object, "outer_diameter_mm", WB_MM, &read.outer_diameter))
+        wrong = "outer_diameter_mm: expected a positive number";
+    else if (!get(object, "length_mm", WB_MM, &read.length))
+        wrong = "length_mm: expected a positive number";
+    else if (!get(object, "mass_per_length_g_m", GRAM_PER_METRE, &read.mass_per_length))
+        wrong = "mass_per_length_g_m: expected a positive number";
+    else if (!get_usable(object, &read.usable_travel))
+        wrong = "usable_travel_mm: expected a list of two positive numbers, the least first";
+    else if (!get(object, "area_mm2", SQUARE_MM, &read.area))
+        wrong = "area_mm2: expected a positive number";
+    else if (!get_constituent(object, &read))
+        wrong = "constituent: expected conductor, jacket or tape";
+    if (wrong)
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: test_piece: %s", path, wrong);
+    strcpy(read.series, series);
+    *piece = read;
+    return WB_OK;
+}
