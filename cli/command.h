@@ -84,6 +84,7 @@ int wb_command_print_json(struct wb_json *root);
 int wb_cmd_align(int argc, char **argv);
 int wb_cmd_calibrate(int argc, char **argv);
 int wb_cmd_export(int argc, char **argv);
+int wb_cmd_import(int argc, char **argv);
 int wb_cmd_info(int argc, char **argv);
 int wb_cmd_quicklook(int argc, char **argv);
 int wb_cmd_record(int argc, char **argv);

@@ -19,6 +19,7 @@ static const struct command commands[] = {
     {"align", wb_cmd_align, "recordings to datasets"},
     {"calibrate", wb_cmd_calibrate, "datasets to properties: E, sigma_Y, K, n"},
     {"export", wb_cmd_export, "a recording's samples as CSV"},
+    {"import", wb_cmd_import, "tests that others made: from files to recordings and datasets"},
     {"info", wb_cmd_info, "what a recording holds"},
     {"quicklook", wb_cmd_quicklook, "one recording's curve as figure and CSV"},
     {"record", wb_cmd_record, "run a bending test on the bench and record it"},

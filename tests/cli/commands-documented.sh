@@ -25,4 +25,10 @@ done
 for kind in cantilever wire3d wire1d bundle; do
     check solve "$kind"
 done
+for kind in force mocap; do
+    check import "$kind"
+done
+for other in --tensile --constituents; do
+    check calibrate "$other"
+done
 exit $bad

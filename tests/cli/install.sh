@@ -13,7 +13,7 @@ cd "$place$prefix"
 [ "$(bin/wirebench --version)" = "$version" ]
 for file in fixtures/wires/type1.yaml fixtures/specimens/type1-L85-1.yaml fixtures/rigs/paper.yaml \
     fixtures/campaigns/single-wires.yaml fixtures/models/follower-8awg.yaml \
-    fixtures/virtual/wires.yaml recordings/index.yaml; do
+    fixtures/machines/two-rollers.yaml fixtures/virtual/wires.yaml recordings/index.yaml; do
     [ -s "share/wirebench/$file" ] || { echo "$file is not installed"; exit 1; }
 done
 [ -z "$(find share/wirebench -name '*.[ch]')" ] || { echo "sources are installed"; exit 1; }

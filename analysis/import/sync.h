@@ -1,0 +1,61 @@
+/* Two recordings of one test, each with a clock of its own, brought together by what both saw: a
+ * tap on the bench, or that the motion was reversed.
+ *
+ * A ramp that only rises slides along itself: any lag fits, and none is given. A tap stands out of
+ * both signals for a moment. A reversal is a corner: parabolas before and behind it meet there, in
+ * deflection and in force, whatever the wire's curve in between. Where the motion rests before it
+ * turns, the corner is where it came to rest. Events of the two are paired by their pattern; a
+ * pattern that fits in two ways, as one missing of several equal cycles makes it, gives no lag.
+ */
+#ifndef WB_ANALYSIS_SYNC_H
+#define WB_ANALYSIS_SYNC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/status.h"
+
+/* Samples on a clock of their own, times ascending. */
+struct wb_sync_signal {
+    const double *t, *x;
+    size_t n;
+};
+
+enum wb_sync_method {
+    WB_SYNC_NONE,
+    WB_SYNC_TAP,
+    WB_SYNC_REVERSAL,
+    WB_SYNC_GIVEN, /* by the operator */
+    WB_SYNC_SAME   /* one file, one clock */
+};
+const char *wb_sync_name(enum wb_sync_method method);
+
+struct wb_sync {
+    enum wb_sync_method method;
+    double lag;         /* s: time of an event on the motion's clock less that on the force's */
+    double uncertainty; /* s, standard; NaN: not known */
+    int n_events;       /* that were paired */
+    double first_event; /* s, the first of them on the motion's clock */
+    char reason[256];   /* why there is no lag; "" otherwise */
+};
+
+struct wb_sync_settings {
+    bool tap, reversal;  /* what to look for; the one with the smaller uncertainty is taken */
+    double filter_delay; /* s, of the force */
+};
+
+/* Finds the lag of `force` (any unit and sign) behind `motion`. For taps `shake` is the fast part
+ * of the motion, from wb_sync_shake() or zeros where there is none. WB_OK with method WB_SYNC_NONE
+ * where it is not identifiable; WB_ERR_MEMORY, silent. */
+WB_MUST_CHECK enum wb_status wb_sync_find(struct wb_sync *sync, const struct wb_sync_signal *motion,
+                                          const struct wb_sync_signal *shake,
+                                          const struct wb_sync_signal *force,
+                                          const struct wb_sync_settings *settings);
+
+/* How far each sample is from the middle of those 0.2 s before and after it, into out[n]. */
+void wb_sync_shake(const struct wb_sync_signal *signal, double *out);
+
+/* Standard deviation of a sample's noise, from second differences. NaN when out of memory. */
+double wb_sync_noise(const struct wb_sync_signal *signal);
+
+#endif

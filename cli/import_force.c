@@ -1,0 +1,203 @@
+/* wirebench import force: the curve of a testing machine to a dataset. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/dataset/machine_import.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/import.h"
+
+#define WB_LOG_DOMAIN "import"
+
+enum {
+    KEY_SPECIMEN = WB_KEY_OWN,
+    KEY_MACHINE,
+    KEY_COLUMNS,
+    KEY_DELIMITER,
+    KEY_DECIMAL
+};
+
+struct options {
+    struct wb_command_common common;
+    const char *specimen, *machine, *columns;
+    struct wb_text_table_form form;
+};
+
+static const struct argp_option argp_options[] = {
+    {"specimen", KEY_SPECIMEN, "SPECIMEN.yaml", 0, "What was tested", 0},
+    {"machine", KEY_MACHINE, "MACHINE.yaml", 0, "How it was tested: kind, span, radii, ...", 0},
+    {"output", 'o', "DATASET", 0, "Folder to write", 0},
+    {"columns", KEY_COLUMNS, "LIST", 0,
+     "Which columns are what, and their units where the header has none: "
+     "time=1,force=2:mN,travel=3 (by the header)",
+     0},
+    {"delimiter", KEY_DELIMITER, "NAME", 0,
+     "Between the columns: tab, semicolon, comma, bar or blanks (found)", 0},
+    {"decimal", KEY_DECIMAL, "NAME", 0, "Decimal sign: point or comma (found)", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite what the folder holds", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+struct name {
+    const char *text;
+    char character;
+};
+
+static char find_name(struct argp_state *state, const char *option, const char *text,
+                      const struct name *names)
+{
+    char expected[80] = "";
+    for (const struct name *name = names; name->text; name++) {
+        if (strcmp(name->text, text) == 0)
+            return name->character;
+        snprintf(expected + strlen(expected), sizeof expected - strlen(expected), "%s%s",
+                 name == names ? "" : ", ", name->text);
+    }
+    argp_error(state, "--%s: expected one of %s, not '%s'", option, expected, text);
+    return '\0';
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    static const struct name delimiters[] = {{"tab", '\t'}, {"semicolon", ';'}, {"comma", ','},
+                                             {"bar", '|'},  {"blanks", ' '},    {NULL, '\0'}};
+    static const struct name decimals[] = {{"point", '.'}, {"comma", ','}, {NULL, '\0'}};
+    struct options *const o = state->input;
+    switch (key) {
+    case KEY_SPECIMEN:
+        o->specimen = argument;
+        return 0;
+    case KEY_MACHINE:
+        o->machine = argument;
+        return 0;
+    case KEY_COLUMNS:
+        o->columns = argument;
+        return 0;
+    case KEY_DELIMITER:
+        o->form.delimiter = find_name(state, "delimiter", argument, delimiters);
+        return 0;
+    case KEY_DECIMAL:
+        o->form.decimal = find_name(state, "decimal", argument, decimals);
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->specimen || !o->machine)
+            argp_error(state, "say what was tested and how: --specimen SPECIMEN.yaml --machine "
+                              "MACHINE.yaml");
+        break;
+    default:
+        break;
+    }
+    return wb_command_parse_common(key, argument, state, &o->common);
+}
+
+static const struct argp argp = {
+    .options = argp_options,
+    .parser = parse,
+    .args_doc = "FILE",
+    .doc = "Makes a dataset of the curve that a testing machine wrote as text: three-point "
+           "bending, a tensile test, or a cantilever pressed at its tip. Encoding, delimiter, "
+           "decimal sign, header, units and columns are found, or named where there is doubt.\v"
+           "Rows that lack force or travel are left out and counted. The original's bytes are kept "
+           "in the dataset (original.zst). Exit code 3: the file is cut off in the middle of a "
+           "row, or times are missing.",
+};
+
+/* --- what is printed --- */
+
+static void print_range(const struct wb_dataset *dataset)
+{
+    double force = -HUGE_VAL, least = HUGE_VAL, most = -HUGE_VAL;
+    int cycles = 0;
+    bool back = false;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        force = fmax(force, row->force);
+        least = fmin(least, row->deflection);
+        most = fmax(most, row->deflection);
+        cycles = row->cycle;
+        back = back || row->phase == WB_PHASE_UNLOAD;
+    }
+    printf("%s %.5g to %.5g mm, force up to %.5g N, %s%s\n",
+           dataset->info.kind == WB_TEST_TENSILE ? "elongation" : "travel", least / WB_MM,
+           most / WB_MM, force, back ? "loading and unloading" : "loading only",
+           cycles > 1 ? ", several cycles" : "");
+}
+
+static void print_text(const struct wb_dataset *dataset,
+                       const struct wb_machine_import_report *report, const char *folder)
+{
+    const struct wb_test_info *const info = &dataset->info;
+    printf("%s, sample %d: %s test\n", info->wire, info->sample, wb_machine_kind_name(info->kind));
+    print_range(dataset);
+    printf("%zu rows taken of %zu lines; left out: %zu empty", report->rows, report->lines,
+           report->empty);
+    if (report->partial > 0)
+        printf(", %zu partial (%zu without force, %zu without travel, %zu without time)",
+               report->partial, report->without_force, report->without_travel,
+               report->without_time);
+    putchar('\n');
+    if (report->gaps > 0)
+        printf("%d gaps in time, the longest of %.3g s\n", report->gaps, report->longest_gap);
+    if (report->cut)
+        printf("the file is cut off: its last row is not whole\n");
+    if (!isfinite(dataset->rows[0].t))
+        printf("no time in the file\n");
+    if (info->machine.kind == WB_TEST_TENSILE && !info->machine.own_elongation)
+        printf("elongation from the crosshead's travel: good for yield and hardening, no E\n");
+    if (!info->machine.compliance.known)
+        printf("compliance of the machine not given: the travel holds it\n");
+    printf("written to %s\n", folder);
+}
+
+static int print_json(const struct wb_dataset *dataset, const char *folder)
+{
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "folder", folder);
+    wb_json_set_text(root, "kind", wb_machine_kind_name(dataset->info.kind));
+    wb_json_set_text(root, "wire", dataset->info.wire);
+    wb_json_set_integer(root, "sample", dataset->info.sample);
+    wb_json_set_boolean(root, "complete", wb_dataset_is_complete(dataset));
+    wb_json_set_copy(root, "import", wb_json_get(dataset->document, "import"));
+    return wb_command_print_json(root);
+}
+
+/* --- the command --- */
+
+static enum wb_status run(const struct options *o, struct wb_dataset *dataset,
+                          struct wb_machine_import_report *report)
+{
+    struct wb_machine machine;
+    struct wb_test_piece piece;
+    char found[WB_PATH], *bytes;
+    size_t size;
+    WB_TRY(wb_machine_read(wb_command_find(o->machine, found), &machine, NULL));
+    WB_TRY(wb_test_piece_read(wb_command_find(o->specimen, found), machine.kind, &piece, NULL));
+    WB_TRY(wb_file_read(o->common.input, &bytes, &size));
+    const struct wb_machine_import from = {o->common.input, o->columns, &o->form, &machine, &piece};
+    enum wb_status status = wb_machine_import(dataset, bytes, size, &from, report, NULL);
+    if (status == WB_OK)
+        status = wb_machine_import_write(dataset, bytes, size, o->common.output, o->common.force);
+    free(bytes);
+    return status;
+}
+
+int wb_import_force(int argc, char **argv)
+{
+    struct options options = {
+        .common = {.noun = "file of a testing machine", .destination = "dataset goes: -o DATASET"}};
+    struct wb_dataset dataset = {.rows = NULL};
+    struct wb_machine_import_report report;
+    wb_command_parse(&argp, argc, argv, &options);
+    int code = wb_command_exit(run(&options, &dataset, &report));
+    if (code == WB_EXIT_OK && options.common.json)
+        code = print_json(&dataset, options.common.output);
+    else if (code == WB_EXIT_OK)
+        print_text(&dataset, &report, options.common.output);
+    if (code == WB_EXIT_OK && !wb_dataset_is_complete(&dataset))
+        code = WB_EXIT_INCOMPLETE;
+    wb_dataset_release(&dataset);
+    return code;
+}

@@ -1,0 +1,243 @@
+/* wirebench import mocap: a take of motion capture to a recording. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/import/mocap_import.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/import.h"
+#include "cli/settings.h"
+
+#define WB_LOG_DOMAIN "import"
+
+enum {
+    KEY_FORCE = WB_KEY_OWN,
+    KEY_COLUMNS,
+    KEY_CHANNEL,
+    KEY_SPECIMEN,
+    KEY_RIG,
+    KEY_NOTES,
+    KEY_SYNC
+};
+
+struct options {
+    struct wb_command_common common;
+    struct wb_mocap_import_request request;
+};
+
+static const struct argp_option other_options[] = {
+    {"output", 'o', "REC.wbr", 0, "Recording to write", 0},
+    {"specimen", KEY_SPECIMEN, "S.yaml", 0, "The specimen", 0},
+    {"rig", KEY_RIG, "R.yaml", 0, "The bench: load cell, cameras' vertical, strand", 0},
+    {"force", KEY_FORCE, "FILE", 0, "Table of time and force", 0},
+    {"columns", KEY_COLUMNS, "LIST", 0,
+     "Its columns and their units: time=1:ms,force=2:mN (default: found by the header)", 0},
+    {"channel", KEY_CHANNEL, "NAME[:UNIT]", 0,
+     "Analogue channel of a C3D that is the force (default: the only one in a unit of force)", 0},
+    {"sync", KEY_SYNC, "EVENT", 0,
+     "What brings the two clocks together: tap or reversal (default: the better of both)", 0},
+    {"notes", KEY_NOTES, "TEXT", 0, "Notes to keep", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static void set_sync(struct argp_state *state, struct wb_mocap_import_request *request,
+                     const char *event)
+{
+    request->tap = strcmp(event, "tap") == 0;
+    request->reversal = strcmp(event, "reversal") == 0;
+    if (!request->tap && !request->reversal)
+        argp_error(state, "--sync: expected tap or reversal, not '%s'", event);
+}
+
+static void check(struct argp_state *state, const struct options *options)
+{
+    const struct wb_mocap_import_request *const request = &options->request;
+    if (!options->common.input)
+        argp_error(state, "name a take: a CSV export of Motive, a C3D or a TRC");
+    if (!request->specimen_path)
+        argp_error(state, "say of which specimen: --specimen S.yaml");
+    if (!request->rig_path)
+        argp_error(state, "say on which bench: --rig R.yaml");
+    if (request->columns && !request->force_path)
+        argp_error(state, "--columns are those of a --force FILE");
+    if (request->channel && request->force_path)
+        argp_error(state, "the force is in a file or in a channel, not in both");
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const options = state->input;
+    struct wb_mocap_import_request *const request = &options->request;
+    switch (key) {
+    case KEY_FORCE:
+        request->force_path = argument;
+        return 0;
+    case KEY_COLUMNS:
+        request->columns = argument;
+        return 0;
+    case KEY_CHANNEL:
+        request->channel = argument;
+        return 0;
+    case KEY_SPECIMEN:
+        request->specimen_path = argument;
+        return 0;
+    case KEY_RIG:
+        request->rig_path = argument;
+        return 0;
+    case KEY_NOTES:
+        request->notes = argument;
+        return 0;
+    case KEY_SYNC:
+        set_sync(state, request, argument);
+        return 0;
+    case ARGP_KEY_END:
+        check(state, options);
+        return wb_command_parse_common(key, argument, state, &options->common);
+    default:
+        return wb_command_parse_common(key, argument, state, &options->common);
+    }
+}
+
+static const struct argp argp = {
+    .options = other_options,
+    .parser = parse,
+    .args_doc = "FILE --specimen S.yaml --rig R.yaml -o REC.wbr",
+    .doc =
+        "Makes a recording of a take of motion capture: a CSV export of Motive, a C3D or a TRC, "
+        "found by its content. Force comes from a table with a clock of its own, or from an "
+        "analogue channel of the C3D.\v"
+        "The recording keeps the files as they are; 'wirebench align' makes a dataset of it. Two "
+        "clocks are brought together by what both files show: a tap on the bench, or that the "
+        "motion was reversed; the lag is printed with its uncertainty. Exit code 3: frames or rows "
+        "are missing or were left out, and are counted.",
+};
+
+/* --- what was found --- */
+
+static void print_clocks(const struct wb_mocap_import *r)
+{
+    switch (r->sync.method) {
+    case WB_SYNC_SAME:
+        printf("  clocks      one: force and markers are of the same file\n");
+        return;
+    case WB_SYNC_GIVEN:
+        printf("  clocks      the force's clock + %.4f s, as given\n", r->sync.lag);
+        return;
+    default:
+        printf("  clocks      by %s: lag %.4f s +- %.1f ms (%d event%s, the first at %.2f s), of "
+               "it %.0f ms the load cell's filter\n",
+               wb_sync_name(r->sync.method), r->sync.lag, r->sync.uncertainty * 1e3,
+               r->sync.n_events, r->sync.n_events == 1 ? "" : "s", r->sync.first_event,
+               -r->filter_delay * 1e3);
+    }
+}
+
+static void print_force(const struct wb_mocap_import *r)
+{
+    if (!r->has_force) {
+        printf("  force       none: 'align' needs one; give --force FILE\n");
+        return;
+    }
+    if (r->channel[0])
+        printf("  force       %zu readings of channel %s, in %s\n", r->n_readings, r->channel,
+               r->unit);
+    else
+        printf("  force       %zu readings, columns %s\n", r->n_readings, r->columns);
+    print_clocks(r);
+    if (isfinite(r->tare_deviation))
+        printf("  tare        %.4g mN, mean of %ld readings before the motion at %.2f s\n",
+               r->tare / WB_MN, r->tare_samples, r->motion_start);
+    else
+        printf("  tare        %.4g mN, as given\n", r->tare / WB_MN);
+}
+
+static void print_missing(const struct wb_mocap_import *r)
+{
+    if (r->missing_frames > 0)
+        printf("  missing     %zu frames that the file announces\n", r->missing_frames);
+    if (r->jumps > 0)
+        printf("  missing     %zu frames, in %zu gaps between those that are there\n", r->jumped,
+               r->jumps);
+    if (r->skipped_rows > 0)
+        printf("  left out    %zu rows, the first is line %zu\n", r->skipped_rows,
+               r->first_skipped);
+    if (r->force_skipped > 0)
+        printf("  left out    %zu rows of the force\n", r->force_skipped);
+}
+
+static int print_text(const struct wb_mocap_import *r, const char *output)
+{
+    printf("%s: recording\n", output);
+    printf("  take        %s, %zu frames, %.2f s at %g/s\n", r->format, r->n_frames, r->duration,
+           r->rate);
+    printf("  markers     %d, stitched from %zu of %zu columns, %.2f %% of their places missing\n",
+           r->n_markers, r->n_stitched, r->n_points, 100.0 * r->missing);
+    print_force(r);
+    print_missing(r);
+    return WB_EXIT_OK;
+}
+
+static int print_json(const struct wb_mocap_import *r, const char *output)
+{
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "recording", output);
+    wb_json_set_text(root, "format", r->format);
+    wb_json_set_integer(root, "frames", (int64_t)r->n_frames);
+    wb_json_set_number(root, "rate_per_s", r->rate);
+    wb_json_set_number(root, "duration_s", r->duration);
+    wb_json_set_integer(root, "missing_frames", (int64_t)r->missing_frames);
+    wb_json_set_integer(root, "jumps", (int64_t)r->jumps);
+    wb_json_set_integer(root, "frames_jumped", (int64_t)r->jumped);
+    wb_json_set_integer(root, "skipped_rows", (int64_t)r->skipped_rows);
+    wb_json_set_integer(root, "first_skipped_line", (int64_t)r->first_skipped);
+    wb_json_set_integer(root, "empty_rows", (int64_t)r->empty_rows);
+    wb_json_set_integer(root, "marker_columns", (int64_t)r->n_points);
+    wb_json_set_integer(root, "columns_stitched", (int64_t)r->n_stitched);
+    wb_json_set_integer(root, "markers", r->n_markers);
+    wb_json_set_number(root, "missing_percent", 100.0 * r->missing);
+    wb_json_set_boolean(root, "complete", r->complete);
+    if (r->has_force) {
+        struct wb_json *const force = wb_json_set_object(root, "force");
+        wb_json_set_integer(force, "readings", (int64_t)r->n_readings);
+        wb_json_set_integer(force, "skipped_rows", (int64_t)r->force_skipped);
+        if (r->channel[0]) {
+            wb_json_set_text(force, "channel", r->channel);
+            wb_json_set_text(force, "unit", r->unit);
+        } else {
+            wb_json_set_text(force, "columns", r->columns);
+        }
+        wb_json_set_text(force, "clocks", wb_sync_name(r->sync.method));
+        wb_json_set_number(force, "lag_s", r->sync.lag);
+        wb_json_set_number(force, "lag_uncertainty_s", r->sync.uncertainty);
+        wb_json_set_integer(force, "events", r->sync.n_events);
+        wb_json_set_number(force, "offset_s", r->offset);
+        wb_json_set_number(force, "tare_mN", r->tare / WB_MN);
+        wb_json_set_number(force, "motion_start_s", r->motion_start);
+    }
+    return wb_command_print_json(root);
+}
+
+int wb_import_mocap(int argc, char **argv)
+{
+    struct options options = {
+        .common = {.noun = "take", .destination = "recording goes: -o REC.wbr"}};
+    struct wb_mocap_import result;
+    char specimen[WB_PATH], rig[WB_PATH];
+    wb_setting_fill(&wb_mocap_import_table, &options.request);
+    wb_settings_parse_table(&argp, &wb_mocap_import_table, &options.request, 1, argc, argv,
+                            &options);
+    struct wb_mocap_import_request *const request = &options.request;
+    request->take_path = options.common.input;
+    request->output = options.common.output;
+    request->specimen_path = wb_command_find(request->specimen_path, specimen);
+    request->rig_path = wb_command_find(request->rig_path, rig);
+    if (wb_mocap_import_run(&result, request) != WB_OK)
+        return WB_EXIT_FAILED;
+    const int code = options.common.json ? print_json(&result, request->output)
+                                         : print_text(&result, request->output);
+    if (code != WB_EXIT_OK)
+        return code;
+    return result.complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+}
