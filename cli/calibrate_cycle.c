@@ -93,22 +93,29 @@ static void print_rule(const struct wb_cycle_calibration *c)
     char limit[NUMBER];
     printf("law: %s; hardening rule %s\n", wb_candidate_name(c->chosen),
            !c->has_unloading ? "untested: the tests have no way back"
+           : c->is_stopped   ? "undecided: stopped before all laws were fitted to all specimens"
            : c->is_supported ? "supported"
                              : "not supported by the data: the best misfit is above 0.5 % of "
                                "F_max");
     if (!c->has_unloading)
         printf("loading alone does not tell EI from early yield: EI may be 25 %% low\n");
-    printf("%-28s %8s %9s %9s %12s %10s\n", "candidate", "misfit %", "F", "F limit", "EI N mm2",
-           "springback");
+    printf("%-28s %8s %8s %9s %9s %12s %10s\n", "candidate", "misfit %", "numbers", "F", "F limit",
+           "EI N mm2", "springback");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
         char ratio[NUMBER], rigidity[NUMBER], springback[NUMBER];
-        printf("%-28s %8.3f %9s %9s %12s %10s%s%s\n", wb_candidate_name(rank->candidate),
-               rank->misfit / PERCENT, format(rank->f_ratio, ratio), format(rank->f_limit, limit),
-               format(rank->rigidity.value / N_MM2, rigidity),
+        printf("%-28s %8.3f %8d %9s %9s %12s %10s%s%s\n", wb_candidate_name(rank->candidate),
+               rank->misfit / PERCENT, rank->n_free, format(rank->f_ratio, ratio),
+               format(rank->f_limit, limit), format(rank->rigidity.value / N_MM2, rigidity),
                c->has_unloading ? format(rank->springback.value, springback) : "-",
                rank->candidate == c->chosen ? "  chosen" : "",
                rank->counts ? "" : "  not in the ranges");
+    }
+    for (int i = 0; i < c->n_ranked; i++) {
+        struct wb_text numbers = {.bytes = NULL};
+        wb_law_append_numbers(&numbers, &c->ranked[i].law);
+        printf("%s: %s\n", wb_candidate_name(c->ranked[i].candidate), wb_text_string(&numbers));
+        wb_text_release(&numbers);
     }
     printf("F: square of the misfit over the repeat noise of the readings, %.3f %% of F_max\n",
            c->repeat_noise / PERCENT);
@@ -192,22 +199,28 @@ static void print_law(const struct wb_cycle_calibration *c)
 
 static void print_specimens(const struct wb_cycle_calibration *c)
 {
-    printf("%-9s %6s %14s %9s %9s %9s %10s %9s\n", "specimen", "L mm", "bow mm", "level mm",
-           "misfit %", "EI N mm2", "springback", "outliers");
+    printf("%-9s %6s %14s %9s %8s %9s %9s %10s %9s\n", "specimen", "L mm", "bow mm", "level mm",
+           "left mm", "misfit %", "EI N mm2", "springback", "outliers");
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_cycle_member *const member = &c->members[i];
         const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         const struct wb_cycle_fit *const fit = &answer->fit;
         const double length = member->data.info.length / WB_MM;
-        char rigidity[NUMBER], springback[NUMBER];
-        printf(
-            "%-9d %6g %6.2f +- %4.2f %9.2f %9.3f %9s %10s %9d%s%s\n", member->sample, length,
-            0.5 * fit->bow_angle * length, 0.5 * fit->bow_angle_error * length, fit->level / WB_MM,
-            fit->misfit / PERCENT, format(answer->bending.flexural_rigidity / N_MM2, rigidity),
-            c->has_unloading ? format(answer->bending.springback, springback) : "-",
-            fit->n_outliers + member->data.n_outliers,
-            fit->is_converged ? "" : "  did not converge", fit->is_at_bound ? "  at a bound" : "");
+        char rigidity[NUMBER], springback[NUMBER], left[NUMBER];
+        printf("%-9d %6g %6.2f +- %4.2f %9.2f %8s %9.3f %9s %10s %9d%s%s\n", member->sample, length,
+               0.5 * fit->bow_angle * length, 0.5 * fit->bow_angle_error * length,
+               /* Adding zero makes no number "-0.00". */
+               round(100.0 * fit->level / WB_MM) / 100.0 + 0.0,
+               format(member->data.residual_deflection / WB_MM, left), fit->misfit / PERCENT,
+               format(answer->bending.flexural_rigidity / N_MM2, rigidity),
+               c->has_unloading ? format(answer->bending.springback, springback) : "-",
+               fit->n_outliers + member->data.n_outliers,
+               fit->is_converged ? "" : "  did not converge",
+               fit->is_at_bound ? "  at a bound" : "");
     }
+    if (c->has_unloading)
+        printf("left: deflection where the force has come down to that at zero deflection, as "
+               "measured\n");
     if (c->specimens_for_5_percent > 0)
         printf("specimens needed for EI within +-5 %%: %d\n", c->specimens_for_5_percent);
 }

@@ -11,7 +11,10 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
+#include "cli/calibrate_bend3p.h"
+#include "cli/calibrate_constituents.h"
 #include "cli/calibrate_cycle.h"
+#include "cli/calibrate_tensile.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/settings.h"
@@ -21,10 +24,11 @@
 enum method {
     CYCLE,
     PAPER,
+    THREE_POINT, /* chosen by the datasets' kind alone */
     METHODS
 };
 
-static const char *const methods[] = {"cycle", "paper"};
+static const char *const methods[] = {"cycle", "paper", "three-point"};
 
 struct options {
     struct wb_command_common common;
@@ -34,16 +38,26 @@ struct options {
     const struct wb_setting *of[METHODS];  /* the first option of either method that was given */
     struct wb_calibrate_settings settings; /* of the paper's method */
     struct wb_calibrate_cycle cycle;
+    struct wb_bend3p_calibrate_settings bend3p;
 };
 
 enum {
-    KEY_METHOD = WB_KEY_OWN
+    KEY_METHOD = WB_KEY_OWN,
+    /* In the help only: cli/calibrate_tensile.c and calibrate_constituents.c take them. */
+    KEY_TENSILE,
+    KEY_CONSTITUENTS
 };
 
 static const struct argp_option other_options[] = {
     {"method", KEY_METHOD, "METHOD", 0,
      "cycle: a law and its hardening rule on loading and unloading; paper: E, sigma_Y, K and n on "
      "the averaged loading (cycle; tests with a follower force: paper)",
+     0},
+    {"tensile", KEY_TENSILE, NULL, 0,
+     "Tensile tests of a conductor, jacket or tape; see `wirebench calibrate --tensile --help`", 0},
+    {"constituents", KEY_CONSTITUENTS, NULL, 0,
+     "A wire's rigidity and moments from conductor and jacket; see `wirebench calibrate "
+     "--constituents --help`",
      0},
     {"output", 'o', "PROPERTIES.yaml", 0, "Write the properties here", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
@@ -60,6 +74,10 @@ static const struct wb_settings_source sources[] = {
      .n_tables = 1,
      .offset = offsetof(struct options, settings),
      .title = "Settings of --method paper:"},
+    {.tables = wb_bend3p_calibrate_tables,
+     .n_tables = WB_BEND3P_CALIBRATE_TABLES,
+     .offset = offsetof(struct options, bend3p),
+     .title = "Settings of datasets of three-point bending:"},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -67,7 +85,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     struct options *const o = state->input;
     if (key != KEY_METHOD)
         return wb_command_parse_common(key, argument, state, &o->common);
-    for (int m = 0; m < METHODS; m++) {
+    for (int m = 0; m < THREE_POINT; m++) {
         if (strcmp(argument, methods[m]) == 0) {
             o->method = m;
             o->names_method = true;
@@ -83,7 +101,12 @@ static void note_option(void *input, const struct wb_setting *row)
     struct options *const o = input;
     const bool is_papers =
         row >= wb_calibrate_table.rows && row < wb_calibrate_table.rows + wb_calibrate_table.n;
-    const enum method method = is_papers ? PAPER : CYCLE;
+    bool is_bend3p = false;
+    for (int t = 0; t < WB_BEND3P_CALIBRATE_TABLES; t++) {
+        const struct wb_setting_table *const table = &wb_bend3p_calibrate_tables[t];
+        is_bend3p = is_bend3p || (row >= table->rows && row < table->rows + table->n);
+    }
+    const enum method method = is_bend3p ? THREE_POINT : is_papers ? PAPER : CYCLE;
     if (!o->of[method])
         o->of[method] = row;
 }
@@ -317,7 +340,7 @@ static int deliver_cycle(const struct options *o)
     if (o->common.output) {
         const enum wb_status status =
             wb_properties_write_cycle(o->common.output, c, &o->cycle.settings, o->common.inputs,
-                                      o->common.n, o->common.force);
+                                      c->n_members, o->common.force);
         if (status != WB_OK)
             return wb_command_exit(status);
     }
@@ -328,7 +351,7 @@ static int deliver_cycle(const struct options *o)
     } else {
         wb_calibrate_cycle_print(&o->cycle);
     }
-    const bool is_refuted = c->has_unloading && !c->is_supported;
+    const bool is_refuted = c->has_unloading && !c->is_supported && !c->is_stopped;
     const bool is_converged = wb_cycle_calibrate_is_converged(c);
     if (is_refuted)
         wb_warn("wire '%s': hardening rule not supported by the data: no candidate follows loading "
@@ -337,7 +360,11 @@ static int deliver_cycle(const struct options *o)
     if (!is_converged)
         wb_warn("wire '%s': the iterations ran out for a specimen (--fit-iterations)",
                 c->members[0].data.info.wire);
-    return is_refuted || !is_converged ? WB_EXIT_INCOMPLETE : WB_EXIT_OK;
+    if (c->is_stopped)
+        wb_warn("stopped with %d of %d specimens fitted, not with all laws: these are the "
+                "properties so far, the hardening rule is undecided",
+                c->n_members, o->common.n);
+    return is_refuted || !is_converged || c->is_stopped ? WB_EXIT_INCOMPLETE : WB_EXIT_OK;
 }
 
 static int run_cycle(struct options *o)
@@ -352,6 +379,10 @@ static int run_cycle(struct options *o)
 
 static void choose_method(struct options *o)
 {
+    if (o->datasets.items[0].info.kind == WB_TEST_THREE_POINT) {
+        o->method = THREE_POINT;
+        return;
+    }
     for (int i = 0; i < o->datasets.n && !o->names_method; i++) {
         if (!o->datasets.items[i].info.is_follower)
             continue;
@@ -364,11 +395,18 @@ static void choose_method(struct options *o)
 /* Options of the other method would do nothing. */
 static bool has_foreign_option(const struct options *o)
 {
-    const enum method other = o->method == PAPER ? CYCLE : PAPER;
-    if (o->of[other])
-        wb_error("--%s is for --method %s: these datasets are calibrated by --method %s",
-                 o->of[other]->option, methods[other], methods[o->method]);
-    return o->of[other] != NULL;
+    for (int m = 0; m < METHODS; m++) {
+        if (!o->of[m] || (enum method)m == o->method)
+            continue;
+        if (m == THREE_POINT)
+            wb_error("--%s is for datasets of three-point bending", o->of[m]->option);
+        else
+            wb_error("--%s is for --method %s: these datasets are calibrated by %s%s",
+                     o->of[m]->option, methods[m], o->method == THREE_POINT ? "" : "--method ",
+                     methods[o->method]);
+        return true;
+    }
+    return false;
 }
 
 /* A pooled deviation without its degrees of freedom would do nothing. */
@@ -385,7 +423,16 @@ static enum wb_status begin(struct options *o)
 {
     if (o->common.output && !o->common.force && wb_file_exists(o->common.output))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
-    return wb_datasets_read(&o->datasets, o->common.inputs, o->common.n);
+    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs, o->common.n,
+                            WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
+    for (int i = 1; i < o->datasets.n; i++) {
+        if (o->datasets.items[i].info.kind != o->datasets.items[0].info.kind)
+            return wb_fail(
+                WB_ERR_DATA, "'%s' is a %s test and '%s' a %s test: calibrate them by themselves",
+                o->common.inputs[0], wb_machine_kind_name(o->datasets.items[0].info.kind),
+                o->common.inputs[i], wb_machine_kind_name(o->datasets.items[i].info.kind));
+    }
+    return WB_OK;
 }
 
 static int run(struct options *o)
@@ -396,6 +443,10 @@ static int run(struct options *o)
     choose_method(o);
     if (has_foreign_option(o) || has_half_a_pool(o))
         return WB_EXIT_USAGE;
+    if (o->names_method && o->method == THREE_POINT)
+        wb_info("three-point bending: --method is for tests of cantilevers");
+    if (o->method == THREE_POINT)
+        return wb_calibrate_bend3p(&o->bend3p, &o->datasets, &o->common);
     return o->method == PAPER ? run_paper(o) : run_cycle(o);
 }
 
@@ -409,8 +460,14 @@ int wb_cmd_calibrate(int argc, char **argv)
         .note = note_option,
     };
     struct options options = {.common = {.noun = "at least one dataset", .least = 1}};
+    if (wb_calibrate_is_tensile(argc, argv))
+        return wb_calibrate_tensile(argc, argv);
+    if (wb_calibrate_is_constituents(argc, argv))
+        return wb_calibrate_constituents(argc, argv);
     wb_calibrate_default_settings(&options.settings);
     wb_cycle_calibrate_default_settings(&options.cycle.settings);
+    wb_setting_fill(&wb_bend3p_calibrate_tables[0], &options.bend3p.data);
+    wb_setting_fill(&wb_bend3p_calibrate_tables[1], &options.bend3p.fit);
     wb_settings_parse(&command, argc, argv, &options);
     wb_interrupt_install();
     const int code = run(&options);

@@ -5,6 +5,7 @@
 
 #include "analysis/calibration/properties.h"
 #include "analysis/validation/validate.h"
+#include "analysis/validation/validate_json.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/command.h"
@@ -69,7 +70,8 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
 static enum wb_status run_groups(struct options *o, const struct wb_properties *properties,
                                  struct groups *groups)
 {
-    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs + 1, o->common.n - 1));
+    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs + 1, o->common.n - 1,
+                            WB_TEST_BIT(WB_TEST_CANTILEVER)));
     const size_t n = (size_t)o->datasets.n;
     groups->of = calloc(n, sizeof *groups->of);
     groups->results = calloc(n, sizeof *groups->results);
@@ -120,35 +122,6 @@ static void set_prediction(struct wb_json *object, const struct wb_prediction *p
     wb_json_set_boolean(object, "converged", prediction->n_reached == prediction->n);
 }
 
-/* The way back, what is left, and later cycles; null without a way back. */
-static void set_cycles(struct wb_json *item, const struct wb_validate_result *r)
-{
-    const struct wb_validate_cycles *const cycles = &r->cycles;
-    wb_json_set_number(item, "clamp_curvature_1_m", cycles->clamp_curvature);
-    wb_json_set_boolean(item, "beyond_known_curvature", r->is_beyond);
-    if (cycles->n_samples == 0) {
-        wb_json_set_number(item, "unloading", (double)NAN);
-        return;
-    }
-    struct wb_json *const unloading = wb_json_set_object(item, "unloading");
-    wb_json_set_integer(unloading, "samples", cycles->n_samples);
-    wb_json_set_number(unloading, "rms", cycles->rms);
-    wb_json_set_number(unloading, "max_error", cycles->largest_error);
-    wb_json_set_number(unloading, "rms_of_samples", cycles->sample_rms);
-    wb_json_set_boolean(unloading, "rule_untested", r->is_rule_untested);
-    struct wb_json *const left = wb_json_set_object(item, "residual_deflection_mm");
-    wb_json_set_number(left, "measured", cycles->residual_measured / WB_MM);
-    wb_json_set_number(left, "predicted", cycles->residual_computed / WB_MM);
-    struct wb_json *const loops = wb_json_set_array(item, "loop_energy_mJ");
-    for (int i = 0; i < cycles->n_loops; i++) {
-        struct wb_json *const loop = wb_json_append_object(loops);
-        wb_json_set_integer(loop, "cycle", cycles->loops[i].cycle);
-        wb_json_set_integer(loop, "samples", cycles->loops[i].n_samples);
-        wb_json_set_number(loop, "measured", cycles->loops[i].measured / WB_MJ);
-        wb_json_set_number(loop, "predicted", cycles->loops[i].computed / WB_MJ);
-    }
-}
-
 static int print_json(const struct options *o, const struct wb_properties *properties,
                       const struct groups *groups)
 {
@@ -179,7 +152,7 @@ static int print_json(const struct options *o, const struct wb_properties *prope
         wb_json_set_number(item, "expected_rms", r->expected_rms);
         wb_json_set_number(item, "expected_rms_95", r->expected_rms_95);
         wb_json_set_number(item, "scatter_share", r->scatter_share);
-        set_cycles(item, r);
+        wb_validate_json_put_cycles(item, r);
         wb_json_set_number(item, "cpu_s", r->cpu_s);
     }
     return wb_command_print_json(root);

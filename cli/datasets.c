@@ -72,7 +72,8 @@ static enum wb_status check_name(const char *name)
     return WB_OK;
 }
 
-enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const *names, int n)
+enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const *names, int n,
+                                unsigned kinds)
 {
     datasets->n = n;
     datasets->items = calloc((size_t)n, sizeof *datasets->items);
@@ -82,7 +83,7 @@ enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const 
     for (int i = 0; i < n; i++)
         WB_TRY(check_name(names[i]));
     for (int i = 0; i < n; i++) {
-        WB_TRY(wb_dataset_read(&datasets->items[i], names[i], NULL));
+        WB_TRY(wb_dataset_read_kinds(&datasets->items[i], names[i], kinds, NULL));
         datasets->pointers[i] = &datasets->items[i];
     }
     return WB_OK;

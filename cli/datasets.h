@@ -12,9 +12,10 @@ struct wb_datasets {
     const struct wb_dataset **pointers; /* (n) to the items, as the library wants them; owned */
 };
 
-/* Reads those of the names (n). */
+/* Reads those of the names (n); `kinds` of test as of wb_dataset_read_kinds(), others are refused.
+ */
 WB_MUST_CHECK enum wb_status wb_datasets_read(struct wb_datasets *datasets,
-                                              const char *const *names, int n);
+                                              const char *const *names, int n, unsigned kinds);
 
 void wb_datasets_release(struct wb_datasets *datasets); /* accepts a zeroed one */
 

@@ -7,9 +7,9 @@
 #define WB_ANALYSIS_BOW_CORRECTION_H
 
 #include "analysis/calibration/computed.h"
+#include "analysis/calibration/first_guess.h"
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/dataset.h"
-#include "analysis/calibration/first_guess.h"
 #include "base/reason.h"
 #include "base/status.h"
 

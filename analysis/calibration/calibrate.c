@@ -13,11 +13,11 @@
 #include "analysis/calibration/bow_correction.h"
 #include "analysis/calibration/calibrate_private.h"
 #include "analysis/calibration/computed.h"
-#include "analysis/dataset/errors.h"
 #include "analysis/calibration/first_guess.h"
 #include "analysis/calibration/jackknife.h"
 #include "analysis/calibration/refit.h"
 #include "analysis/calibration/scatter.h"
+#include "analysis/dataset/errors.h"
 #include "base/progress.h"
 #include "base/units.h"
 

@@ -241,7 +241,12 @@ static enum wb_status fit_parallels(struct wb_cycle_member *member,
     if (!near || member->data.n_loading == member->data.n_points)
         return WB_OK;
     WB_TRY(fit_one(member, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, grid, settings));
-    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, &near->law, grid, settings);
+    /* Parts that follow the test with the one rule are nearest to those with both; parts that were
+     * bent out of shape by the wrong rule are farther away than Ludwik's curve. */
+    const struct wb_cycle_answer *const pure = &member->answers[WB_CANDIDATE_PARALLEL_KINEMATIC];
+    const bool is_nearer = pure->is_fitted && pure->fit.misfit < near->misfit;
+    return fit_one(member, WB_CANDIDATE_PARALLEL_MIXED, is_nearer ? &pure->fit.law : &near->law,
+                   grid, settings);
 }
 
 /* --- specimens side by side --- */
@@ -391,7 +396,7 @@ static void pool_misfit(const struct wb_cycle_calibration *calibration, struct w
         }
         sum += member->data.n_points * answer->fit.misfit * answer->fit.misfit;
         n += member->data.n_points;
-        rank->n_free = answer->fit.n_free - 2;
+        rank->n_free = answer->fit.n_law;
     }
     rank->misfit = sqrt(sum / n);
 }
@@ -399,7 +404,10 @@ static void pool_misfit(const struct wb_cycle_calibration *calibration, struct w
 static double freedom(const struct wb_cycle_calibration *calibration,
                       const struct wb_cycle_rank *rank)
 {
-    return fmax(1.0, count_points(calibration) - (rank->n_free + 2) * calibration->n_members);
+    double left = count_points(calibration);
+    for (int i = 0; i < calibration->n_members; i++)
+        left -= calibration->members[i].answers[rank->candidate].fit.n_free;
+    return fmax(1.0, left);
 }
 
 static int by_misfit(const void *a, const void *b)
@@ -446,7 +454,8 @@ static void choose(struct wb_cycle_calibration *calibration)
     }
     const int chosen = simplest >= 0 ? simplest : alike >= 0 ? alike : 0;
     calibration->chosen = calibration->ranked[chosen].candidate;
-    calibration->is_supported = calibration->has_unloading && best->misfit <= largest_supported;
+    calibration->is_supported =
+        calibration->has_unloading && !calibration->is_stopped && best->misfit <= largest_supported;
 }
 
 /* Numbers of a specimen that are averaged. */
@@ -535,9 +544,9 @@ static void estimate_number(struct wb_cycle_calibration *calibration, enum numbe
     }
 }
 
-static void add_square(double *sum, double moved, double value)
+static void add_square(double *sum, double moved, double value, double moved_by)
 {
-    const double difference = value > 0.0 ? (moved / value - 1.0) / WB_FIT_MOVED : 0.0;
+    const double difference = value > 0.0 ? (moved / value - 1.0) / moved_by : 0.0;
     *sum += difference * difference;
 }
 
@@ -549,14 +558,15 @@ static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double 
     double moment[WB_CYCLE_MOMENTS];
     for (int i = 0; i < answer->fit.n_moved; i++) {
         const struct wb_law *const law = &answer->fit.moved[i];
+        const double by = answer->fit.moved_by[i];
         WB_TRY(wb_bending_describe(law, diameter, calibration->largest_curvature, &bending));
         WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature, moment));
         add_square(&error->flexural_rigidity, bending.flexural_rigidity,
-                   answer->bending.flexural_rigidity);
-        add_square(&error->springback, bending.springback, answer->bending.springback);
-        add_square(&error->loop_energy, bending.loop_energy, answer->bending.loop_energy);
+                   answer->bending.flexural_rigidity, by);
+        add_square(&error->springback, bending.springback, answer->bending.springback, by);
+        add_square(&error->loop_energy, bending.loop_energy, answer->bending.loop_energy, by);
         for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-            add_square(&answer->moment_error[k], moment[k], answer->moment[k]);
+            add_square(&answer->moment_error[k], moment[k], answer->moment[k], by);
     }
     error->flexural_rigidity = sqrt(error->flexural_rigidity);
     error->springback = sqrt(error->springback);
@@ -608,19 +618,18 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
 }
 
 /* The law of the product: means of the logarithms of what the specimens' laws are made of. */
-static void average_law(struct wb_cycle_calibration *calibration)
+static void average_law(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                        struct wb_law *average)
 {
     const int n = calibration->n_members;
-    const struct wb_law *const first =
-        &calibration->members[0].answers[calibration->chosen].fit.law;
+    const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
     double share = 0.0, E = 0.0, yield = 0.0, hardening = 0.0, exponent = 0.0;
     double moduli[WB_LAW_MOST_PARTS] = {0.0};
     /* K goes with n; the stress that hardening adds at this plastic strain does not. */
     const double plastic = 3e-3;
 
     for (int i = 0; i < n; i++) {
-        const struct wb_law *const law =
-            &calibration->members[i].answers[calibration->chosen].fit.law;
+        const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
         share += law->isotropic_share / n;
         for (int k = 0; k < law->n_parts; k++)
             moduli[k] += log(law->parts[k].modulus) / n;
@@ -636,8 +645,7 @@ static void average_law(struct wb_cycle_calibration *calibration)
         struct wb_law_part parts[WB_LAW_MOST_PARTS];
         for (int k = 0; k < first->n_parts; k++)
             parts[k] = (struct wb_law_part){exp(moduli[k]), first->parts[k].yield_strain};
-        wb_law_init_parallel(&calibration->law, parts, first->n_parts, share,
-                             first->material.poissons_ratio);
+        wb_law_init_parallel(average, parts, first->n_parts, share, first->material.poissons_ratio);
         return;
     }
     struct wb_material material = first->material;
@@ -645,8 +653,8 @@ static void average_law(struct wb_cycle_calibration *calibration)
     material.yield_stress = exp(yield);
     material.hardening_exponent = exp(exponent);
     material.strength_coefficient = exp(hardening) / pow(plastic, material.hardening_exponent);
-    wb_law_init_ludwik(&calibration->law, &material);
-    calibration->law.isotropic_share = share;
+    wb_law_init_ludwik(average, &material);
+    average->isotropic_share = share;
 }
 
 static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)
@@ -721,8 +729,9 @@ static enum wb_status conclude(struct wb_cycle_calibration *calibration,
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
         average(calibration, rank->candidate, RIGIDITY, settings, &rank->rigidity);
         average(calibration, rank->candidate, SPRINGBACK, settings, &rank->springback);
+        average_law(calibration, rank->candidate, &rank->law);
     }
-    average_law(calibration);
+    average_law(calibration, calibration->chosen, &calibration->law);
     WB_TRY(find_equivalents(calibration));
     judge_identifiability(calibration);
     calibration->specimens_for_5_percent = specimens_needed(calibration->rigidity.deviation);
@@ -781,9 +790,10 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
         .status = WB_OK,
     };
     enum wb_status status = work_side_by_side(&work);
-    if (status != WB_OK || work.stopped)
-        return work.stopped ? wb_fail_to(why, WB_ERR_DATA, "stopped")
-                            : tell_failure(calibration, status, why);
+    if (status != WB_OK)
+        return tell_failure(calibration, status, why);
+    /* Specimens are taken in order, and what was begun was ended. */
+    calibration->n_members = work.done;
     calibration->has_unloading = true;
     for (int i = 0; i < calibration->n_members; i++) {
         const struct wb_cycle_data *const data = &calibration->members[i].data;
@@ -792,11 +802,11 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
     }
     const struct wb_cycle_grid grid = find_grid(calibration);
     work.grid = &grid;
-    if (calibration->has_unloading)
+    if (calibration->has_unloading && !work.stopped)
         status = work_side_by_side(&work);
-    if (status != WB_OK || work.stopped)
-        return work.stopped ? wb_fail_to(why, WB_ERR_DATA, "stopped")
-                            : tell_failure(calibration, status, why);
+    if (status != WB_OK)
+        return tell_failure(calibration, status, why);
+    calibration->is_stopped = work.done < (calibration->has_unloading ? work.all : work.all / 2);
     choose(calibration);
     if (calibration->n_ranked == 0)
         return tell_failure(calibration, WB_ERR_DATA, why);

@@ -9,8 +9,8 @@
  * A number's interval is that of the mean of its logarithms over the specimens (Student's t, 95 %).
  * It says nothing of the law: beside it stands the range of the number over all candidates whose
  * misfit is at most twice the best, each with two standard errors of its fits on either side. What
- * the law's form cannot follow makes those errors, so that they do not shrink with more
- * specimens. What all specimens share (gain of the cell, lengths,
+ * the law's form cannot follow makes those errors, and what its priors leave open, so that they do
+ * not shrink with more specimens. What all specimens share (gain of the cell, lengths,
  * counterweight, diameter) leaves no trace in the data and is in neither.
  */
 #ifndef WB_ANALYSIS_CYCLE_CALIBRATE_H
@@ -76,6 +76,7 @@ struct wb_cycle_rank {
     bool counts;      /* misfit at most twice the best: its numbers are in the ranges */
     int n_free;       /* of the law */
     struct wb_estimate rigidity, springback; /* without the ranges */
+    struct wb_law law; /* means of the specimens' numbers, as those of the chosen one */
 };
 
 struct wb_cycle_calibration {
@@ -87,6 +88,9 @@ struct wb_cycle_calibration {
     int n_ranked;
     enum wb_candidate chosen;
     bool is_supported; /* the best misfit is at most 0.5 % of F_max, and unloading was fitted */
+    /* `progress` said so before all candidates were fitted to all specimens: the members are those
+     * that were, and nothing is decided of the rule. */
+    bool is_stopped;
     double largest_curvature; /* 1/m: smallest of the specimens' largest */
     struct wb_estimate rigidity, springback, loop_energy; /* N m2, 1, J/m */
     double curvature[WB_CYCLE_MOMENTS];
@@ -124,7 +128,7 @@ void wb_cycle_calibrate_settings_text(const struct wb_cycle_calibrate_settings *
                                       struct wb_text *text);
 
 /* Calibrates on n datasets of one wire. The same data twice, another wire's, or none that can be
- * fitted: WB_ERR_DATA. `why` receives the reason; NULL: it is logged. */
+ * fitted: WB_ERR_DATA. `why` receives the reason; NULL: it is logged. Being stopped is a result. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_calibrate_run(struct wb_cycle_calibration *calibration,
                        const struct wb_dataset *const *datasets, int n,

@@ -360,7 +360,8 @@ static enum wb_status computed_zero(const struct specimen *specimen, double *ten
     struct wb_cycle_point zero = {.deflection = 0.0};
     struct wb_cycle_data one = *specimen->data;
     const struct wb_cycle_model_settings settings = {0, 0};
-    const struct wb_cycle_specimen own = {specimen->fit->bow_angle, specimen->fit->level};
+    const struct wb_cycle_specimen own = {specimen->fit->bow_angle, specimen->fit->level,
+                                          specimen->fit->uneven_angle};
     struct wb_cycle_model *model;
     struct wb_cycle_run run;
     one.points = &zero;

@@ -42,6 +42,11 @@ static const double settled_sum = 1e-4;
 /* A gain of an iteration below this part is too slow for a fit that is far off. */
 static const double slow_gain = 0.1;
 static const int first_judged = 3;
+/* Where a group of residuals is left out, a number that nothing else tells stays finite by a prior
+ * of this weight; and a standard error is at least the root of this. Units of the free numbers. */
+static const double know_nothing = 1e-6, surest = 1e-12;
+/* A law is moved by this many standard errors, and no number by more than that. */
+static const double moved_by = 0.1, farthest = 1.0;
 /* Residual of a run that does not reach its end: far above any other. */
 static const double lost_residual = 1e4;
 
@@ -121,15 +126,25 @@ const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS] = {
      .option = "level-prior-mm",
      .argument = "D",
      .help = "Prior of the level of zero deflection"},
+    {.name = "uneven_prior_rad",
+     .unit = "rad",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(uneven_prior),
+     .least = 1e-6,
+     .largest = 10.0,
+     .fallback = 0.05,
+     .option = "uneven-prior-rad",
+     .argument = "A",
+     .help = "Prior of the angle by which a specimen is bent unevenly by nature"},
     {.name = "modulus_prior",
      .type = WB_SETTING_NUMBER,
      .offset = AT(modulus_prior),
      .least = 1e-2,
      .largest = 1e3,
-     .fallback = 2.0,
+     .fallback = 4.0,
      .option = "modulus-prior",
      .argument = "X",
-     .help = "Prior of the second differences of the logarithms of parallel parts' moduli"},
+     .help = "Prior of the second differences of the logarithms of the moduli of parts that yield"},
     {.name = "search_elements",
      .type = WB_SETTING_INTEGER,
      .offset = AT(n_elements),
@@ -177,6 +192,14 @@ void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings)
     wb_setting_fill(&table, settings);
 }
 
+/* Free numbers of the specimen, behind those of the law. */
+enum {
+    BOW,
+    LEVEL,
+    UNEVEN, /* the last: without places it is not free */
+    OF_SPECIMEN
+};
+
 struct problem {
     const struct wb_cycle_data *data;
     const struct wb_cycle_fit_settings *settings;
@@ -196,6 +219,12 @@ struct problem {
     int runs;
     enum wb_status status;
 };
+
+/* Forces alone do not tell an unevenly bent wire from one with another law. */
+static bool has_places(const struct wb_cycle_data *data)
+{
+    return data->n_places > 0;
+}
 
 static double logistic(double x)
 {
@@ -288,16 +317,26 @@ static void start_from(struct problem *p, const struct wb_law *law)
                                                                : 0.0;
     for (int i = 0; i < p->n_law; i++)
         p->scale[i] = 1.0;
-    p->start[p->n_law] = p->data->info.n_natural_shape > 0 ? p->data->info.natural_shape[0] : 0.0;
-    p->scale[p->n_law] = 0.01;
-    p->start[p->n_law + 1] = 0.0;
-    p->scale[p->n_law + 1] = 0.1 * WB_MM;
+    double *const start = p->start + p->n_law, *const scale = p->scale + p->n_law;
+    start[BOW] = p->data->info.n_natural_shape > 0 ? p->data->info.natural_shape[0] : 0.0;
+    scale[BOW] = 0.01;
+    start[LEVEL] = 0.0;
+    scale[LEVEL] = 0.1 * WB_MM;
+    start[UNEVEN] = 0.0;
+    scale[UNEVEN] = 0.01;
 }
 
 static void absolute(const struct problem *p, const double *x, double *free)
 {
-    for (int i = 0; i < p->n_free; i++)
-        free[i] = p->start[i] + p->scale[i] * x[i];
+    for (int i = 0; i < p->n_law + OF_SPECIMEN; i++)
+        free[i] = p->start[i] + (i < p->n_free ? p->scale[i] * x[i] : 0.0);
+}
+
+static struct wb_cycle_specimen specimen_of(const struct problem *p, const double *free)
+{
+    const double *const own = free + p->n_law;
+    return (struct wb_cycle_specimen){
+        .bow_angle = own[BOW], .level = own[LEVEL], .uneven_angle = own[UNEVEN]};
 }
 
 /* Distances of places less each marker's own offset; the offset that makes the sum of squares
@@ -333,10 +372,13 @@ static int prior_residuals(const struct problem *p, const double *free, const st
     const struct candidate *const c = p->candidate;
     int at = 0;
 
-    r[at++] = free[p->n_law + 1] / p->settings->level_prior;
+    r[at++] = free[p->n_law + LEVEL] / p->settings->level_prior;
+    r[at++] = free[p->n_law + UNEVEN] / p->settings->uneven_prior;
     if (c->form == WB_LAW_PARALLEL) {
+        /* Strands that yield one after another do so about evenly. What stays elastic, jacket and
+         * hardening, is of another kind and may be as stiff as it is. */
         const struct wb_law_part *const part = law->parts;
-        for (int i = 1; i + 1 < WB_FIT_PARTS; i++)
+        for (int i = 1; i + 2 < WB_FIT_PARTS; i++)
             r[at++] = log(part[i - 1].modulus * part[i + 1].modulus /
                           (part[i].modulus * part[i].modulus)) /
                       p->settings->modulus_prior;
@@ -357,7 +399,7 @@ static int residuals(struct problem *p, const double *x, double *r)
 
     absolute(p, x, free);
     law_of(p, free, &law);
-    const struct wb_cycle_specimen specimen = {free[p->n_law], free[p->n_law + 1]};
+    const struct wb_cycle_specimen specimen = specimen_of(p, free);
     struct wb_reason why;
     bool reached = wb_law_check(&law, &why) == WB_OK;
     if (reached) {
@@ -470,21 +512,112 @@ static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *i
     return false;
 }
 
-/* How many points in a row tell the same: those with residuals of one sign, over the two that noise
- * alone has on average. */
-static double alike_in_a_row(const struct problem *p, const gsl_vector *f)
+enum {
+    IS_PRIOR = -1 /* a residual of no group */
+};
+
+/* Begins a new group of residuals at each change of sign. Returns the index behind the last. */
+static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_groups)
 {
-    const int n = p->data->n_points;
-    int rows = 1;
-    for (int i = 1; i < n; i++)
-        rows += (gsl_vector_get(f, (size_t)i) < 0.0) != (gsl_vector_get(f, (size_t)i - 1) < 0.0);
-    return fmax(1.0, 0.5 * n / rows);
+    for (int i = at; i < at + n; i++) {
+        *n_groups += i == at || (gsl_vector_get(f, (size_t)i) < 0.0) !=
+                                    (gsl_vector_get(f, (size_t)i - 1) < 0.0);
+        group[i] = *n_groups - 1;
+    }
+    return at + n;
 }
 
-/* The law moved along the columns of the covariance's triangular factor, which it is destroyed
- * for. */
-static void move_law(const struct problem *p, const gsl_vector *x, double variance,
-                     gsl_matrix *covariance, struct wb_cycle_fit *fit)
+/* Groups residuals that tell the same: those of one sign in a row, of one branch or one marker.
+ * Returns how many there are. */
+static int group_residuals(const struct problem *p, const gsl_vector *f, int *group)
+{
+    const struct wb_cycle_data *const data = p->data;
+    int n_groups = 0;
+    for (int i = 0; i < p->n_residuals; i++)
+        group[i] = IS_PRIOR;
+    int at = group_rows(f, 0, data->n_loading, group, &n_groups);
+    at = group_rows(f, at, data->n_points - data->n_loading, group, &n_groups);
+    for (int m = 0; m < data->n_markers; m++) {
+        int n = 0;
+        for (int i = 0; i < data->n_places; i++)
+            n += data->places[i].marker == m;
+        at = group_rows(f, at, n, group, &n_groups) + 1; /* behind its offset's prior */
+    }
+    return n_groups;
+}
+
+/* Adds to the covariance what the free numbers owe to one group of residuals: how they change, to
+ * first order, when it is left out. `squares` are the sums of the slopes' products; `rest` is
+ * workspace. */
+static bool add_group(const gsl_matrix *J, const gsl_vector *f, const int *group, int left_out,
+                      const gsl_matrix *squares, gsl_matrix *rest, gsl_matrix *covariance)
+{
+    double numbers[WB_FIT_MOST_FREE] = {0.0};
+    gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
+    gsl_matrix_memcpy(rest, squares);
+    for (size_t i = 0; i < J->size1; i++) {
+        if (group[i] != left_out)
+            continue;
+        const gsl_vector_const_view slopes = gsl_matrix_const_row(J, i);
+        gsl_blas_dsyr(CblasLower, -1.0, &slopes.vector, rest);
+        gsl_blas_daxpy(gsl_vector_get(f, i), &slopes.vector, &change.vector);
+    }
+    return gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS &&
+           gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
+           gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
+}
+
+/* What they owe to the priors, which are as far off as their standard deviations say. */
+static bool add_priors(const gsl_matrix *J, const int *group, const gsl_matrix *squares,
+                       gsl_matrix *rest, gsl_matrix *covariance)
+{
+    gsl_matrix_memcpy(rest, squares);
+    bool good = gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS;
+    for (size_t i = 0; i < J->size1 && good; i++) {
+        double numbers[WB_FIT_MOST_FREE];
+        gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
+        if (group[i] != IS_PRIOR)
+            continue;
+        gsl_matrix_get_row(&change.vector, J, i);
+        good = gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
+               gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
+    }
+    return good;
+}
+
+/* The covariance of the free numbers: of the readings by the jackknife (Tukey 1958), each group of
+ * residuals left out once, and of the priors. Where the law's form cannot follow the test, large
+ * residuals of one sign stand side by side, and the numbers that hang on them are uncertain; others
+ * need not be. What the readings do not reach, as the virgin curve below the curvature that a wire
+ * has at zero deflection, hangs on the priors. Of noise alone, groups by sign make a standard error
+ * half as large again as it is. */
+static bool find_covariance(const struct problem *p, const gsl_vector *f, const gsl_matrix *J,
+                            gsl_matrix *covariance)
+{
+    const size_t n = (size_t)p->n_free;
+    gsl_matrix *const squares = gsl_matrix_alloc(n, n), *const rest = gsl_matrix_alloc(n, n);
+    int *const group = calloc((size_t)p->n_residuals, sizeof *group);
+    bool good = squares && rest && group;
+    if (good) {
+        const int n_groups = group_residuals(p, f, group);
+        gsl_matrix_set_identity(squares);
+        gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
+        gsl_matrix_set_identity(covariance);
+        gsl_matrix_scale(covariance, surest);
+        for (int g = 0; g < n_groups && good; g++)
+            good = add_group(J, f, group, g, squares, rest, covariance);
+        good = good && add_priors(J, group, squares, rest, covariance);
+    }
+    gsl_matrix_free(squares);
+    gsl_matrix_free(rest);
+    free(group);
+    return good;
+}
+
+/* The law moved along the columns of the covariance's triangular factor, which the covariance is
+ * destroyed for. */
+static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
+                     struct wb_cycle_fit *fit)
 {
     double free[WB_FIT_MOST_FREE], step[WB_FIT_MOST_FREE];
     struct wb_reason why;
@@ -492,13 +625,17 @@ static void move_law(const struct problem *p, const gsl_vector *x, double varian
     if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
         return;
     for (int k = 0; k < p->n_law; k++) {
-        for (int i = 0; i < p->n_free; i++) {
-            const double side =
-                i < k ? 0.0 : gsl_matrix_get(covariance, (size_t)i, (size_t)k) * sqrt(variance);
-            step[i] = gsl_vector_get(x, (size_t)i) + side;
-        }
+        const gsl_vector_view side = gsl_matrix_column(covariance, (size_t)k);
+        double largest = 0.0;
+        for (int i = k; i < p->n_free; i++)
+            largest = fmax(largest, fabs(gsl_vector_get(&side.vector, (size_t)i)));
+        const double by = fmin(moved_by, farthest / largest);
+        for (int i = 0; i < p->n_free; i++)
+            step[i] = gsl_vector_get(x, (size_t)i) +
+                      (i < k ? 0.0 : by * gsl_vector_get(&side.vector, (size_t)i));
         absolute(p, step, free);
         law_of(p, free, &fit->moved[fit->n_moved]);
+        fit->moved_by[fit->n_moved] = by;
         fit->n_moved += wb_law_check(&fit->moved[fit->n_moved], &why) == WB_OK;
     }
 }
@@ -590,9 +727,9 @@ static void find_errors(const struct problem *p, gsl_multifit_nlinear_workspace 
                 sqrt(variance * fmax(0.0, a * a * hh + 2.0 * a * b * hn + b * b * nn));
         }
         find_correlations(p, covariance, fit);
-        const double alike = alike_in_a_row(p, w->f);
-        move_law(p, w->x, WB_FIT_MOVED * WB_FIT_MOVED * variance * alike, covariance, fit);
     }
+    if (find_covariance(p, w->f, w->J, covariance))
+        move_law(p, w->x, covariance, fit);
     gsl_matrix_free(covariance);
 }
 
@@ -626,8 +763,8 @@ static void find_misfits(struct wb_cycle_fit *fit, struct problem *p)
 static int count_residuals(const struct problem *p)
 {
     const struct candidate *const c = p->candidate;
-    return p->data->n_points + p->data->n_places + p->data->n_markers + 1 +
-           (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS - 2 : 1) + c->is_mixed;
+    return p->data->n_points + p->data->n_places + p->data->n_markers + 2 +
+           (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS - 3 : 1) + c->is_mixed;
 }
 
 /* The last run, with more elements. */
@@ -635,7 +772,7 @@ static enum wb_status run_finely(struct wb_cycle_fit *fit, struct problem *p, st
 {
     const struct wb_cycle_model_settings how = {p->settings->n_final_elements,
                                                 p->settings->n_fibres};
-    const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level};
+    const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
     struct wb_cycle_model *fine;
     WB_TRY(wb_cycle_model_create(&fine, p->data, &fit->law, &how));
     const enum wb_status status =
@@ -686,8 +823,10 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     }
     absolute(p, w->x->data, free_numbers);
     law_of(p, free_numbers, &fit->law);
-    fit->bow_angle = free_numbers[p->n_law];
-    fit->level = free_numbers[p->n_law + 1];
+    const struct wb_cycle_specimen specimen = specimen_of(p, free_numbers);
+    fit->bow_angle = specimen.bow_angle;
+    fit->level = specimen.level;
+    fit->uneven_angle = specimen.uneven_angle;
     fit->is_at_bound = (p->candidate->form == WB_LAW_LUDWIK && fabs(free_numbers[3]) > at_bound) ||
                        (p->candidate->is_mixed && fabs(free_numbers[p->n_law - 1]) > at_bound);
     find_errors(p, w, fit);
@@ -713,10 +852,10 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
         .poissons_ratio = start->material.poissons_ratio,
         .n_law = (c->form == WB_LAW_PARALLEL ? WB_FIT_PARTS : 4) + c->is_mixed,
     };
-    p.n_free = p.n_law + 2;
+    p.n_free = p.n_law + 2 + has_places(data);
     p.n_residuals = count_residuals(&p);
     p.force_scale = fmax(settings->force_noise, settings->force_share * data->max_force);
-    *fit = (struct wb_cycle_fit){.candidate = candidate, .n_free = p.n_free};
+    *fit = (struct wb_cycle_fit){.candidate = candidate, .n_free = p.n_free, .n_law = p.n_law};
     start_from(&p, start);
 
     const double no_step[WB_FIT_MOST_FREE] = {0.0};

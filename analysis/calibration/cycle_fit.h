@@ -1,10 +1,10 @@
 /* A law fitted to the first cycle of one specimen, loading and unloading together.
  *
  * Least squares (GSL multifit_nlinear, Powell's dogleg) on the tension of both branches and
- * the places of the markers. Free are the law's numbers and two of the specimen: the angle by
- * which it is bent by nature and the level of zero deflection. Each marker sits a constant distance
- * off the axis, which is eliminated (variable projection). Points far off are weighted down
- * (Huber) and counted.
+ * the places of the markers. Free are the law's numbers and those of the specimen: how it is bent
+ * by nature, evenly and unevenly, and the level of zero deflection. Each marker sits a constant
+ * distance off the axis, which is eliminated (variable projection). Points far off are weighted
+ * down (Huber) and counted.
  *
  * Loading alone leaves E and the hardening rule open: a wire that yields early and hardens bends up
  * like one that is soft. The way back tells them apart.
@@ -36,7 +36,7 @@ const char *wb_candidate_name(enum wb_candidate candidate);
 enum {
     WB_FIT_PARTS = 7,     /* parallel parts, the last elastic */
     WB_FIT_MOST_LAW = 8,  /* free numbers of a law */
-    WB_FIT_MOST_FREE = 10 /* and of the specimen */
+    WB_FIT_MOST_FREE = 11 /* and of the specimen */
 };
 
 struct wb_cycle_fit_settings {
@@ -45,7 +45,8 @@ struct wb_cycle_fit_settings {
     double place_noise;   /* m, of a marker's place */
     double offset_prior;  /* m: standard deviation of a marker's constant offset, */
     double level_prior;   /* m: of the level of zero deflection, */
-    double modulus_prior; /* 1: of the second difference of ln(modulus) of parallel parts */
+    double uneven_prior;  /* rad: of how unevenly it is bent by nature; without places it is not */
+    double modulus_prior; /* 1: of the second difference of ln(modulus) of parts that yield */
     int n_elements;       /* while searching */
     int n_final_elements; /* of the last run */
     int n_fibres;         /* over the diameter */
@@ -54,13 +55,10 @@ struct wb_cycle_fit_settings {
 };
 /* Rows of all but `hopeless`, with range and default. */
 enum {
-    WB_CYCLE_FIT_ROWS = 10
+    WB_CYCLE_FIT_ROWS = 11
 };
 extern const struct wb_setting wb_cycle_fit_rows[WB_CYCLE_FIT_ROWS];
 void wb_cycle_fit_default_settings(struct wb_cycle_fit_settings *settings);
-
-/* Small, so that numbers change in proportion. */
-#define WB_FIT_MOVED 0.1
 
 /* Yield strains of parallel parts: spaced by logarithm from the outer fibre's strain between the
  * first two points of the data to that at the last, where the elastic part's would stand. */
@@ -73,6 +71,7 @@ struct wb_cycle_fit {
     struct wb_law law;
     double bow_angle, bow_angle_error; /* rad */
     double level;                      /* m */
+    double uneven_angle;               /* rad; 0 without places */
     bool is_converged;                 /* else the iterations ran out */
     bool is_at_bound;                  /* an exponent or a share at the end of its range */
     double misfit;                     /* RMS of the force residuals over the largest force, */
@@ -80,11 +79,10 @@ struct wb_cycle_fit {
     double place_rms;                        /* m, after the markers' offsets; NaN without places */
     double ln_strength_error, exponent_error; /* standard errors of Ludwik's ln K and n by this
                                                  specimen's own residuals; NaN of parallel parts */
-    /* The law moved by WB_FIT_MOVED standard errors in each of independent directions. What is
-     * computed with it has a variance: the sum of the squares of its differences, over the square
-     * of WB_FIT_MOVED. Neighbouring residuals are alike where the law's form is wrong; the errors
-     * grow with that. */
+    /* The law moved a little in each of independent directions, by this many standard errors. What
+     * is computed with it has a variance: the sum of the squares of its differences over these. */
     int n_moved;
+    double moved_by[WB_FIT_MOST_FREE];
     struct wb_law moved[WB_FIT_MOST_FREE];
     /* How the law's numbers hang together in this fit: of ln E, ln sigma_Y, ln K and n, or of the
      * parts' moduli; then of the isotropic share where that is free. NaN unknown. */
@@ -92,7 +90,7 @@ struct wb_cycle_fit {
     double correlation[WB_FIT_MOST_LAW][WB_FIT_MOST_LAW];
     double clamp_curvature; /* 1/m, largest */
     double first_curvature; /* 1/m, at the first point */
-    int n_free;             /* numbers fitted */
+    int n_free, n_law;      /* numbers fitted; of them the law's */
     int n_outliers;         /* points weighted by less than half */
     int runs, iterations;
     double cpu_s;

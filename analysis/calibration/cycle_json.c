@@ -58,12 +58,14 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
     wb_json_set_text(object, "chosen", wb_candidate_name(c->chosen));
     wb_json_set_boolean(object, "supported", c->is_supported);
     wb_json_set_boolean(object, "unloading_measured", c->has_unloading);
+    wb_json_set_boolean(object, "stopped", c->is_stopped);
     wb_json_set_number(object, "repeat_noise", c->repeat_noise);
     struct wb_json *const ranked = wb_json_set_array(object, "ranked");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
         struct wb_json *const item = wb_json_append_object(ranked);
         wb_json_set_text(item, "law", wb_candidate_name(rank->candidate));
+        wb_json_set_integer(item, "numbers", rank->n_free);
         wb_json_set_number(item, "misfit", rank->misfit);
         wb_json_set_number(item, "f_ratio", rank->f_ratio);
         wb_json_set_number(item, "f_limit", rank->f_limit);
@@ -72,6 +74,7 @@ static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *
         wb_json_set_number(item, "flexural_rigidity_N_mm2", rank->rigidity.value / N_MM2);
         wb_json_set_number(item, "springback_ratio",
                            c->has_unloading ? rank->springback.value : (double)NAN);
+        put_law(wb_json_set_object(item, "parameters"), &rank->law);
     }
 }
 
@@ -106,6 +109,8 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         wb_json_set_number(item, "bow_mm", 0.5 * fit->bow_angle * member->data.info.length / WB_MM);
         wb_json_set_number(item, "bow_uncertainty_mm",
                            0.5 * fit->bow_angle_error * member->data.info.length / WB_MM);
+        wb_json_set_number(item, "uneven_bow_mm",
+                           0.125 * fit->uneven_angle * member->data.info.length / WB_MM);
         wb_json_set_number(item, "level_mm", fit->level / WB_MM);
         wb_json_set_number(item, "misfit", fit->misfit);
         wb_json_set_number(item, "loading_misfit", fit->loading_misfit);

@@ -39,7 +39,8 @@ static double largest_deflection(const struct wb_dataset *dataset, int cycle)
     return largest;
 }
 
-/* Where the way back of a cycle ends or the strand becomes slack. */
+/* Where the way back of a cycle ends or the strand becomes slack, by its lowest row; what is read
+ * below the rest is noise. */
 static double lowest_deflection(const struct wb_dataset *dataset, int cycle)
 {
     double lowest = largest_deflection(dataset, cycle);
@@ -49,7 +50,7 @@ static double lowest_deflection(const struct wb_dataset *dataset, int cycle)
             row->deflection < lowest)
             lowest = row->deflection;
     }
-    return lowest;
+    return isfinite(dataset->info.rest_level) ? fmax(lowest, dataset->info.rest_level) : lowest;
 }
 
 /* Appends the points of one way of a cycle in the order of the test. */
@@ -145,7 +146,7 @@ static enum wb_status predict(struct wb_cycle_later *later, const struct wb_data
     path.points = calloc(most, sizeof *path.points);
     double *const tension = calloc(most, sizeof *tension);
     int *const index = calloc(most, sizeof *index);
-    const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level};
+    const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
     const struct wb_cycle_model_settings how = {0, 0};
     struct wb_cycle_model *model = NULL;
     struct wb_cycle_run run;

@@ -64,6 +64,13 @@ static enum wb_status move(struct wb_cycle_model *model, double deflection,
     return WB_OK;
 }
 
+void wb_cycle_model_bend(const struct wb_cycle_specimen *specimen, struct wb_test_info *info)
+{
+    info->n_natural_shape = 2;
+    info->natural_shape[0] = specimen->bow_angle + 2.0 * specimen->uneven_angle;
+    info->natural_shape[1] = -3.0 * specimen->uneven_angle;
+}
+
 /* Curvature at the clamp beyond the natural one, from the turn of a short piece. */
 static double clamp_curvature(const struct wb_cycle_model *model)
 {
@@ -82,6 +89,11 @@ static double distance_of(const struct wb_cycle_model *model, const struct wb_cy
     return (place->y - y) * cos(angle) - (place->x - x) * sin(angle);
 }
 
+double wb_cycle_model_rest(const struct wb_test_info *info)
+{
+    return isfinite(info->rest_level) ? fmin(info->rest_level, 0.0) : 0.0;
+}
+
 enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_law *law,
                                   const struct wb_cycle_specimen *specimen, double *tension,
                                   double *distance, struct wb_cycle_run *run)
@@ -92,8 +104,7 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
     bool reached;
 
     *run = (struct wb_cycle_run){0};
-    model->info.n_natural_shape = 1;
-    model->info.natural_shape[0] = specimen->bow_angle;
+    wb_cycle_model_bend(specimen, &model->info);
     WB_TRY(
         wb_cantilever_set_curvature(model->cantilever, wb_dataset_natural_curvature, &model->info));
     WB_TRY(wb_cantilever_set_law(model->cantilever, law));
@@ -103,7 +114,7 @@ enum wb_status wb_cycle_model_run(struct wb_cycle_model *model, const struct wb_
         distance[i] = (double)NAN;
 
     /* The rest carries the tip before the strand does; to the wire it is the same. */
-    const double rest = isfinite(data->info.rest_level) ? fmin(data->info.rest_level, 0.0) : 0.0;
+    const double rest = wb_cycle_model_rest(&data->info);
     WB_TRY(move(model, rest - specimen->level, &point, &reached));
     for (int i = 0; i < data->n_points && reached; i++) {
         WB_TRY(move(model, data->points[i].deflection - specimen->level, &point, &reached));

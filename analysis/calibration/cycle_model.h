@@ -2,9 +2,8 @@
  * weights, from the virgin wire on its rest up to the turn and back, at the deflections of struct
  * wb_cycle_data.
  *
- * The tension is the strand's, weights included. Two numbers of a specimen are the caller's: the
- * angle by which its tip is bent by nature (with a constant curvature), and the level, by which
- * measured deflections are too large.
+ * The tension is the strand's, weights included. Two things of a specimen are the caller's: its
+ * shape by nature, and the level, by which measured deflections are too large.
  */
 #ifndef WB_ANALYSIS_CYCLE_MODEL_H
 #define WB_ANALYSIS_CYCLE_MODEL_H
@@ -18,10 +17,17 @@
 
 struct wb_cycle_model; /* opaque */
 
+/* The natural angle at u = s/L is bow_angle u + uneven_angle (2 u - 3 u^2): the first bends the
+ * wire evenly, the second more at the clamp and the other way at the tip, which stays at its
+ * height where slopes are small: the bow is bow_angle L/2. */
 struct wb_cycle_specimen {
-    double bow_angle; /* rad, natural angle of the tip */
-    double level;     /* m */
+    double bow_angle;    /* rad */
+    double level;        /* m */
+    double uneven_angle; /* rad */
 };
+
+/* Writes its natural shape into `info`. */
+void wb_cycle_model_bend(const struct wb_cycle_specimen *specimen, struct wb_test_info *info);
 
 struct wb_cycle_run {
     bool reached;           /* all points: else the others are NaN */
@@ -40,6 +46,10 @@ WB_MUST_CHECK enum wb_status wb_cycle_model_create(struct wb_cycle_model **out,
                                                    const struct wb_law *law,
                                                    const struct wb_cycle_model_settings *settings);
 void wb_cycle_model_destroy(struct wb_cycle_model *model); /* accepts NULL */
+
+/* Deflection at which the tip lies before a cycle and comes back to after it, m: on its rest, or at
+ * zero without one. */
+double wb_cycle_model_rest(const struct wb_test_info *info);
 
 /* Computes the whole cycle: tension (data->n_points, N), and how far each measured place lies above
  * the axis at its arc length (data->n_places, m; NULL: not wanted). Not to reach all points is a

@@ -120,6 +120,9 @@ enum wb_status wb_cycle_sensitivity_find(const struct wb_cycle_calibration *cali
     for (int i = 0; i < WB_SHARED; i++)
         sensitivities[i] = (struct wb_cycle_sensitivity){unknown, unknown, unknown, unknown};
     sensitivities[WB_SHARED_DIAMETER] = (struct wb_cycle_sensitivity){0.0, -4.0, 0.0, 0.0};
+    /* Who stopped does not wait for more fits. */
+    if (calibration->is_stopped)
+        return WB_OK;
     const size_t n = (size_t)calibration->members[0].data.n_points;
     struct wb_cycle_point *const points = calloc(n + 1, sizeof *points);
     if (!points)

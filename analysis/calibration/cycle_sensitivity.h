@@ -33,7 +33,8 @@ struct wb_cycle_sensitivity {
     double springback;        /* NaN without a way back */
 };
 
-/* Of the first specimen of a calibration that ended well. A fit that fails or does not converge
+/* Of the first specimen of a calibration that ended well; of one that was stopped nothing is
+ * looked for. A fit that fails or does not converge
  * leaves NaN; otherwise fails only without memory. */
 WB_MUST_CHECK enum wb_status
 wb_cycle_sensitivity_find(const struct wb_cycle_calibration *calibration,

@@ -38,8 +38,9 @@ struct problem {
     double best[NUMBERS], scale[NUMBERS];
     double bow_prior; /* rad: what the markers leave open */
     double *tension, *residual;
-    gsl_matrix *slopes; /* (n_points + 2 priors, NUMBERS), per scale, over the force noise */
-    double noise;       /* N */
+    gsl_matrix *slopes;  /* (n_points + 2 priors, NUMBERS), per scale, over the force noise */
+    double noise;        /* N */
+    double uneven_angle; /* of the specimen at the optimum */
 };
 
 static void law_of(const struct problem *p, const double *numbers, struct wb_law *law)
@@ -59,7 +60,7 @@ static void law_of(const struct problem *p, const double *numbers, struct wb_law
 /* Residuals of the forces, N; *misfit NaN where the beam does not come to the end. */
 static enum wb_status run(struct problem *p, const double *numbers, double *misfit)
 {
-    const struct wb_cycle_specimen specimen = {numbers[BOW], numbers[LEVEL]};
+    const struct wb_cycle_specimen specimen = {numbers[BOW], numbers[LEVEL], p->uneven_angle};
     struct wb_cycle_run how;
     struct wb_law law;
     struct wb_reason why;
@@ -277,6 +278,7 @@ static enum wb_status find_best(struct problem *p, const struct wb_law *start,
     p->best[YIELD] = log(best->yield_stress);
     p->best[BOW] = fit.bow_angle;
     p->best[LEVEL] = fit.level;
+    p->uneven_angle = fit.uneven_angle;
     p->best[STRESS] =
         log(best->strength_coefficient * pow(WB_VALLEY_PLASTIC_STRAIN, best->hardening_exponent));
     p->best[EXPONENT] = best->hardening_exponent;

@@ -479,8 +479,7 @@ enum wb_status wb_moment_curvature_take(struct wb_moment_cloud *cloud,
         f->data = &data;
         f->info = &info;
         if (specimen) {
-            info.n_natural_shape = 1;
-            info.natural_shape[0] = specimen->bow_angle;
+            wb_cycle_model_bend(specimen, &info);
             f->level = specimen->level;
         }
         status =

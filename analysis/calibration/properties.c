@@ -6,7 +6,6 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/calibration/properties_private.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -72,6 +71,12 @@ static struct wb_estimate known(const struct wb_cycle_calibration *calibration,
     return known;
 }
 
+/* By a way back, and to the end. */
+static bool is_rule_tested(const struct wb_cycle_calibration *calibration)
+{
+    return calibration->has_unloading && !calibration->is_stopped;
+}
+
 static void keep_specimen(const struct wb_cycle_calibration *calibration,
                           const struct wb_cycle_member *member,
                           struct wb_properties_specimen *specimen)
@@ -130,7 +135,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
     properties->rigidity = known(calibration, &calibration->rigidity);
     if (calibration->has_unloading)
         properties->springback = known(calibration, &calibration->springback);
-    properties->is_rule_tested = calibration->has_unloading;
+    properties->is_rule_tested = is_rule_tested(calibration);
     properties->is_rule_supported = calibration->is_supported;
     properties->n_moments = WB_CYCLE_MOMENTS;
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
@@ -311,7 +316,7 @@ static void put_rule(struct wb_text *text, const struct wb_cycle_calibration *ca
                          "within 0.5 %% of F_max\n"
                          "hardening_rule:\n");
     wb_text_append(text, "  chosen: \"%s\"\n", wb_candidate_name(calibration->chosen));
-    wb_text_append(text, "  tested: %s\n", calibration->has_unloading ? "true" : "false");
+    wb_text_append(text, "  tested: %s\n", is_rule_tested(calibration) ? "true" : "false");
     wb_text_append(text, "  supported: %s\n", calibration->is_supported ? "true" : "false");
     wb_text_append(text, "  # misfits of the candidates, over F_max\n"
                          "  ranked:\n");
@@ -407,6 +412,9 @@ static void format_cycle(struct wb_text *text, const struct wb_cycle_calibration
     put_specimens(text, p);
     wb_text_append(text, "calibration:\n");
     put_number(text, "  ", "length_mm", p->calibration_length / WB_MM);
+    if (calibration->is_stopped)
+        wb_text_append(text,
+                       "  stopped: interrupted before all laws were fitted to all specimens\n");
     wb_text_append(text, "  # over F_max of each specimen, both ways\n");
     put_number(text, "  ", "rms", p->rms);
     wb_text_append(text, "  samples: %d\n", p->n_samples);
@@ -444,6 +452,104 @@ enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_r
     if (!force && wb_file_exists(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
     format(&text, result, settings, names, n_names);
+    const enum wb_status status = wb_file_write_text(path, &text);
+    wb_text_release(&text);
+    return status;
+}
+
+/* --- calibrations on three-point bending --- */
+
+static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *c)
+{
+    wb_text_append(text, "three_point:\n");
+    put_number(text, "  ", "span_mm", c->members[0].data.info.length / WB_MM);
+    put_number(text, "  ", "roller_radius_mm",
+               c->members[0].data.info.machine.roller_radius / WB_MM);
+    put_number(text, "  ", "nose_radius_mm", c->bench.nose_radius / WB_MM);
+    put_number(text, "  ", "friction", c->bench.friction);
+    put_number(text, "  ", "compliance_mm_N", c->bench.compliance / WB_MM);
+    wb_text_append(text, "  compliance_known: %s\n", c->is_compliance_known ? "true" : "false");
+    put_number(text, "  ", "series_deviation", c->series_deviation);
+    wb_text_append(text, "  # the fits again with what the curves do not tell; EI over that above\n"
+                         "  bands:\n");
+    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+        const struct wb_bend3p_variant *const v = &c->variants[i];
+        wb_text_append(text, "    - of: \"%s\"\n", v->name);
+        put_number(text, "      ", i < 2 ? "value" : "value_mm",
+                   i < 2 ? v->value : v->value / WB_MM);
+        wb_text_append(text, "      possible: %s\n", v->is_possible ? "true" : "false");
+        if (!v->is_possible)
+            continue;
+        put_number(text, "      ", "misfit", v->misfit);
+        put_number(text, "      ", "rigidity_ratio", v->rigidity);
+    }
+    wb_text_append(text, "  tests:\n");
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_bend3p_member *const m = &c->members[i];
+        wb_text_append(text, "    - sample: %d\n      series: ", m->data.info.sample);
+        put_quoted(text, m->data.info.piece.series);
+        wb_text_append(text, "\n      fitted: %s\n", m->is_fitted ? "true" : "false");
+        if (!m->is_fitted)
+            continue;
+        put_number(text, "      ", "flexural_rigidity_N_mm2", m->rigidity / N_MM2);
+        put_number(text, "      ", "rigidity_error", m->rigidity_error);
+        put_number(text, "      ", "first_contact_mm", m->fit.first_contact / WB_MM);
+        put_number(text, "      ", "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
+        put_number(text, "      ", "usable_mm", m->data.usable / WB_MM);
+        wb_text_append(text, "      usable_by: \"%s\"\n", wb_bend3p_limit_name(m->data.limit));
+        put_number(text, "      ", "misfit", m->fit.misfit);
+        put_number(text, "      ", "largest_curvature_1_m", m->fit.largest_curvature);
+        put_number(text, "      ", "wrapped_rad", m->fit.wrapped);
+    }
+}
+
+static void format_bend3p(struct wb_text *text, const struct wb_bend3p_calibration *c)
+{
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    struct wb_properties p;
+    make_unknown(&p);
+    p.n_moments = WB_BEND3P_MOMENTS;
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        p.curvature[k] = c->curvature[k];
+        p.moment[k] = c->moment[k];
+    }
+    put_wire(text, info);
+    wb_text_append(text,
+                   "# These four numbers are derived from the law below: Ludwik's, isotropic, "
+                   "that bends alike on a\n"
+                   "# first loading.\n");
+    put_material(text, "", &c->ludwik);
+    put_number(text, "", "poissons_ratio", c->law.material.poissons_ratio);
+    put_number(text, "", "ludwik_misfit", c->ludwik_misfit);
+    wb_law_file_append(text, &c->law);
+    wb_text_append(text, "method: three-point\n"
+                         "# Means with an interval of 95 %%; candidates: over friction and nose "
+                         "radius, which the curves do\n"
+                         "# not tell.\n");
+    if (c->is_rigidity_identifiable)
+        put_estimate(text, "flexural_rigidity_N_mm2", &c->rigidity, N_MM2);
+    else
+        wb_text_append(text, "# flexural_rigidity_N_mm2: not identifiable from loading alone\n");
+    put_number(text, "", "largest_curvature_1_m", c->largest_curvature);
+    put_moments(text, &p);
+    put_bench(text, c);
+    wb_text_append(text, "calibration:\n");
+    put_number(text, "  ", "rms", c->misfit);
+    wb_text_append(text, "  samples: %d\n", c->n_fitted);
+    wb_text_append(text, "  virtual_rig: %s\n", info->is_virtual ? "true" : "false");
+    wb_text_append(text, "  simulation: %s\n", info->is_simulation ? "true" : "false");
+    wb_text_append(text, "  tool: \"wirebench %s (%s)\"\n", wb_version(), wb_version_revision());
+}
+
+enum wb_status wb_properties_write_bend3p(const char *path,
+                                          const struct wb_bend3p_calibration *calibration,
+                                          const char *const *names, int n_names, bool force)
+{
+    struct wb_text text = {0};
+    if (!force && wb_file_exists(path))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
+    format_bend3p(&text, calibration);
+    put_datasets(&text, names, n_names);
     const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);
     return status;
@@ -586,7 +692,7 @@ static enum wb_status read_specimens(const struct wb_config_node *node,
 
 static enum wb_status read_root(const struct wb_config_node *root, struct wb_properties *properties)
 {
-    static const char *const methods[] = {"cycle", "paper", NULL};
+    static const char *const methods[] = {"cycle", "paper", "three-point", NULL};
     const struct wb_config_node *deviations = NULL, *calibration = NULL, *law = NULL;
     const struct wb_config_node *rigidity = NULL, *springback = NULL, *moments = NULL;
     const struct wb_config_node *rule = NULL, *specimens = NULL;
@@ -616,6 +722,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_CONFIG_OPTIONAL_NODE("moment_curvature", &moments),
         WB_CONFIG_OPTIONAL_NODE("hardening_rule", &rule),
         WB_CONFIG_OPTIONAL_NODE("specimens", &specimens),
+        WB_CONFIG_IGNORED("three_point"),
     };
     material->hardening = WB_HARDENING_ISOTROPIC_POWER;
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));

@@ -15,8 +15,8 @@
  * A calibration on whole cycles adds
  *
  *     method: cycle
- *     law: {...}                  # fe/material/law_file.h; the four numbers are then its
- * equivalent flexural_rigidity_N_mm2: {value: 210, low: 200, high: 221, candidates_low: 209, ...}
+ *     law: {...}     # fe/material/law_file.h; the four numbers are then its equivalent
+ *     flexural_rigidity_N_mm2: {value: 210, low: 200, high: 221, candidates_low: 209, ...}
  *     springback_ratio: {...}
  *     loop_energy_mJ_per_m: {...}
  *     largest_curvature_1_m: 29
@@ -31,6 +31,7 @@
 
 #include <stdbool.h>
 
+#include "analysis/calibration/bend3p_calibrate.h"
 #include "analysis/calibration/calibrate.h"
 #include "analysis/calibration/cycle_calibrate.h"
 #include "base/status.h"
@@ -94,8 +95,14 @@ WB_MUST_CHECK enum wb_status
 wb_properties_write_cycle(const char *path, const struct wb_cycle_calibration *calibration,
                           const struct wb_cycle_calibrate_settings *settings,
                           const char *const *names, int n_names, bool force);
+/* The same of a calibration on three-point bending tests: method `three-point`. */
+WB_MUST_CHECK enum wb_status
+wb_properties_write_bend3p(const char *path, const struct wb_bend3p_calibration *calibration,
+                           const char *const *names, int n_names, bool force);
 /* The same properties without a file in between. */
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
+void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
+                              struct wb_properties *properties);
 
 #endif

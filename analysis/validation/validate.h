@@ -21,14 +21,14 @@
 #ifndef WB_ANALYSIS_VALIDATE_H
 #define WB_ANALYSIS_VALIDATE_H
 
+#include "analysis/calibration/properties.h"
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/dataset.h"
-#include "analysis/calibration/properties.h"
 #include "analysis/validation/validate_cycle.h"
 #include "base/reason.h"
 #include "base/status.h"
 
-/* A computed loading curve on the grid of a measured one, and shapes of the same model. */
+/* A computed loading curve on the grid of a measured one. */
 struct wb_prediction {
     int n;         /* as the curve's */
     int n_reached; /* points reached before the solver gave up; n when all converged */
@@ -45,8 +45,9 @@ struct wb_prediction {
 };
 
 struct wb_validate_result {
-    struct wb_curve curve; /* measured average; owned */
-    struct wb_prediction elastoplastic, elastic;
+    struct wb_curve curve;              /* measured average; owned */
+    struct wb_prediction elastoplastic; /* mean of the samples', each with its own bow */
+    struct wb_prediction elastic;       /* with the mean bow */
     double shape_rms; /* m: RMS distance of measured markers from the points of the computed axis
                          at the same arc length and deflection (follower force, of a follower
                          test), first loading; the clamp's marker, which is the origin, is left

@@ -54,21 +54,26 @@ static struct way add_way(struct wb_cycle_data *path, const struct wb_cycle_data
     return way;
 }
 
-/* On downwards to zero: the strand becomes slack on the way, and the tip stays. */
+/* On downwards to the rest; where the strand becomes slack on the way, the tip stays. A wire that
+ * is still held at zero deflection is bent back as far as the rest, and loses the more for it in
+ * the next cycle. */
 static void add_descent(struct wb_cycle_data *path)
 {
-    while (path->points[path->n_points - 1].deflection > step)
+    const double lowest = wb_cycle_model_rest(&path->info);
+    while (path->points[path->n_points - 1].deflection > lowest + step)
         add_point(path, path->points[path->n_points - 1].deflection - step);
-    add_point(path, 0.0);
+    add_point(path, lowest);
 }
 
 static enum wb_status make_path(struct sample *sample)
 {
     struct wb_cycle_data *const path = &sample->path;
     size_t most = 1;
-    for (int k = 0; k < sample->n_cycles; k++)
-        most += (size_t)sample->data[k].n_points + (size_t)(sample->data[k].top / step) + 4;
     path->info = sample->data[0].info;
+    for (int k = 0; k < sample->n_cycles; k++) {
+        const double descent = sample->data[k].top - wb_cycle_model_rest(&path->info);
+        most += (size_t)sample->data[k].n_points + (size_t)(descent / step) + 4;
+    }
     path->top = sample->data[0].top;
     path->points = calloc(most, sizeof *path->points);
     sample->tension = malloc(most * sizeof *sample->tension);

@@ -7,8 +7,13 @@
 #include <unistd.h>
 
 #include "analysis/align/align.h"
+#include "analysis/calibration/bend3p_calibrate.h"
 #include "analysis/calibration/calibrate.h"
 #include "analysis/calibration/cycle_calibrate.h"
+#include "analysis/calibration/layers.h"
+#include "analysis/calibration/tensile.h"
+#include "analysis/calibration/tensile_material.h"
+#include "analysis/import/mocap_import.h"
 #include "analysis/report/campaign.h"
 #include "analysis/solve/solve_settings.h"
 #include "base/file.h"
@@ -32,11 +37,21 @@ static const struct command {
     {"rig", "none.yaml --specimen none.yaml --run none", "rig", &wb_bench_options_rig, 1, 0},
     {"replay", "none.wbr", "replay", &wb_bench_options_replay, 1, 0},
     {"align", "none.wbr -o none", "align", &wb_align_table, 1, 0},
+    {"import mocap", "none.csv --specimen none --rig none -o none.wbr", "import",
+     &wb_mocap_import_table, 1, 0},
     {"calibrate", "none", "calibrate", &wb_calibrate_table, 1, WB_CALIBRATE_COMMAND},
     {"calibrate", "none", "calibrate", wb_cycle_calibrate_tables, WB_CYCLE_CALIBRATE_TABLES, 0},
+    {"calibrate --tensile", "none", "calibrate --tensile", &wb_tensile_table, 1, 1},
+    {"calibrate --tensile", "none", "calibrate --tensile", &wb_tensile_material_table, 1, 1},
+    {"calibrate --constituents",
+     "--conductor ./none --jacket none --conductor-diameter-mm 1 --outer-diameter-mm 1",
+     "calibrate --constituents", &wb_layers_table, 1, 1},
+    {"calibrate", "none", "calibrate", wb_bend3p_calibrate_tables, WB_BEND3P_CALIBRATE_TABLES, 0},
     {"validate", "none.yaml none", "validate", &wb_calibrate_table, 1, WB_CALIBRATE_VALIDATE},
     {"solve cantilever", "--wire ./none --length-mm 1 --deflection-mm 1", "solve",
      &wb_solve_settings_table, 1, WB_SOLVE_CANTILEVER},
+    {"solve bending3p", "./none.yaml --span-mm 1 --deflection-mm 1", "solve",
+     &wb_solve_settings_table, 1, WB_SOLVE_BENDING3P},
     {"solve wire3d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE3D},
     {"solve wire1d", "./none.yaml", "solve", &wb_solve_settings_table, 1, WB_SOLVE_WIRE1D},
     {"solve bundle", "./none.yaml --vtk none --checkpoint none", "solve", &wb_solve_settings_table,
@@ -175,7 +190,8 @@ static void options_of_other_kinds_are_refused(void **unused)
     } kinds[] = {{"cantilever", WB_SOLVE_CANTILEVER},
                  {"wire3d", WB_SOLVE_WIRE3D},
                  {"wire1d", WB_SOLVE_WIRE1D},
-                 {"bundle", WB_SOLVE_BUNDLE}};
+                 {"bundle", WB_SOLVE_BUNDLE},
+                 {"bending3p", WB_SOLVE_BENDING3P}};
     for (size_t k = 0; k < WB_COUNT(kinds); k++)
         for (size_t i = 0; i < wb_solve_settings_table.n; i++) {
             const struct wb_setting *const row = &wb_solve_settings_table.rows[i];

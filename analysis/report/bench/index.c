@@ -32,6 +32,8 @@ static enum wb_status read_entry(const struct wb_config_node *node, struct wb_in
         WB_CONFIG_OPTIONAL_INTEGER("seed", &entry->seed, 0, 2147483647),
         WB_CONFIG_OPTIONAL_TEXT("date_utc", entry->date_utc),
         WB_CONFIG_OPTIONAL_BOOLEAN("virtual", &entry->is_virtual),
+        WB_CONFIG_OPTIONAL_TEXT("corrected_specimen", entry->corrected_specimen),
+        WB_CONFIG_OPTIONAL_TEXT("corrected_rig", entry->corrected_rig),
         WB_CONFIG_IGNORED("specimen"),
         WB_CONFIG_IGNORED("rig"),
         WB_CONFIG_IGNORED("size_bytes"),

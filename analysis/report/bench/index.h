@@ -14,6 +14,8 @@
  *       size_bytes: 3145728          # of the file
  *       tool_revision: 4e3cfe61a0b2
  *       virtual: true                # from the virtual rig
+ *       corrected_specimen: long.yaml   # beside the index; in place of the recorded one
+ *       corrected_rig: kilograms.yaml   # likewise
  */
 #ifndef WB_ANALYSIS_REPORT_BENCH_INDEX_H
 #define WB_ANALYSIS_REPORT_BENCH_INDEX_H
@@ -34,6 +36,8 @@ struct wb_index_entry {
     int seed;                    /* -1 unknown */
     char date_utc[40];
     bool is_virtual;
+    /* Files that hold in place of what was recorded, as written; "": the recording's own. */
+    char corrected_specimen[256], corrected_rig[256];
 };
 
 struct wb_index {

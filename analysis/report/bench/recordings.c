@@ -86,21 +86,27 @@ static enum wb_status add_test(struct wb_recordings_tests *tests,
     return WB_OK;
 }
 
-static void take_entry(struct wb_recordings_test *test, const struct wb_index_entry *entry)
+static enum wb_status take_entry(struct wb_recordings_test *test, const struct wb_index *index,
+                                 const struct wb_index_entry *entry)
 {
     test->sample = entry->sample;
     test->seed = entry->seed;
     memcpy(test->sha256, entry->sha256, sizeof test->sha256);
+    if (entry->corrected_specimen[0])
+        WB_TRY(wb_file_join(test->corrected_specimen, index->folder, entry->corrected_specimen));
+    if (entry->corrected_rig[0])
+        WB_TRY(wb_file_join(test->corrected_rig, index->folder, entry->corrected_rig));
+    return WB_OK;
 }
 
 /* A recording at a path, with what the index knows of it (entry may be NULL). */
 static enum wb_status add_file(struct wb_recordings_tests *tests, const char *path,
-                               const struct wb_index_entry *entry)
+                               const struct wb_index *index, const struct wb_index_entry *entry)
 {
     struct wb_recordings_test test = {.seed = -1};
     snprintf(test.name, sizeof test.name, "%s", wb_file_name(path));
     if (entry)
-        take_entry(&test, entry);
+        WB_TRY(take_entry(&test, index, entry));
     if (wb_file_exists(path))
         snprintf(test.path, sizeof test.path, "%s", path);
     else
@@ -131,7 +137,7 @@ static enum wb_status take_from_index(const struct reading *reading,
             continue;
         char path[WB_PATH];
         WB_TRY(wb_file_join(path, reading->index.folder, entry->file));
-        WB_TRY(add_file(tests, path, entry));
+        WB_TRY(add_file(tests, path, &reading->index, entry));
     }
     for (int sample = 1; tests->n < reading->campaign->samples && sample <= 100000; sample++) {
         bool known = false;
@@ -162,7 +168,7 @@ static enum wb_status take_named(const struct reading *reading, const char *name
         strchr(name, '/') ? NULL : wb_index_find(&reading->index, name);
     if (entry) {
         WB_TRY(wb_file_join(path, reading->index.folder, entry->file));
-        return add_file(tests, path, entry);
+        return add_file(tests, path, &reading->index, entry);
     }
     WB_TRY(wb_file_join(path, reading->campaign->head.folder, name));
     glob_t found = {0};
@@ -170,10 +176,10 @@ static enum wb_status take_named(const struct reading *reading, const char *name
     /* glob() sorts, so the order is the same in every run (of one locale, which we never set). */
     const bool any = glob(path, 0, NULL, &found) == 0;
     for (size_t i = 0; any && status == WB_OK && i < found.gl_pathc; i++)
-        status =
-            add_file(tests, found.gl_pathv[i], wb_index_find(&reading->index, found.gl_pathv[i]));
+        status = add_file(tests, found.gl_pathv[i], &reading->index,
+                          wb_index_find(&reading->index, found.gl_pathv[i]));
     globfree(&found);
-    return any ? status : add_file(tests, path, NULL);
+    return any ? status : add_file(tests, path, &reading->index, NULL);
 }
 
 static enum wb_status find_tests(const struct reading *reading,

@@ -62,6 +62,8 @@ struct wb_recordings_test {
     int sample;                  /* as the index or the count says; 0 unknown */
     int seed;                    /* as the index says; -1 unknown */
     char sha256[WB_SHA256_TEXT]; /* as the index says; "" when it is not in the index */
+    /* Paths of files that hold in place of what was recorded; "": the recording's own. */
+    char corrected_specimen[WB_PATH], corrected_rig[WB_PATH];
 };
 
 struct wb_recordings_tests {

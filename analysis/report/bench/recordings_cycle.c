@@ -104,7 +104,7 @@ static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
         status = wb_fail(WB_ERR_MEMORY, "no memory for %zu specimens", n);
     for (int i = 0; status == WB_OK && i < c->n_members; i++) {
         const struct wb_cycle_fit *const fit = &c->members[i].answers[c->chosen].fit;
-        const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level};
+        const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
         struct wb_reason why = {.text = ""};
         const enum wb_status one =
             wb_moment_curvature_take(&cycle->clouds[i], datasets[i], &specimen, NULL, &why);
@@ -141,7 +141,8 @@ enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle *cycle,
     settings.progress = go_on;
     WB_TRY(wb_cycle_check_calibrate(&cycle->calibration, &cycle->remarks, datasets, n, &settings,
                                     why));
-    enum wb_status status = draw_curve(cycle);
+    enum wb_status status =
+        cycle->calibration.is_stopped ? wb_fail_to(why, WB_ERR_DATA, "stopped") : draw_curve(cycle);
     if (status == WB_OK)
         status = predict_later(cycle, datasets, why);
     if (status == WB_OK)
@@ -165,6 +166,11 @@ void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle)
         wb_moment_curvature_release(&cycle->clouds[i]);
     free(cycle->clouds);
     cycle->clouds = NULL;
+}
+
+bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle)
+{
+    return cycle->calibration.has_unloading && !cycle->calibration.is_supported;
 }
 
 static void put_later(struct wb_json *object, const struct wb_cycle_later *later)

@@ -14,8 +14,8 @@
 #include "analysis/calibration/cycle_later.h"
 #include "analysis/calibration/cycle_sensitivity.h"
 #include "analysis/calibration/cycle_valley.h"
-#include "analysis/dataset/dataset.h"
 #include "analysis/calibration/moment_curvature.h"
+#include "analysis/dataset/dataset.h"
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
@@ -52,6 +52,9 @@ WB_MUST_CHECK enum wb_status wb_recordings_cycle_run(struct wb_recordings_cycle 
                                                      const struct wb_dataset *const *datasets,
                                                      int n, struct wb_reason *why);
 void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle);
+
+/* Whether no law follows loading and unloading, so that the hardening rule is not supported. */
+bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle);
 
 /* All numbers into an object of report.json. */
 void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle);

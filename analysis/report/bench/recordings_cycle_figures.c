@@ -17,7 +17,8 @@ static const double N_MM2 = 1e-6, MILLI = 1e-3;
 enum {
     MOST_PANELS = 3, /* samples beside each other */
     MOST_FACES = WB_VALLEY_NODES * WB_VALLEY_NODES / 4,
-    MOST_ROWS = 24 /* of the samples' EI, with the two of the mean */
+    MOST_ROWS = 24, /* of the samples' EI, with the two of the mean */
+    BANDS = 5       /* stretches of curvature where the cloud is a band */
 };
 
 static const char deflection_axis[] = "Deflection <i>\xce\xb4</i> (mm)";
@@ -227,19 +228,56 @@ enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *ite
 
 /* --- later cycles --- */
 
+/* Forces beside each other, and what parts them. */
+struct compared {
+    struct wb_panel *forces, *errors;
+    double max_force; /* N */
+};
+
+static void start_compared(struct compared *to, struct wb_figure *figure, const char *force_label,
+                           double max_force)
+{
+    to->forces = wb_figure_add_panel(figure);
+    to->errors = wb_figure_add_panel(figure);
+    to->max_force = max_force;
+    wb_figure_set_axes(to->forces, deflection_axis, force_label);
+    wb_figure_set_axes(to->errors, deflection_axis, "Error (% of <i>F</i><sub>max</sub>)");
+}
+
+/* A way or a cycle: `label` of the measured points and of their error, `line` (NULL: none) of what
+ * is computed. Odd ones have rings and broken lines. x in mm, forces in mN. */
+static enum wb_status add_compared(const struct compared *to, const char *label, const char *line,
+                                   int n, const double *x, const double *measured,
+                                   const double *computed, struct wb_colour colour, bool is_odd)
+{
+    double *const error = columns_of(1, n);
+    if (!error)
+        return no_memory();
+    for (int i = 0; i < n; i++)
+        error[i] = 100.0 * WB_MN * (computed[i] - measured[i]) / to->max_force;
+    const struct wb_figure_style points = {
+        .colour = colour, .marker = is_odd ? WB_MARKER_RING : WB_MARKER_CIRCLE, .marker_size = 3.0};
+    const struct wb_figure_style ink = {.colour = wb_palette_ink(), .width = 0.9};
+    const struct wb_figure_style thin = {
+        .colour = colour, .width = 1.0, .dash = is_odd ? WB_DASH_DASHED : WB_DASH_SOLID};
+    wb_figure_add_line(to->forces, label, (size_t)n, x, measured, &points);
+    wb_figure_add_line(to->forces, line, (size_t)n, x, computed, &ink);
+    wb_figure_add_line(to->errors, label, (size_t)n, x, error, &thin);
+    free(error);
+    return WB_OK;
+}
+
 static enum wb_status add_later(struct wb_figure *figure, const struct wb_cycle_later *later,
                                 double max_force)
 {
-    double *const x = columns_of(4, later->n), *const measured = x + later->n;
-    double *const computed = x + 2 * later->n, *const error = x + 3 * later->n;
+    double *const x = columns_of(3, later->n), *const measured = x + later->n;
+    double *const computed = x + 2 * later->n;
+    enum wb_status status = WB_OK;
+    struct compared to;
     if (!x)
         return no_memory();
-    struct wb_panel *const loops = wb_figure_add_panel(figure);
-    struct wb_panel *const errors = wb_figure_add_panel(figure);
-    wb_figure_set_axes(loops, deflection_axis, "Tension (mN)");
-    wb_figure_set_axes(errors, deflection_axis,
-                       "Computed less measured, % of <i>F</i><sub>max</sub>");
-    for (int cycle = 2; cycle <= later->n_cycles; cycle++) {
+    start_compared(&to, figure, "Tension (mN)", max_force);
+    for (int cycle = 2; status == WB_OK && cycle <= later->n_cycles; cycle++) {
         int n = 0;
         for (int i = 0; i < later->n; i++) {
             const struct wb_cycle_later_point *const p = &later->points[i];
@@ -247,28 +285,16 @@ static enum wb_status add_later(struct wb_figure *figure, const struct wb_cycle_
                 continue;
             x[n] = p->deflection / WB_MM;
             measured[n] = p->measured / WB_MN;
-            computed[n] = p->computed / WB_MN;
-            error[n++] = 100.0 * (p->computed - p->measured) / max_force;
+            computed[n++] = p->computed / WB_MN;
         }
         char label[40];
         snprintf(label, sizeof label, "cycle %d", cycle);
-        const struct wb_colour colour = wb_palette_sequence(cycle - 2, later->n_cycles);
-        const struct wb_figure_style points = {.colour = colour,
-                                               .marker = cycle % 2 == 0 ? WB_MARKER_CIRCLE
-                                                                        : WB_MARKER_RING,
-                                               .marker_size = 3.0};
-        const struct wb_figure_style line = {.colour = wb_palette_ink(), .width = 0.9};
-        const struct wb_figure_style thin = {.colour = colour,
-                                             .width = 1.0,
-                                             .dash =
-                                                 cycle % 2 == 0 ? WB_DASH_SOLID : WB_DASH_DASHED};
-        wb_figure_add_line(loops, label, (size_t)n, x, measured, &points);
-        wb_figure_add_line(loops, cycle == later->n_cycles ? "predicted" : NULL, (size_t)n, x,
-                           computed, &line);
-        wb_figure_add_line(errors, label, (size_t)n, x, error, &thin);
+        status =
+            add_compared(&to, label, cycle == later->n_cycles ? "predicted" : NULL, n, x, measured,
+                         computed, wb_palette_sequence(cycle - 2, later->n_cycles), cycle % 2 != 0);
     }
     free(x);
-    return WB_OK;
+    return status;
 }
 
 static double max_force_of(const struct wb_cycle_calibration *c, int sample)
@@ -286,14 +312,80 @@ enum wb_status wb_recordings_cycle_figures_later(struct wb_figures_item *item)
     if (!cycle || cycle->later.n == 0)
         return WB_OK;
     const struct wb_cycle_later *const later = &cycle->later;
-    WB_TRY(wb_recordings_draw_start(item, "later", WB_PDF_WIDTH, 190.0));
+    WB_TRY(wb_recordings_draw_start(item, "later", WB_PDF_WIDTH, 165.0));
+    if (later->n_cycles > 2)
+        wb_text_append(&item->caption, "Cycles 2 to %d", later->n_cycles);
+    else
+        wb_text_append(&item->caption, "Cycle 2");
     wb_text_append(&item->caption,
-                   "Cycles 2 to %d of sample %d, %s, and what the law predicts that was fitted to "
-                   "the first one alone: RMS %.2f %% of <i>F</i><sub>max</sub>, energy lost in a "
-                   "cycle %.2f mJ measured, %.2f mJ predicted.",
-                   later->n_cycles, later->sample, measured_of(item), 100.0 * later->rms,
+                   " of sample %d, %s, and what the law predicts that was fitted to the first one "
+                   "alone: RMS %.2f %% of <i>F</i><sub>max</sub>, energy lost in a cycle %.2f mJ "
+                   "measured, %.2f mJ predicted. Right: computed less measured.",
+                   later->sample, measured_of(item), 100.0 * later->rms,
                    later->measured_energy / MILLI, later->computed_energy / MILLI);
     return add_later(item->figure, later, max_force_of(&cycle->calibration, later->sample));
+}
+
+/* --- the other length --- */
+
+static enum wb_status add_prediction(struct wb_figure *figure,
+                                     const struct wb_validate_result *result,
+                                     struct wb_colour colour)
+{
+    const struct wb_curve *const curve = &result->curve;
+    const struct wb_validate_cycles *const back = &result->cycles;
+    const int most = curve->n > back->n ? curve->n : back->n;
+    double *const x = columns_of(3, most), *const measured = x + most,
+                  *const computed = x + 2 * most;
+    struct compared to;
+    int n = 0;
+    if (!x)
+        return no_memory();
+    start_compared(&to, figure, "Force <i>F</i> (mN)", curve->max_force);
+    /* Points as far apart as those of the way back, and no others than the beam reached. */
+    const int every = (int)fmax(1.0, round(WB_MM / curve->step));
+    for (int i = 0; i < result->elastoplastic.n_reached; i += every) {
+        x[n] = i * curve->step / WB_MM;
+        measured[n] = curve->force[i] / WB_MN;
+        computed[n++] = result->elastoplastic.force[i] / WB_MN;
+    }
+    enum wb_status status = add_compared(&to, "loading", back->n > 0 ? NULL : "predicted", n, x,
+                                         measured, computed, colour, false);
+    for (int i = 0; i < back->n; i++) {
+        x[i] = back->deflection[i] / WB_MM;
+        measured[i] = back->measured[i] / WB_MN;
+        computed[i] = back->computed[i] / WB_MN;
+    }
+    if (status == WB_OK && back->n > 0)
+        status = add_compared(&to, "unloading", "predicted", back->n, x, measured, computed, colour,
+                              true);
+    free(x);
+    return status;
+}
+
+enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *item)
+{
+    const struct wb_recordings_results_wire *const wire =
+        wb_recordings_draw_wire(item->results, item->index);
+    const struct wb_validate_result *const result = wb_recordings_results_prediction(wire);
+    if (!result)
+        return WB_OK;
+    const struct wb_recordings *const campaign =
+        ((const struct wb_recordings_results *)item->results)->campaign;
+    WB_TRY(wb_recordings_draw_start(item, "prediction", WB_PDF_WIDTH, 165.0));
+    wb_text_append(&item->caption,
+                   "First loading and unloading at %g mm, mean of the samples, %s, and what the "
+                   "law of the %g mm samples (%s) predicts of them: RMS %.2f %% of "
+                   "<i>F</i><sub>max</sub> = %.1f mN on loading",
+                   campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM, measured_of(item),
+                   campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
+                   wb_candidate_name(wire->cycle.calibration.chosen),
+                   100.0 * result->elastoplastic.rms, result->curve.max_force / WB_MN);
+    if (result->cycles.n_samples > 0)
+        wb_text_append(&item->caption, ", %.2f %% on unloading", 100.0 * result->cycles.rms);
+    wb_text_append(&item->caption,
+                   ". Forces less that at zero deflection; right: computed less measured.");
+    return add_prediction(item->figure, result, wb_palette_wire(item->index));
 }
 
 /* --- EI of the samples --- */
@@ -317,8 +409,51 @@ static void set_round_range(struct wb_panel *panel, double low, double high)
 {
     const double span = fmax(high - low, 1e-3 * high);
     const double step = round_end(0.5 * span);
-    wb_figure_set_x_range(panel, step * floor((low - 0.02 * span) / step),
+    wb_figure_set_x_range(panel, fmax(0.0, step * floor((low - 0.02 * span) / step)),
                           step * ceil((high + 0.02 * span) / step));
+}
+
+/* A row of the forest, in N mm2. */
+struct tree {
+    char name[32];
+    double value, range[2]; /* NaN: none */
+    struct wb_figure_style dot, line;
+};
+
+/* From the bottom up: the range over laws, the mean unless no law follows the data, then the
+ * samples from the last on. */
+static int plant(const struct wb_recordings_cycle *cycle, struct wb_colour colour,
+                 struct tree trees[MOST_ROWS])
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const struct wb_estimate *const EI = &c->rigidity;
+    const struct wb_figure_style thin = {.colour = wb_palette_grey(), .width = 1.0};
+    const struct wb_figure_style interval = {.colour = wb_palette_ink(), .width = 1.4};
+    const struct wb_figure_style dot = {
+        .colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 5.0};
+    const struct wb_figure_style mean = {
+        .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.5};
+    int n = 0;
+    trees[n++] = (struct tree){"over laws",
+                               (double)NAN,
+                               {EI->candidates_low / N_MM2, EI->candidates_high / N_MM2},
+                               dot,
+                               thin};
+    if (!wb_recordings_cycle_is_refuted(cycle))
+        trees[n++] = (struct tree){
+            "mean", EI->value / N_MM2, {EI->low / N_MM2, EI->high / N_MM2}, mean, interval};
+    const int first = n;
+    for (int i = c->n_members - 1; i >= 0; i--) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        if (i >= MOST_ROWS - first)
+            continue;
+        struct tree *const tree = &trees[n++];
+        *tree = (struct tree){.dot = dot, .line = thin};
+        snprintf(tree->name, sizeof tree->name, "sample %d", member->sample);
+        tree->value = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
+        range_of(c, member, tree->range);
+    }
+    return n;
 }
 
 enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
@@ -326,58 +461,77 @@ enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
     const struct wb_recordings_cycle *const cycle = cycle_of(item);
     if (!cycle)
         return WB_OK;
-    const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const struct wb_estimate *const EI = &c->rigidity;
-    const struct wb_colour colour = wb_palette_wire(item->index);
-    const int n = c->n_members < MOST_ROWS - 2 ? c->n_members : MOST_ROWS - 2;
     WB_TRY(wb_recordings_draw_start(item, "forest", WB_PDF_HALF_WIDTH, 200.0));
-    wb_text_append(&item->caption,
-                   "<i>EI</i> of each sample, %s: dots of the chosen law, lines over the laws in "
-                   "range. Below them the mean with its interval of 95 %%, and the range of the "
-                   "mean over the laws.",
-                   measured_of(item));
+    wb_text_append(
+        &item->caption,
+        "<i>EI</i> of each sample, %s: dots of the chosen law, lines over the laws in "
+        "range. Below them %sthe range of the mean over the laws.",
+        measured_of(item),
+        wb_recordings_cycle_is_refuted(cycle) ? "" : "the mean with its interval of 95 %, and ");
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "<i>EI</i> (N mm\xc2\xb2)", "");
-    const struct wb_figure_style thin = {.colour = wb_palette_grey(), .width = 1.0};
-    const struct wb_figure_style dot = {
-        .colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 5.0};
-    const struct wb_figure_style mean = {
-        .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.5};
-    const struct wb_figure_style interval = {.colour = wb_palette_ink(), .width = 1.4};
-    char names[MOST_ROWS][32];
-    const char *rows[MOST_ROWS];
+    struct tree trees[MOST_ROWS];
+    const char *names[MOST_ROWS];
+    const int n = plant(cycle, wb_palette_wire(item->index), trees);
     double ends[2] = {(double)INFINITY, 0.0};
-    /* From the bottom up: the range over laws, the mean, then the samples from the last on. */
-    for (int i = 0; i < n + 2; i++) {
+    for (int i = 0; i < n; i++) {
+        const struct tree *const tree = &trees[i];
         const double y = i, ys[2] = {y, y};
-        const bool is_mean = i == 1;
-        double range[2] = {EI->candidates_low / N_MM2, EI->candidates_high / N_MM2};
-        double value = EI->value / N_MM2;
-        snprintf(names[i], sizeof names[i], "%s", is_mean ? "mean" : "over laws");
-        if (is_mean) {
-            range[0] = EI->low / N_MM2;
-            range[1] = EI->high / N_MM2;
-        } else if (i > 1) {
-            const struct wb_cycle_member *const member = &c->members[n + 1 - i];
-            snprintf(names[i], sizeof names[i], "sample %d", member->sample);
-            range_of(c, member, range);
-            value = member->answers[c->chosen].bending.flexural_rigidity / N_MM2;
-        }
-        rows[i] = names[i];
-        ends[0] = fmin(ends[0], fmin(value, range[0]));
-        ends[1] = fmax(ends[1], fmax(value, range[1]));
-        if (isfinite(range[0]))
-            wb_figure_add_line(panel, NULL, 2, range, ys, is_mean ? &interval : &thin);
-        if (i > 0)
-            wb_figure_add_line(panel, NULL, 1, &value, &y, is_mean ? &mean : &dot);
+        names[i] = tree->name;
+        /* NaN is neither end. */
+        ends[0] = fmin(ends[0], fmin(tree->value, tree->range[0]));
+        ends[1] = fmax(ends[1], fmax(tree->value, tree->range[1]));
+        if (isfinite(tree->range[0]))
+            wb_figure_add_line(panel, NULL, 2, tree->range, ys, &tree->line);
+        if (isfinite(tree->value))
+            wb_figure_add_line(panel, NULL, 1, &tree->value, &y, &tree->dot);
     }
     set_round_range(panel, ends[0], ends[1]);
-    wb_figure_set_y_names(panel, n + 2, rows);
-    wb_figure_set_y_range(panel, -0.6, n + 1.6);
+    wb_figure_set_y_names(panel, n, names);
+    wb_figure_set_y_range(panel, -0.6, n - 0.4);
     return WB_OK;
 }
 
 /* --- M(kappa) --- */
+
+/* Where the wire is bent too little for its shape to say how much, the cloud is a band: the range
+ * of the moments over curvature, from the first loadings of all samples. */
+static void add_cloud_band(struct wb_panel *panel, const struct wb_recordings_cycle *cycle)
+{
+    double low[BANDS], high[BANDS], x[BANDS], end = 0.0;
+    const double *const edges[2] = {low, high};
+    int n = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = 0; k < BANDS && pass == 1; k++) {
+            low[k] = (double)INFINITY;
+            high[k] = -(double)INFINITY;
+        }
+        for (int i = 0; i < cycle->calibration.n_members; i++) {
+            for (int k = 0; k < cycle->clouds[i].n; k++) {
+                const struct wb_moment_point *const point = &cycle->clouds[i].points[k];
+                if (point->is_unloading || !point->is_band || !(point->curvature > 0.0))
+                    continue;
+                if (pass == 0) {
+                    end = fmax(end, point->curvature);
+                    continue;
+                }
+                const int at = (int)fmin(BANDS - 1, BANDS * point->curvature / end);
+                low[at] = fmin(low[at], point->moment / WB_NMM);
+                high[at] = fmax(high[at], point->moment / WB_NMM);
+            }
+        }
+    }
+    for (int k = 0; k < BANDS; k++) {
+        if (!(high[k] > low[k]))
+            continue;
+        x[n] = (k + 0.5) * end / BANDS;
+        low[n] = low[k];
+        high[n++] = high[k];
+    }
+    if (n > 1)
+        wb_figure_add_band(panel, NULL, (size_t)n, x, edges,
+                           wb_palette_fade(wb_palette_grey(), 0.35));
+}
 
 /* The measured cloud: moments from shapes and tension alone, loading only, from where they mean
  * something. */
@@ -409,44 +563,104 @@ static enum wb_status add_cloud(struct wb_panel *panel, const struct wb_recordin
     return WB_OK;
 }
 
+/* The law's line, and its band where there is one. A law that does not follow the data has a broken
+ * line and no band: the specimens' scatter is not what it is uncertain by. */
+static enum wb_status add_law(struct wb_panel *panel, const char *label, const char *band_label,
+                              const struct wb_recordings_cycle *cycle, struct wb_colour colour)
+{
+    const struct wb_recordings_cycle_curve *const curve = &cycle->curve;
+    const bool is_refuted = wb_recordings_cycle_is_refuted(cycle);
+    const int n = WB_RECORDINGS_CYCLE_CURVE;
+    double *const moment = wb_figures_scaled(curve->moment, n, WB_NMM);
+    double *const low = wb_figures_scaled(curve->low, n, WB_NMM);
+    double *const high = wb_figures_scaled(curve->high, n, WB_NMM);
+    const double *const edges[2] = {low, high};
+    const bool has_memory = moment && low && high;
+    const struct wb_figure_style line = {
+        .colour = colour, .width = 1.6, .dash = is_refuted ? WB_DASH_DASHED : WB_DASH_SOLID};
+    if (has_memory && isfinite(curve->low[n - 1]) && !is_refuted)
+        wb_figure_add_band(panel, band_label, (size_t)n, curve->curvature, edges,
+                           wb_palette_fade(colour, 0.22));
+    if (has_memory)
+        wb_figure_add_line(panel, label, (size_t)n, curve->curvature, moment, &line);
+    free(moment);
+    free(low);
+    free(high);
+    return has_memory ? WB_OK : no_memory();
+}
+
+static const char broken_line[] =
+    " Broken line: the best law where none follows the data; it has no interval.";
+
+static struct wb_panel *add_moment_panel(struct wb_figure *figure)
+{
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    wb_figure_set_axes(panel, "Curvature <i>\xce\xba</i> (1/m)", "Moment <i>M</i> (N mm)");
+    return panel;
+}
+
+/* Where a wire comes to rest, if the law knows. */
+static void add_rest(struct wb_panel *panel, const char *label,
+                     const struct wb_recordings_cycle *cycle, struct wb_colour colour)
+{
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
+    const double rest = c->springback.value * c->largest_curvature, zero = 0.0;
+    const struct wb_figure_style at_rest = {
+        .colour = colour, .marker = WB_MARKER_TRIANGLE, .marker_size = 6.0};
+    if (c->has_unloading && c->is_supported)
+        wb_figure_add_line(panel, label, 1, &rest, &zero, &at_rest);
+}
+
 enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item)
 {
     const struct wb_recordings_cycle *const cycle = cycle_of(item);
     if (!cycle)
         return WB_OK;
-    const struct wb_cycle_calibration *const c = &cycle->calibration;
-    const struct wb_recordings_cycle_curve *const curve = &cycle->curve;
-    const struct wb_colour colour = wb_palette_wire(item->index);
-    const int n = WB_RECORDINGS_CYCLE_CURVE;
     WB_TRY(wb_recordings_draw_start(item, "moments", WB_PDF_HALF_WIDTH, 200.0));
-    wb_text_append(&item->caption,
-                   "Moment over curvature of the chosen law with the interval of its mean (95 %%), "
-                   "and where the wire would come to rest if it were let go at the end. Dots: from "
-                   "shapes and tension, %s, without any law; they are no data of the fit.",
-                   measured_of(item));
-    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
-    wb_figure_set_axes(panel, "Curvature <i>\xce\xba</i> (1/m)", "Moment <i>M</i> (N mm)");
-    double *const moment = wb_figures_scaled(curve->moment, n, WB_NMM);
-    double *const low = wb_figures_scaled(curve->low, n, WB_NMM);
-    double *const high = wb_figures_scaled(curve->high, n, WB_NMM);
-    const double *const edges[2] = {low, high};
-    enum wb_status status = moment && low && high ? add_cloud(panel, cycle) : no_memory();
-    const struct wb_figure_style line = {.colour = colour, .width = 1.6};
-    if (status == WB_OK && isfinite(curve->low[n - 1]))
-        wb_figure_add_band(panel, "95 %", (size_t)n, curve->curvature, edges,
-                           wb_palette_fade(colour, 0.22));
-    if (status == WB_OK)
-        wb_figure_add_line(panel, "law", (size_t)n, curve->curvature, moment, &line);
-    if (status == WB_OK && c->has_unloading) {
-        const double rest = c->springback.value * c->largest_curvature, zero = 0.0;
-        const struct wb_figure_style at_rest = {
-            .colour = wb_palette_ink(), .marker = WB_MARKER_TRIANGLE, .marker_size = 6.0};
-        wb_figure_add_line(panel, "let go", 1, &rest, &zero, &at_rest);
+    wb_text_append(
+        &item->caption,
+        "Moment over curvature of the chosen law with the interval of its mean (95 %%), "
+        "and where the wire would come to rest if it were let go at the end. Dots: from "
+        "shapes and tension, %s, without any law; they are no data of the fit. Grey: range "
+        "of the same where the wire is bent too little to see how much.",
+        measured_of(item));
+    if (wb_recordings_cycle_is_refuted(cycle))
+        wb_text_append(&item->caption, "%s", broken_line);
+    struct wb_panel *const panel = add_moment_panel(item->figure);
+    add_cloud_band(panel, cycle);
+    WB_TRY(add_cloud(panel, cycle));
+    WB_TRY(add_law(panel, "law", "95 %", cycle, wb_palette_wire(item->index)));
+    add_rest(panel, "let go", cycle, wb_palette_ink());
+    return WB_OK;
+}
+
+enum wb_status wb_recordings_cycle_figures_all_moments(struct wb_figures_item *item)
+{
+    const struct wb_recordings_results *const results = item->results;
+    struct wb_panel *panel = NULL;
+    char label[300];
+    bool any_refuted = false;
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(results, i);
+        const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
+        if (!cycle)
+            continue;
+        if (!panel) {
+            WB_TRY(wb_recordings_draw_start(item, "moments", WB_PDF_WIDTH, 132.0));
+            wb_text_append(&item->caption,
+                           "Moment over curvature of the first loading, by the chosen laws, with "
+                           "the interval of the mean of the samples (95 %%). Triangles: the "
+                           "curvature that is left when the wire is let go at the end.");
+            panel = add_moment_panel(item->figure);
+        }
+        wb_pages_escape(label, sizeof label, wire->wanted->label);
+        WB_TRY(add_law(panel, label, NULL, cycle, wb_palette_wire(i)));
+        add_rest(panel, NULL, cycle, wb_palette_wire(i));
+        any_refuted |= wb_recordings_cycle_is_refuted(cycle);
     }
-    free(moment);
-    free(low);
-    free(high);
-    return status;
+    if (any_refuted)
+        wb_text_append(&item->caption, "%s", broken_line);
+    return WB_OK;
 }
 
 /* --- K and n --- */
@@ -512,8 +726,15 @@ static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_v
     return status;
 }
 
+/* Whether a value lies so near to a region that the region can be seen beside it. */
+static bool is_near(double value, double low, double high)
+{
+    const double reach = 2.0 * (high - low);
+    return value > low - reach && value < high + reach;
+}
+
 /* K over n: the region, the fit, and where the paper's route ended. */
-static enum wb_status add_pairs(struct wb_panel *panel, const struct wb_figures_item *item)
+static enum wb_status add_pairs(struct wb_panel *panel, struct wb_figures_item *item)
 {
     const struct wb_recordings_results_wire *const wire =
         wb_recordings_draw_wire(item->results, item->index);
@@ -525,12 +746,21 @@ static enum wb_status add_pairs(struct wb_panel *panel, const struct wb_figures_
     const struct wb_figure_style best = {
         .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
     wb_figure_add_line(panel, "best", 1, &n, &K, &best);
-    if (wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION)) {
-        const double paper_n = wire->calibration.material.hardening_exponent;
-        const double paper_K = wire->calibration.material.strength_coefficient / WB_MPA;
+    if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
+        return WB_OK;
+    const double paper_n = wire->calibration.material.hardening_exponent;
+    const double paper_K = wire->calibration.material.strength_coefficient;
+    if (is_near(paper_n, valley->exponent_low, valley->exponent_high) &&
+        is_near(paper_K, valley->strength_low, valley->strength_high)) {
+        const double in_MPa = paper_K / WB_MPA;
         const struct wb_figure_style ring = {
             .colour = wb_palette_grey(), .marker = WB_MARKER_RING, .marker_size = 6.0};
-        wb_figure_add_line(panel, "paper's route, all samples", 1, &paper_n, &paper_K, &ring);
+        wb_figure_add_line(panel, "paper's route, all samples", 1, &paper_n, &in_MPa, &ring);
+    } else {
+        wb_text_append(&item->caption,
+                       " The paper's route, with all samples, ended far outside, at <i>K</i> = "
+                       "%.0f MPa and <i>n</i> = %.3f.",
+                       paper_K / WB_MPA, paper_n);
     }
     return WB_OK;
 }

@@ -11,7 +11,10 @@ WB_MUST_CHECK enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_
 WB_MUST_CHECK enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *item);
 /* Cycles after the first, predicted. */
 WB_MUST_CHECK enum wb_status wb_recordings_cycle_figures_later(struct wb_figures_item *item);
-/* EI of each sample; M(kappa). */
+/* Both ways at the other length, predicted. */
+WB_MUST_CHECK enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *item);
+/* EI of each sample; M(kappa), also of all wires in one. */
+WB_MUST_CHECK enum wb_status wb_recordings_cycle_figures_all_moments(struct wb_figures_item *item);
 WB_MUST_CHECK enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item);
 WB_MUST_CHECK enum wb_status wb_recordings_cycle_figures_moments(struct wb_figures_item *item);
 /* K and n of the loading alone. */

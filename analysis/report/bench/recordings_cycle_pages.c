@@ -37,11 +37,15 @@ static void put_range(struct wb_document_table *table, double low, double high)
         wb_pages_cell(table, WB_TONE_PLAIN, "%.*f to %.*f", decimals, low, decimals, high);
 }
 
-/* With a real minus sign. */
+/* A real minus sign, where there is one. */
+static const char *minus(double value)
+{
+    return value < 0.0 ? "\xe2\x88\x92" : "";
+}
+
 static void put_signed(struct wb_document_table *table, double value, double error)
 {
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s%.2f \xc2\xb1 %.2f", value < 0.0 ? "\xe2\x88\x92" : "",
-                  fabs(value), error);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s%.2f \xc2\xb1 %.2f", minus(value), fabs(value), error);
 }
 
 static double best_misfit(const struct wb_cycle_calibration *c)
@@ -56,7 +60,7 @@ static void put_verdict(struct wb_document_table *table, const struct wb_cycle_c
     if (!c->has_unloading)
         wb_pages_cell(table, WB_TONE_WARNING, "rule untested: no unloading");
     else if (!c->is_supported)
-        wb_pages_cell(table, WB_TONE_WARNING, "hardening rule not supported by the data");
+        wb_pages_cell(table, WB_TONE_WARNING, "not supported by the data");
     else
         wb_pages_cell(table, WB_TONE_GOOD, "%s", wb_candidate_name(c->chosen));
 }
@@ -86,10 +90,6 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
     put_range(table, c->has_unloading ? back->candidates_low : none, back->candidates_high);
     put_verdict(table, c);
     wb_pages_cell_number(table, 100.0 * best_misfit(c), 2);
-    if (c->specimens_for_5_percent > 0)
-        wb_pages_cell(table, WB_TONE_PLAIN, "%d", c->specimens_for_5_percent);
-    else
-        wb_pages_cell_number(table, none, 0);
 }
 
 static void put_rigidities(struct wb_document *document,
@@ -105,12 +105,8 @@ static void put_rigidities(struct wb_document *document,
         {.heading = "over laws", .right = true},
         {.heading = "Spring- back", .right = true, .wraps = true},
         {.heading = "over laws", .right = true},
-        {.heading = "Law and rule", .wraps = true},
+        {"Supported law and rule"},
         {.heading = "Misfit (%)", .right = true, .wraps = true},
-        {.heading = "\xc2\xb1"
-                    "5 % needs",
-         .right = true,
-         .wraps = true},
     };
     struct wb_text caption = {0};
     wb_text_append(
@@ -126,14 +122,21 @@ static void put_rigidities(struct wb_document *document,
     wb_text_append(&caption,
                    "what all samples share is not in it. Over laws: range over all laws whose "
                    "misfit is at most twice the best. Misfit: RMS over both ways of the best law, "
-                   "over <i>F</i><sub>max</sub>; above 0.5 %% no law follows the data. \xc2\xb1"
-                   "5 %%: "
-                   "samples that <i>EI</i> within it needs.");
-    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 9, columns);
+                   "over <i>F</i><sub>max</sub>; above 0.5 %% no law follows the data.");
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++)
         put_wire(table, results, &results->wires[i]);
 }
 
+static void start_moments_row(struct wb_document_table *table, bool begins_group, const char *wire,
+                              enum wb_document_tone tone, const char *name)
+{
+    wb_document_row(table, begins_group);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire);
+    wb_pages_cell(table, tone, "%s", name);
+}
+
+/* Of a law that does not follow the data, only the range over laws. */
 static void put_moments_of(struct wb_document_table *table,
                            const struct wb_recordings_results_wire *wire)
 {
@@ -142,21 +145,17 @@ static void put_moments_of(struct wb_document_table *table,
         return;
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_estimate *const M = c->moment;
-    wb_document_row(table, true);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
-    wb_pages_cell(table, WB_TONE_QUIET, "<i>\xce\xba</i> (1/m)");
+    const bool is_refuted = wb_recordings_cycle_is_refuted(cycle);
+    start_moments_row(table, true, wire->wanted->label, WB_TONE_QUIET, "<i>\xce\xba</i> (1/m)");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         put_number(table, c->curvature[k]);
-    wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s", "");
-    wb_pages_cell(table, WB_TONE_PLAIN, "<i>M</i> (N mm)");
+    start_moments_row(table, false, "", WB_TONE_PLAIN, "<i>M</i> (N mm)");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        put_number(table, M[k].value / WB_NMM);
-    wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s", "");
-    wb_pages_cell(table, WB_TONE_QUIET, "95 %%");
+        put_number(table, is_refuted ? (double)NAN : M[k].value / WB_NMM);
+    start_moments_row(table, false, "", WB_TONE_QUIET, is_refuted ? "over laws" : "95 %");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        put_range(table, M[k].low / WB_NMM, M[k].high / WB_NMM);
+        put_range(table, (is_refuted ? M[k].candidates_low : M[k].low) / WB_NMM,
+                  (is_refuted ? M[k].candidates_high : M[k].high) / WB_NMM);
 }
 
 static void put_moments(struct wb_document *document, const struct wb_recordings_results *results)
@@ -178,27 +177,176 @@ static void put_moments(struct wb_document *document, const struct wb_recordings
         put_moments_of(table, &results->wires[i]);
 }
 
+/* --- the other length --- */
+
+static void put_prediction_of(struct wb_document_table *table,
+                              const struct wb_recordings_results_wire *wire)
+{
+    const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
+    wb_document_row(table, false);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+    if (!p) {
+        wb_pages_cell(table, WB_TONE_WARNING, "missing");
+        return;
+    }
+    const bool has_back = p->cycles.n_samples > 0;
+    wb_pages_cell_number(table, 100.0 * p->elastoplastic.rms, 2);
+    wb_pages_cell_number(table, 100.0 * p->expected_rms_95, 2);
+    wb_pages_cell_number(table, has_back ? 100.0 * p->cycles.rms : (double)NAN, 2);
+    wb_pages_cell_number(table, has_back ? p->cycles.residual_measured / WB_MM : (double)NAN, 1);
+    wb_pages_cell_number(table, has_back ? p->cycles.residual_computed / WB_MM : (double)NAN, 1);
+    wb_pages_cell_number(table, p->shape_rms / WB_MM, 2);
+    wb_pages_cell_number(table, p->curve.max_force / WB_MN, 1);
+}
+
+static void put_predictions(struct wb_document *document,
+                            const struct wb_recordings_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire"},
+        {.heading = "Loading, RMS (%)", .right = true, .wraps = true},
+        {.heading = "perfect model (%)", .right = true, .wraps = true},
+        {.heading = "Unloading, RMS (%)", .right = true, .wraps = true},
+        {.heading = "Left, measured (mm)", .right = true, .wraps = true},
+        {.heading = "Left, predicted (mm)", .right = true, .wraps = true},
+        {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
+        {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
+    };
+    const double *const length = results->campaign->length;
+    struct wb_text caption = {0};
+    wb_text_append(&caption,
+                   "Mean of the samples of %g mm against what the laws of the %g mm samples "
+                   "predict; RMS over <i>F</i><sub>max</sub>. Perfect model: what the mean of "
+                   "specimens that differ like these exceeds on loading in one of twenty "
+                   "validations, though the model be right. Left: deflection where the force on "
+                   "the way back has come down to that at zero deflection.",
+                   length[WB_RECORDINGS_VALIDATION] / WB_MM,
+                   length[WB_RECORDINGS_CALIBRATION] / WB_MM);
+    wb_document_heading(document, 2, "prediction", "How well another length is predicted");
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
+    for (int i = 0; i < results->n_wires; i++)
+        put_prediction_of(table, &results->wires[i]);
+}
+
+/* A score of both routes; NaN: there is none. */
+struct score {
+    const char *name, *unit;
+    double cycle, paper; /* in the unit */
+    int decimals;
+};
+
+static void put_score(struct wb_document_table *table, const struct score *score)
+{
+    wb_document_row(table, false);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%s", score->name);
+    wb_pages_cell(table, WB_TONE_QUIET, "%s", score->unit);
+    wb_pages_cell_number(table, score->cycle, score->decimals);
+    wb_pages_cell_number(table, score->paper, score->decimals);
+}
+
+/* The measured and the computed energy of a later cycle. */
+static void put_loop(struct wb_document_table *table, const struct wb_validate_cycles *cycle,
+                     const struct wb_validate_cycles *paper, int i)
+{
+    char names[2][60];
+    const struct wb_validate_loop *const loop = &cycle->loops[i];
+    const double other = paper && i < paper->n_loops ? paper->loops[i].computed : (double)NAN;
+    snprintf(names[0], sizeof names[0], "Energy lost in cycle %d, measured", loop->cycle);
+    snprintf(names[1], sizeof names[1], "Energy lost in cycle %d, predicted", loop->cycle);
+    put_score(table, &(struct score){names[0], "mJ", loop->measured / MILLI,
+                                     paper ? loop->measured / MILLI : (double)NAN, 3});
+    put_score(table, &(struct score){names[1], "mJ", loop->computed / MILLI, other / MILLI, 3});
+}
+
+static void put_scores(struct wb_document *document, const struct wb_recordings_results_wire *wire)
+{
+    static const struct wb_document_column columns[] = {
+        {"Prediction"},
+        {"Unit"},
+        {.heading = "Loading and unloading", .right = true},
+        {.heading = "Paper's route", .right = true},
+    };
+    const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
+    const struct wb_validate_result *const q =
+        wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
+    const char *const part = "% of <i>F</i><sub>max</sub>";
+    const double none = (double)NAN;
+    if (!p)
+        return;
+    const bool p_back = p->cycles.n_samples > 0, q_back = q && q->cycles.n_samples > 0;
+    const struct wb_validate_cycles *const a = &p->cycles, *const b = q ? &q->cycles : NULL;
+    const struct score scores[] = {
+        {"Loading, RMS", part, 100.0 * p->elastoplastic.rms,
+         q ? 100.0 * q->elastoplastic.rms : none, 2},
+        {"Loading, largest error", part, 100.0 * p->elastoplastic.max_error,
+         q ? 100.0 * q->elastoplastic.max_error : none, 2},
+        {"Loading, RMS of a perfect model, exceeded by one of twenty", part,
+         100.0 * p->expected_rms_95, q ? 100.0 * q->expected_rms_95 : none, 2},
+        {"Unloading, RMS", part, p_back ? 100.0 * a->rms : none, q_back ? 100.0 * b->rms : none, 2},
+        {"Unloading, largest error", part, p_back ? 100.0 * a->largest_error : none,
+         q_back ? 100.0 * b->largest_error : none, 2},
+        {"Left deflected, measured", "mm", p_back ? a->residual_measured / WB_MM : none,
+         q_back ? b->residual_measured / WB_MM : none, 2},
+        {"Left deflected, predicted", "mm", p_back ? a->residual_computed / WB_MM : none,
+         q_back ? b->residual_computed / WB_MM : none, 2},
+        {"Shapes, RMS distance", "mm", p->shape_rms / WB_MM, q ? q->shape_rms / WB_MM : none, 2},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "The same samples by the law of this chapter and by that of the paper's route, each part "
+        "of the test apart.",
+        4, columns);
+    for (size_t i = 0; i < sizeof scores / sizeof scores[0]; i++)
+        put_score(table, &scores[i]);
+    for (int i = 0; i < a->n_loops; i++)
+        put_loop(table, a, b, i);
+    if (p->is_beyond)
+        wb_document_notice(document, WB_TONE_WARNING,
+                           "<b>Beyond the data.</b> These tests bend the wire further at the clamp "
+                           "than those that the law was fitted to.");
+}
+
+static void put_prediction(struct wb_document *document,
+                           const struct wb_recordings_results *results, int index,
+                           const struct wb_figures *figures)
+{
+    const struct wb_recordings_results_wire *const wire = &results->wires[index];
+    const enum wb_recordings_results_state state = wire->cycle_states[WB_RECORDINGS_VALIDATION];
+    if (state == WB_RECORDINGS_NOT_WANTED)
+        return;
+    char heading[80];
+    snprintf(heading, sizeof heading, "Prediction at %g mm",
+             results->campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM);
+    wb_document_heading(document, 2, "", heading);
+    if (state != WB_RECORDINGS_DONE)
+        wb_pages_item(document, WB_TONE_WARNING, "<b>", "No prediction",
+                      "</b>: ", wb_text_string(&wire->cycle_problems[WB_RECORDINGS_VALIDATION]));
+    wb_figures_put(figures, document, "prediction", index);
+    put_scores(document, wire);
+}
+
 static void put_failures(struct wb_document *document, const struct wb_recordings_results *results)
 {
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
         if (!cycle)
-            wb_pages_item(
-                document, WB_TONE_WARNING, "<b>", wire->wanted->label,
-                ": no calibration on whole cycles</b>: ", wb_text_string(&wire->cycle_problem));
-        else if (cycle->calibration.has_unloading && !cycle->calibration.is_supported)
+            wb_pages_item(document, WB_TONE_WARNING, "<b>", wire->wanted->label,
+                          ": no calibration on whole cycles</b>: ",
+                          wb_text_string(&wire->cycle_problems[WB_RECORDINGS_CALIBRATION]));
+        else if (wb_recordings_cycle_is_refuted(cycle))
             wb_pages_item(document, WB_TONE_WARNING, "<b>", wire->wanted->label,
                           ": hardening rule not supported by the data</b>: ",
-                          "no law follows loading and unloading; only the range over laws is "
-                          "given, and springback as measured.");
+                          "no law follows loading and unloading; only ranges over the laws are "
+                          "given. The residual deflections on the wire's page are measured.");
     }
 }
 
 void wb_recordings_cycle_pages_summary(struct wb_document *document,
-                                       const struct wb_recordings_results *results)
+                                       const struct wb_recordings_results *results,
+                                       const struct wb_figures *figures)
 {
-    bool any = false;
+    bool any = false, any_prediction = false;
     if (!results->campaign->whole_cycle)
         return;
     wb_document_heading(document, 2, "bending", "Bending properties, from loading and unloading");
@@ -209,6 +357,11 @@ void wb_recordings_cycle_pages_summary(struct wb_document *document,
         put_moments(document, results);
     }
     put_failures(document, results);
+    wb_figures_put(figures, document, "bending", 0);
+    for (int i = 0; i < results->n_wires; i++)
+        any_prediction |= wb_recordings_results_prediction(&results->wires[i]) != NULL;
+    if (any_prediction)
+        put_predictions(document, results);
 }
 
 /* --- one wire --- */
@@ -251,6 +404,11 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
         append_estimate(&text, "; loop energy", &c->loop_energy, MILLI, " mJ/m");
         wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
     }
+    if (c->specimens_for_5_percent > 0)
+        wb_text_append(&text,
+                       " Specimens needed for <i>EI</i> within \xc2\xb1"
+                       "5 %%: %d.",
+                       c->specimens_for_5_percent);
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
@@ -290,6 +448,23 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
                       is_chosen      ? "chosen"
                       : rank->counts ? "in range"
                                      : "out of range");
+    }
+}
+
+static void put_ranked_numbers(struct wb_document *document, const struct wb_cycle_calibration *c)
+{
+    static const struct wb_document_column columns[] = {{"Law"},
+                                                        {.heading = "Numbers", .wraps = true}};
+    struct wb_text caption = {0};
+    wb_text_append(&caption, "The laws' numbers: means over the samples, of logarithms.");
+    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 2, columns);
+    for (int i = 0; i < c->n_ranked; i++) {
+        struct wb_text numbers = {0};
+        wb_law_append_numbers(&numbers, &c->ranked[i].law);
+        wb_document_row(table, false);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_candidate_name(c->ranked[i].candidate));
+        wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_text_string(&numbers));
+        wb_text_release(&numbers);
     }
 }
 
@@ -402,11 +577,15 @@ static void put_parts(struct wb_document *document, const struct wb_law *law)
     }
 }
 
-static void put_law(struct wb_document *document, const struct wb_cycle_calibration *c)
+static void put_law(struct wb_document *document, const struct wb_recordings_cycle *cycle)
 {
     struct wb_text text = {0};
+    const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_material *const m = &c->ludwik;
     wb_document_heading(document, 2, "", "The law's numbers");
+    if (wb_recordings_cycle_is_refuted(cycle))
+        wb_text_append(&text, "No law follows the data; these are the numbers of the chosen one, "
+                              "not of the wire. ");
     if (c->law.form == WB_LAW_PARALLEL) {
         put_parts(document, &c->law);
         wb_text_append(&text,
@@ -438,9 +617,10 @@ static void put_law(struct wb_document *document, const struct wb_cycle_calibrat
     if (wb_cycle_fit_strongest(fit, &one, &other))
         wb_text_append(&text,
                        " The law's numbers hang together: in the fit of sample %d the strongest "
-                       "correlation is %.2f, of %s and %s.",
-                       c->members[0].sample, fit->correlation[one][other],
-                       wb_cycle_fit_number(fit, one, a), wb_cycle_fit_number(fit, other, b));
+                       "correlation is %s%.2f, of %s and %s.",
+                       c->members[0].sample, minus(fit->correlation[one][other]),
+                       fabs(fit->correlation[one][other]), wb_cycle_fit_number(fit, one, a),
+                       wb_cycle_fit_number(fit, other, b));
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
@@ -488,11 +668,13 @@ void wb_recordings_cycle_pages_wire(struct wb_document *document,
     put_remarks(document, &cycle->remarks);
     wb_figures_put(figures, document, "cycle", index);
     put_ranked(document, &cycle->calibration);
+    put_ranked_numbers(document, &cycle->calibration);
     wb_figures_put(figures, document, "later", index);
+    put_prediction(document, results, index, figures);
     put_specimens(document, cycle);
     wb_figures_put(figures, document, "law", index);
     put_apart(document, cycle);
-    put_law(document, &cycle->calibration);
+    put_law(document, cycle);
     wb_figures_put(figures, document, "valley", index);
     put_sensitivities(document, cycle);
 }

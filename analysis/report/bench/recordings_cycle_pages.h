@@ -10,7 +10,8 @@
 /* EI, M(kappa), springback and the verdict on the hardening rule of every wire; nothing where the
  * campaign does not calibrate on whole cycles. */
 void wb_recordings_cycle_pages_summary(struct wb_document *document,
-                                       const struct wb_recordings_results *results);
+                                       const struct wb_recordings_results *results,
+                                       const struct wb_figures *figures);
 
 /* The chapter of one wire, below its heading; nothing where there is no such calibration. */
 void wb_recordings_cycle_pages_wire(struct wb_document *document,

@@ -587,6 +587,12 @@ static enum wb_status draw_optimiser(struct wb_figures_item *item)
 
 /* --- all wires in one --- */
 
+/* Said where the report has another route too. */
+static const char *route_of(const struct wb_recordings_results *results)
+{
+    return results->campaign->whole_cycle ? ", by the paper's route" : "";
+}
+
 static enum wb_status add_overview(struct wb_panel *panel,
                                    const struct wb_recordings_results *results, int index,
                                    const struct wb_validate_result *result)
@@ -642,9 +648,9 @@ static enum wb_status draw_calibrations(struct wb_figures_item *item)
     const struct wb_recordings_results *const results = item->results;
     wb_text_append(&item->caption,
                    "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
-                   "against them. Bands: range of the samples.",
+                   "against them%s. Bands: range of the samples.",
                    results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_draw_measured(results));
+                   wb_recordings_draw_measured(results), route_of(results));
     return draw_all(item, WB_RECORDINGS_CALIBRATION);
 }
 
@@ -654,9 +660,9 @@ static enum wb_status draw_validations(struct wb_figures_item *item)
     const double *const length = results->campaign->length;
     wb_text_append(&item->caption,
                    "The same wires at %g mm, %s, and the prediction of the beams calibrated at %g "
-                   "mm.",
+                   "mm%s.",
                    length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(results),
-                   length[WB_RECORDINGS_CALIBRATION] / WB_MM);
+                   length[WB_RECORDINGS_CALIBRATION] / WB_MM, route_of(results));
     return draw_all(item, WB_RECORDINGS_VALIDATION);
 }
 
@@ -686,9 +692,9 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
                                     validation->elastoplastic.error, 1.0, &style));
     }
     wb_text_append(&item->caption,
-                   "Error of the prediction at %g mm (eq. 18): distance of mean force, %s, and "
+                   "Error of the prediction at %g mm%s (eq. 18): distance of mean force, %s, and "
                    "computed force over the largest mean force of the wire.",
-                   results->campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM,
+                   results->campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM, route_of(results),
                    wb_recordings_draw_measured(results));
     return WB_OK;
 }
@@ -696,6 +702,7 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
 /* --- the table --- */
 
 const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
+    {"bending", NULL, wb_recordings_cycle_figures_all_moments, false},
     {"bench", NULL, draw_bench, false},
     {"overview", NULL, draw_calibrations, false},
     {"overview", NULL, draw_validations, false},
@@ -703,6 +710,7 @@ const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES] = {
     {"cycle", wb_recordings_draw_count, wb_recordings_cycle_figures_ways, false},
     {"cycle", wb_recordings_draw_count, wb_recordings_cycle_figures_residuals, false},
     {"later", wb_recordings_draw_count, wb_recordings_cycle_figures_later, false},
+    {"prediction", wb_recordings_draw_count, wb_recordings_cycle_figures_prediction, false},
     {"law", wb_recordings_draw_count, wb_recordings_cycle_figures_forest, true},
     {"law", wb_recordings_draw_count, wb_recordings_cycle_figures_moments, true},
     {"valley", wb_recordings_draw_count, wb_recordings_cycle_figures_valley, false},

@@ -6,11 +6,11 @@
 #include "analysis/report/figures.h"
 
 enum {
-    WB_RECORDINGS_FIGURES = 17
+    WB_RECORDINGS_FIGURES = 19
 };
 
-/* Of struct wb_recordings_results. Places: "bench", "overview"; of each wire "cycle",
- * "later", "law", "valley", "measured", "compared", "search". */
+/* Of struct wb_recordings_results. Places: "bending", "bench", "overview"; of each wire
+ * "cycle", "later", "prediction", "law", "valley", "measured", "compared", "search". */
 extern const struct wb_figures_row wb_recordings_figures[WB_RECORDINGS_FIGURES];
 
 /* Largest deflection of the first loading, m, and when it was reached, s (infinite without one). */

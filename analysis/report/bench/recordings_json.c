@@ -6,6 +6,7 @@
 
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/numbers.h"
+#include "analysis/validation/validate_json.h"
 #include "base/units.h"
 
 /* N mm2 in one N m2. */
@@ -107,15 +108,13 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
     put_prediction(object, "linear_elastic", &result->elastic);
 }
 
-static void put_validation(struct wb_json *object, const struct wb_recordings_results_wire *wire)
+static void put_validation(struct wb_json *object, const struct wb_validate_result *validation)
 {
-    const struct wb_validate_result *const validation =
-        &wire->steps[WB_RECORDINGS_VALIDATION].result;
     put_comparison(object, validation, validation->scatter_rms, validation->residual_scatter_rms);
     wb_json_set_number(object, "rms_of_perfect_model_over_F_max", validation->expected_rms);
     wb_json_set_number(object, "rms_of_perfect_model_95_over_F_max", validation->expected_rms_95);
-    wb_json_set_number(object, "share_explained_by_scatter",
-                       wb_recordings_results_validation_share(wire));
+    wb_json_set_number(object, "share_explained_by_scatter", validation->scatter_share);
+    wb_validate_json_put_cycles(object, validation);
 }
 
 static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_result *result)
@@ -168,29 +167,46 @@ static void put_calibration(struct wb_json *object, const struct wb_recordings_r
     put_search(object, c);
 }
 
+/* A step's object: how it ended, and why not well. False: there is nothing more to put. */
+static bool put_state(struct wb_json *of, enum wb_recordings_results_state state,
+                      const struct wb_text *problem)
+{
+    wb_json_set_text(of, "state", state_text(state));
+    if (state == WB_RECORDINGS_MISSING || state == WB_RECORDINGS_FAILED)
+        wb_json_set_text(of, "problem", wb_text_string(problem));
+    return state == WB_RECORDINGS_DONE;
+}
+
+static void put_pooled(struct wb_json *of, const struct wb_recordings_results *results,
+                       const struct wb_recordings_cycle *cycle)
+{
+    struct wb_json *const pooled =
+        wb_json_set_object(of, "flexural_rigidity_N_mm2_pooled_over_wires");
+    double low, high;
+    wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
+    wb_json_set_number(pooled, "low", low / N_MM2);
+    wb_json_set_number(pooled, "high", high / N_MM2);
+    wb_json_set_number(pooled, "deviation_of_logarithm", results->pool.deviation);
+    wb_json_set_integer(pooled, "degrees_of_freedom", results->pool.degrees);
+}
+
 static void put_cycle(struct wb_json *entry, const struct wb_recordings_results *results,
                       const struct wb_recordings_results_wire *wire)
 {
-    const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
-    if (wire->cycle_state == WB_RECORDINGS_NOT_WANTED)
+    const enum wb_recordings_results_state *const states = wire->cycle_states;
+    if (states[WB_RECORDINGS_CALIBRATION] == WB_RECORDINGS_NOT_WANTED)
         return;
     struct wb_json *const of = wb_json_set_object(entry, "cycle");
-    wb_json_set_text(of, "state", state_text(wire->cycle_state));
-    if (!cycle) {
-        wb_json_set_text(of, "problem", wb_text_string(&wire->cycle_problem));
+    if (put_state(of, states[WB_RECORDINGS_CALIBRATION], &wire->cycle_problems[0])) {
+        wb_recordings_cycle_put(of, &wire->cycle);
+        if (results->pool.degrees > 0)
+            put_pooled(of, results, &wire->cycle);
+    }
+    if (states[WB_RECORDINGS_VALIDATION] == WB_RECORDINGS_NOT_WANTED)
         return;
-    }
-    wb_recordings_cycle_put(of, cycle);
-    if (results->pool.degrees > 0) {
-        struct wb_json *const pooled =
-            wb_json_set_object(of, "flexural_rigidity_N_mm2_pooled_over_wires");
-        double low, high;
-        wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
-        wb_json_set_number(pooled, "low", low / N_MM2);
-        wb_json_set_number(pooled, "high", high / N_MM2);
-        wb_json_set_number(pooled, "deviation_of_logarithm", results->pool.deviation);
-        wb_json_set_integer(pooled, "degrees_of_freedom", results->pool.degrees);
-    }
+    struct wb_json *const prediction = wb_json_set_object(of, "prediction");
+    if (put_state(prediction, states[WB_RECORDINGS_VALIDATION], &wire->cycle_problems[1]))
+        put_validation(prediction, &wire->prediction);
 }
 
 static void put_wire(struct wb_json *list, const struct wb_recordings_results *results,
@@ -211,13 +227,12 @@ static void put_wire(struct wb_json *list, const struct wb_recordings_results *r
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         const struct wb_recordings_results_step *const step = &wire->steps[k];
         struct wb_json *const of = wb_json_set_object(entry, wb_recordings_purposes[k]);
-        wb_json_set_text(of, "state", state_text(step->state));
-        if (step->state == WB_RECORDINGS_DONE && k == WB_RECORDINGS_CALIBRATION)
+        if (!put_state(of, step->state, &step->problem))
+            continue;
+        if (k == WB_RECORDINGS_CALIBRATION)
             put_calibration(of, wire);
-        else if (step->state == WB_RECORDINGS_DONE)
-            put_validation(of, wire);
-        else if (step->state != WB_RECORDINGS_NOT_WANTED)
-            wb_json_set_text(of, "problem", wb_text_string(&step->problem));
+        else
+            put_validation(of, &step->result);
     }
     put_cycle(entry, results, wire);
 }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "analysis/report/bench/recordings_figures.h"
+#include "base/units.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -25,6 +26,17 @@ static void print_step(FILE *out, const struct wb_recordings_results *results, i
         fprintf(out, "  %s RMS %.4f (limit %.4g exceeded)", what, rms, limit);
     else
         fprintf(out, "  %s RMS %.4f", what, rms);
+}
+
+/* What the law of the whole cycles says of the other length; NULL: nothing. */
+static void print_prediction(FILE *out, const struct wb_validate_result *prediction)
+{
+    if (!prediction)
+        return;
+    fprintf(out, ", %g mm predicted with RMS %.4f", prediction->info.length / WB_MM,
+            prediction->elastoplastic.rms);
+    if (prediction->cycles.n_samples > 0)
+        fprintf(out, ", unloading %.4f", prediction->cycles.rms);
 }
 
 /* NULL: the campaign has no whole cycles. */
@@ -53,6 +65,9 @@ static void print(FILE *out, const void *context)
     for (int i = 0; i < results->n_wires; i++) {
         fprintf(out, "%-10s", results->wires[i].wanted->label);
         print_cycle(out, wb_recordings_results_cycle(&results->wires[i]));
+        print_prediction(out, wb_recordings_results_prediction(&results->wires[i]));
+        if (campaign->whole_cycle)
+            fprintf(out, "; by the paper's route");
         print_step(out, results, i, WB_RECORDINGS_CALIBRATION);
         print_step(out, results, i, WB_RECORDINGS_VALIDATION);
         fprintf(out, "\n");

@@ -99,6 +99,8 @@ static void put_limits(struct wb_document *document, const struct wb_recordings_
     wb_text_append(&text, results->outcome.is_complete
                               ? "<b>All limits of the campaign are kept:</b>"
                               : "<b>What could be computed keeps the campaign's limits:</b>");
+    if (results->campaign->whole_cycle)
+        wb_text_append(&text, " by the paper's route,");
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         if (limit[k] > 0.0)
             wb_text_append(&text, "%s of each %s at most %.4g",
@@ -261,7 +263,9 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
                  " Published RMS of validations: %.4g to %.4g (%s).", campaign->reference_rms[0],
                  campaign->reference_rms[1],
                  wb_pages_escape(source, sizeof source, campaign->reference_source));
-    wb_document_heading(document, 2, "merits", "How well the model fits");
+    wb_document_heading(document, 2, "merits",
+                        campaign->whole_cycle ? "How well the model of the paper's route fits"
+                                              : "How well the model fits");
     struct wb_document_table *const table = wb_document_table(document, caption, 8, columns);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
@@ -394,13 +398,14 @@ static void put_warnings(struct wb_document *document, const struct wb_recording
     }
 }
 
-static void put_summary(struct wb_document *document, const struct wb_recordings_results *results)
+static void put_summary(struct wb_document *document, const struct wb_recordings_results *results,
+                        const struct wb_figures *figures)
 {
     wb_document_heading(document, 1, "summary", "Summary");
     put_origin(document, results);
     put_limits(document, results);
     put_missing(document, results);
-    wb_recordings_cycle_pages_summary(document, results);
+    wb_recordings_cycle_pages_summary(document, results, figures);
     put_properties(document, results);
     put_merits(document, results);
     put_warnings(document, results);
@@ -1019,7 +1024,7 @@ void wb_recordings_pages_build(struct wb_document *document, const void *context
                  results->outcome.n_wanted, wb_version(), wb_version_revision());
     wb_document_init(document, "Calibration report", results->campaign->head.title, subtitle,
                      footer, results->latest_utc);
-    put_summary(document, results);
+    put_summary(document, results, figures);
     put_bench(document, results, figures);
     put_overview(document, figures);
     for (int i = 0; i < results->n_wires; i++)

@@ -21,8 +21,8 @@ enum job_state {
     JOB_FINISHED
 };
 
-/* The alignment of a recording, the step that follows for all of a wire, or the calibration of a
- * wire on whole cycles. */
+/* The alignment of a recording, or the step that follows for all of a wire: by the paper's route,
+ * or on whole cycles. */
 struct job {
     enum job_state state;
     enum wb_recordings_purpose purpose;
@@ -52,6 +52,36 @@ static void read_meta(struct wb_recording *recording, const char *key, char *tex
 }
 
 /* What the recording says about bench and specimen. The truth of a virtual rig is not read. */
+/* The text of a file that corrects the recording, else of the recording's meta `key`; NULL without
+ * either. */
+static enum wb_status bench_text(struct wb_recording *recording, const char *key,
+                                 const char *corrected, char **text, struct wb_reason *why)
+{
+    size_t size;
+    if (corrected[0])
+        return wb_file_read_with_reason(corrected, text, &size, why);
+    const enum wb_status status = wb_recording_meta(recording, key, text);
+    if (status != WB_OK)
+        *text = NULL;
+    return status == WB_ERR_NOT_FOUND ? WB_OK : status;
+}
+
+/* What the recording says of the bench, with what corrects it. */
+static enum wb_status read_rig_and_specimen(struct wb_recordings_results_test *test,
+                                            struct wb_recording *recording, struct wb_reason *why)
+{
+    const struct wb_recordings_test *const wanted = test->wanted;
+    char *text;
+    WB_TRY(bench_text(recording, "rig", wanted->corrected_rig, &text, why));
+    enum wb_status status = text ? wb_rig_parse(text, wanted->name, &test->rig, why) : WB_OK;
+    free(text);
+    WB_TRY(status);
+    WB_TRY(bench_text(recording, "specimen", wanted->corrected_specimen, &text, why));
+    status = text ? wb_specimen_parse(text, wanted->name, &test->specimen, why) : WB_OK;
+    free(text);
+    return status;
+}
+
 static enum wb_status read_bench(struct wb_recordings_results_test *test, struct wb_reason *why)
 {
     struct wb_recording *recording;
@@ -63,15 +93,7 @@ static enum wb_status read_bench(struct wb_recordings_results_test *test, struct
     read_meta(recording, "operator", test->operator_name, sizeof test->operator_name);
     read_meta(recording, "virtual", is_virtual, sizeof is_virtual);
     test->is_virtual = strcmp(is_virtual, "true") == 0;
-    char *text = NULL;
-    enum wb_status status = WB_OK;
-    if (wb_recording_meta(recording, "rig", &text) == WB_OK)
-        status = wb_rig_parse(text, test->wanted->name, &test->rig, why);
-    free(text);
-    text = NULL;
-    if (status == WB_OK && wb_recording_meta(recording, "specimen", &text) == WB_OK)
-        status = wb_specimen_parse(text, test->wanted->name, &test->specimen, why);
-    free(text);
+    const enum wb_status status = read_rig_and_specimen(test, recording, why);
     test->is_virtual |= test->rig.is_virtual;
     const enum wb_status closed = wb_recording_close(recording);
     return status == WB_OK ? closed : status;
@@ -102,6 +124,10 @@ static enum wb_status align(struct wb_recordings_results_test *test,
     wb_align_default_settings(&settings);
     WB_TRY(wb_recording_sha256(test->wanted->path, test->sha256, why));
     WB_TRY(read_bench(test, why));
+    if (test->wanted->corrected_rig[0])
+        settings.rig_path = test->wanted->corrected_rig;
+    if (test->wanted->corrected_specimen[0])
+        settings.specimen_path = test->wanted->corrected_specimen;
     WB_TRY(wb_align_run(&test->dataset, test->wanted->path, &settings, why));
     const enum wb_status status = check_identity(test, wire, length, why);
     if (status != WB_OK)
@@ -124,6 +150,9 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
     const struct wb_reasons reasons = {&test->problem, test->wanted->path, test->wanted->name};
     wb_reasons_fail(&reasons, status, &why);
 }
+
+static const char no_recording[] = "no usable recording";
+static const char no_calibration[] = "the calibration that it builds on is missing";
 
 static int usable_datasets(const struct wb_recordings_results_tests *tests,
                            const struct wb_dataset **datasets)
@@ -157,8 +186,7 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
     const struct wb_dataset **const datasets = calloc((size_t)step->tests.n + 1, sizeof *datasets);
     const int n = datasets ? usable_datasets(&step->tests, datasets) : 0;
     if (n == 0 || (!calibrates && !wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))) {
-        wb_text_append(&step->problem, n == 0 ? "no usable recording"
-                                              : "the calibration that it builds on is missing");
+        wb_text_append(&step->problem, "%s", n == 0 ? no_recording : no_calibration);
         free(datasets);
         return WB_RECORDINGS_MISSING;
     }
@@ -178,39 +206,59 @@ static enum wb_recordings_results_state run_step(const struct wb_recordings *cam
     return WB_RECORDINGS_FAILED;
 }
 
-static enum wb_recordings_results_state run_cycle(struct wb_recordings_results_wire *wire)
+/* What the law of the whole cycles says of the other length. */
+static enum wb_status predict(const struct wb_recordings *campaign,
+                              struct wb_recordings_results_wire *wire,
+                              const struct wb_dataset *const *datasets, int n,
+                              struct wb_reason *why)
 {
-    const struct wb_recordings_results_tests *const tests =
-        &wire->steps[WB_RECORDINGS_CALIBRATION].tests;
+    struct wb_properties properties;
+    wb_properties_from_cycle(&wire->cycle.calibration, &properties);
+    return wb_validate_run(&wire->prediction, &properties, datasets, n, &campaign->head.fit, why);
+}
+
+static void run_cycle(const struct wb_recordings *campaign, const struct job *job)
+{
+    struct wb_recordings_results_wire *const wire = job->wire;
+    const bool calibrates = job->purpose == WB_RECORDINGS_CALIBRATION;
+    const struct wb_recordings_results_tests *const tests = &wire->steps[job->purpose].tests;
+    enum wb_recordings_results_state *const state = &wire->cycle_states[job->purpose];
+    struct wb_text *const problem = &wire->cycle_problems[job->purpose];
     const struct wb_dataset **const datasets = calloc((size_t)tests->n + 1, sizeof *datasets);
     const int n = datasets ? usable_datasets(tests, datasets) : 0;
-    if (n == 0) {
-        wb_text_append(&wire->cycle_problem, "no usable recording");
+    if (n == 0 || (!calibrates && !wb_recordings_results_cycle(wire))) {
+        wb_text_append(problem, "%s", n == 0 ? no_recording : no_calibration);
         free(datasets);
-        return WB_RECORDINGS_MISSING;
+        return;
     }
-    const struct wb_reasons reasons = {&wire->cycle_problem, NULL, NULL};
+    const struct wb_reasons reasons = {problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
-    const enum wb_status status = wb_recordings_cycle_run(&wire->cycle, datasets, n, &why);
+    const enum wb_status status = calibrates
+                                      ? wb_recordings_cycle_run(&wire->cycle, datasets, n, &why)
+                                      : predict(campaign, wire, datasets, n, &why);
     free(datasets);
-    if (status == WB_OK)
-        return WB_RECORDINGS_DONE;
-    wb_reasons_fail(&reasons, status, &why);
-    return WB_RECORDINGS_FAILED;
+    *state = status == WB_OK ? WB_RECORDINGS_DONE : WB_RECORDINGS_FAILED;
+    if (status != WB_OK)
+        wb_reasons_fail(&reasons, status, &why);
 }
 
 /* --- the schedule --- */
 
-/* A calibration waits for the recordings of its own, a validation for all else of its wire but the
- * calibration on whole cycles, which it does not build on. */
+/* A calibration waits for the recordings of its own, a validation for all recordings of its wire
+ * and for the calibration that it builds on. */
+static bool comes_before(const struct job *other, const struct job *job)
+{
+    if (other->wire != job->wire)
+        return false;
+    return other->test ? other->purpose <= job->purpose
+                       : other->purpose < job->purpose && other->is_cycle == job->is_cycle;
+}
+
 static bool is_ready(const struct schedule *schedule, const struct job *job)
 {
     for (int i = 0; i < schedule->n && !job->test; i++) {
         const struct job *const other = &schedule->jobs[i];
-        const bool before = job->purpose == WB_RECORDINGS_VALIDATION ||
-                            (other->test && other->purpose == WB_RECORDINGS_CALIBRATION);
-        if (other != job && other->wire == job->wire && before && !other->is_cycle &&
-            other->state != JOB_FINISHED)
+        if (other->state != JOB_FINISHED && comes_before(other, job))
             return false;
     }
     return true;
@@ -253,7 +301,7 @@ static void *work(void *context)
         if (job->test)
             run_align(schedule->results->campaign, job);
         else if (job->is_cycle)
-            job->wire->cycle_state = run_cycle(job->wire);
+            run_cycle(schedule->results->campaign, job);
         else
             job->wire->steps[job->purpose].state = run_step(schedule->results->campaign, job);
         pthread_mutex_lock(&schedule->lock);
@@ -277,13 +325,13 @@ static void add_steps(struct schedule *schedule, enum wb_recordings_purpose purp
     }
 }
 
-static void add_cycles(struct schedule *schedule)
+static void add_cycles(struct schedule *schedule, enum wb_recordings_purpose purpose)
 {
     for (int i = 0; i < schedule->results->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &schedule->results->wires[i];
-        if (wire->cycle_state != WB_RECORDINGS_NOT_WANTED)
+        if (wire->cycle_states[purpose] != WB_RECORDINGS_NOT_WANTED)
             schedule->jobs[schedule->n++] =
-                (struct job){.purpose = WB_RECORDINGS_CALIBRATION, .wire = wire, .is_cycle = true};
+                (struct job){.purpose = purpose, .wire = wire, .is_cycle = true};
     }
 }
 
@@ -301,10 +349,11 @@ static void add_alignments(struct schedule *schedule, enum wb_recordings_purpose
 static void add_jobs(struct schedule *schedule)
 {
     /* The longest first. */
-    add_cycles(schedule);
+    add_cycles(schedule, WB_RECORDINGS_CALIBRATION);
     add_steps(schedule, WB_RECORDINGS_CALIBRATION);
     add_alignments(schedule, WB_RECORDINGS_CALIBRATION);
     add_alignments(schedule, WB_RECORDINGS_VALIDATION);
+    add_cycles(schedule, WB_RECORDINGS_VALIDATION);
     add_steps(schedule, WB_RECORDINGS_VALIDATION);
 }
 
@@ -341,7 +390,7 @@ enum wb_status wb_recordings_results_load(void *context, const void *of)
     struct wb_kind_outcome *const outcome = &results->outcome;
     results->campaign = campaign;
     outcome->n_wanted = wb_recordings_count(campaign, &outcome->n_missing);
-    outcome->n_steps = outcome->n_wanted + (campaign->whole_cycle ? 3 : 2) * campaign->n_wires;
+    outcome->n_steps = outcome->n_wanted;
     results->wires = calloc((size_t)campaign->n_wires, sizeof *results->wires);
     if (!results->wires)
         return wb_fail(WB_ERR_MEMORY, "out of memory preparing a report");
@@ -349,11 +398,12 @@ enum wb_status wb_recordings_results_load(void *context, const void *of)
     for (int i = 0; i < campaign->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &results->wires[i];
         wire->wanted = &campaign->wires[i];
-        wire->cycle_state =
-            campaign->whole_cycle ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
         for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
-            wire->steps[k].state =
-                campaign->length[k] > 0.0 ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
+            const bool is_wanted = campaign->length[k] > 0.0;
+            const bool has_cycle = is_wanted && campaign->whole_cycle;
+            wire->steps[k].state = is_wanted ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
+            wire->cycle_states[k] = has_cycle ? WB_RECORDINGS_MISSING : WB_RECORDINGS_NOT_WANTED;
+            outcome->n_steps += is_wanted + has_cycle;
             WB_TRY(prepare_tests(&wire->steps[k].tests, &wire->wanted->tests[k]));
         }
     }
@@ -392,9 +442,10 @@ static void judge_step(struct wb_recordings_results *results,
 static void judge_cycle(struct wb_recordings_results *results,
                         const struct wb_recordings_results_wire *wire)
 {
-    results->outcome.is_complete &=
-        wire->cycle_state == WB_RECORDINGS_DONE || wire->cycle_state == WB_RECORDINGS_NOT_WANTED;
-    if (results->campaign->pooled_scatter && wire->cycle_state == WB_RECORDINGS_DONE)
+    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++)
+        results->outcome.is_complete &= wire->cycle_states[k] == WB_RECORDINGS_DONE ||
+                                        wire->cycle_states[k] == WB_RECORDINGS_NOT_WANTED;
+    if (results->campaign->pooled_scatter && wb_recordings_results_cycle(wire))
         wb_recordings_cycle_pool(&results->pool, &wire->cycle);
 }
 
@@ -455,11 +506,13 @@ void wb_recordings_results_release(void *context)
         struct wb_recordings_results_wire *const wire = &results->wires[i];
         if (wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
             wb_calibrate_result_release(&wire->calibration);
-        if (wire->cycle_state == WB_RECORDINGS_DONE)
+        if (wb_recordings_results_cycle(wire))
             wb_recordings_cycle_release(&wire->cycle);
-        wb_text_release(&wire->cycle_problem);
-        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++)
+        wb_validate_result_release(&wire->prediction);
+        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
+            wb_text_release(&wire->cycle_problems[k]);
             release_step(&wire->steps[k]);
+        }
     }
     free(results->wires);
     memset(results, 0, sizeof *results);
@@ -500,7 +553,15 @@ wb_recordings_results_of(const struct wb_recordings_results_wire *wire,
 const struct wb_recordings_cycle *
 wb_recordings_results_cycle(const struct wb_recordings_results_wire *wire)
 {
-    return wire->cycle_state == WB_RECORDINGS_DONE ? &wire->cycle : NULL;
+    return wire->cycle_states[WB_RECORDINGS_CALIBRATION] == WB_RECORDINGS_DONE ? &wire->cycle
+                                                                               : NULL;
+}
+
+const struct wb_validate_result *
+wb_recordings_results_prediction(const struct wb_recordings_results_wire *wire)
+{
+    return wire->cycle_states[WB_RECORDINGS_VALIDATION] == WB_RECORDINGS_DONE ? &wire->prediction
+                                                                              : NULL;
 }
 
 double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,

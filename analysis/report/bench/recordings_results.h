@@ -56,9 +56,11 @@ struct wb_recordings_results_wire {
     struct wb_recordings_results_step steps[WB_RECORDINGS_PURPOSES];
     struct wb_calibrate_result calibration; /* when it is done, as the next */
     struct wb_properties properties;
-    enum wb_recordings_results_state cycle_state; /* of the whole-cycle calibration, */
-    struct wb_text cycle_problem;
-    struct wb_recordings_cycle cycle; /* when it is done */
+    /* The same on whole cycles: the calibration, and what its law predicts of the other length. */
+    enum wb_recordings_results_state cycle_states[WB_RECORDINGS_PURPOSES];
+    struct wb_text cycle_problems[WB_RECORDINGS_PURPOSES];
+    struct wb_recordings_cycle cycle;     /* when it is done */
+    struct wb_validate_result prediction; /* zeroed until it is done */
 };
 
 struct wb_recordings_results {
@@ -93,6 +95,10 @@ wb_recordings_results_of(const struct wb_recordings_results_wire *wire,
 /* The whole-cycle calibration of a wire; NULL unless it is done. */
 const struct wb_recordings_cycle *
 wb_recordings_results_cycle(const struct wb_recordings_results_wire *wire);
+
+/* What its law predicts of the validation's recordings; NULL unless it is done. */
+const struct wb_validate_result *
+wb_recordings_results_prediction(const struct wb_recordings_results_wire *wire);
 
 /* The RMS error over F_max of a step that is done: what limits bound. */
 double wb_recordings_results_rms(const struct wb_recordings_results_wire *wire,

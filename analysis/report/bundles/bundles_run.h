@@ -8,8 +8,8 @@
 
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/dataset.h"
-#include "analysis/report/bundles/bundles.h"
 #include "analysis/dataset/surface.h"
+#include "analysis/report/bundles/bundles.h"
 #include "base/reason.h"
 #include "base/text.h"
 

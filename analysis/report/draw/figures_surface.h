@@ -9,8 +9,8 @@
 #ifndef WB_ANALYSIS_REPORT_DRAW_FIGURES_SURFACE_H
 #define WB_ANALYSIS_REPORT_DRAW_FIGURES_SURFACE_H
 
-#include "analysis/plot/figure.h"
 #include "analysis/dataset/surface.h"
+#include "analysis/plot/figure.h"
 #include "base/status.h"
 
 /* Zero is the default of each. */

@@ -11,6 +11,7 @@
 #include "analysis/align/align.h"
 #include "analysis/calibration/bending.h"
 #include "analysis/calibration/calibrate.h"
+#include "analysis/calibration/cycle_bow.h"
 #include "analysis/calibration/cycle_calibrate.h"
 #include "analysis/calibration/cycle_model.h"
 #include "base/file.h"
@@ -282,6 +283,10 @@ static void the_rigs_wires_come_out_as_they_are(void **unused)
             assert_close(summary.bias[k], 0.0, 0.012);
             assert_close(summary.deviation[k], 0.0, 0.01);
         }
+        /* It answers to 0.1 % of the moments with 0.5 to 1 %. The range holds it in 98, 83 and 65 %
+         * of the specimens. */
+        assert_close(summary.bias[1], 0.0, 0.03);
+        assert_true(summary.holds[1] >= 0.6);
     }
 }
 
@@ -300,9 +305,7 @@ static void no_wire_of_another_law_is_wrong_without_a_warning(void **unused)
 {
     (void)unused;
     static struct job jobs[WB_COMPOSITE_VARIANTS][PER_TRUTH + 1];
-    const int most_unwarned = 7;
     int wrong = 0;
-    double worst = 0.0;
     for (int v = WB_COMPOSITE_ISOTROPIC; v < WB_COMPOSITE_VARIANTS; v++) {
         for (int i = 0; i <= PER_TRUTH; i++) {
             struct job *const job = &jobs[v][i];
@@ -322,13 +325,8 @@ static void no_wire_of_another_law_is_wrong_without_a_warning(void **unused)
         for (int i = 0; i <= PER_TRUTH; i++) {
             bool here = false;
             for (int k = 0; k < NUMBERS; k++) {
-                if (k == 1 || !misleads(&jobs[v][i].verdict, k, k == 0 ? 0.10 : 0.03))
-                    continue;
-                here = true;
-                if (i == PER_TRUTH)
-                    continue;
-                worst = fmax(worst, fabs(error_of(&jobs[v][i].verdict, k)));
-                assert_true(k == 2 || k == 3); /* neither EI nor a moment further on */
+                if (k != 1 && misleads(&jobs[v][i].verdict, k, k == 0 ? 0.10 : 0.03))
+                    here = true;
             }
             if ((here && i < PER_TRUTH) || getenv("SHOW_ALL"))
                 print_one(&jobs[v][i]);
@@ -337,11 +335,7 @@ static void no_wire_of_another_law_is_wrong_without_a_warning(void **unused)
     }
     printf("    wrong without a warning: %d of %d\n", wrong,
            PER_TRUTH * (WB_COMPOSITE_VARIANTS - 1));
-    /* The goal is none. What is left are moments at 0.05 and 0.1 of the largest curvature: of
-     * wires whose parts grow their yield stresses each by itself and were bent back onto the rest
-     * before they were loaded, and one moment of a wire that relaxes, 3.1 % off. */
-    assert_true(wrong <= most_unwarned);
-    assert_true(worst <= 0.10);
+    assert_int_equal(wrong, 0);
     for (int v = WB_COMPOSITE_ISOTROPIC; v < WB_COMPOSITE_VARIANTS; v++) {
         if (jobs[v][PER_TRUTH].verdict.best_misfit <= 1e-3)
             assert_close(summarise(jobs[v], PER_TRUTH).bias[0], 0.0, 0.05);
@@ -373,7 +367,8 @@ static double measured_loop(const struct wb_dataset *dataset, int cycle)
     return work;
 }
 
-/* Work of the second cycle of the same beam. */
+/* Work of the second cycle of the same beam, from its rest and back: it is bent back below zero
+ * deflection, as the specimen is. */
 static double computed_loop(const struct wb_test_info *info, const struct wb_law *law, double top)
 {
     enum {
@@ -383,6 +378,7 @@ static double computed_loop(const struct wb_test_info *info, const struct wb_law
     struct wb_cantilever_model model;
     struct wb_cantilever *beam;
     struct wb_cantilever_point point, last = {0};
+    const double rest = wb_cycle_model_rest(info);
     double work = 0.0;
 
     wb_cantilever_default_model(&model);
@@ -398,7 +394,7 @@ static double computed_loop(const struct wb_test_info *info, const struct wb_law
     assert_int_equal(wb_cantilever_create(&beam, &model, NULL), WB_OK);
     for (int i = 0; i <= 4 * STEPS; i++) {
         const int way = i % (2 * STEPS);
-        const double target = top * (way <= STEPS ? way : 2 * STEPS - way) / STEPS;
+        const double target = rest + (top - rest) * (way <= STEPS ? way : 2 * STEPS - way) / STEPS;
         assert_int_equal(wb_cantilever_move(beam, WB_CONTROL_DEFLECTION, target, &point), WB_OK);
         assert_int_equal(point.end, WB_CANTILEVER_CONVERGED);
         if (i > 2 * STEPS)
@@ -411,8 +407,7 @@ static double computed_loop(const struct wb_test_info *info, const struct wb_law
 }
 
 /* A test of another length of the same wire, predicted with the law that 85 mm gave. One number is
- * its own, the natural angle of its tip, found from it by least squares: what the alignment finds
- * is off by 0.1 mm of bow, which is worth 2 % of the force at 60 mm. */
+ * its own, the bow, from the tension before it is bent; nothing is fitted to what follows. */
 static void predict(struct prediction *prediction, const struct job *job, double length,
                     double travel)
 {
@@ -432,27 +427,11 @@ static void predict(struct prediction *prediction, const struct job *job, double
     assert_int_equal(wb_cycle_data_take(&data, &dataset, NULL, NULL), WB_OK);
     double *const tension = calloc((size_t)data.n_points, sizeof *tension);
     assert_non_null(tension);
-    double *const moved = calloc((size_t)data.n_points, sizeof *moved);
-    assert_non_null(moved);
-    struct wb_cycle_specimen specimen = {2.0 * wb_dataset_bow(&dataset.info) / length, 0.0};
+    struct wb_cycle_specimen specimen = {.level = 0.0};
+    assert_int_equal(wb_cycle_bow_find(&specimen.bow_angle, &dataset, &data, law, &mesh), WB_OK);
     assert_int_equal(wb_cycle_model_create(&model, &data, law, &mesh), WB_OK);
-    for (int pass = 0; pass < 3; pass++) {
-        const double step = 2e-3; /* rad */
-        double up = 0.0, down = 0.0;
-        assert_int_equal(wb_cycle_model_run(model, law, &specimen, tension, NULL, &run), WB_OK);
-        assert_true(run.reached);
-        if (pass == 2)
-            break;
-        specimen.bow_angle += step;
-        assert_int_equal(wb_cycle_model_run(model, law, &specimen, moved, NULL, &run), WB_OK);
-        assert_true(run.reached);
-        for (int i = 0; i < data.n_points; i++) {
-            const double slope = (moved[i] - tension[i]) / step;
-            up += slope * (data.points[i].tension - tension[i]);
-            down += slope * slope;
-        }
-        specimen.bow_angle += up / down - step;
-    }
+    assert_int_equal(wb_cycle_model_run(model, law, &specimen, tension, NULL, &run), WB_OK);
+    assert_true(run.reached);
 
     double sums[2] = {0.0, 0.0};
     int counts[2] = {0, 0};
@@ -475,7 +454,6 @@ static void predict(struct prediction *prediction, const struct job *job, double
     prediction->residual = residual - data.residual_deflection;
     prediction->loop = computed_loop(&bent, law, data.top) / measured_loop(&dataset, 2) - 1.0;
     free(tension);
-    free(moved);
     wb_cycle_model_destroy(model);
     wb_cycle_data_release(&data);
     wb_dataset_release(&dataset);
@@ -525,8 +503,7 @@ static void other_lengths_are_predicted(void **unused)
     assert_true(worst.loading <= 0.005);
     assert_true(worst.unloading <= 0.006);
     assert_true(worst.residual <= 0.5 * WB_MM);
-    /* The goal is 3 %. */
-    assert_true(worst.loop <= 0.04);
+    assert_true(worst.loop <= 0.03);
 }
 
 /* --- campaigns --- */

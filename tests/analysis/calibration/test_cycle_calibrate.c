@@ -208,6 +208,100 @@ static void a_wire_without_a_way_back_is_ludwiks_and_not_supported(void **unused
     datasets[0].n_rows = n_rows;
 }
 
+/* Stops when that many fits are done. */
+static bool stop_after(void *context, int done, int fits)
+{
+    (void)fits;
+    return done < *(const int *)context;
+}
+
+static void calibrate_until(struct wb_cycle_calibration *c, int n, int fits)
+{
+    struct wb_cycle_calibrate_settings settings;
+    wb_cycle_calibrate_default_settings(&settings);
+    settings.threads = 1;
+    settings.progress = stop_after;
+    settings.progress_context = &fits;
+    assert_int_equal(wb_cycle_calibrate_run(c, list, n, &settings, NULL), WB_OK);
+}
+
+static void what_is_stopped_gives_the_specimens_that_were_fitted(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    calibrate_until(&c, SPECIMENS, 1);
+    assert_true(c.is_stopped);
+    assert_int_equal(c.n_members, 1);
+    assert_int_equal(c.members[0].sample, 1);
+    assert_int_equal(c.chosen, WB_CANDIDATE_LUDWIK_KINEMATIC);
+    assert_true(c.rigidity.value > 0.0);
+    assert_true(isnan(c.rigidity.low));
+    /* Its best law follows within 0.5 %, but a better one was not tried. */
+    assert_true(c.ranked[0].misfit < 5e-3);
+    assert_false(c.is_supported);
+    wb_cycle_calibrate_release(&c);
+}
+
+static void what_is_stopped_later_has_the_laws_that_all_specimens_have(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    calibrate_until(&c, 2, 3);
+    assert_true(c.is_stopped);
+    assert_int_equal(c.n_members, 2);
+    assert_int_equal(c.n_ranked, 3);
+    assert_int_equal(c.chosen, WB_CANDIDATE_LUDWIK_KINEMATIC);
+    assert_true(c.rigidity.low < c.rigidity.value);
+    assert_false(c.is_supported);
+    wb_cycle_calibrate_release(&c);
+}
+
+/* The last of all fits is not cut short. */
+static void a_stop_at_the_end_is_none(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibration c;
+    calibrate_until(&c, 1, 2);
+    assert_false(c.is_stopped);
+    assert_true(c.is_supported);
+    wb_cycle_calibrate_release(&c);
+}
+
+/* A natural curvature that is larger at one end looks to the forces like another law. */
+static void an_unevenly_bent_wire_does_not_change_the_law(void **unused)
+{
+    (void)unused;
+    struct wb_cycle_calibrate_settings settings;
+    wb_cycle_calibrate_default_settings(&settings);
+    settings.left_out = 1U << WB_CANDIDATE_LUDWIK_ISOTROPIC | 1U << WB_CANDIDATE_LUDWIK_MIXED |
+                        1U << WB_CANDIDATE_PARALLEL_MIXED;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        struct wb_cycle_calibration c;
+        struct wb_dataset dataset;
+        const struct wb_dataset *const one = &dataset;
+        struct fast_rig fast;
+        double moment[WB_CYCLE_MOMENTS], residual;
+        fast_rig_init(&fast, 2, 85.0 * WB_MM, 301);
+        fast.noise = 1e-3;
+        fast.truth.bow_wave = sign * 0.6 * fast.truth.bow_constant;
+        assert_int_equal(fast_rig_run(&fast, &dataset), WB_OK);
+        assert_int_equal(wb_cycle_calibrate_run(&c, &one, 1, &settings, NULL), WB_OK);
+        fast_rig_truth(&fast, WB_CYCLE_MOMENTS, c.curvature, moment, NULL, &residual);
+        const double springback = residual / c.largest_curvature;
+        print_message(
+            "    %+d: springback off by %+.1f %%, M by %+.2f %%\n", sign,
+            100.0 * (c.springback.value / springback - 1.0),
+            100.0 * (c.moment[WB_CYCLE_MOMENTS - 1].value / moment[WB_CYCLE_MOMENTS - 1] - 1.0));
+        assert_close_relative(c.springback.value, springback, 0.02);
+        assert_close_relative(c.moment[WB_CYCLE_MOMENTS - 1].value, moment[WB_CYCLE_MOMENTS - 1],
+                              0.004);
+        assert_true(c.springback.candidates_low <= springback &&
+                    springback <= c.springback.candidates_high);
+        wb_cycle_calibrate_release(&c);
+        wb_dataset_release(&dataset);
+    }
+}
+
 static void what_is_said_is_near_the_truth(void **unused)
 {
     (void)unused;
@@ -237,6 +331,10 @@ int main(void)
         cmocka_unit_test(the_ranking_is_by_misfit_and_the_choice_by_the_f_test),
         cmocka_unit_test(the_range_holds_the_candidates_that_count),
         cmocka_unit_test(a_wire_without_a_way_back_is_ludwiks_and_not_supported),
+        cmocka_unit_test(what_is_stopped_gives_the_specimens_that_were_fitted),
+        cmocka_unit_test(what_is_stopped_later_has_the_laws_that_all_specimens_have),
+        cmocka_unit_test(a_stop_at_the_end_is_none),
+        cmocka_unit_test(an_unevenly_bent_wire_does_not_change_the_law),
         cmocka_unit_test(what_is_said_is_near_the_truth),
     };
     wb_log_set_sink(discard_message, NULL);

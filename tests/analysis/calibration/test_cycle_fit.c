@@ -294,8 +294,20 @@ static double normal(uint64_t *state)
     return sum;
 }
 
+/* Standard error of ln E by the laws that were moved. */
+static double stated_modulus_error(const struct wb_cycle_fit *fit)
+{
+    double squares = 0.0;
+    for (int i = 0; i < fit->n_moved; i++) {
+        const double ratio =
+            fit->moved[i].material.youngs_modulus / fit->law.material.youngs_modulus;
+        squares += pow((ratio - 1.0) / fit->moved_by[i], 2.0);
+    }
+    return sqrt(squares);
+}
+
 /* Of many tests of one wire that differ by their noise alone. */
-static void correlations_are_those_of_repeated_tests(void **unused)
+static void correlations_and_errors_are_those_of_repeated_tests(void **unused)
 {
     (void)unused;
     enum {
@@ -306,10 +318,12 @@ static void correlations_are_those_of_repeated_tests(void **unused)
     const struct wb_law law = ludwik(0.0, 0.75);
     const struct wb_cycle_grid grid = test_grid();
     double x[TESTS], y[TESTS], mean_x = 0.0, mean_y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0,
-                               stated = 0.0, error = 0.0;
+                               stated = 0.0, error = 0.0, modulus = 0.0, modulus_squares = 0.0,
+                               modulus_error = 0.0;
     uint64_t state = 5;
     char text[24];
     default_settings(&settings);
+    settings.level_prior = 1.0; /* the tests do not differ by what a prior leaves open */
     compute(&exact, &law, 0.05);
     for (int k = 0; k < TESTS; k++) {
         struct wb_cycle_fit fit;
@@ -328,6 +342,10 @@ static void correlations_are_those_of_repeated_tests(void **unused)
         mean_y += y[k] / TESTS;
         stated += fit.correlation[2][3] / TESTS;
         error += fit.exponent_error / TESTS;
+        const double ln_modulus = log(fit.law.material.youngs_modulus / 5641e6);
+        modulus += ln_modulus / TESTS;
+        modulus_squares += ln_modulus * ln_modulus / TESTS;
+        modulus_error += stated_modulus_error(&fit) / TESTS;
         for (int i = 0; i < 4; i++)
             assert_close(fit.correlation[i][i], 1.0, 1e-12);
         wb_cycle_fit_release(&fit);
@@ -342,6 +360,13 @@ static void correlations_are_those_of_repeated_tests(void **unused)
     print_message("    n: standard deviation %.5f found, %.5f stated\n", found, error);
     assert_close(xy / sqrt(xx * yy), stated, 0.002);
     assert_close_relative(found, error, 0.3);
+    const double scatter = sqrt(modulus_squares - modulus * modulus);
+    print_message("    ln E: standard deviation %.5f found, %.5f by the jackknife\n", scatter,
+                  modulus_error);
+    /* Of white noise residuals of one sign in a row make it half as large again: a row has two on
+     * average, its sum a mean square of 2 + 4 (2/pi) variances. Too small it must not be. */
+    assert_true(modulus_error >= 0.9 * scatter);
+    assert_true(modulus_error <= 2.0 * scatter);
 }
 
 int main(void)
@@ -354,7 +379,7 @@ int main(void)
         cmocka_unit_test(points_far_off_count_little_and_are_counted),
         cmocka_unit_test(the_level_of_zero_deflection_is_found),
         cmocka_unit_test(the_wrong_rule_shows_in_the_misfit),
-        cmocka_unit_test(correlations_are_those_of_repeated_tests),
+        cmocka_unit_test(correlations_and_errors_are_those_of_repeated_tests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* A calibration on whole cycles in JSON and in a properties file: the same numbers, and nothing
  * that the data do not say. */
 #include <math.h>
-#include <unistd.h>
 
 #include "analysis/calibration/cycle_json.h"
-#include "analysis/calibration/properties_private.h"
-#include "base/file.h"
+#include "analysis/calibration/properties.h"
 #include "base/units.h"
+#include "tests/analysis/calibration/properties_path.h"
 #include "tests/check.h"
-#include "tests/messages.h"
-#include "tests/own_folder.h"
-
-static char path[WB_PATH];
 
 enum {
     SPECIMENS = 2
@@ -204,6 +199,41 @@ static void a_refuted_rule_leaves_only_ranges(void **state)
     assert_close_relative(read.moment[0].candidates_low, 0.98e-3, 1e-12);
 }
 
+static struct wb_json *put(const struct made *made)
+{
+    struct wb_json *const root = wb_json_create(), *read;
+    char *text;
+    wb_cycle_json_put(root, &made->calibration);
+    assert_int_equal(wb_json_format(root, &text), WB_OK);
+    wb_json_destroy(root);
+    assert_int_equal(wb_json_parse(&read, text, "text"), WB_OK);
+    free(text);
+    return read;
+}
+
+/* The laws that were not tried may follow better. */
+static void what_was_stopped_says_so_and_leaves_the_rule_untested(void **state)
+{
+    (void)state;
+    struct made made;
+    struct wb_properties read;
+    char *text;
+    make(&made);
+    made.calibration.is_stopped = true;
+    made.calibration.is_supported = false;
+    read_back(&made, &read);
+    assert_false(read.is_rule_tested || read.is_rule_supported);
+    assert_true(isnan(read.rigidity.value));
+    assert_int_equal(wb_file_read(path, &text, NULL), WB_OK);
+    assert_non_null(strstr(text, "  stopped: interrupted"));
+    free(text);
+    struct wb_json *const root = put(&made);
+    bool is_stopped = false;
+    assert_true(wb_json_get_boolean(wb_json_get(root, "hardening_rule"), "stopped", &is_stopped));
+    assert_true(is_stopped);
+    wb_json_destroy(root);
+}
+
 static void without_a_way_back_there_is_no_springback(void **state)
 {
     (void)state;
@@ -339,18 +369,6 @@ static double number_at(const struct wb_json *object, const char *key)
     return value;
 }
 
-static struct wb_json *put(const struct made *made)
-{
-    struct wb_json *const root = wb_json_create(), *read;
-    char *text;
-    wb_cycle_json_put(root, &made->calibration);
-    assert_int_equal(wb_json_format(root, &text), WB_OK);
-    wb_json_destroy(root);
-    assert_int_equal(wb_json_parse(&read, text, "text"), WB_OK);
-    free(text);
-    return read;
-}
-
 static void json_has_the_same_numbers(void **state)
 {
     (void)state;
@@ -403,27 +421,13 @@ static void json_gives_only_what_is_known(void **state)
     wb_json_destroy(root);
 }
 
-static int set_up(void **state)
-{
-    keep_messages();
-    if (make_folder(state) != 0)
-        return -1;
-    return wb_file_join(path, folder, "properties.yaml") == WB_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    unlink(path);
-    return rmdir(folder);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_has_what_the_calibration_had),
         cmocka_unit_test(an_existing_file_is_kept_without_force),
         cmocka_unit_test(a_refuted_rule_leaves_only_ranges),
+        cmocka_unit_test(what_was_stopped_says_so_and_leaves_the_rule_untested),
         cmocka_unit_test(without_a_way_back_there_is_no_springback),
         cmocka_unit_test(kinematic_ludwik_keeps_its_four_numbers),
         cmocka_unit_test(different_lengths_have_no_length_in_common),
@@ -432,5 +436,5 @@ int main(void)
         cmocka_unit_test(json_has_the_same_numbers),
         cmocka_unit_test(json_gives_only_what_is_known),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, make_path, remove_folder);
 }

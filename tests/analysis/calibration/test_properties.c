@@ -1,27 +1,7 @@
 #include "tests/analysis/beam_data.h"
 
-#include <unistd.h>
-
 #include "analysis/calibration/properties.h"
-#include "base/file.h"
-#include "tests/own_folder.h"
-
-static char path[WB_PATH];
-
-static int set_up(void **state)
-{
-    keep_messages();
-    if (make_folder(state) != 0)
-        return -1;
-    return wb_file_join(path, folder, "properties.yaml") == WB_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    unlink(path);
-    return rmdir(folder);
-}
+#include "tests/analysis/calibration/properties_path.h"
 
 static struct wb_calibrate_result some_result(void)
 {
@@ -181,5 +161,5 @@ int main(void)
         cmocka_unit_test(an_existing_file_is_kept_without_force),
         cmocka_unit_test(errors_name_file_line_and_key),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, make_path, remove_folder);
 }

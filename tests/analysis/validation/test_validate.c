@@ -96,6 +96,29 @@ static void a_bow_that_is_ignored_shows(void **state)
     wb_validate_result_release(&result);
 }
 
+/* Their mean bow is none, and yet their mean curve is not a straight wire's. */
+static void samples_are_predicted_each_with_its_own_bow(void **state)
+{
+    (void)state;
+    const struct wb_properties properties = true_properties(2);
+    const struct wb_material material = beam_material(2);
+    struct wb_validate_result result;
+    struct wb_dataset dataset[2];
+    const struct wb_dataset *datasets[2];
+    for (int i = 0; i < 2; i++) {
+        const struct wb_test_info info = beam_info(2, 0.085, (i == 0 ? -5.0 : 5.0) * mm);
+        beam_dataset(&dataset[i], &info, &material, 1.0 * mm, 53 * mm, 1.0);
+        dataset[i].info.sample = i + 1;
+        datasets[i] = &dataset[i];
+    }
+    assert_int_equal(wb_validate_run(&result, &properties, datasets, 2, &settings, NULL), WB_OK);
+    assert_true(result.scatter_rms > 0.01);
+    assert_true(result.elastoplastic.rms < 1e-6);
+    wb_validate_result_release(&result);
+    for (int i = 0; i < 2; i++)
+        wb_dataset_release(&dataset[i]);
+}
+
 /* Student's t of 0.975 for 2 and 5 degrees of freedom. */
 static const double t2 = 4.302653, t5 = 2.570582;
 
@@ -371,6 +394,7 @@ int main(void)
         cmocka_unit_test(true_properties_predict_another_length),
         cmocka_unit_test(errors_are_over_the_largest_measured_force),
         cmocka_unit_test(a_bow_that_is_ignored_shows),
+        cmocka_unit_test(samples_are_predicted_each_with_its_own_bow),
         cmocka_unit_test(scatter_explains_what_the_average_of_few_cannot),
         cmocka_unit_test(an_error_with_the_bow_is_not_taken_for_scatter),
         cmocka_unit_test(way_back_and_later_cycles_are_those_of_the_rule),

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/dataset/curve.h"
 #include "analysis/calibration/cycle_fit.h"
 #include "analysis/calibration/first_guess.h"
+#include "analysis/dataset/curve.h"
 #include "analysis/validation/validate.h"
 #include "base/log.h"
 #include "base/units.h"
@@ -16,9 +16,9 @@
 
 enum {
     TYPE = 2,
-    CAMPAIGNS = 60,
+    CAMPAIGNS = 200,
     SPECIMENS = 3,
-    MOST_BEYOND = 8 /* of 60 at 5 %: more in less than 1 % of such tests */
+    MOST_BEYOND = 18 /* of 200 at 5 %: more in less than 1 % of such tests */
 };
 
 static const double calibrated_at = 0.085, validated_at = 0.1;
@@ -73,6 +73,7 @@ static void fit_nominal(struct wb_properties *properties)
         .material = fit.law.material,
         .law = fit.law,
         .largest_curvature = fit.clamp_curvature,
+        .is_rule_tested = true,
         .scatter_rms = (double)NAN,
         .residual_scatter_rms = (double)NAN,
         .stiffness_deviation = (double)NAN,
@@ -139,7 +140,7 @@ static void perfect_model_is_beyond_its_bound_in_one_of_twenty(void **state)
     /* The bound is not kept by being wide: what is expected is what is found. */
     assert_true(sqrt(squares / expected) > 0.75 && sqrt(squares / expected) < 1.35);
     assert_true(fabs(left) < 0.5 * WB_MM);
-    assert_true(fabs(energy) < 0.04);
+    assert_true(fabs(energy) < 0.02);
 }
 
 int main(void)

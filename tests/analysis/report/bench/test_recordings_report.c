@@ -129,9 +129,17 @@ static void make_good(struct good *good, double validation_factor, bool whole_cy
                      WB_OK);
     wire->steps[0].state = wire->steps[1].state = WB_RECORDINGS_DONE;
     struct wb_reason why = {.text = ""};
-    wire->cycle_state = whole_cycle ? WB_RECORDINGS_DONE : WB_RECORDINGS_NOT_WANTED;
-    if (whole_cycle && wb_recordings_cycle_run(&wire->cycle, calibration, 2, &why) != WB_OK)
-        fail_msg("%s", why.text);
+    wire->cycle_states[0] = wire->cycle_states[1] =
+        whole_cycle ? WB_RECORDINGS_DONE : WB_RECORDINGS_NOT_WANTED;
+    if (whole_cycle) {
+        struct wb_properties properties;
+        if (wb_recordings_cycle_run(&wire->cycle, calibration, 2, &why) != WB_OK)
+            fail_msg("%s", why.text);
+        wb_properties_from_cycle(&wire->cycle.calibration, &properties);
+        assert_int_equal(wb_validate_run(&wire->prediction, &properties, validation, 2,
+                                         &good->campaign.head.fit, NULL),
+                         WB_OK);
+    }
     wb_recordings_results_judge(&good->results);
 }
 
@@ -145,12 +153,14 @@ static const char *const good_files[] = {
     "report.pdf",
     "report.html",
     "report.json",
+    "figures/all-moments.svg",
     "figures/all-bench.svg",
     "figures/all-calibration.svg",
     "figures/all-validation.svg",
     "figures/all-errors.svg",
     "figures/type1-ways.svg",
     "figures/type1-residuals.svg",
+    "figures/type1-prediction.svg",
     "figures/type1-forest.svg",
     "figures/type1-moments.svg",
     "figures/type1-valley.svg",
@@ -200,7 +210,7 @@ static void the_same_results_give_the_same_bytes_in_all_files(void **state)
     }
     /* All there is, and nothing left over from writing. */
     assert_int_equal(count_files("once"), 4);
-    assert_int_equal(count_files("once/figures"), 32);
+    assert_int_equal(count_files("once/figures"), 36);
 }
 
 static void every_output_says_virtual_rig_and_none_says_experiment(void **state)
@@ -245,7 +255,7 @@ static void the_html_page_needs_no_other_file_and_escapes_what_comes_from_files(
     int n = 0;
     for (const char *c = html; (c = strstr(c, "<svg")); c++)
         n++;
-    assert_int_equal(n, 16);
+    assert_int_equal(n, 18);
     /* Ids are unique over all figures. */
     assert_non_null(strstr(html, "id=\"type1-cycles-0\""));
     assert_non_null(strstr(html, "id=\"type1-samples-0\""));
@@ -341,7 +351,7 @@ static void the_json_file_holds_the_computed_numbers(void **state)
     assert_close_relative(value * WB_MN,
                           wire->steps[WB_RECORDINGS_VALIDATION].result.curve.max_force, 1e-12);
     assert_int_equal(wb_json_length(wb_json_get(root, "recordings")), 4);
-    assert_int_equal(wb_json_length(wb_json_get(root, "files")), 35);
+    assert_int_equal(wb_json_length(wb_json_get(root, "files")), 39);
     wb_json_destroy(root);
 }
 
@@ -413,7 +423,7 @@ static void a_campaign_may_ask_for_the_papers_route_alone(void **state)
     char text[1000];
     snprintf(text, sizeof text, "%swhole_cycle: false\n", good_campaign);
     compute("paper.yaml", text, 1, &campaign, &results);
-    assert_int_equal(results.wires[0].cycle_state, WB_RECORDINGS_NOT_WANTED);
+    assert_int_equal(results.wires[0].cycle_states[0], WB_RECORDINGS_NOT_WANTED);
     assert_int_equal(results.outcome.n_steps, 6);
     assert_int_equal(wb_kind_write(&wb_recordings_kind, &results, in_folder("paper"), false),
                      WB_OK);
@@ -574,7 +584,7 @@ static void what_cannot_be_used_or_calibrated_is_told_with_the_reason(void **sta
         assert_int_equal(wire->steps[WB_RECORDINGS_CALIBRATION].state, WB_RECORDINGS_FAILED);
         assert_true(wire->steps[WB_RECORDINGS_CALIBRATION].problem.length > 10);
         assert_int_equal(wire->steps[WB_RECORDINGS_VALIDATION].state, WB_RECORDINGS_NOT_WANTED);
-        assert_int_not_equal(wire->cycle_state, WB_RECORDINGS_NOT_WANTED);
+        assert_int_not_equal(wire->cycle_states[0], WB_RECORDINGS_NOT_WANTED);
         assert_int_equal(
             wb_kind_write(&wb_recordings_kind, &results, in_folder("made-up"), threads > 1), WB_OK);
         texts[threads - 1] = read_text("made-up/report.json", NULL);

@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "analysis/report/bundles/bundles_kind.h"
 #include "analysis/dataset/simulated.h"
+#include "analysis/report/bundles/bundles_kind.h"
 #include "base/json.h"
 
 static struct wb_bundles campaign;

@@ -1,0 +1,348 @@
+#include "analysis/calibration/bend3p_calibrate.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "analysis/calibration/bending.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "three-point"
+
+const struct wb_setting_table wb_bend3p_calibrate_tables[WB_BEND3P_CALIBRATE_TABLES] = {
+    {.rows = wb_bend3p_data_rows,
+     .n = WB_BEND3P_DATA_ROWS,
+     .offset = offsetof(struct wb_bend3p_calibrate_settings, data)},
+    {.rows = wb_bend3p_fit_rows,
+     .n = WB_BEND3P_FIT_ROWS,
+     .offset = offsetof(struct wb_bend3p_calibrate_settings, fit)},
+};
+
+static const double coverage = 0.95;
+/* Parts of the largest curvature at which the moment is reported. */
+static const double parts[WB_BEND3P_MOMENTS] = {0.05, 0.1, 0.2, 0.5, 1.0};
+/* Bands where the machine says nothing: friction; nose radius over that of the rollers. */
+static const double least_friction = 0.0, most_friction = 0.6;
+static const double least_nose = 0.5, most_nose = 2.5;
+
+static double second_moment(double diameter)
+{
+    return M_PI * pow(diameter, 4) / 64.0;
+}
+
+static enum wb_status check_same(const struct wb_dataset *const *datasets, int n,
+                                 struct wb_reason *why)
+{
+    const struct wb_test_info *const a = &datasets[0]->info;
+    for (int i = 1; i < n; i++) {
+        const struct wb_test_info *const b = &datasets[i]->info;
+        if (strcmp(a->wire, b->wire) != 0 || a->outer_diameter != b->outer_diameter)
+            return wb_fail_to(why, WB_ERR_DATA,
+                              "tests of wire '%s' of %g mm and of wire '%s' of %g mm: expected one "
+                              "wire",
+                              a->wire, a->outer_diameter / WB_MM, b->wire,
+                              b->outer_diameter / WB_MM);
+        if (b->kind != WB_TEST_THREE_POINT || a->length != b->length ||
+            a->machine.roller_radius != b->machine.roller_radius)
+            return wb_fail_to(why, WB_ERR_DATA,
+                              "wire '%s': tests on different benches: expected one span and one "
+                              "radius of the rollers",
+                              a->wire);
+    }
+    return WB_OK;
+}
+
+/* What the machine says, and the ends of what it leaves open. */
+static void take_bench(struct wb_bend3p_calibration *c, const struct wb_machine *machine)
+{
+    const double roller = machine->roller_radius;
+    struct wb_band friction = machine->friction, nose = machine->nose_radius;
+    if (!friction.known)
+        friction = (struct wb_band){true, 0.5 * (least_friction + most_friction), least_friction,
+                                    most_friction};
+    if (!nose.known)
+        nose = (struct wb_band){true, roller, least_nose * roller, most_nose * roller};
+    c->is_compliance_known = machine->compliance.known;
+    c->bench = (struct wb_bend3p_bench){
+        .friction = friction.value,
+        .nose_radius = nose.value,
+        .compliance = machine->compliance.known ? machine->compliance.value : 0.0,
+    };
+    const double ends[WB_BEND3P_VARIANTS] = {friction.least, friction.most, nose.least, nose.most};
+    for (int i = 0; i < WB_BEND3P_VARIANTS; i++)
+        c->variants[i] = (struct wb_bend3p_variant){
+            .name = i < 2 ? "friction" : "nose radius", .value = ends[i], .is_possible = true};
+}
+
+/* Rigidity and moments of a law; errors by its moved companions. */
+static enum wb_status describe(struct wb_bend3p_member *m, const struct wb_bend3p_calibration *c)
+{
+    const double d = m->data.info.outer_diameter;
+    m->rigidity = m->fit.law.material.youngs_modulus * second_moment(d);
+    WB_TRY(wb_bending_moments(&m->fit.law, d, WB_BEND3P_MOMENTS, c->curvature, m->moment));
+    m->rigidity_error = 0.0;
+    memset(m->moment_error, 0, sizeof m->moment_error);
+    for (int i = 0; i < m->fit.n_moved; i++) {
+        const struct wb_law *const law = &m->fit.moved[i];
+        double moment[WB_BEND3P_MOMENTS];
+        WB_TRY(wb_bending_moments(law, d, WB_BEND3P_MOMENTS, c->curvature, moment));
+        m->rigidity_error +=
+            pow(log(law->material.youngs_modulus / m->fit.law.material.youngs_modulus), 2);
+        for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+            m->moment_error[k] += pow(log(moment[k] / m->moment[k]), 2);
+    }
+    m->rigidity_error = sqrt(m->rigidity_error) / WB_BEND3P_MOVED;
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+        m->moment_error[k] = sqrt(m->moment_error[k]) / WB_BEND3P_MOVED;
+    return WB_OK;
+}
+
+/* Index of the member with which a member's series begins. */
+static int series_of(const struct wb_bend3p_calibration *c, int i)
+{
+    for (int k = 0; k < i; k++) {
+        if (c->members[k].is_fitted &&
+            strcmp(c->members[k].data.info.piece.series, c->members[i].data.info.piece.series) == 0)
+            return k;
+    }
+    return i;
+}
+
+/* Mean and interval of the logarithms of `value` over members, with their own errors. */
+static void estimate(const struct wb_bend3p_calibration *c, const double *value,
+                     const double *error, struct wb_estimate *out)
+{
+    double sum = 0.0, own = 0.0, squares = 0.0;
+    int n = 0;
+    /* Over the series' means, or where all are of one, over the members. */
+    for (int i = 0; i < c->n_members; i++) {
+        if (!c->members[i].is_fitted || (c->n_series > 1 && series_of(c, i) != i))
+            continue;
+        double mean = 0.0;
+        int count = 0;
+        for (int k = i; k < c->n_members; k++) {
+            if (k == i || (c->n_series > 1 && c->members[k].is_fitted && series_of(c, k) == i)) {
+                mean += log(value[k]);
+                count++;
+            }
+        }
+        mean /= count;
+        sum += mean;
+        squares += mean * mean;
+        own = error[i];
+        n++;
+    }
+    const double mean = sum / n;
+    out->value = exp(mean);
+    out->deviation = n > 1 ? sqrt(fmax(0.0, (squares - n * mean * mean) / (n - 1))) : (double)NAN;
+    const double half =
+        n > 1 ? gsl_cdf_tdist_Qinv(0.5 * (1.0 - coverage), n - 1) * out->deviation / sqrt(n)
+              : 2.0 * own;
+    out->low = exp(mean - half);
+    out->high = exp(mean + half);
+    out->candidates_low = out->candidates_high = out->value;
+}
+
+struct numbers {
+    double *value, *error; /* (n_members) */
+};
+
+static void find_estimates(struct wb_bend3p_calibration *c, const struct numbers *w)
+{
+    for (int k = -1; k < WB_BEND3P_MOMENTS; k++) {
+        for (int i = 0; i < c->n_members; i++) {
+            w->value[i] = k < 0 ? c->members[i].rigidity : c->members[i].moment[k];
+            w->error[i] = k < 0 ? c->members[i].rigidity_error : c->members[i].moment_error[k];
+        }
+        estimate(c, w->value, w->error, k < 0 ? &c->rigidity : &c->moment[k]);
+    }
+    c->series_deviation = c->n_series > 1 ? c->rigidity.deviation : (double)NAN;
+}
+
+void wb_bend3p_calibrate_law(const struct wb_bend3p_calibration *c, int without, struct wb_law *law)
+{
+    struct wb_law_part mean[WB_BEND3P_PARTS];
+    const struct wb_law *any = NULL;
+    double share = 0.0;
+    int n = 0;
+    memset(mean, 0, sizeof mean);
+    for (int i = 0; i < c->n_members; i++)
+        n += c->members[i].is_fitted && i != without;
+    for (int i = 0; i < c->n_members; i++) {
+        if (!c->members[i].is_fitted || i == without)
+            continue;
+        any = &c->members[i].fit.law;
+        for (int k = 0; k < WB_BEND3P_PARTS; k++)
+            mean[k].modulus += any->parts[k].modulus / n;
+        share += any->isotropic_share / n;
+    }
+    for (int k = 0; k < WB_BEND3P_PARTS; k++)
+        mean[k].yield_strain = any->parts[k].yield_strain;
+    wb_law_init_parallel(law, mean, WB_BEND3P_PARTS, share, any->material.poissons_ratio);
+}
+
+static bool goes_on(const struct wb_bend3p_calibrate_settings *s, int done, int all)
+{
+    return !s->progress || s->progress(s->progress_context, done, all);
+}
+
+static enum wb_status fit_members(struct wb_bend3p_calibration *c,
+                                  const struct wb_bend3p_calibrate_settings *s, int all, int *done,
+                                  struct wb_reason *why)
+{
+    double sum = 0.0;
+    c->largest_curvature = HUGE_VAL;
+    c->is_rigidity_identifiable = true;
+    for (int i = 0; i < c->n_members; i++) {
+        struct wb_bend3p_member *const m = &c->members[i];
+        if (!goes_on(s, (*done)++, all))
+            return wb_fail_to(why, WB_ERR_TIMEOUT, "stopped");
+        if (m->data.n_points == 0)
+            continue;
+        m->is_fitted =
+            wb_bend3p_fit_run(&m->fit, &m->data, &c->bench, NULL, &s->fit, &m->why) == WB_OK;
+        if (!m->is_fitted)
+            continue;
+        c->n_fitted++;
+        c->is_rigidity_identifiable = c->is_rigidity_identifiable && m->data.has_unloading;
+        sum += m->fit.misfit * m->fit.misfit;
+        c->largest_curvature = fmin(c->largest_curvature, m->fit.largest_curvature);
+    }
+    if (c->n_fitted == 0)
+        return wb_fail_to(why, WB_ERR_DATA, "none of the %d tests can be fitted; the first: %s",
+                          c->n_members, c->members[0].why.text);
+    c->misfit = sqrt(sum / c->n_fitted);
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+        c->curvature[k] = parts[k] * c->largest_curvature;
+    for (int i = 0; i < c->n_members; i++) {
+        struct wb_bend3p_member *const m = &c->members[i];
+        if (!m->is_fitted)
+            continue;
+        WB_TRY(describe(m, c));
+        c->n_series += series_of(c, i) == i;
+    }
+    return WB_OK;
+}
+
+static void widen(struct wb_estimate *e, double ratio)
+{
+    e->candidates_low = fmin(e->candidates_low, e->value * ratio);
+    e->candidates_high = fmax(e->candidates_high, e->value * ratio);
+}
+
+/* The fits again, from where they ended, with another bench. */
+static enum wb_status vary(struct wb_bend3p_calibration *c, struct wb_bend3p_variant *variant,
+                           const struct wb_bend3p_bench *bench,
+                           const struct wb_bend3p_calibrate_settings *s, int all, int *done,
+                           struct wb_reason *why)
+{
+    const double d = c->members[0].data.info.outer_diameter;
+    double sum = 0.0, ratio = 0.0, ratios[WB_BEND3P_MOMENTS] = {0.0};
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_bend3p_member *const m = &c->members[i];
+        struct wb_bend3p_fit fit;
+        struct wb_reason reason;
+        double moment[WB_BEND3P_MOMENTS];
+        if (!goes_on(s, (*done)++, all))
+            return wb_fail_to(why, WB_ERR_TIMEOUT, "stopped");
+        if (!m->is_fitted || !variant->is_possible)
+            continue;
+        if (wb_bend3p_fit_run(&fit, &m->data, bench, &m->fit, &s->fit, &reason) != WB_OK) {
+            variant->is_possible = false;
+            continue;
+        }
+        WB_TRY(wb_bending_moments(&fit.law, d, WB_BEND3P_MOMENTS, c->curvature, moment));
+        sum += fit.misfit * fit.misfit / c->n_fitted;
+        ratio +=
+            log(fit.law.material.youngs_modulus / m->fit.law.material.youngs_modulus) / c->n_fitted;
+        for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+            ratios[k] += log(moment[k] / m->moment[k]) / c->n_fitted;
+    }
+    if (!variant->is_possible)
+        return WB_OK;
+    variant->misfit = sqrt(sum);
+    variant->rigidity = exp(ratio);
+    widen(&c->rigidity, variant->rigidity);
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        variant->moment[k] = exp(ratios[k]);
+        widen(&c->moment[k], variant->moment[k]);
+    }
+    return WB_OK;
+}
+
+static enum wb_status run(struct wb_bend3p_calibration *c, const struct wb_dataset *const *datasets,
+                          const struct wb_bend3p_calibrate_settings *s, struct wb_reason *why)
+{
+    const int all = c->n_members * (1 + WB_BEND3P_VARIANTS);
+    int done = 0;
+    double low = HUGE_VAL, high = 0.0;
+
+    take_bench(c, &datasets[0]->info.machine);
+    for (int i = 0; i < c->n_members; i++) {
+        struct wb_bend3p_member *const m = &c->members[i];
+        double first, last;
+        if (wb_bend3p_data_make(&m->data, datasets[i], &s->data, &m->why) != WB_OK)
+            continue;
+        wb_bend3p_fit_strains(&m->data, &first, &last);
+        low = fmin(low, first);
+        high = fmax(high, last);
+    }
+    if (high > 0.0) {
+        c->bench.first_strain = low;
+        c->bench.last_strain = high;
+    }
+    WB_TRY(fit_members(c, s, all, &done, why));
+    wb_bend3p_calibrate_law(c, -1, &c->law);
+    double *const room = calloc(2 * (size_t)c->n_members, sizeof *room);
+    if (!room)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", c->n_members);
+    find_estimates(c, &(struct numbers){room, room + c->n_members});
+    free(room);
+    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+        struct wb_bend3p_bench bench = c->bench;
+        /* Known: there is nothing to vary. */
+        if (c->variants[i].value == (i < 2 ? bench.friction : bench.nose_radius)) {
+            c->variants[i].misfit = c->misfit;
+            c->variants[i].rigidity = 1.0;
+            for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+                c->variants[i].moment[k] = 1.0;
+            done += c->n_members;
+            continue;
+        }
+        *(i < 2 ? &bench.friction : &bench.nose_radius) = c->variants[i].value;
+        WB_TRY(vary(c, &c->variants[i], &bench, s, all, &done, why));
+    }
+    return wb_bending_ludwik(&c->law, datasets[0]->info.outer_diameter, c->largest_curvature,
+                             &c->ludwik, &c->ludwik_misfit);
+}
+
+enum wb_status wb_bend3p_calibrate_run(struct wb_bend3p_calibration *calibration,
+                                       const struct wb_dataset *const *datasets, int n,
+                                       const struct wb_bend3p_calibrate_settings *settings,
+                                       struct wb_reason *why)
+{
+    const clock_t begin = clock();
+    *calibration = (struct wb_bend3p_calibration){.n_members = n};
+    WB_TRY(check_same(datasets, n, why));
+    calibration->members = calloc((size_t)n, sizeof *calibration->members);
+    if (!calibration->members)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
+    const enum wb_status status = run(calibration, datasets, settings, why);
+    calibration->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
+    if (status != WB_OK)
+        wb_bend3p_calibrate_release(calibration);
+    return status;
+}
+
+void wb_bend3p_calibrate_release(struct wb_bend3p_calibration *calibration)
+{
+    for (int i = 0; calibration->members && i < calibration->n_members; i++)
+        wb_bend3p_data_release(&calibration->members[i].data);
+    free(calibration->members);
+    calibration->members = NULL;
+    calibration->n_members = 0;
+}

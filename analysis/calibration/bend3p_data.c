@@ -1,0 +1,335 @@
+#include "analysis/calibration/bend3p_data.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/dataset/fit.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "three-point"
+
+#define AT(field) offsetof(struct wb_bend3p_data_settings, field)
+
+const struct wb_setting wb_bend3p_data_rows[WB_BEND3P_DATA_ROWS] = {
+    {.name = "seating",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(seating),
+     .least = 0.0,
+     .largest = 0.1,
+     .fallback = 0.01,
+     .option = "seating",
+     .argument = "R",
+     .help = "Part of the span, beyond the first contact, that serves no fit"},
+    {.name = "usable_mm",
+     .unit = "mm",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(usable),
+     .scale = WB_MM,
+     .least = 1e-3,
+     .largest = 1e5,
+     .otherwise = "as the specimen's file says, else up to a kink",
+     .option = "usable-mm",
+     .argument = "D",
+     .help = "Travel up to which the test serves"},
+    {.name = "point_step",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(step),
+     .least = 1e-4,
+     .largest = 0.05,
+     .fallback = 5e-3,
+     .option = "point-step",
+     .argument = "R",
+     .help = "Part of the span between points that are fitted"},
+};
+
+#undef AT
+
+enum {
+    LEAST_POINTS = 10,
+    LEAST_BEFORE = 5, /* readings before the contact that make a zero */
+    MOST_POINTS = 1000
+};
+
+/* Parts of the largest force between which a line leads back to the first contact. */
+static const double line_from = 0.02, line_to = 0.08;
+/* A kink: the force falls by more than this part of its largest so far (and several times the
+ * noise) within this part of the span. */
+static const double kink_drop = 0.03, kink_reach = 0.03, kink_noises = 6.0;
+/* Part of the span below the turn where the way back begins: friction turns there. */
+static const double turn_distance = 0.02;
+/* Part of the largest force at which it ends. */
+static const double last_force = 0.03;
+static const double largest_part = 1.0 / 3.0; /* of the span */
+
+const char *wb_bend3p_limit_name(enum wb_bend3p_limit limit)
+{
+    static const char *const names[WB_BEND3P_LIMITS] = {"end of the loading", "given", "kink",
+                                                        "third of the span"};
+    return names[limit];
+}
+
+/* The readings of the first loading, by growing travel, and of the way back. */
+struct readings {
+    size_t n, top; /* all; index of the largest travel */
+    double *travel, *force;
+};
+
+static void release(struct readings *r)
+{
+    free(r->travel);
+    free(r->force);
+}
+
+static bool collect(const struct wb_dataset *dataset, struct readings *r)
+{
+    r->travel = calloc(dataset->n_rows + 1, sizeof *r->travel);
+    r->force = calloc(dataset->n_rows + 1, sizeof *r->force);
+    if (!r->travel || !r->force)
+        return false;
+    for (size_t i = 0; i < dataset->n_rows; i++) {
+        const struct wb_row *const row = &dataset->rows[i];
+        if (row->cycle != dataset->rows[0].cycle || !isfinite(row->deflection) ||
+            !isfinite(row->force))
+            continue;
+        r->travel[r->n] = row->deflection;
+        r->force[r->n] = row->force;
+        if (row->deflection > r->travel[r->top])
+            r->top = r->n;
+        r->n++;
+    }
+    return true;
+}
+
+/* Where the line through the first rise of the force comes from zero. */
+static bool find_contact(const struct readings *r, double zero, double largest, size_t last,
+                         double *contact)
+{
+    size_t from = 0, to = 0;
+    for (size_t i = 0; i <= last && r->force[i] - zero < line_to * largest; i++)
+        to = i + 1;
+    for (size_t i = 0; i < to; i++) {
+        if (r->force[i] - zero < line_from * largest)
+            from = i + 1;
+    }
+    /* A coarse curve has few readings there: then the first two. */
+    if (to < from + 3) {
+        to = from + 3;
+        if (to > last)
+            return false;
+    }
+    struct wb_fit_line line;
+    double *const force = calloc(to - from, sizeof *force);
+    if (!force)
+        return false;
+    for (size_t i = from; i < to; i++)
+        force[i - from] = r->force[i] - zero;
+    const bool found = wb_fit_line(r->travel + from, force, to - from, &line) && line.slope > 0.0;
+    free(force);
+    *contact = found ? -line.value / line.slope : (double)NAN;
+    return found;
+}
+
+/* Median of the readings that lie before the contact by more than `distance`. */
+static bool find_zero(const struct readings *r, double contact, double distance, double *zero)
+{
+    size_t n = 0;
+    while (n < r->top && r->travel[n] < contact - distance)
+        n++;
+    if (n < LEAST_BEFORE)
+        return false;
+    double *const values = calloc(n, sizeof *values);
+    if (!values)
+        return false;
+    memcpy(values, r->force, n * sizeof *values);
+    *zero = wb_fit_median(values, n);
+    free(values);
+    return true;
+}
+
+/* Scatter of single readings about the mean of their neighbours. */
+static double find_noise(const struct readings *r, size_t last)
+{
+    if (last < 3)
+        return 0.0;
+    double *const values = calloc(last, sizeof *values);
+    if (!values)
+        return 0.0;
+    for (size_t i = 1; i < last; i++)
+        values[i - 1] = fabs(r->force[i] - 0.5 * (r->force[i - 1] + r->force[i + 1]));
+    const double noise = 1.4826 * wb_fit_median(values, last - 1) / sqrt(1.5);
+    free(values);
+    return noise;
+}
+
+/* Index of the last reading before the force breaks down. */
+static size_t find_kink(const struct readings *r, double reach, double noise)
+{
+    double largest = r->force[0];
+    size_t at = 0;
+    for (size_t i = 1; i <= r->top; i++) {
+        if (r->force[i] > largest) {
+            largest = r->force[i];
+            at = i;
+        }
+        if (r->force[i] < largest - fmax(kink_drop * fabs(largest), kink_noises * noise) &&
+            r->travel[i] - r->travel[at] < reach)
+            return at;
+    }
+    return r->top;
+}
+
+/* Force at a travel: of a line through the readings about it, or between two. */
+static double force_at(const struct readings *r, size_t from, size_t to, double travel,
+                       double half_step)
+{
+    size_t n = 0, first = from;
+    double before_t = (double)NAN, before_f = 0.0;
+    for (size_t i = from; i <= to; i++) {
+        if (fabs(r->travel[i] - travel) <= half_step) {
+            if (n == 0)
+                first = i;
+            n = i - first + 1;
+        }
+    }
+    struct wb_fit_line line;
+    if (n >= 4) {
+        double *const x = calloc(n, sizeof *x);
+        bool fitted = false;
+        if (x) {
+            for (size_t i = 0; i < n; i++)
+                x[i] = r->travel[first + i] - travel;
+            fitted = wb_fit_line(x, r->force + first, n, &line);
+            free(x);
+        }
+        if (fitted)
+            return line.value;
+    }
+    for (size_t i = from; i <= to; i++) {
+        if (isfinite(before_t) && (before_t - travel) * (r->travel[i] - travel) <= 0.0 &&
+            before_t != r->travel[i])
+            return before_f +
+                   (travel - before_t) / (r->travel[i] - before_t) * (r->force[i] - before_f);
+        before_t = r->travel[i];
+        before_f = r->force[i];
+    }
+    return (double)NAN;
+}
+
+static void add_point(struct wb_bend3p_data *data, double travel, double force, bool is_unloading)
+{
+    if (!isfinite(force) || data->n_points == MOST_POINTS)
+        return;
+    data->points[data->n_points++] = (struct wb_bend3p_point){travel, force, is_unloading};
+    data->max_force = fmax(data->max_force, force);
+}
+
+static void add_points(struct wb_bend3p_data *data, const struct readings *r, double span,
+                       const struct wb_bend3p_data_settings *s, size_t last)
+{
+    const double first = data->first_contact + s->seating * span;
+    const double step = s->step * span;
+    const int n = (int)floor((data->usable - first) / step);
+    for (int i = 0; i <= n && i < MOST_POINTS / 2; i++) {
+        const double at = data->usable - (n - i) * step;
+        add_point(data, at, force_at(r, 0, last, at, 0.5 * step) - data->zero_force, false);
+    }
+    /* The way back counts where the wire came to it within its usable range. */
+    if (data->usable < r->travel[r->top] - 0.5 * step || r->top + 1 >= r->n)
+        return;
+    const double largest = data->max_force;
+    for (double at = r->travel[r->top] - turn_distance * span; at > first; at -= step) {
+        const double force = force_at(r, r->top, r->n - 1, at, 0.5 * step) - data->zero_force;
+        if (!(force > last_force * largest))
+            break;
+        add_point(data, at, force, true);
+        data->has_unloading = true;
+    }
+}
+
+static enum wb_status make(struct wb_bend3p_data *data, const struct readings *r,
+                           const struct wb_bend3p_data_settings *s, struct wb_reason *why)
+{
+    const struct wb_test_info *const info = &data->info;
+    const double span = info->length;
+    const struct wb_band *const given = &info->piece.usable_travel;
+
+    data->noise = find_noise(r, r->top);
+    data->usable = r->travel[r->top];
+    data->limit = WB_BEND3P_LIMIT_END;
+    const double wanted = s->usable > 0.0 ? s->usable : given->known ? given->least : 0.0;
+    size_t last = r->top;
+    if (wanted > 0.0) {
+        while (last > 0 && r->travel[last] > wanted)
+            last--;
+        if (wanted < data->usable)
+            data->limit = WB_BEND3P_LIMIT_GIVEN;
+        data->usable = fmin(data->usable, wanted);
+    } else {
+        last = find_kink(r, kink_reach * span, data->noise);
+        if (last < r->top)
+            data->limit = WB_BEND3P_LIMIT_KINK;
+        data->usable = r->travel[last];
+    }
+    double largest = 0.0;
+    for (size_t i = 0; i <= last; i++)
+        largest = fmax(largest, r->force[i]);
+    bool found = find_contact(r, 0.0, largest, last, &data->first_contact);
+    data->is_zeroed = found && find_zero(r, data->first_contact, 0.01 * span, &data->zero_force);
+    if (data->is_zeroed)
+        found = find_contact(r, data->zero_force, largest - data->zero_force, last,
+                             &data->first_contact);
+    if (!found)
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s', sample %d: no first contact: the force does not rise from "
+                          "zero",
+                          info->wire, info->sample);
+    if (data->usable > data->first_contact + largest_part * span) {
+        data->usable = data->first_contact + largest_part * span;
+        data->limit = WB_BEND3P_LIMIT_THIRD;
+    }
+    data->points = calloc(MOST_POINTS, sizeof *data->points);
+    if (!data->points)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for points");
+    add_points(data, r, span, s, r->top);
+    if (data->n_points < LEAST_POINTS)
+        return wb_fail_to(why, WB_ERR_DATA,
+                          "wire '%s', sample %d: %d points from %.3g to %.3g mm of travel (%s): "
+                          "expected at least %d",
+                          info->wire, info->sample, data->n_points,
+                          (data->first_contact + s->seating * span) / WB_MM, data->usable / WB_MM,
+                          wb_bend3p_limit_name(data->limit), LEAST_POINTS);
+    return WB_OK;
+}
+
+enum wb_status wb_bend3p_data_make(struct wb_bend3p_data *data, const struct wb_dataset *dataset,
+                                   const struct wb_bend3p_data_settings *settings,
+                                   struct wb_reason *why)
+{
+    struct readings readings = {.n = 0};
+    enum wb_status status = WB_OK;
+
+    *data = (struct wb_bend3p_data){.info = dataset->info};
+    if (dataset->info.kind != WB_TEST_THREE_POINT)
+        return wb_fail_to(why, WB_ERR_DATA, "wire '%s': not a three-point bending test",
+                          dataset->info.wire);
+    if (!collect(dataset, &readings))
+        status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %zu rows", dataset->n_rows);
+    else if (readings.n < LEAST_POINTS)
+        status = wb_fail_to(why, WB_ERR_DATA, "wire '%s', sample %d: %zu rows: expected %d",
+                            dataset->info.wire, dataset->info.sample, readings.n, LEAST_POINTS);
+    if (status == WB_OK)
+        status = make(data, &readings, settings, why);
+    release(&readings);
+    if (status != WB_OK)
+        wb_bend3p_data_release(data);
+    return status;
+}
+
+void wb_bend3p_data_release(struct wb_bend3p_data *data)
+{
+    free(data->points);
+    data->points = NULL;
+    data->n_points = 0;
+}

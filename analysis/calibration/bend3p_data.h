@@ -1,0 +1,67 @@
+/* A three-point bending test as points to fit: zero of the force, first contact, usable range, and
+ * an even grid of the first loading and, where there is one, the way back.
+ *
+ * Where the wire was first touched is not seen: the force rises from nothing, and a wire that is
+ * not quite straight settles on its rollers before it bends. Below some hundredth of the span that
+ * settling decides. So the points begin above it, and the first contact is left to the fit; what is
+ * found here is where it looks first.
+ */
+#ifndef WB_ANALYSIS_BEND3P_DATA_H
+#define WB_ANALYSIS_BEND3P_DATA_H
+
+#include <stdbool.h>
+
+#include "analysis/dataset/dataset.h"
+#include "base/reason.h"
+#include "base/setting.h"
+#include "base/status.h"
+
+enum wb_bend3p_limit {
+    WB_BEND3P_LIMIT_END,   /* of the loading */
+    WB_BEND3P_LIMIT_GIVEN, /* by the settings or the specimen */
+    WB_BEND3P_LIMIT_KINK,  /* the force breaks down: the wire slips */
+    WB_BEND3P_LIMIT_THIRD, /* a third of the span, up to where the model is verified */
+    WB_BEND3P_LIMITS
+};
+
+/* "end of the loading", "given", "kink", "third of the span" */
+const char *wb_bend3p_limit_name(enum wb_bend3p_limit limit);
+
+struct wb_bend3p_point {
+    double travel; /* m, as the machine has it */
+    double force;  /* N, zeroed */
+    bool is_unloading;
+};
+
+struct wb_bend3p_data {
+    struct wb_test_info info;
+    int n_points;
+    struct wb_bend3p_point *points; /* owned; loading first, in the order of the test */
+    bool has_unloading;
+    double zero_force;    /* N, taken off */
+    bool is_zeroed;       /* there were readings before the contact to take it from */
+    double first_contact; /* m of travel: where to look first */
+    double noise;         /* N, of a reading */
+    double max_force;     /* N, of the points */
+    double usable;        /* m of travel: the last that is used */
+    enum wb_bend3p_limit limit;
+};
+
+struct wb_bend3p_data_settings {
+    double seating; /* of the span, beyond the first contact: points begin there */
+    double usable;  /* m of travel; 0: as the specimen says, else a kink */
+    double step;    /* of the span, between points */
+};
+enum {
+    WB_BEND3P_DATA_ROWS = 3
+};
+extern const struct wb_setting wb_bend3p_data_rows[WB_BEND3P_DATA_ROWS];
+
+/* WB_ERR_DATA where a test cannot be fitted, with the reason in `why` (NULL: logged). */
+WB_MUST_CHECK enum wb_status wb_bend3p_data_make(struct wb_bend3p_data *data,
+                                                 const struct wb_dataset *dataset,
+                                                 const struct wb_bend3p_data_settings *settings,
+                                                 struct wb_reason *why);
+void wb_bend3p_data_release(struct wb_bend3p_data *data); /* accepts a zeroed one */
+
+#endif

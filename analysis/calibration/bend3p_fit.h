@@ -1,0 +1,69 @@
+/* A law fitted to one three-point bending test, with its first contact.
+ *
+ * Least squares (GSL multifit_nlinear, dogleg) on the force. Free are the moduli of parallel parts
+ * (fe/material/law.h) at given yield strains, the travel of the first contact, and, where there is
+ * a way back, the isotropic share. Friction, the nose's radius and the machine's compliance are the
+ * caller's: the curves do not tell them (theory, "Three-point bending").
+ */
+#ifndef WB_ANALYSIS_BEND3P_FIT_H
+#define WB_ANALYSIS_BEND3P_FIT_H
+
+#include <stdbool.h>
+
+#include "analysis/calibration/bend3p_data.h"
+#include "base/reason.h"
+#include "base/setting.h"
+#include "base/status.h"
+#include "fe/material/law.h"
+
+enum {
+    WB_BEND3P_PARTS = 7,    /* of the law, the last elastic */
+    WB_BEND3P_MOST_FREE = 9 /* and first contact, isotropic share */
+};
+
+/* What is given of the bench. */
+struct wb_bend3p_bench {
+    double friction, nose_radius, compliance; /* 1, m, m/N */
+    double first_strain, last_strain; /* yield strains of the parts; 0: as the data ask for */
+};
+
+struct wb_bend3p_fit_settings {
+    double force_share;   /* of the largest force: a point weighs one over this or the noise */
+    double modulus_prior; /* 1, of the second differences of ln(modulus) */
+    double contact_prior; /* of the span: standard deviation of the first contact about the place
+                             where the readings show it */
+    int n_elements;       /* of half the wire */
+    int max_iterations;
+};
+enum {
+    WB_BEND3P_FIT_ROWS = 5
+};
+extern const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS];
+
+struct wb_bend3p_fit {
+    struct wb_law law;
+    double first_contact, first_contact_error; /* m of travel */
+    bool is_converged;                         /* else the iterations ran out */
+    double misfit;                             /* RMS of the force residuals over F_max */
+    double largest_curvature;                  /* 1/m, in the middle */
+    double wrapped;                            /* rad, largest */
+    /* The law moved by WB_BEND3P_MOVED standard errors in independent directions, the first
+     * contact's error among them: see struct wb_cycle_fit. */
+    int n_moved;
+    struct wb_law moved[WB_BEND3P_MOST_FREE];
+    int runs;
+    double cpu_s;
+};
+#define WB_BEND3P_MOVED 0.1
+
+/* The yield strains that a test asks for. */
+void wb_bend3p_fit_strains(const struct wb_bend3p_data *data, double *first, double *last);
+
+/* `start`: a fit of the same test to begin with, or NULL. WB_ERR_CONVERGENCE where the beam does
+ * not come to the end of the test; the reason goes to `why` (NULL: logged). */
+WB_MUST_CHECK enum wb_status
+wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend3p_data *data,
+                  const struct wb_bend3p_bench *bench, const struct wb_bend3p_fit *start,
+                  const struct wb_bend3p_fit_settings *settings, struct wb_reason *why);
+
+#endif

@@ -1,0 +1,14 @@
+/* Scores of a validation beyond the first loading as JSON: the same in `validate --json` and
+ * report.json. */
+#ifndef WB_ANALYSIS_VALIDATE_JSON_H
+#define WB_ANALYSIS_VALIDATE_JSON_H
+
+#include "analysis/validation/validate.h"
+#include "base/json.h"
+
+/* Sets the members clamp_curvature_1_m, beyond_known_curvature, unloading, residual_deflection_mm
+ * and loop_energy_mJ of `item`; without a way back `unloading` is null and the last two are left
+ * out. */
+void wb_validate_json_put_cycles(struct wb_json *item, const struct wb_validate_result *result);
+
+#endif

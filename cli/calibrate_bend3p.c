@@ -1,0 +1,195 @@
+#include "cli/calibrate_bend3p.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "analysis/calibration/properties.h"
+#include "base/interrupt.h"
+#include "base/json.h"
+#include "base/progress.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+/* N mm2 in one N m2; N mm in one N m. */
+static const double N_MM2 = 1e-6, N_MM = 1e-3;
+
+static bool report_fits(void *context, int done, int all)
+{
+    (void)all;
+    wb_progress_update(context, done, NULL);
+    return !wb_interrupted();
+}
+
+static void print_estimate(const char *name, const struct wb_estimate *e, double unit,
+                           const char *unit_name)
+{
+    printf("%-26s %9.4g %-6s interval %.4g to %.4g  friction and nose %.4g to %.4g\n", name,
+           e->value / unit, unit_name, e->low / unit, e->high / unit, e->candidates_low / unit,
+           e->candidates_high / unit);
+}
+
+static void print_member(const struct wb_bend3p_member *m)
+{
+    const struct wb_test_info *const info = &m->data.info;
+    printf("sample %d%s%s: ", info->sample, info->piece.series[0] ? ", series " : "",
+           info->piece.series);
+    if (!m->is_fitted) {
+        printf("not fitted: %s\n", m->why.text);
+        return;
+    }
+    printf("EI %.4g N mm2 +- %.2g %%, first contact %.3f +- %.2g mm, used up to %.3g mm (%s), "
+           "misfit %.2g%s\n",
+           m->rigidity / N_MM2, 200.0 * m->rigidity_error, m->fit.first_contact / WB_MM,
+           2.0 * m->fit.first_contact_error / WB_MM, m->data.usable / WB_MM,
+           wb_bend3p_limit_name(m->data.limit), m->fit.misfit,
+           m->data.has_unloading ? ", with the way back" : "");
+}
+
+static void print_text(const struct wb_bend3p_calibration *c)
+{
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    char name[64];
+    printf("wire %s, three-point bending, span %g mm, %d of %d tests fitted%s\n", info->wire,
+           info->length / WB_MM, c->n_fitted, c->n_members,
+           info->is_simulation ? ", simulation" : "");
+    printf("rollers %g mm, nose %g mm, friction %g, compliance %g mm/N%s\n",
+           info->machine.roller_radius / WB_MM, c->bench.nose_radius / WB_MM, c->bench.friction,
+           c->bench.compliance / WB_MM, c->is_compliance_known ? "" : " (not known)");
+    print_estimate("EI", &c->rigidity, N_MM2, "N mm2");
+    if (!c->is_rigidity_identifiable)
+        printf("EI is not identifiable from loading alone: what stands here is the law's form "
+               "before the first point\n");
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        snprintf(name, sizeof name, "M at %.4g /m", c->curvature[k]);
+        print_estimate(name, &c->moment[k], N_MM, "N mm");
+    }
+    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+        const struct wb_bend3p_variant *const v = &c->variants[i];
+        if (v->value == (i < 2 ? c->bench.friction : c->bench.nose_radius))
+            continue; /* known */
+        printf("%s %g%s: ", v->name, i < 2 ? v->value : v->value / WB_MM, i < 2 ? "" : " mm");
+        if (v->is_possible)
+            printf("EI x %.4f, M at the largest curvature x %.4f, misfit %.2g (%.2g)\n",
+                   v->rigidity, v->moment[WB_BEND3P_MOMENTS - 1], v->misfit, c->misfit);
+        else
+            printf("no test of this kind comes so far\n");
+    }
+    if (c->n_series > 1)
+        printf("%d series; their means differ by a standard deviation of %.2g %%, which is the "
+               "interval's\n",
+               c->n_series, 100.0 * c->series_deviation);
+    for (int i = 0; i < c->n_members; i++)
+        print_member(&c->members[i]);
+}
+
+static void set_estimate(struct wb_json *object, const struct wb_estimate *e, double unit)
+{
+    wb_json_set_number(object, "value", e->value / unit);
+    wb_json_set_number(object, "low", e->low / unit);
+    wb_json_set_number(object, "high", e->high / unit);
+    wb_json_set_number(object, "band_low", e->candidates_low / unit);
+    wb_json_set_number(object, "band_high", e->candidates_high / unit);
+}
+
+static int print_json(const struct wb_bend3p_calibration *c)
+{
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "wire", info->wire);
+    wb_json_set_text(root, "kind", wb_machine_kind_name(info->kind));
+    wb_json_set_number(root, "span_mm", info->length / WB_MM);
+    wb_json_set_number(root, "nose_radius_mm", c->bench.nose_radius / WB_MM);
+    wb_json_set_number(root, "friction", c->bench.friction);
+    wb_json_set_number(root, "compliance_mm_N", c->bench.compliance / WB_MM);
+    wb_json_set_boolean(root, "compliance_known", c->is_compliance_known);
+    wb_json_set_integer(root, "series", c->n_series);
+    wb_json_set_number(root, "series_deviation", c->series_deviation);
+    wb_json_set_number(root, "misfit", c->misfit);
+    wb_json_set_boolean(root, "rigidity_identifiable", c->is_rigidity_identifiable);
+    set_estimate(wb_json_set_object(root, "flexural_rigidity_N_mm2"), &c->rigidity, N_MM2);
+    struct wb_json *const moments = wb_json_set_array(root, "moment_curvature");
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        struct wb_json *const item = wb_json_append_object(moments);
+        wb_json_set_number(item, "curvature_1_m", c->curvature[k]);
+        set_estimate(wb_json_set_object(item, "moment_N_mm"), &c->moment[k], N_MM);
+    }
+    struct wb_json *const bands = wb_json_set_array(root, "bands");
+    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+        const struct wb_bend3p_variant *const v = &c->variants[i];
+        struct wb_json *const item = wb_json_append_object(bands);
+        wb_json_set_text(item, "of", v->name);
+        wb_json_set_number(item, i < 2 ? "value" : "value_mm", i < 2 ? v->value : v->value / WB_MM);
+        wb_json_set_boolean(item, "possible", v->is_possible);
+        wb_json_set_number(item, "misfit", v->is_possible ? v->misfit : (double)NAN);
+        wb_json_set_number(item, "rigidity_ratio", v->is_possible ? v->rigidity : (double)NAN);
+    }
+    struct wb_json *const tests = wb_json_set_array(root, "tests");
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_bend3p_member *const m = &c->members[i];
+        struct wb_json *const item = wb_json_append_object(tests);
+        wb_json_set_integer(item, "sample", m->data.info.sample);
+        wb_json_set_text(item, "series", m->data.info.piece.series);
+        wb_json_set_boolean(item, "fitted", m->is_fitted);
+        if (!m->is_fitted) {
+            wb_json_set_text(item, "why", m->why.text);
+            continue;
+        }
+        wb_json_set_number(item, "flexural_rigidity_N_mm2", m->rigidity / N_MM2);
+        wb_json_set_number(item, "rigidity_error", m->rigidity_error);
+        wb_json_set_number(item, "first_contact_mm", m->fit.first_contact / WB_MM);
+        wb_json_set_number(item, "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
+        wb_json_set_number(item, "usable_mm", m->data.usable / WB_MM);
+        wb_json_set_text(item, "usable_by", wb_bend3p_limit_name(m->data.limit));
+        wb_json_set_boolean(item, "with_unloading", m->data.has_unloading);
+        wb_json_set_boolean(item, "converged", m->fit.is_converged);
+        wb_json_set_number(item, "misfit", m->fit.misfit);
+    }
+    wb_json_set_number(root, "cpu_s", c->cpu_s);
+    return wb_command_print_json(root);
+}
+
+static int deliver(const struct wb_bend3p_calibration *c, const struct wb_command_common *common)
+{
+    bool complete = c->n_fitted == c->n_members;
+    if (common->output) {
+        const enum wb_status status =
+            wb_properties_write_bend3p(common->output, c, common->inputs, common->n, common->force);
+        if (status != WB_OK)
+            return wb_command_exit(status);
+    }
+    if (common->json) {
+        const int code = print_json(c);
+        if (code != WB_EXIT_OK)
+            return code;
+    } else {
+        print_text(c);
+    }
+    if (!complete)
+        wb_warn("%d of %d tests could not be fitted", c->n_members - c->n_fitted, c->n_members);
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_bend3p_member *const m = &c->members[i];
+        if (!m->is_fitted || m->fit.is_converged)
+            continue;
+        wb_warn("sample %d: the iterations ran out (--curve-iterations)", m->data.info.sample);
+        complete = false;
+    }
+    return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+}
+
+int wb_calibrate_bend3p(struct wb_bend3p_calibrate_settings *settings,
+                        const struct wb_datasets *datasets, const struct wb_command_common *common)
+{
+    struct wb_bend3p_calibration calibration = {0};
+    struct wb_progress progress;
+    settings->progress = report_fits;
+    settings->progress_context = &progress;
+    wb_progress_start(&progress, "calibrate", "fits",
+                      (double)datasets->n * (1 + WB_BEND3P_VARIANTS));
+    const enum wb_status status =
+        wb_bend3p_calibrate_run(&calibration, datasets->pointers, datasets->n, settings, NULL);
+    wb_progress_finish(&progress);
+    const int code = status == WB_OK ? deliver(&calibration, common) : wb_command_exit(status);
+    wb_bend3p_calibrate_release(&calibration);
+    return code;
+}

@@ -1,0 +1,183 @@
+#include "cli/calibrate_constituents.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/calibration/layers.h"
+#include "base/number.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/settings.h"
+#include "fe/material/material_file.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+enum {
+    KEY_CONSTITUENTS = WB_KEY_OWN,
+    KEY_CONDUCTOR,
+    KEY_JACKET,
+    KEY_CURVATURE,
+    POINTS = 21
+};
+
+struct options {
+    struct wb_command_common common;
+    struct wb_layers layers;
+    const char *conductor, *jacket;
+    double largest_curvature; /* 1/m */
+};
+
+static const struct argp_option other_options[] = {
+    {"constituents", KEY_CONSTITUENTS, NULL, 0, "A wire from its constituents", 0},
+    {"conductor", KEY_CONDUCTOR, "NAME|FILE", 0, "Material of the conductor", 0},
+    {"jacket", KEY_JACKET, "NAME|FILE", 0, "Material of the jacket", 0},
+    {"largest-curvature", KEY_CURVATURE, "K", 0,
+     "Curvature up to which moments are printed: 0.001 to 1e6 1/m (50)", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    switch (key) {
+    case KEY_CONSTITUENTS:
+        return 0;
+    case KEY_CONDUCTOR:
+        o->conductor = argument;
+        return 0;
+    case KEY_JACKET:
+        o->jacket = argument;
+        return 0;
+    case KEY_CURVATURE:
+        if (!wb_number_parse(argument, &o->largest_curvature) || !(o->largest_curvature >= 0.001) ||
+            !(o->largest_curvature <= 1e6))
+            argp_error(state, "--largest-curvature: expected a number from 0.001 to 1e6, not '%s'",
+                       argument);
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->conductor || !(o->layers.conductor_diameter > 0.0))
+            argp_error(state, "say what the conductor is: --conductor MATERIAL "
+                              "--conductor-diameter-mm D");
+        if ((o->jacket != NULL) != (o->layers.outer_diameter > 0.0))
+            argp_error(state, "--jacket and --outer-diameter-mm go together");
+        break;
+    default:
+        break;
+    }
+    return wb_command_parse_common(key, argument, state, &o->common);
+}
+
+static const struct argp argp = {
+    .options = other_options,
+    .parser = parse,
+    .args_doc = "",
+    .doc = "A wire's flexural rigidity and Poisson's ratio by eqs. 8 and 9, and its bending moment "
+           "over curvature, from the materials of conductor and jacket. Of a stranded conductor "
+           "both limits: strands bonded to a plane section, and strands that slide without "
+           "friction.",
+};
+
+bool wb_calibrate_is_constituents(int argc, char **argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (strcmp(argv[i], "--constituents") == 0)
+            return true;
+    }
+    return false;
+}
+
+static enum wb_status read_material(const char *name, struct wb_material *material)
+{
+    char path[WB_PATH];
+    struct wb_material_file file;
+    WB_TRY(wb_file_find_fixture(path, "materials", name, NULL));
+    WB_TRY(wb_material_file_read(&file, path));
+    if (!isfinite(file.material.poissons_ratio))
+        return wb_fail(WB_ERR_DATA, "%s: poissons_ratio is missing, which eq. 9 needs", path);
+    *material = file.material;
+    return WB_OK;
+}
+
+/* Curvatures in equal steps, and the moments of both limits, N m. */
+struct table {
+    double curvature[POINTS], bonded[POINTS], sliding[POINTS];
+};
+
+static enum wb_status run(struct options *o, struct table *table)
+{
+    WB_TRY(read_material(o->conductor, &o->layers.conductor));
+    if (o->jacket)
+        WB_TRY(read_material(o->jacket, &o->layers.jacket));
+    else
+        o->layers.outer_diameter = o->layers.conductor_diameter;
+    for (int i = 0; i < POINTS; i++)
+        table->curvature[i] = o->largest_curvature * i / (POINTS - 1);
+    WB_TRY(wb_layers_moments(&o->layers, false, table->curvature, POINTS, table->bonded, NULL));
+    return wb_layers_moments(&o->layers, true, table->curvature, POINTS, table->sliding, NULL);
+}
+
+static double second_moment(const struct wb_layers *layers)
+{
+    return M_PI * pow(layers->outer_diameter, 4.0) / 64.0;
+}
+
+static void print_text(const struct options *o, const struct table *table)
+{
+    const double squared = WB_MM * WB_MM;
+    const double bonded = wb_layers_rigidity(&o->layers, false);
+    const double sliding = wb_layers_rigidity(&o->layers, true);
+    const bool two = o->layers.strands > 0;
+    printf("%-22s %10.5g N mm2%s\n", "E I, eq. 8", bonded / squared, two ? ", bonded" : "");
+    if (two)
+        printf("%-22s %10.5g N mm2, sliding strands\n", "", sliding / squared);
+    printf("%-22s %10.5g MPa over the outer diameter\n", "E_eff",
+           bonded / second_moment(&o->layers) / WB_MPA);
+    printf("%-22s %10.3g\n", "nu_eff, eq. 9", wb_layers_poissons_ratio(&o->layers));
+    if (two)
+        printf("%-22s %10.3g\n", "metal in its circle", wb_layers_fill(&o->layers));
+    printf("\n%12s %14s%s\n", "kappa 1/m", "M N mm", two ? "   M N mm sliding" : "");
+    for (int i = 0; i < POINTS; i++) {
+        printf("%12.5g %14.6g", table->curvature[i], table->bonded[i] / WB_NMM);
+        if (two)
+            printf(" %16.6g", table->sliding[i] / WB_NMM);
+        putchar('\n');
+    }
+}
+
+static int print_json(const struct options *o, const struct table *table)
+{
+    const double squared = WB_MM * WB_MM;
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_number(root, "bonded_rigidity_Nmm2",
+                       wb_layers_rigidity(&o->layers, false) / squared);
+    wb_json_set_number(root, "sliding_rigidity_Nmm2",
+                       wb_layers_rigidity(&o->layers, true) / squared);
+    wb_json_set_number(root, "youngs_modulus_MPa",
+                       wb_layers_rigidity(&o->layers, false) / second_moment(&o->layers) / WB_MPA);
+    wb_json_set_number(root, "poissons_ratio", wb_layers_poissons_ratio(&o->layers));
+    wb_json_set_number(root, "fill", wb_layers_fill(&o->layers));
+    struct wb_json *const points = wb_json_set_array(root, "points");
+    for (int i = 0; i < POINTS; i++) {
+        struct wb_json *const point = wb_json_append_object(points);
+        wb_json_set_number(point, "curvature_1_m", table->curvature[i]);
+        wb_json_set_number(point, "bonded_moment_Nmm", table->bonded[i] / WB_NMM);
+        wb_json_set_number(point, "sliding_moment_Nmm", table->sliding[i] / WB_NMM);
+    }
+    return wb_command_print_json(root);
+}
+
+int wb_calibrate_constituents(int argc, char **argv)
+{
+    struct options options = {.largest_curvature = 50.0};
+    struct table table;
+    wb_settings_parse_table(&argp, &wb_layers_table, &options.layers, 1, argc, argv, &options);
+    int code = wb_command_exit(run(&options, &table));
+    if (code == WB_EXIT_OK && options.common.json)
+        code = print_json(&options, &table);
+    else if (code == WB_EXIT_OK)
+        print_text(&options, &table);
+    return code;
+}

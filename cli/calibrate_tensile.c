@@ -1,0 +1,299 @@
+#include "cli/calibrate_tensile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/calibration/tensile.h"
+#include "analysis/calibration/tensile_material.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/units.h"
+#include "cli/command.h"
+#include "cli/datasets.h"
+#include "cli/settings.h"
+
+#define WB_LOG_DOMAIN "calibrate"
+
+enum {
+    KEY_TENSILE = WB_KEY_OWN,
+    KEY_NAME
+};
+
+struct options {
+    struct wb_command_common common;
+    struct wb_datasets datasets;
+    struct wb_tensile_settings settings;
+    struct wb_tensile_material_settings material;
+    const char *name;
+};
+
+static const struct argp_option other_options[] = {
+    {"tensile", KEY_TENSILE, NULL, 0, "Tensile tests", 0},
+    {"output", 'o', "MATERIAL.yaml", 0, "Write a material file here", 0},
+    {"name", KEY_NAME, "NAME", 0, "The material's name (the wire's, and what was pulled)", 0},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the material file", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state)
+{
+    struct options *const o = state->input;
+    if (key == KEY_TENSILE)
+        return 0;
+    if (key == KEY_NAME) {
+        o->name = argument;
+        return 0;
+    }
+    return wb_command_parse_common(key, argument, state, &o->common);
+}
+
+static const struct argp argp = {
+    .options = other_options,
+    .parser = parse,
+    .args_doc = "DATASET...",
+    .doc = "Properties of a conductor, a jacket or a tape from tensile tests that `import force` "
+           "made datasets of: slope of the start, proof stress, strength, stresses at plastic "
+           "strains, and K and n by eq. 7 and by least squares, with intervals over the "
+           "specimens.\v"
+           "With the travel of a crosshead for the elongation there is no E: a material file then "
+           "needs --youngs-modulus-mpa. Exit code 3: Ludwik's law does not meet the curves.",
+};
+
+bool wb_calibrate_is_tensile(int argc, char **argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (strcmp(argv[i], "--tensile") == 0)
+            return true;
+    }
+    return false;
+}
+
+/* --- text --- */
+
+static void print_number(const char *name, const struct wb_tensile_number *number, double unit,
+                         const char *unit_name)
+{
+    if (number->n == 0)
+        printf("%-28s %10s\n", name, "-");
+    else if (isfinite(number->low))
+        printf("%-28s %10.4g %-4s  %.4g to %.4g\n", name, number->mean / unit, unit_name,
+               number->low / unit, number->high / unit);
+    else
+        printf("%-28s %10.4g %s\n", name, number->mean / unit, unit_name);
+}
+
+static void print_modulus(const struct wb_tensile_result *r)
+{
+    if (r->own_elongation) {
+        print_number("E", &r->youngs_modulus, WB_MPA, "MPa");
+        return;
+    }
+    printf("%-28s crosshead travel: no E\n", "E");
+    print_number("slope with grips and machine", &r->slope, WB_MPA, "MPa");
+}
+
+static void print_laws(const struct wb_tensile_result *r)
+{
+    if (r->direct_exponent.n == 0) {
+        printf("no law is fitted: too few points behind the yield point\n");
+        return;
+    }
+    printf("sigma = sigma_Y + K ep^n (eq. 6), least squares\n");
+    print_number("  sigma_Y", &r->direct_yield, WB_MPA, "MPa");
+    print_number("  K", &r->direct_strength, WB_MPA, "MPa");
+    print_number("  n", &r->direct_exponent, 1.0, "");
+    if (!r->follows)
+        printf("  this law does not meet every curve: take the stresses above\n");
+    else if (r->identifiable)
+        printf("  n from %.3g to %.3g fits alike\n", r->n_low, r->n_high);
+    else
+        printf("  not identifiable: n from %.3g to %.3g fits alike, each with its own sigma_Y and "
+               "K; these numbers hold together only\n",
+               r->n_low, r->n_high);
+    if (isfinite(r->of_mean.rms) && r->n_specimens > 1)
+        printf("  of the mean curve: %.4g MPa, %.4g MPa, %.3g, misfit %.2g MPa\n",
+               r->of_mean.yield_stress / WB_MPA, r->of_mean.strength_coefficient / WB_MPA,
+               r->of_mean.hardening_exponent, r->of_mean.rms / WB_MPA);
+    printf("by eq. 7, with the proof stress as sigma_Y\n");
+    print_number("  K", &r->eq7_strength, WB_MPA, "MPa");
+    print_number("  n", &r->eq7_exponent, 1.0, "");
+}
+
+static void print_specimens(const struct wb_tensile_result *r)
+{
+    printf(
+        "\nsample  slack %%  slope MPa  proof MPa  strength MPa  at %%   sigma_Y MPa    K MPa      "
+        "n  misfit MPa  n alike\n");
+    for (int i = 0; i < r->n_specimens; i++) {
+        const struct wb_tensile_specimen *const s = &r->specimens[i];
+        printf("%6d %8.3f %10.5g %10.4g %13.4g %5.3g %13.4g %8.4g %6.3g %11.3g  %.3g to %.3g\n",
+               s->sample, s->slack / WB_PERCENT, s->slope / WB_MPA, s->proof_stress / WB_MPA,
+               s->strength / WB_MPA, s->uniform_strain / WB_PERCENT,
+               s->direct.yield_stress / WB_MPA, s->direct.strength_coefficient / WB_MPA,
+               s->direct.hardening_exponent, s->direct.rms / WB_MPA, s->n_low, s->n_high);
+    }
+}
+
+static void print_text(const struct options *o, const struct wb_tensile_result *r)
+{
+    char name[48];
+    printf("%s of %s: %d specimen%s, area %.4g mm2, gauge length %.4g mm\n\n",
+           wb_test_piece_constituent_name(r->constituent), r->wire, r->n_specimens,
+           r->n_specimens == 1 ? "" : "s", r->area / (WB_MM * WB_MM), r->gauge_length / WB_MM);
+    printf("%-28s %10s %-4s  %s\n", "", "mean", "",
+           r->n_specimens > 1 ? "95 % interval of the mean" : "(one specimen: no interval)");
+    print_modulus(r);
+    snprintf(name, sizeof name, "proof stress, %.3g %%", o->settings.proof_offset / WB_PERCENT);
+    print_number(name, &r->proof_stress, WB_MPA, "MPa");
+    print_number("strength", &r->strength, WB_MPA, "MPa");
+    print_number("strain there", &r->uniform_strain, WB_PERCENT, "%");
+    for (int k = 0; k < WB_TENSILE_STRESSES; k++) {
+        snprintf(name, sizeof name, "true stress at ep = %g", wb_tensile_plastic_strains[k]);
+        print_number(name, &r->stress[k], WB_MPA, "MPa");
+    }
+    print_laws(r);
+    print_specimens(r);
+    for (int i = 0; i < r->n_specimens; i++) {
+        if (r->specimens[i].slack < -0.002) {
+            printf(
+                "\nthe start is not straight (negative slack): slope and proof stress are none of "
+                "an elastic limit\n");
+            break;
+        }
+    }
+    if (r->constituent != WB_CONDUCTOR)
+        printf("\nloading alone does not tell plastic strain from elastic strain that bends over, "
+               "as rubber's\n");
+    if (o->common.output)
+        printf("\nwritten to %s\n", o->common.output);
+}
+
+/* --- JSON --- */
+
+static void set_number(struct wb_json *root, const char *key,
+                       const struct wb_tensile_number *number, double unit)
+{
+    struct wb_json *const object = wb_json_set_object(root, key);
+    wb_json_set_number(object, "mean", number->mean / unit);
+    wb_json_set_number(object, "low", number->low / unit);
+    wb_json_set_number(object, "high", number->high / unit);
+    wb_json_set_integer(object, "specimens", number->n);
+}
+
+static void set_law(struct wb_json *object, const struct wb_tensile_law *law)
+{
+    wb_json_set_number(object, "yield_stress_MPa", law->yield_stress / WB_MPA);
+    wb_json_set_number(object, "strength_coefficient_MPa", law->strength_coefficient / WB_MPA);
+    wb_json_set_number(object, "hardening_exponent", law->hardening_exponent);
+    wb_json_set_number(object, "rms_MPa", law->rms / WB_MPA);
+}
+
+static void set_specimens(struct wb_json *root, const struct wb_tensile_result *r)
+{
+    struct wb_json *const list = wb_json_set_array(root, "specimens");
+    for (int i = 0; i < r->n_specimens; i++) {
+        const struct wb_tensile_specimen *const s = &r->specimens[i];
+        struct wb_json *const object = wb_json_append_object(list);
+        wb_json_set_integer(object, "sample", s->sample);
+        wb_json_set_integer(object, "points", (int64_t)s->n_points);
+        wb_json_set_number(object, "slack", s->slack);
+        wb_json_set_number(object, "slope_MPa", s->slope / WB_MPA);
+        wb_json_set_number(object, "proof_stress_MPa", s->proof_stress / WB_MPA);
+        wb_json_set_number(object, "strength_MPa", s->strength / WB_MPA);
+        wb_json_set_number(object, "uniform_strain", s->uniform_strain);
+        struct wb_json *const stresses = wb_json_set_array(object, "true_stress_MPa");
+        for (int k = 0; k < WB_TENSILE_STRESSES; k++)
+            wb_json_append_number(stresses, s->stress[k] / WB_MPA);
+        set_law(wb_json_set_object(object, "least_squares"), &s->direct);
+        set_law(wb_json_set_object(object, "eq7"), &s->eq7);
+        wb_json_set_number(object, "exponent_alike_low", s->n_low);
+        wb_json_set_number(object, "exponent_alike_high", s->n_high);
+    }
+}
+
+static int print_json(const struct options *o, const struct wb_tensile_result *r)
+{
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "wire", r->wire);
+    wb_json_set_text(root, "constituent", wb_test_piece_constituent_name(r->constituent));
+    wb_json_set_number(root, "area_mm2", r->area / (WB_MM * WB_MM));
+    wb_json_set_number(root, "gauge_length_mm", r->gauge_length / WB_MM);
+    wb_json_set_boolean(root, "elongation_is_the_specimens", r->own_elongation);
+    wb_json_set_number(root, "proof_offset", o->settings.proof_offset);
+    set_number(root, "youngs_modulus_MPa", &r->youngs_modulus, WB_MPA);
+    set_number(root, "slope_MPa", &r->slope, WB_MPA);
+    set_number(root, "proof_stress_MPa", &r->proof_stress, WB_MPA);
+    set_number(root, "strength_MPa", &r->strength, WB_MPA);
+    set_number(root, "uniform_strain", &r->uniform_strain, 1.0);
+    struct wb_json *const strains = wb_json_set_array(root, "plastic_strains");
+    for (int k = 0; k < WB_TENSILE_STRESSES; k++)
+        wb_json_append_number(strains, wb_tensile_plastic_strains[k]);
+    set_number(root, "true_stress_at_0_002_MPa", &r->stress[0], WB_MPA);
+    set_number(root, "true_stress_at_0_01_MPa", &r->stress[1], WB_MPA);
+    set_number(root, "true_stress_at_0_05_MPa", &r->stress[2], WB_MPA);
+    struct wb_json *const direct = wb_json_set_object(root, "least_squares");
+    set_number(direct, "yield_stress_MPa", &r->direct_yield, WB_MPA);
+    set_number(direct, "strength_coefficient_MPa", &r->direct_strength, WB_MPA);
+    set_number(direct, "hardening_exponent", &r->direct_exponent, 1.0);
+    wb_json_set_number(direct, "exponent_alike_low", r->n_low);
+    wb_json_set_number(direct, "exponent_alike_high", r->n_high);
+    wb_json_set_boolean(direct, "follows", r->follows);
+    wb_json_set_boolean(direct, "identifiable", r->identifiable);
+    set_law(wb_json_set_object(direct, "of_mean_curve"), &r->of_mean);
+    struct wb_json *const eq7 = wb_json_set_object(root, "eq7");
+    set_number(eq7, "strength_coefficient_MPa", &r->eq7_strength, WB_MPA);
+    set_number(eq7, "hardening_exponent", &r->eq7_exponent, 1.0);
+    set_specimens(root, r);
+    return wb_command_print_json(root);
+}
+
+/* --- the command --- */
+
+static enum wb_status run(struct options *o, struct wb_tensile_result *result)
+{
+    WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs, o->common.n,
+                            WB_TEST_BIT(WB_TEST_TENSILE)));
+    WB_TRY(wb_tensile_run(result, o->datasets.pointers, o->datasets.n, &o->settings, NULL));
+    if (!o->common.output)
+        return WB_OK;
+    if (!o->common.force && wb_file_exists(o->common.output))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists: --force replaces it", o->common.output);
+    return wb_tensile_material_write(result, o->name, &o->material, o->common.output, NULL);
+}
+
+int wb_calibrate_tensile(int argc, char **argv)
+{
+    static const struct wb_settings_source sources[] = {
+        {.tables = &wb_tensile_table, .n_tables = 1, .offset = offsetof(struct options, settings)},
+        {.tables = &wb_tensile_material_table,
+         .n_tables = 1,
+         .offset = offsetof(struct options, material),
+         .title = "Of the material file:"},
+    };
+    static const struct wb_settings_command command = {
+        .argp = &argp,
+        .sources = sources,
+        .n_sources = WB_COUNT(sources),
+        .place = 1,
+    };
+    struct options options = {.common = {.noun = "at least one tensile dataset", .least = 1}};
+    struct wb_tensile_result result = {.n_specimens = 0};
+    wb_tensile_default_settings(&options.settings);
+    wb_setting_fill(&wb_tensile_material_table, &options.material);
+    wb_settings_parse(&command, argc, argv, &options);
+    int code = wb_command_exit(run(&options, &result));
+    if (code == WB_EXIT_OK) {
+        if (options.common.json)
+            code = print_json(&options, &result);
+        else
+            print_text(&options, &result);
+    }
+    if (code == WB_EXIT_OK && !result.follows)
+        code = WB_EXIT_INCOMPLETE;
+    wb_tensile_release(&result);
+    wb_datasets_release(&options.datasets);
+    wb_command_release(&options.common);
+    return code;
+}
