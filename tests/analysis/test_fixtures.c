@@ -4,6 +4,7 @@
 #include <glob.h>
 #include <stdlib.h>
 
+#include "analysis/dataset/machine.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/units.h"
@@ -133,8 +134,9 @@ static void look_at_material(const char *path)
     struct wb_material_file file;
     assert_int_equal(wb_material_file_read(&file, path), WB_OK);
     assert_true(strlen(file.source) > 0);
+    assert_true(strlen(file.origin) > 0);
     /* What is computed with in section 2 is a substitute and says so. */
-    if (strcmp(file.name, "tape") != 0)
+    if (strcmp(file.name, "tape") != 0 && strcmp(file.origin, "tensile tests") != 0)
         assert_true(file.is_substitute && file.material.poissons_ratio > 0.0);
     assert_int_equal(file.material.hardening, WB_HARDENING_ISOTROPIC_POWER);
     assert_true(file.material.strength_coefficient > 0.0);
@@ -143,7 +145,19 @@ static void look_at_material(const char *path)
 static void materials_are_complete(void **state)
 {
     (void)state;
-    each_file("fixtures/materials/*.yaml", 3, look_at_material);
+    each_file("fixtures/materials/*.yaml", 4, look_at_material);
+}
+
+static void look_at_machine(const char *path)
+{
+    struct wb_machine machine;
+    assert_int_equal(wb_machine_read(path, &machine, NULL), WB_OK);
+}
+
+static void machines_read(void **state)
+{
+    (void)state;
+    each_file("fixtures/machines/*.yaml", 7, look_at_machine);
 }
 
 static void read_material(const char *name, struct wb_material_file *file)
@@ -220,6 +234,7 @@ int main(void)
         cmocka_unit_test(rigs_read),
         cmocka_unit_test(bundles_weigh_what_table_4_says),
         cmocka_unit_test(materials_are_complete),
+        cmocka_unit_test(machines_read),
         cmocka_unit_test(copper_and_pvc_make_the_8awg_wire),
         cmocka_unit_test(pvc_passes_through_its_tensile_strength),
         cmocka_unit_test(models_read),

@@ -7,7 +7,7 @@ campaign=$root/fixtures/campaigns/single-wires.yaml
 make_report "$campaign"
 [ $code -eq 0 ] || fail "exit code $code: $(cat "$folder/a.err")"
 make_it_again "$campaign"
-expect_figures 43
+expect_figures 47
 forbid "experiment|$folder|$root"
 grep -q 'Virtual rig' "$folder/a/report.html" || fail 'the virtual rig is not named'
 if command -v pdftotext >/dev/null; then

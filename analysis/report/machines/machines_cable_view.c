@@ -1,0 +1,295 @@
+#include "analysis/report/machines/machines_cable_view.h"
+
+#include <math.h>
+
+#include "analysis/report/numbers.h"
+#include "analysis/report/pages.h"
+#include "analysis/report/pdf.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double n_mm = 1e-3; /* N m */
+
+/* The curvatures that a table shows: these parts of the largest. */
+static const int shown[] = {4, 9, 14, 19};
+
+static const struct wb_machines_group *group_of(const struct wb_machines_results *results,
+                                                const struct wb_machines_layer *layer)
+{
+    return &results->campaign->groups[layer->group];
+}
+
+/* --- figures --- */
+
+int wb_machines_cable_count(const void *context)
+{
+    const struct wb_machines_results *const results = context;
+    return results->cable.n_layers;
+}
+
+static void add_moments(struct wb_panel *panel, const struct wb_machines_layer *layer)
+{
+    const struct wb_figure_style measured = {wb_palette_ink(), 1.4, WB_DASH_SOLID, WB_MARKER_CIRCLE,
+                                             3.0};
+    const struct wb_figure_style free = {wb_palette_wire(0), 1.2, WB_DASH_DASHED, WB_MARKER_NONE,
+                                         0.0};
+    const struct wb_figure_style bonded = {wb_palette_wire(1), 1.2, WB_DASH_MIXED, WB_MARKER_NONE,
+                                           0.0};
+    double m[3][WB_MACHINES_PLACES];
+    for (int k = 0; k < WB_MACHINES_PLACES; k++) {
+        m[0][k] = layer->place[k].measured / n_mm;
+        m[1][k] = layer->place[k].free / n_mm;
+        m[2][k] = layer->place[k].bonded / n_mm;
+    }
+    wb_figure_set_axes(panel, "Nominal curvature 12 d / L<sup>2</sup> (1/m)",
+                       "Moment F L / 4 (N mm)");
+    wb_figure_set_logarithmic_y(panel);
+    wb_figure_add_line(panel, "bonded", WB_MACHINES_PLACES, layer->curvature, m[2], &bonded);
+    wb_figure_add_line(panel, "measured", WB_MACHINES_PLACES, layer->curvature, m[0], &measured);
+    wb_figure_add_line(panel, "sliding freely", WB_MACHINES_PLACES, layer->curvature, m[1], &free);
+}
+
+static void add_chi(struct wb_panel *panel, const struct wb_machines_results *results,
+                    const struct wb_machines_layer *layer)
+{
+    const struct wb_machines_cable *const cable = &results->campaign->cable;
+    const struct wb_figure_style style = {wb_palette_ink(), 1.4, WB_DASH_SOLID, WB_MARKER_CIRCLE,
+                                          3.0};
+    double chi[WB_MACHINES_PLACES], low[WB_MACHINES_PLACES], high[WB_MACHINES_PLACES];
+    int n_known = 0;
+    for (int k = 0; k < WB_MACHINES_PLACES; k++) {
+        chi[k] = layer->place[k].chi.value;
+        low[k] = layer->place[k].chi.low;
+        high[k] = layer->place[k].chi.high;
+        n_known += isfinite(low[k]);
+    }
+    const double *const edges[2] = {low, high};
+    wb_figure_set_axes(panel, "Nominal curvature (1/m)", "\xcf\x87: 0 sliding, 1 bonded");
+    if (n_known == WB_MACHINES_PLACES)
+        wb_figure_add_band(panel, "95 %, tests and series", WB_MACHINES_PLACES, layer->curvature,
+                           edges, wb_palette_fade(wb_palette_grey(), 0.25));
+    wb_figure_add_line(panel, "mean", WB_MACHINES_PLACES, layer->curvature, chi, &style);
+    for (int s = 0; s < cable->n_wires && cable->n_wires > 1; s++) {
+        const struct wb_figure_style alone = {wb_palette_wire(2 + s), 1.0,
+                                              s % 2 ? WB_DASH_DOTTED : WB_DASH_DASHED,
+                                              WB_MARKER_NONE, 0.0};
+        char label[100];
+        snprintf(label, sizeof label, "wires of group %.60s",
+                 results->campaign->groups[cable->wires[s]].name);
+        wb_figure_add_line(panel, label, WB_MACHINES_PLACES, layer->curvature,
+                           layer->chi_of_series[s], &alone);
+    }
+}
+
+enum wb_status wb_machines_cable_draw(struct wb_figures_item *item)
+{
+    const struct wb_machines_results *const results = item->results;
+    const struct wb_machines_layer *const layer = &results->cable.layers[item->index];
+    char name[32];
+    if (layer->n == 0)
+        return WB_OK;
+    snprintf(name, sizeof name, "layer-%d", item->index + 1);
+    WB_TRY(wb_figure_create(&item->figure, name, WB_PDF_WIDTH, 210.0));
+    wb_figure_set_footer(item->figure, "measured");
+    add_moments(wb_figure_add_panel(item->figure), layer);
+    add_chi(wb_figure_add_panel(item->figure), results, layer);
+    wb_text_append(&item->caption, "Group ");
+    wb_text_append_escaped(&item->caption, group_of(results, layer)->name);
+    wb_text_append(&item->caption, ", ");
+    wb_text_append_escaped(&item->caption, group_of(results, layer)->label);
+    wb_text_append(&item->caption,
+                   ": mean of %d tests between the bounds, and its place between them.", layer->n);
+    return WB_OK;
+}
+
+/* --- pages --- */
+
+static void put_range(struct wb_document_table *table, const struct wb_cable_interval *interval,
+                      int decimals)
+{
+    if (isfinite(interval->low))
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.*f to %.*f", decimals, interval->low, decimals,
+                      interval->high);
+    else
+        wb_pages_cell(table, WB_TONE_QUIET, "not known");
+}
+
+static void put_ends(struct wb_document_table *table, const double values[][WB_MACHINES_PLACES],
+                     int n, int k)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int i = 0; i < n; i++) {
+        low = fmin(low, values[i][k]);
+        high = fmax(high, values[i][k]);
+    }
+    if (n > 0 && low <= high)
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.2f to %.2f", low, high);
+    else
+        wb_pages_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
+}
+
+/* Begins a row where the layer has one, with the group's name and the curvature. */
+static void begin_row(struct wb_document_table *table, const struct wb_machines_results *results,
+                      const struct wb_machines_layer *layer, size_t row)
+{
+    const int k = shown[row];
+    wb_document_row(table, row == 0);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, row == 0 ? group_of(results, layer)->name : "");
+    wb_pages_cell(table, layer->is_seating[k] ? WB_TONE_QUIET : WB_TONE_PLAIN, "%.1f",
+                  layer->curvature[k]);
+}
+
+static void put_moments(struct wb_document *document, const struct wb_machines_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Group", .right = false},   {"\xce\xba (1/m)", .right = true},
+        {"M (N mm)", .right = true}, {"sliding", .right = true},
+        {"bonded", .right = true},   {"M / sliding", .right = true},
+        {"95 %", .right = true},     {"M / first", .right = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Groups at equal curvature: moment, bounds, and the moment over that of sliding wires and "
+        "over that of the first group. Curvatures in grey: the wires are bent by less than 0.01 of "
+        "their span, where their seating decides.",
+        (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < results->cable.n_layers; i++) {
+        const struct wb_machines_layer *const layer = &results->cable.layers[i];
+        for (size_t row = 0; row < WB_COUNT(shown) && layer->n > 0; row++) {
+            const struct wb_cable_place *const place = &layer->place[shown[row]];
+            begin_row(table, results, layer, row);
+            wb_pages_cell_number(table, place->measured / n_mm, 2);
+            wb_pages_cell_number(table, place->free / n_mm, 2);
+            wb_pages_cell_number(table, place->bonded / n_mm, 2);
+            wb_pages_cell_number(table, place->ratio.value, 2);
+            put_range(table, &place->ratio, 1);
+            wb_pages_cell_number(table, layer->over_first[shown[row]], 2);
+        }
+    }
+}
+
+static void put_places(struct wb_document *document, const struct wb_machines_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Group", .right = false},           {"\xce\xba (1/m)", .right = true},
+        {"\xcf\x87", .right = true},         {"95 %", .right = true},
+        {"one series alone", .right = true}, {"zero halved, doubled", .right = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "\xcf\x87 = (M - M<sub>sliding</sub>) / (M<sub>bonded</sub> - M<sub>sliding</sub>), with "
+        "its interval over tests and series; with the wires of one series alone; with half and "
+        "twice the force that is the zero.",
+        (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < results->cable.n_layers; i++) {
+        const struct wb_machines_layer *const layer = &results->cable.layers[i];
+        for (size_t row = 0; row < WB_COUNT(shown) && layer->n > 0; row++) {
+            const int k = shown[row];
+            begin_row(table, results, layer, row);
+            wb_pages_cell_number(table, layer->place[k].chi.value, 2);
+            put_range(table, &layer->place[k].chi, 2);
+            put_ends(table, layer->chi_of_series, results->campaign->cable.n_wires, k);
+            put_ends(table, layer->chi_of_zero, WB_MACHINES_ZEROS, k);
+        }
+    }
+}
+
+static void put_method(struct wb_document *document, const struct wb_machines_cable *cable)
+{
+    struct wb_text text = {0};
+    wb_text_append(&text,
+                   "Tests at other spans are compared at equal curvature 12 d / L<sup>2</sup>. "
+                   "<i>Sliding freely</i> is F(d) = (L<sub>1</sub>/L)(%d F<sub>1</sub> + "
+                   "F<sub>c</sub>) at the deflection d L<sub>1</sub><sup>2</sup>/L<sup>2</sup> of "
+                   "wires and core. <i>Bonded</i> adds what the conductors bear along their axes "
+                   "when the section stays plane, %.4g mm<sup>2</sup> of <tt>",
+                   cable->ring.n_wires, cable->ring.area / (WB_MM * WB_MM));
+    wb_text_append_escaped(&text, cable->conductor);
+    wb_text_append(&text,
+                   "</tt> each on a circle of %.3g mm radius; insulations, lay and what is wound "
+                   "round the wires are left out of both bounds. So \xcf\x87 of a group that has "
+                   "more layers than the wires counts what those bear themselves as friction, and "
+                   "may exceed 1.",
+                   cable->ring.radius / WB_MM);
+    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
+}
+
+void wb_machines_cable_put(struct wb_document *document, const struct wb_machines_results *results,
+                           const struct wb_figures *drawn)
+{
+    if (results->cable.n_layers == 0)
+        return;
+    wb_document_heading(document, 1, "cable", "Between sliding and bonded wires");
+    put_method(document, &results->campaign->cable);
+    put_moments(document, results);
+    put_places(document, results);
+    for (int i = 0; i < results->cable.n_layers; i++)
+        wb_figures_put(drawn, document, "layer", i);
+}
+
+/* --- numbers --- */
+
+static void put_interval(struct wb_json *entry, const char *key,
+                         const struct wb_cable_interval *interval)
+{
+    struct wb_json *const object = wb_json_set_object(entry, key);
+    wb_json_set_number(object, "value", interval->value);
+    wb_json_set_number(object, "low_95", interval->low);
+    wb_json_set_number(object, "high_95", interval->high);
+}
+
+static void put_place(struct wb_json *list, const struct wb_machines_layer *layer, int n_series,
+                      int k)
+{
+    const struct wb_cable_place *const place = &layer->place[k];
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_number(entry, "curvature_1_m", layer->curvature[k]);
+    wb_json_set_boolean(entry, "seating", layer->is_seating[k]);
+    wb_json_set_number(entry, "measured_Nmm", place->measured / n_mm);
+    wb_json_set_number(entry, "free_Nmm", place->free / n_mm);
+    wb_json_set_number(entry, "bonded_Nmm", place->bonded / n_mm);
+    wb_json_set_number(entry, "over_first_layer", layer->over_first[k]);
+    put_interval(entry, "measured_over_free", &place->ratio);
+    put_interval(entry, "chi", &place->chi);
+    struct wb_json *const series = wb_json_set_array(entry, "chi_of_each_series");
+    for (int s = 0; s < n_series; s++)
+        wb_json_append_number(series, layer->chi_of_series[s][k]);
+    struct wb_json *const zeros = wb_json_set_array(entry, "chi_of_half_and_twice_the_zero");
+    for (int z = 0; z < WB_MACHINES_ZEROS; z++)
+        wb_json_append_number(zeros, layer->chi_of_zero[z][k]);
+}
+
+void wb_machines_cable_put_json(struct wb_json *root, const struct wb_machines_results *results)
+{
+    const struct wb_machines_cable *const cable = &results->campaign->cable;
+    if (results->cable.n_layers == 0)
+        return;
+    struct wb_json *const object = wb_json_set_object(root, "cable");
+    wb_json_set_integer(object, "wire_count", cable->ring.n_wires);
+    wb_json_set_number(object, "wire_circle_radius_mm", cable->ring.radius / WB_MM);
+    wb_json_set_number(object, "conductor_area_mm2", cable->ring.area / (WB_MM * WB_MM));
+    wb_numbers_put_properties(wb_json_set_object(object, "conductor"), &cable->ring.conductor);
+    struct wb_json *const layers = wb_json_set_array(object, "layers");
+    for (int i = 0; i < results->cable.n_layers; i++) {
+        const struct wb_machines_layer *const layer = &results->cable.layers[i];
+        struct wb_json *const entry = wb_json_append_object(layers);
+        wb_json_set_text(entry, "group", group_of(results, layer)->name);
+        wb_json_set_integer(entry, "tests", layer->n);
+        struct wb_json *const places = wb_json_set_array(entry, "places");
+        for (int k = 0; k < WB_MACHINES_PLACES && layer->n > 0; k++)
+            put_place(places, layer, cable->n_wires, k);
+    }
+}
+
+void wb_machines_cable_print(FILE *out, const struct wb_machines_results *results)
+{
+    for (int i = 0; i < results->cable.n_layers; i++) {
+        const struct wb_machines_layer *const layer = &results->cable.layers[i];
+        const struct wb_cable_place *const last = &layer->place[WB_MACHINES_PLACES - 1];
+        if (layer->n > 0)
+            fprintf(out, "  group %-34s M / M_free = %.2f, chi = %.2f at %.3g 1/m\n",
+                    group_of(results, layer)->name, last->ratio.value, last->chi.value,
+                    layer->curvature[WB_MACHINES_PLACES - 1]);
+    }
+}

@@ -1,0 +1,90 @@
+#include "analysis/report/machines/machines_fits.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/interrupt.h"
+
+#define WB_LOG_DOMAIN "report"
+
+/* Whether a group is of the wire with which the fit begins. */
+static bool is_of(const struct wb_machines *campaign, const struct wb_machines_fit *fit, int group)
+{
+    return strcmp(campaign->groups[fit->first].piece.wire, campaign->groups[group].piece.wire) == 0;
+}
+
+static bool goes_on(void *context, int done, int all)
+{
+    (void)context, (void)done, (void)all;
+    return !wb_interrupted();
+}
+
+static void fit_wire(struct wb_machines_fit *fit, const struct wb_dataset *const *datasets)
+{
+    struct wb_bend3p_calibrate_settings settings = {.progress = goes_on};
+    wb_setting_fill(&wb_bend3p_calibrate_tables[0], &settings.data);
+    wb_setting_fill(&wb_bend3p_calibrate_tables[1], &settings.fit);
+    fit->is_fitted =
+        wb_bend3p_calibrate_run(&fit->calibration, datasets, fit->n, &settings, &fit->why) == WB_OK;
+    fit->is_validated =
+        fit->is_fitted && wb_left_out_run(&fit->left_out, &fit->calibration,
+                                          settings.fit.n_elements, &fit->why) == WB_OK;
+}
+
+static enum wb_status compute_wire(struct wb_machines_fit *fit, const struct wb_machines *campaign,
+                                   const struct wb_machines_group_results *groups)
+{
+    int most = 0;
+    for (int g = fit->first; g < campaign->n_groups; g++)
+        most += campaign->groups[g].n_tests;
+    const struct wb_dataset **const datasets = calloc((size_t)most, sizeof *datasets);
+    if (!datasets)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for %d tests", most);
+    for (int g = fit->first; g < campaign->n_groups; g++) {
+        for (int i = 0; i < campaign->groups[g].n_tests && is_of(campaign, fit, g); i++) {
+            if (groups[g].tests[i].is_usable)
+                datasets[fit->n++] = &groups[g].tests[i].dataset;
+        }
+    }
+    if (fit->n > 0)
+        fit_wire(fit, datasets);
+    free(datasets);
+    return WB_OK;
+}
+
+static bool is_first_of_its_wire(const struct wb_machines *campaign, int group)
+{
+    for (int g = 0; g < group; g++) {
+        if (strcmp(campaign->groups[g].piece.wire, campaign->groups[group].piece.wire) == 0)
+            return false;
+    }
+    return true;
+}
+
+enum wb_status wb_machines_fits_compute(struct wb_machines_fits *fits,
+                                        const struct wb_machines *campaign,
+                                        const struct wb_machines_group_results *groups)
+{
+    memset(fits, 0, sizeof *fits);
+    if (!campaign->calibrates)
+        return WB_OK;
+    fits->fits = calloc((size_t)campaign->n_groups, sizeof *fits->fits);
+    if (!fits->fits)
+        return wb_fail(WB_ERR_MEMORY, "out of memory for %d wires", campaign->n_groups);
+    for (int g = 0; g < campaign->n_groups && !wb_interrupted(); g++) {
+        if (!is_first_of_its_wire(campaign, g))
+            continue;
+        struct wb_machines_fit *const fit = &fits->fits[fits->n++];
+        fit->first = g;
+        WB_TRY(compute_wire(fit, campaign, groups));
+    }
+    return WB_OK;
+}
+
+void wb_machines_fits_release(struct wb_machines_fits *fits)
+{
+    for (int i = 0; i < fits->n; i++)
+        wb_bend3p_calibrate_release(&fits->fits[i].calibration);
+    free(fits->fits);
+    memset(fits, 0, sizeof *fits);
+}

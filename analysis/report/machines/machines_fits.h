@@ -1,0 +1,30 @@
+/* The wires of a campaign, each calibrated on the tests of all groups that are of it, and validated
+ * by leaving each test out. */
+#ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
+#define WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
+
+#include "analysis/report/machines/machines.h"
+#include "analysis/report/machines/machines_test.h"
+#include "analysis/validation/left_out.h"
+
+struct wb_machines_fit {
+    int first; /* group of the wire */
+    int n;     /* tests */
+    bool is_fitted, is_validated;
+    struct wb_reason why; /* where it is not */
+    struct wb_bend3p_calibration calibration;
+    struct wb_left_out left_out;
+};
+
+struct wb_machines_fits {
+    int n;                        /* wires; 0: the campaign does not calibrate */
+    struct wb_machines_fit *fits; /* (n), owned */
+};
+
+/* Ctrl-C leaves the rest out. */
+WB_MUST_CHECK enum wb_status
+wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
+                         const struct wb_machines_group_results *groups);
+void wb_machines_fits_release(struct wb_machines_fits *fits); /* accepts a zeroed one */
+
+#endif

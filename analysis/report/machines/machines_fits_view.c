@@ -1,0 +1,314 @@
+#include "analysis/report/machines/machines_fits_view.h"
+
+#include <math.h>
+
+#include "analysis/report/numbers.h"
+#include "analysis/report/pages.h"
+#include "analysis/report/pdf.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double n_mm = 1e-3, n_mm2 = 1e-6; /* N m, N m2 */
+/* A model whose bias is below this part of s is hard to tell from the tests. */
+static const double most_bias = 0.7;
+
+static const char *wire_of(const struct wb_machines_results *results,
+                           const struct wb_machines_fit *fit)
+{
+    return results->campaign->groups[fit->first].piece.wire;
+}
+
+/* --- figures --- */
+
+int wb_machines_fits_count(const void *context)
+{
+    const struct wb_machines_results *const results = context;
+    return results->fits.n;
+}
+
+enum wb_status wb_machines_fits_draw(struct wb_figures_item *item)
+{
+    const struct wb_machines_results *const results = item->results;
+    const struct wb_machines_fit *const fit = &results->fits.fits[item->index];
+    const struct wb_left_out *const r = &fit->left_out;
+    const struct wb_figure_style mean = {wb_palette_ink(), 1.4, WB_DASH_SOLID, WB_MARKER_NONE, 0.0};
+    const struct wb_figure_style model = {wb_palette_wire(1), 1.4, WB_DASH_DASHED, WB_MARKER_NONE,
+                                          0.0};
+    double x[WB_LEFT_OUT_GRID], y[4][WB_LEFT_OUT_GRID];
+    char name[32];
+    if (!fit->is_validated)
+        return WB_OK;
+    for (int k = 0; k < WB_LEFT_OUT_GRID; k++) {
+        x[k] = r->deflection[k] / WB_MM;
+        y[0][k] = r->mean[k] / WB_MN;
+        y[1][k] = (r->mean[k] - r->deviation[k]) / WB_MN;
+        y[2][k] = (r->mean[k] + r->deviation[k]) / WB_MN;
+        y[3][k] = (r->mean[k] + r->offset[k]) / WB_MN;
+    }
+    const double *const edges[2] = {y[1], y[2]};
+    snprintf(name, sizeof name, "fit-%d", item->index + 1);
+    WB_TRY(wb_figure_create(&item->figure, name, WB_PDF_WIDTH, 190.0));
+    wb_figure_set_footer(item->figure, "measured, and a model of it");
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+    wb_figure_set_axes(panel, "Deflection from the first contact (mm)", "Force (mN)");
+    wb_figure_set_y_range(panel, 0.0, (double)NAN);
+    wb_figure_add_band(panel, "tests, mean \xc2\xb1 s", WB_LEFT_OUT_GRID, x, edges,
+                       wb_palette_fade(wb_palette_grey(), 0.3));
+    wb_figure_add_line(panel, "tests, mean", WB_LEFT_OUT_GRID, x, y[0], &mean);
+    wb_figure_add_line(panel, "laws of the others", WB_LEFT_OUT_GRID, x, y[3], &model);
+    wb_text_append(&item->caption, "Wire ");
+    wb_text_append_escaped(&item->caption, wire_of(results, fit));
+    wb_text_append(&item->caption,
+                   ": the mean of %d tests, and what the laws of the others are off it, mean over "
+                   "the tests left out.",
+                   r->n);
+    return WB_OK;
+}
+
+/* --- pages --- */
+
+static void put_estimate(struct wb_document_table *table, const struct wb_estimate *e, double unit,
+                         bool is_quiet)
+{
+    const enum wb_document_tone tone = is_quiet ? WB_TONE_QUIET : WB_TONE_PLAIN;
+    wb_pages_cell(table, tone, "%.4g", e->value / unit);
+    wb_pages_cell(table, tone, "%.4g to %.4g", e->low / unit, e->high / unit);
+    wb_pages_cell(table, tone, "%.4g to %.4g", e->candidates_low / unit, e->candidates_high / unit);
+}
+
+/* Fits whose iterations ran out. */
+static int count_unsettled(const struct wb_bend3p_calibration *c)
+{
+    int n = 0;
+    for (int i = 0; i < c->n_members; i++)
+        n += c->members[i].is_fitted && !c->members[i].fit.is_converged;
+    return n;
+}
+
+/* Why a wire has no law or was not validated, or why single tests have none. */
+static void put_problems(struct wb_document *document, const struct wb_machines_results *results,
+                         const struct wb_machines_fit *fit)
+{
+    if (!fit->is_validated)
+        wb_pages_item(document, WB_TONE_WARNING, "<b>", wire_of(results, fit),
+                      "</b>: ", fit->n > 0 ? fit->why.text : "no test");
+    for (int i = 0; fit->is_fitted && i < fit->calibration.n_members; i++) {
+        const struct wb_bend3p_member *const m = &fit->calibration.members[i];
+        if (!m->is_fitted)
+            wb_pages_item(document, WB_TONE_WARNING, "<b>", wire_of(results, fit),
+                          "</b>: ", m->why.text);
+    }
+}
+
+static void put_counts(struct wb_document_table *table, const struct wb_machines_fit *fit)
+{
+    const struct wb_bend3p_calibration *const c = &fit->calibration;
+    const int unsettled = count_unsettled(c);
+    wb_pages_cell(table, c->n_fitted < fit->n ? WB_TONE_WARNING : WB_TONE_PLAIN, "%d of %d",
+                  c->n_fitted, fit->n);
+    if (unsettled > 0)
+        wb_pages_cell(table, WB_TONE_WARNING, "%d not", unsettled);
+    else
+        wb_pages_cell(table, WB_TONE_PLAIN, "all");
+    wb_pages_cell(table, WB_TONE_PLAIN, "%.1f", c->misfit / WB_PERCENT);
+}
+
+static void put_calibrations(struct wb_document *document,
+                             const struct wb_machines_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire", .right = false},          {"Fitted", .right = true},
+        {"Converged", .right = true},      {"Misfit (%)", .right = true},
+        {"\xce\xba (1/m)", .right = true}, {"M (N mm)", .right = true},
+        {"95 %", .right = true},           {"\xce\xbc and nose", .right = true},
+    };
+    static const int at[] = {2, 3, 4};
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Moment over curvature of each wire, by a law fitted to each test in its usable range. The "
+        "interval is over tests, or over the means of series; beside it stands the range over the "
+        "friction and the nose's radius that the machine leaves open. Misfit: root mean square "
+        "over "
+        "the largest force.",
+        (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < results->fits.n; i++) {
+        const struct wb_machines_fit *const fit = &results->fits.fits[i];
+        const struct wb_bend3p_calibration *const c = &fit->calibration;
+        for (size_t k = 0; k < WB_COUNT(at); k++) {
+            if (!fit->is_fitted && k > 0)
+                continue;
+            wb_document_row(table, k == 0);
+            wb_pages_cell_plain(table, WB_TONE_PLAIN, k == 0 ? wire_of(results, fit) : "");
+            if (!fit->is_fitted) {
+                wb_pages_cell_plain(table, WB_TONE_WARNING, "none");
+                continue;
+            }
+            if (k == 0) {
+                put_counts(table, fit);
+            } else {
+                for (int blank = 0; blank < 3; blank++)
+                    wb_pages_cell_plain(table, WB_TONE_PLAIN, "");
+            }
+            wb_pages_cell_number(table, c->curvature[at[k]], 1);
+            put_estimate(table, &c->moment[at[k]], n_mm, false);
+        }
+    }
+}
+
+static void put_rigidities(struct wb_document *document, const struct wb_machines_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire", .right = false},
+        {"Series", .right = true},
+        {"s of ln EI between series", .right = true},
+        {"EI (N mm<sup>2</sup>)", .right = true},
+        {"95 %", .right = true},
+        {"\xce\xbc and nose", .right = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Flexural rigidity at the start. In grey where it is not identifiable: tests without a way "
+        "back leave it to the law's form below the first point.",
+        (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < results->fits.n; i++) {
+        const struct wb_machines_fit *const fit = &results->fits.fits[i];
+        const struct wb_bend3p_calibration *const c = &fit->calibration;
+        if (!fit->is_fitted)
+            continue;
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wire_of(results, fit));
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", c->n_series);
+        wb_pages_cell_number(table, c->series_deviation, 2);
+        put_estimate(table, &c->rigidity, n_mm2, !c->is_rigidity_identifiable);
+    }
+}
+
+static void put_left_out(struct wb_document *document, const struct wb_machines_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Wire", .right = false},
+        {"Tests", .right = true},
+        {"to (mm)", .right = true},
+        {"s (mN)", .right = true},
+        {"Scatter alone (mN)", .right = true},
+        {"Model (mN)", .right = true},
+        {"Bias (mN)", .right = true},
+        {"Bias / s", .right = true},
+        {"Bias / F<sub>max</sub> (%)", .right = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Each test left out: what the law of the others is off it, pooled, beside sqrt(n/(n-1)) s, "
+        "which the others' own mean curve is off it by the scatter alone. Bias: the model against "
+        "the mean of the others; marked above 0.7 s.",
+        (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < results->fits.n; i++) {
+        const struct wb_machines_fit *const fit = &results->fits.fits[i];
+        const struct wb_left_out *const r = &fit->left_out;
+        if (!fit->is_validated)
+            continue;
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wire_of(results, fit));
+        wb_pages_cell(table, WB_TONE_PLAIN, "%d", r->n);
+        wb_pages_cell_number(table, r->deflection[WB_LEFT_OUT_GRID - 1] / WB_MM, 1);
+        wb_pages_cell_number(table, r->scatter / WB_MN, 1);
+        wb_pages_cell_number(table, r->expected / WB_MN, 1);
+        wb_pages_cell_number(table, r->rms / WB_MN, 1);
+        wb_pages_cell_number(table, r->bias / WB_MN, 1);
+        wb_pages_cell_judged(table, r->bias / r->scatter, 2, true,
+                             r->bias <= most_bias * r->scatter);
+        wb_pages_cell_number(table, r->bias / r->of_max_force / WB_PERCENT, 1);
+    }
+}
+
+void wb_machines_fits_put(struct wb_document *document, const struct wb_machines_results *results,
+                          const struct wb_figures *drawn)
+{
+    if (results->fits.n == 0)
+        return;
+    wb_document_heading(document, 1, "calibration", "Laws of the wires");
+    for (int i = 0; i < results->fits.n; i++)
+        put_problems(document, results, &results->fits.fits[i]);
+    put_calibrations(document, results);
+    put_rigidities(document, results);
+    wb_document_heading(document, 1, "left-out", "Tests left out");
+    put_left_out(document, results);
+    for (int i = 0; i < results->fits.n; i++)
+        wb_figures_put(drawn, document, "fit", i);
+}
+
+/* --- numbers --- */
+
+static void put_number(struct wb_json *object, const char *key, const struct wb_estimate *e,
+                       double unit)
+{
+    struct wb_json *const entry = wb_json_set_object(object, key);
+    wb_json_set_number(entry, "value", e->value / unit);
+    wb_json_set_number(entry, "low_95", e->low / unit);
+    wb_json_set_number(entry, "high_95", e->high / unit);
+    wb_json_set_number(entry, "low_of_bench", e->candidates_low / unit);
+    wb_json_set_number(entry, "high_of_bench", e->candidates_high / unit);
+}
+
+static void put_calibration(struct wb_json *entry, const struct wb_bend3p_calibration *c)
+{
+    wb_json_set_integer(entry, "tests_fitted", c->n_fitted);
+    wb_json_set_integer(entry, "series", c->n_series);
+    wb_json_set_number(entry, "misfit", c->misfit);
+    wb_json_set_number(entry, "s_of_ln_EI_between_series", c->series_deviation);
+    wb_json_set_boolean(entry, "EI_identifiable", c->is_rigidity_identifiable);
+    put_number(entry, "EI_Nmm2", &c->rigidity, n_mm2);
+    struct wb_json *const moments = wb_json_set_array(entry, "moments");
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        struct wb_json *const moment = wb_json_append_object(moments);
+        wb_json_set_number(moment, "curvature_1_m", c->curvature[k]);
+        put_number(moment, "moment_Nmm", &c->moment[k], n_mm);
+    }
+    struct wb_json *const tests = wb_json_set_array(entry, "tests");
+    for (int i = 0; i < c->n_members; i++) {
+        const struct wb_bend3p_member *const m = &c->members[i];
+        struct wb_json *const test = wb_json_append_object(tests);
+        wb_json_set_text(test, "series", m->data.info.piece.series);
+        wb_json_set_integer(test, "sample", m->data.info.sample);
+        if (!m->is_fitted) {
+            wb_json_set_text(test, "problem", m->why.text);
+            continue;
+        }
+        wb_json_set_number(test, "EI_Nmm2", m->rigidity / n_mm2);
+        wb_json_set_number(test, "largest_moment_Nmm", m->moment[WB_BEND3P_MOMENTS - 1] / n_mm);
+        wb_json_set_number(test, "misfit", m->fit.misfit);
+        wb_json_set_boolean(test, "converged", m->fit.is_converged);
+        wb_json_set_number(test, "first_contact_mm", m->fit.first_contact / WB_MM);
+        wb_json_set_number(test, "usable_mm", m->data.usable / WB_MM);
+        wb_json_set_text(test, "limit", wb_bend3p_limit_name(m->data.limit));
+    }
+}
+
+void wb_machines_fits_put_json(struct wb_json *root, const struct wb_machines_results *results)
+{
+    if (results->fits.n == 0)
+        return;
+    struct wb_json *const list = wb_json_set_array(root, "wires");
+    for (int i = 0; i < results->fits.n; i++) {
+        const struct wb_machines_fit *const fit = &results->fits.fits[i];
+        const struct wb_left_out *const r = &fit->left_out;
+        struct wb_json *const entry = wb_json_append_object(list);
+        wb_json_set_text(entry, "wire", wire_of(results, fit));
+        wb_json_set_integer(entry, "test_count", fit->n);
+        if (fit->is_fitted)
+            put_calibration(entry, &fit->calibration);
+        if (!fit->is_validated) {
+            wb_json_set_text(entry, "problem", fit->n > 0 ? fit->why.text : "no test");
+            continue;
+        }
+        struct wb_json *const left_out = wb_json_set_object(entry, "left_out");
+        wb_json_set_number(left_out, "scatter_N", r->scatter);
+        wb_json_set_number(left_out, "scatter_alone_N", r->expected);
+        wb_json_set_number(left_out, "model_N", r->rms);
+        wb_json_set_number(left_out, "bias_N", r->bias);
+        wb_json_set_number(left_out, "bias_over_scatter", r->bias / r->scatter);
+        wb_numbers_put_list(left_out, "deflection_mm", r->deflection, WB_LEFT_OUT_GRID, WB_MM);
+        wb_numbers_put_list(left_out, "bias_at_N", r->offset, WB_LEFT_OUT_GRID, 1.0);
+    }
+}

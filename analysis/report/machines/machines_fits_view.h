@@ -1,0 +1,19 @@
+/* What a report says of calibrated wires and of tests left out: figures, a chapter, numbers. */
+#ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_VIEW_H
+#define WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_VIEW_H
+
+#include "analysis/report/document.h"
+#include "analysis/report/figures.h"
+#include "analysis/report/machines/machines_results.h"
+#include "base/json.h"
+
+/* As of struct wb_figures_row: a figure of each wire. */
+int wb_machines_fits_count(const void *results);
+enum wb_status wb_machines_fits_draw(struct wb_figures_item *item);
+
+/* Nothing where the campaign does not calibrate. */
+void wb_machines_fits_put(struct wb_document *document, const struct wb_machines_results *results,
+                          const struct wb_figures *drawn);
+void wb_machines_fits_put_json(struct wb_json *root, const struct wb_machines_results *results);
+
+#endif

@@ -1,0 +1,295 @@
+#include "analysis/report/machines/machines_kind.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/report/machines/machines_cable_view.h"
+#include "analysis/report/machines/machines_fits_view.h"
+#include "analysis/report/numbers.h"
+#include "analysis/report/pages.h"
+#include "analysis/report/pdf.h"
+#include "base/units.h"
+
+#define WB_LOG_DOMAIN "report"
+
+static const double n_mm2 = 1e-6; /* N m2 of one N mm2 */
+
+/* --- figures --- */
+
+static int count_groups(const void *context)
+{
+    const struct wb_machines_results *const results = context;
+    return results->campaign->n_groups;
+}
+
+static enum wb_status add_tests(struct wb_panel *panel, const struct wb_machines_group *group,
+                                const struct wb_machines_group_results *results)
+{
+    static const struct wb_figure_style style = {.colour = {0.45, 0.5, 0.56, 1.0}, .width = 0.6};
+    bool named = false;
+    for (int i = 0; i < group->n_tests; i++) {
+        const struct wb_machines_test *const test = &results->tests[i];
+        const size_t n = test->dataset.n_rows;
+        if (!test->is_usable)
+            continue;
+        double *const x = malloc(2 * n * sizeof *x);
+        if (!x)
+            return wb_fail(WB_ERR_MEMORY, "out of memory for a figure");
+        for (size_t k = 0; k < n; k++) {
+            x[k] = (test->dataset.rows[k].deflection - test->start) / WB_MM;
+            x[n + k] = test->dataset.rows[k].force / WB_MN;
+        }
+        wb_figure_add_line(panel, named ? NULL : "tests", n, x, x + n, &style);
+        named = true;
+        free(x);
+    }
+    return WB_OK;
+}
+
+static void add_mean(struct wb_panel *panel, const struct wb_machines_group_results *results)
+{
+    static const struct wb_figure_style style = {.colour = {0.114, 0.153, 0.2, 1.0}, .width = 1.4};
+    static const struct wb_colour pale = {0.34, 0.71, 0.91, 0.5};
+    double x[WB_MACHINES_GRID], y[WB_MACHINES_GRID], low[WB_MACHINES_GRID], high[WB_MACHINES_GRID];
+    for (int k = 0; k < WB_MACHINES_GRID; k++) {
+        const double s = isfinite(results->deviation[k]) ? results->deviation[k] : 0.0;
+        x[k] = results->reach * k / (WB_MACHINES_GRID - 1) / WB_MM;
+        y[k] = results->force[k] / WB_MN;
+        low[k] = (results->force[k] - s) / WB_MN;
+        high[k] = (results->force[k] + s) / WB_MN;
+    }
+    const double *const edges[2] = {low, high};
+    if (results->n_usable > 1)
+        wb_figure_add_band(panel, "mean \xc2\xb1 s", WB_MACHINES_GRID, x, edges, pale);
+    wb_figure_add_line(panel, "mean, usable range", WB_MACHINES_GRID, x, y, &style);
+}
+
+static enum wb_status draw_group(struct wb_figures_item *item)
+{
+    const struct wb_machines_results *const results = item->results;
+    const struct wb_machines_group *const group = &results->campaign->groups[item->index];
+    const struct wb_machines_group_results *const of = &results->groups[item->index];
+    char name[32];
+    if (of->n_usable == 0)
+        return WB_OK;
+    snprintf(name, sizeof name, "group-%d", item->index + 1);
+    WB_TRY(wb_figure_create(&item->figure, name, WB_PDF_WIDTH, 200.0));
+    wb_figure_set_footer(item->figure, "measured");
+    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
+    wb_figure_set_axes(panel, "Travel from the first contact (mm)", "Force (mN)");
+    wb_figure_set_y_range(panel, 0.0, (double)NAN);
+    add_mean(panel, of);
+    wb_text_append(&item->caption, "Force over travel of ");
+    wb_text_append_escaped(&item->caption, group->label);
+    wb_text_append(&item->caption, ", %d of %d tests, span %.4g mm.", of->n_usable, group->n_tests,
+                   group->machine.span / WB_MM);
+    return add_tests(panel, group, of);
+}
+
+static const struct wb_figures_row figures[] = {
+    {.place = "group", .count = count_groups, .draw = draw_group},
+    {.place = "fit", .count = wb_machines_fits_count, .draw = wb_machines_fits_draw},
+    {.place = "layer", .count = wb_machines_cable_count, .draw = wb_machines_cable_draw},
+};
+
+/* --- pages --- */
+
+static void put_missing(struct wb_document *document, const struct wb_machines_results *results)
+{
+    const struct wb_kind_outcome *const outcome = &results->outcome;
+    char text[400];
+    if (outcome->n_missing == 0)
+        return;
+    if (results->has_folder)
+        snprintf(text, sizeof text, "%d of %d files are not there.", outcome->n_missing,
+                 outcome->n_wanted);
+    else
+        snprintf(text, sizeof text,
+                 "The data are not there: <tt>%s</tt>, which names their folder, is not set.",
+                 results->campaign->environment);
+    wb_document_notice(document, WB_TONE_WARNING, text);
+}
+
+static void put_overview(struct wb_document *document, const struct wb_machines_results *results)
+{
+    static const struct wb_document_column columns[] = {
+        {"Group", .wraps = true},
+        {"d (mm)", .right = true},
+        {"Span (mm)", .right = true},
+        {"Tests", .right = true},
+        {"F L<sup>3</sup>/48 d (N mm<sup>2</sup>)", .right = true},
+        {"s (%)", .right = true},
+        {"Usable to (mm)", .right = true},
+        {"F there (mN)", .right = true},
+    };
+    struct wb_document_table *const table =
+        wb_document_table(document,
+                          "Groups. F L<sup>3</sup>/48 d is taken at 0.02 of the span from the "
+                          "first contact, s is its standard deviation between tests.",
+                          (int)WB_COUNT(columns), columns);
+    for (int g = 0; g < results->campaign->n_groups; g++) {
+        const struct wb_machines_group *const group = &results->campaign->groups[g];
+        const struct wb_machines_group_results *const of = &results->groups[g];
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, group->label);
+        wb_pages_cell_number(table, group->piece.outer_diameter / WB_MM, 2);
+        wb_pages_cell_number(table, group->machine.span / WB_MM, 1);
+        wb_pages_cell(table, of->n_usable < group->n_tests ? WB_TONE_WARNING : WB_TONE_PLAIN,
+                      "%d of %d", of->n_usable, group->n_tests);
+        wb_pages_cell_number(table, of->rigidity / n_mm2, 1);
+        wb_pages_cell_number(table, of->rigidity_deviation / of->rigidity / WB_PERCENT, 0);
+        wb_pages_cell_number(table, of->n_usable > 0 ? of->reach / WB_MM : (double)NAN, 2);
+        wb_pages_cell_number(table, of->force[WB_MACHINES_GRID - 1] / WB_MN, 1);
+    }
+}
+
+static void put_tests(struct wb_document *document, const struct wb_machines_group *group,
+                      const struct wb_machines_group_results *of)
+{
+    static const struct wb_document_column columns[] = {
+        {"File", .wraps = true},
+        {"Rows", .right = true},
+        {"Empty", .right = true},
+        {"Partial", .right = true},
+        {"F<sub>max</sub> (mN)", .right = true},
+        {"Contact (mm)", .right = true},
+        {"F L<sup>3</sup>/48 d", .right = true},
+    };
+    struct wb_document_table *const table =
+        wb_document_table(document, NULL, (int)WB_COUNT(columns), columns);
+    for (int i = 0; i < group->n_tests; i++) {
+        const struct wb_machines_test *const test = &of->tests[i];
+        wb_document_row(table, false);
+        wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_file_name(group->tests[i]));
+        if (!test->is_usable) {
+            wb_pages_cell_plain(table, WB_TONE_WARNING, wb_text_string(&test->problem));
+            continue;
+        }
+        wb_pages_cell(table, WB_TONE_PLAIN, "%zu", test->report.rows);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%zu", test->report.empty);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%zu", test->report.partial);
+        wb_pages_cell_number(table, test->report.largest_force / WB_MN, 1);
+        wb_pages_cell_number(table, test->start / WB_MM, 3);
+        wb_pages_cell_number(table, test->rigidity / n_mm2, 1);
+    }
+}
+
+static void build_pages(struct wb_document *document, const void *context,
+                        const struct wb_figures *drawn)
+{
+    const struct wb_machines_results *const results = context;
+    const struct wb_machines *const campaign = results->campaign;
+    char subtitle[200], footer[300], anchor[32];
+    snprintf(subtitle, sizeof subtitle, "%d of %d tests used", results->outcome.n_usable,
+             results->outcome.n_wanted);
+    snprintf(footer, sizeof footer, "%.200s", campaign->head.title);
+    wb_document_init(document, "Tests of testing machines", campaign->head.title, subtitle, footer,
+                     "");
+    put_missing(document, results);
+    put_overview(document, results);
+    wb_machines_cable_put(document, results, drawn);
+    wb_machines_fits_put(document, results, drawn);
+    for (int g = 0; g < campaign->n_groups; g++) {
+        snprintf(anchor, sizeof anchor, "group-%d", g + 1);
+        wb_document_heading(document, 2, anchor, campaign->groups[g].label);
+        wb_figures_put(drawn, document, "group", g);
+        put_tests(document, &campaign->groups[g], &results->groups[g]);
+    }
+    wb_pages_put_origin(document, &campaign->head, "files");
+}
+
+/* --- numbers --- */
+
+static void put_test(struct wb_json *list, const char *file, const struct wb_machines_test *test)
+{
+    struct wb_json *const entry = wb_json_append_object(list);
+    wb_json_set_text(entry, "file", file);
+    wb_json_set_text(entry, "state",
+                     test->is_usable    ? "used"
+                     : test->is_missing ? "missing"
+                                        : "refused");
+    if (!test->is_missing)
+        wb_json_set_text(entry, "sha256", test->sha256);
+    if (!test->is_usable) {
+        wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
+        return;
+    }
+    wb_json_set_integer(entry, "rows", (int64_t)test->report.rows);
+    wb_json_set_integer(entry, "empty_rows", (int64_t)test->report.empty);
+    wb_json_set_integer(entry, "partial_rows", (int64_t)test->report.partial);
+    wb_json_set_number(entry, "largest_force_N", test->report.largest_force);
+    wb_json_set_number(entry, "contact_mm", test->start / WB_MM);
+    wb_json_set_number(entry, "early_rigidity_Nmm2", test->rigidity / n_mm2);
+}
+
+static struct wb_json *build_json(const void *context)
+{
+    const struct wb_machines_results *const results = context;
+    const struct wb_machines *const campaign = results->campaign;
+    struct wb_json *const root = wb_json_create();
+    wb_json_set_text(root, "title", campaign->head.title);
+    wb_json_set_text(root, "campaign", campaign->head.name);
+    wb_json_set_text(root, "campaign_sha256", campaign->head.sha256);
+    wb_json_set_integer(root, "tests_wanted", results->outcome.n_wanted);
+    wb_json_set_integer(root, "tests_used", results->outcome.n_usable);
+    wb_json_set_integer(root, "tests_missing", results->outcome.n_missing);
+    struct wb_json *const groups = wb_json_set_array(root, "groups");
+    for (int g = 0; g < campaign->n_groups; g++) {
+        const struct wb_machines_group *const group = &campaign->groups[g];
+        const struct wb_machines_group_results *const of = &results->groups[g];
+        struct wb_json *const entry = wb_json_append_object(groups);
+        wb_json_set_text(entry, "name", group->name);
+        wb_json_set_text(entry, "label", group->label);
+        wb_json_set_number(entry, "outer_diameter_mm", group->piece.outer_diameter / WB_MM);
+        wb_json_set_number(entry, "zero_force_mN", group->zero_force / WB_MN);
+        wb_machine_set_json(&group->machine, wb_json_set_object(entry, "machine"));
+        wb_json_set_number(entry, "early_rigidity_Nmm2", of->rigidity / n_mm2);
+        wb_json_set_number(entry, "early_rigidity_deviation_Nmm2", of->rigidity_deviation / n_mm2);
+        if (of->n_usable > 0) {
+            wb_json_set_number(entry, "reach_mm", of->reach / WB_MM);
+            wb_numbers_put_list(entry, "force_N", of->force, WB_MACHINES_GRID, 1.0);
+            wb_numbers_put_list(entry, "force_deviation_N", of->deviation, WB_MACHINES_GRID, 1.0);
+        }
+        struct wb_json *const tests = wb_json_set_array(entry, "tests");
+        for (int i = 0; i < group->n_tests; i++)
+            put_test(tests, group->tests[i], &of->tests[i]);
+    }
+    wb_machines_cable_put_json(root, results);
+    wb_machines_fits_put_json(root, results);
+    return root;
+}
+
+static void print(FILE *out, const void *context)
+{
+    const struct wb_machines_results *const results = context;
+    const struct wb_machines *const campaign = results->campaign;
+    fprintf(out, "%s: %d of %d tests used\n", campaign->head.title, results->outcome.n_usable,
+            results->outcome.n_wanted);
+    if (!results->has_folder)
+        fprintf(out, "  the data are not there: %s names their folder\n", campaign->environment);
+    for (int g = 0; g < campaign->n_groups; g++) {
+        const struct wb_machines_group_results *const of = &results->groups[g];
+        if (of->n_usable > 0)
+            fprintf(out, "  %-40s F L^3/48 d = %.4g N mm2, s = %.2g\n", campaign->groups[g].label,
+                    of->rigidity / n_mm2, of->rigidity_deviation / n_mm2);
+    }
+    wb_machines_cable_print(out, results);
+}
+
+const struct wb_kind wb_machines_kind = {
+    .name = "machine",
+    .data = "tests of a machine",
+    .campaign_size = sizeof(struct wb_machines),
+    .results_size = sizeof(struct wb_machines_results),
+    .keys = wb_machines_keys,
+    .load = wb_machines_results_load,
+    .compute = wb_machines_results_compute,
+    .figures = figures,
+    .n_figures = WB_COUNT(figures),
+    .pages = build_pages,
+    .json = build_json,
+    .print = print,
+    .release = wb_machines_results_release,
+    .release_campaign = wb_machines_release,
+};
