@@ -55,7 +55,8 @@ struct fake_bench {
     atomic_int slack_mm;
     atomic_int force_limit_mg; /* the first reading beyond it is timed */
 
-    /* What it saw, ns of the monotonic clock; 0 not yet. */
+    /* What it saw, ns of the monotonic clock; 0 not yet. Of what it sends, from before it goes:
+     * this thread may stand still as soon as it is gone, and nobody can have read it earlier. */
     atomic_llong limit_sent_ns, hold_ns, reset_ns, load_last_ns, frame_last_ns, report_last_ns;
     atomic_int holds;
     atomic_llong worst_gap_ns; /* longest that this thread itself was kept from running */
@@ -129,8 +130,8 @@ static inline void fake_report(struct fake_bench *bench)
     const int share = bench->reports_of_100;
     if (share > 0 && ++bench->questions * share % 100 >= share)
         return;
-    fake_write(bench->stage, text, n);
     bench->report_last_ns = wb_acquisition_now_ns();
+    fake_write(bench->stage, text, n);
 }
 
 static inline void fake_obey_line(struct fake_bench *bench, const char *line)
@@ -227,10 +228,10 @@ static inline void fake_reading(struct fake_bench *bench)
     bench->n_readings += strlen(text);
     if (++bench->readings_held < bench->readings_at_once)
         return;
+    bench->load_last_ns = wb_acquisition_now_ns();
     fake_write(bench->load, bench->readings, bench->n_readings);
     bench->n_readings = 0;
     bench->readings_held = 0;
-    bench->load_last_ns = wb_acquisition_now_ns();
 }
 
 static inline void fake_send(struct fake_bench *bench, const uint8_t *bytes, size_t n)
@@ -266,10 +267,10 @@ static inline void fake_frame(struct fake_bench *bench)
         marker->size = 0.003F;
         marker->params = WB_MARKER_POINT_CLOUD_SOLVED | WB_MARKER_UNLABELED;
     }
+    bench->frame_last_ns = wb_acquisition_now_ns();
     fake_send(bench, buffer,
               wb_natnet_encode_frame(buffer, sizeof buffer, (struct wb_natnet_version){3, 0},
                                      &bench->data));
-    bench->frame_last_ns = wb_acquisition_now_ns();
 }
 
 static inline void fake_datagram(struct fake_bench *bench)
@@ -332,8 +333,8 @@ static inline void *fake_run(void *context)
             fake_datagram(bench);
         if (bench->raise_alarm && strcmp(bench->state, "Alarm") != 0) {
             bench->state = "Alarm";
-            fake_say(bench, "ALARM:1\r\n");
             bench->limit_sent_ns = wb_acquisition_now_ns();
+            fake_say(bench, "ALARM:1\r\n");
         }
         if (now_ns >= bench->next_load_ns) {
             bench->next_load_ns += FAKE_LOAD_PERIOD_NS;
