@@ -74,7 +74,7 @@ static void bend(int threads, struct result *out)
 
 /* Forces are float, and a stiff whole: what is round-off in the first steps has grown a thousand
  * times after some hundred. Positions are within 1e-11 m. */
-static void check_same(const struct result *a, const struct result *b)
+static void check_same_within(const struct result *a, const struct result *b, double place)
 {
     const double size = fabs(b->energies.external);
     assert_close_relative(a->state.deflection, b->state.deflection, 1e-9);
@@ -96,7 +96,12 @@ static void check_same(const struct result *a, const struct result *b)
     }
     for (int i = 0; i < SHAPE; i++)
         for (int c = 0; c < 3; c++)
-            assert_close(a->shape[i][c], b->shape[i][c], 1e-10);
+            assert_close(a->shape[i][c], b->shape[i][c], place);
+}
+
+static void check_same(const struct result *a, const struct result *b)
+{
+    check_same_within(a, b, 1e-10);
 }
 
 static void parts_are_the_whole(void **unused)
@@ -168,7 +173,9 @@ static void parts_break_the_same_bonds(void **unused)
     weaken();
     bend(1, &whole);
     bend(2, &parted);
-    check_same(&parted, &whole);
+    /* A bond that softens follows its opening steeply, and round-off grows with it: on some
+     * processors to 1.6e-10 m, 8e-8 of the deflection. */
+    check_same_within(&parted, &whole, 1e-9);
     assert_true(whole.limits.debonded > 0.0 && whole.limits.tape_deepest > 0.0);
     assert_close_relative(parted.limits.debonded, whole.limits.debonded, 1e-9);
     assert_close_relative(parted.limits.tape_deepest, whole.limits.tape_deepest, 1e-2);
