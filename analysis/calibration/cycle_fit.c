@@ -27,12 +27,18 @@ static const double largest_exponent = 1.5;           /* isotropic */
 static const double largest_kinematic_exponent = 1.0; /* beyond, work would come from nowhere */
 /* A logistic number beyond this is at its bound. */
 static const double at_bound = 4.6; /* 1 % of the range */
-/* Where the share of mixed hardening starts from a law with a pure rule. */
-static const double pure_start = 1.5;
+/* Where the logistic share of mixed hardening starts from a law with a pure rule. Parts that
+ * follow a test kinematically lie nearer to those with both rules than Ludwik's isotropic law. */
+static const double kinematic_start = -3.0, isotropic_start = 1.5;
 /* Weak prior of logistic numbers, so that one that the data do not know stays finite. */
 static const double logistic_prior = 4.0;
 /* Steps of the differences that give the slopes, in units of the free numbers' scales. */
 static const double difference = 1e-3;
+/* Slopes are carried on over a step (Broyden 1965) where they foretold the change of the residuals
+ * up to this part of it. */
+static const double foretold = 0.3;
+/* Over a step that changes no number by more than this they stay as they are. */
+static const double near = 0.03;
 /* Huber's limit and where a point counts as an outlier, in standard deviations of the residuals. */
 static const double huber_limit = 2.5;
 /* It has arrived when the next step changes no number by more than this, or the sum of squares by
@@ -45,8 +51,10 @@ static const int first_judged = 3;
 /* Where a group of residuals is left out, a number that nothing else tells stays finite by a prior
  * of this weight; and a standard error is at least the root of this. Units of the free numbers. */
 static const double know_nothing = 1e-6, surest = 1e-12;
-/* A law is moved by this many standard errors, and no number by more than that. */
-static const double moved_by = 0.1, farthest = 1.0;
+/* A law is moved by this many standard errors, and no number by more than that: a part that is
+ * nearly nothing grows by powers over a whole one, which the errors to first order mean nothing of.
+ */
+static const double moved_by = 0.01, farthest = 1.0;
 /* Residual of a run that does not reach its end: far above any other. */
 static const double lost_residual = 1e4;
 
@@ -214,7 +222,13 @@ struct problem {
     double *tension, *distance, *weight; /* weight: (n_points), of Huber */
     double last_x[WB_FIT_MOST_FREE];     /* where the residuals were asked for last, */
     double *last;                        /* and they; (n_residuals) */
-    double force_scale;                  /* N */
+    bool has_last;
+    gsl_matrix *slopes;                     /* (n_residuals, n_free), */
+    double slopes_x[WB_FIT_MOST_FREE];      /* there, */
+    double *slopes_f;                       /* beside these residuals; (n_residuals) */
+    double differences_x[WB_FIT_MOST_FREE]; /* where differences were taken last */
+    bool has_slopes, are_differences;       /* false: carried on from earlier ones */
+    double force_scale;                     /* N */
     struct wb_cycle_run run;
     int runs;
     enum wb_status status;
@@ -303,7 +317,7 @@ static void start_from(struct problem *p, const struct wb_law *law)
             const double next_stress = wb_law_virgin_stress(law, next_strain, NULL);
             const double next = (next_stress - stress) / (next_strain - strain);
             const double modulus = i == WB_FIT_PARTS - 1 ? slope : slope - next;
-            p->start_modulus[i] = fmax(modulus, 1e-3 * law->material.youngs_modulus);
+            p->start_modulus[i] = fmax(modulus, 1e-2 * law->material.youngs_modulus);
             p->start[i] = 0.0;
             slope = next;
             strain = next_strain;
@@ -312,8 +326,8 @@ static void start_from(struct problem *p, const struct wb_law *law)
     }
     /* From the side of the pure rule that was nearer. */
     if (c->is_mixed)
-        p->start[p->n_law - 1] = law->isotropic_share == 1.0   ? pure_start
-                                 : law->isotropic_share == 0.0 ? -pure_start
+        p->start[p->n_law - 1] = law->isotropic_share == 1.0   ? isotropic_start
+                                 : law->isotropic_share == 0.0 ? kinematic_start
                                                                : 0.0;
     for (int i = 0; i < p->n_law; i++)
         p->scale[i] = 1.0;
@@ -422,38 +436,105 @@ static int residuals(struct problem *p, const double *x, double *r)
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
 }
 
+static size_t bytes_of(const struct problem *p)
+{
+    return (size_t)p->n_residuals * sizeof *p->last;
+}
+
+static bool is_at(const struct problem *p, const double *x, const gsl_vector *there)
+{
+    return memcmp(x, there->data, (size_t)p->n_free * sizeof *x) == 0;
+}
+
 static int gsl_residuals(const gsl_vector *x, void *context, gsl_vector *f)
 {
     struct problem *const p = context;
+    if (p->has_last && is_at(p, p->last_x, x)) {
+        memcpy(f->data, p->last, bytes_of(p));
+        return GSL_SUCCESS;
+    }
     const int status = residuals(p, x->data, f->data);
     memcpy(p->last_x, x->data, (size_t)p->n_free * sizeof *p->last_x);
-    memcpy(p->last, f->data, (size_t)p->n_residuals * sizeof *p->last);
+    memcpy(p->last, f->data, bytes_of(p));
+    p->has_last = status == GSL_SUCCESS;
     return status;
 }
 
-/* Differences from the residuals at x, which were asked for last if that step was taken. */
-static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
+/* Differences from the residuals at x. */
+static int find_slopes(struct problem *p, const double *x)
 {
-    struct problem *const p = context;
     double moved[WB_FIT_MOST_FREE];
-    double *const base = calloc(2 * (size_t)p->n_residuals, sizeof *base);
-    double *const other = base + p->n_residuals;
-    int status = GSL_SUCCESS;
-    if (!base)
-        return GSL_ENOMEM;
-    if (memcmp(p->last_x, x->data, (size_t)p->n_free * sizeof *moved) == 0)
-        memcpy(base, p->last, (size_t)p->n_residuals * sizeof *base);
-    else
-        status = residuals(p, x->data, base);
+    double *const other = calloc((size_t)p->n_residuals, sizeof *other);
+    int status = other ? GSL_SUCCESS : GSL_ENOMEM;
     for (int k = 0; k < p->n_free && status == GSL_SUCCESS; k++) {
-        memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
+        memcpy(moved, x, (size_t)p->n_free * sizeof *moved);
         moved[k] += difference;
         status = residuals(p, moved, other);
         for (int i = 0; i < p->n_residuals; i++)
-            gsl_matrix_set(J, (size_t)i, (size_t)k, (other[i] - base[i]) / difference);
+            gsl_matrix_set(p->slopes, (size_t)i, (size_t)k, (other[i] - p->last[i]) / difference);
     }
-    free(base);
+    free(other);
     return status;
+}
+
+/* The slopes that are known, changed by as little as makes them foretell the step from there to x.
+ * False, and they are as they were, where they foretell it badly. */
+static bool carry_slopes(struct problem *p, const double *x)
+{
+    double step[WB_FIT_MOST_FREE];
+    double length = 0.0, largest = 0.0, missed = 0.0, changed = 0.0;
+    for (int k = 0; k < p->n_free; k++) {
+        step[k] = x[k] - p->slopes_x[k];
+        length += step[k] * step[k];
+        largest = fmax(largest, fabs(step[k]));
+    }
+    if (largest < near)
+        return true;
+    double *const miss = p->slopes_f; /* replaced by those at x anyway */
+    for (int i = 0; i < p->n_residuals; i++) {
+        const double change = p->last[i] - p->slopes_f[i];
+        miss[i] = change;
+        for (int k = 0; k < p->n_free; k++)
+            miss[i] -= gsl_matrix_get(p->slopes, (size_t)i, (size_t)k) * step[k];
+        missed += miss[i] * miss[i];
+        changed += change * change;
+    }
+    if (missed > foretold * foretold * changed)
+        return false;
+    for (int i = 0; i < p->n_residuals; i++) {
+        for (int k = 0; k < p->n_free; k++)
+            *gsl_matrix_ptr(p->slopes, (size_t)i, (size_t)k) += miss[i] * step[k] / length;
+    }
+    p->are_differences = false;
+    return true;
+}
+
+/* Most steps are short, and the slopes change little over them: a run of the beam for each free
+ * number is saved where they are carried on. */
+static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
+{
+    struct problem *const p = context;
+    int status = GSL_SUCCESS;
+    if (!p->has_last || !is_at(p, p->last_x, x))
+        return GSL_ESANITY;
+    if (!p->has_slopes || (!is_at(p, p->slopes_x, x) && !carry_slopes(p, x->data))) {
+        status = find_slopes(p, x->data);
+        p->has_slopes = p->are_differences = status == GSL_SUCCESS;
+        memcpy(p->differences_x, x->data, (size_t)p->n_free * sizeof *p->differences_x);
+    }
+    memcpy(p->slopes_x, x->data, (size_t)p->n_free * sizeof *p->slopes_x);
+    memcpy(p->slopes_f, p->last, bytes_of(p));
+    gsl_matrix_memcpy(J, p->slopes);
+    return status;
+}
+
+/* What is known of a point's residual is that of another weight. */
+static void weigh_again(struct problem *p, int i, double ratio)
+{
+    gsl_vector_view slopes = gsl_matrix_row(p->slopes, (size_t)i);
+    gsl_vector_scale(&slopes.vector, ratio);
+    p->slopes_f[i] *= ratio;
+    p->last[i] *= ratio;
 }
 
 static void set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
@@ -470,8 +551,10 @@ static void set_weights(struct problem *p, const gsl_vector *f, int *n_outliers)
     }
     const double limit = huber_limit * fmax(1.4826 * wb_fit_median(sizes, (size_t)n), 1.0);
     for (int i = 0; i < n; i++) {
+        const double before = p->weight[i];
         p->weight[i] = raw[i] > limit ? limit / raw[i] : 1.0;
         *n_outliers += p->weight[i] < 0.5;
+        weigh_again(p, i, sqrt(p->weight[i] / before));
     }
     free(sizes);
 }
@@ -486,25 +569,51 @@ static double force_misfit(const struct problem *p, const gsl_vector *f)
     return sqrt(sum / n) * p->force_scale / p->data->max_force;
 }
 
-/* Iterates to the end; false when the iterations ran out. */
+/* Begins again where it is, with differences for slopes. */
+static bool renew_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
+{
+    double at[WB_FIT_MOST_FREE];
+    const gsl_vector_view x = gsl_vector_view_array(at, (size_t)p->n_free);
+    memcpy(at, w->x->data, (size_t)p->n_free * sizeof *at);
+    p->has_slopes = false;
+    return gsl_multifit_nlinear_init(&x.vector, w->fdf, w) == GSL_SUCCESS;
+}
+
+/* The errors hang on the slopes at the end: differences, taken there or near. */
+static bool finish_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
+{
+    double farthest_off = 0.0;
+    for (int k = 0; k < p->n_free; k++)
+        farthest_off =
+            fmax(farthest_off, fabs(gsl_vector_get(w->x, (size_t)k) - p->differences_x[k]));
+    return (p->are_differences && farthest_off < near) || renew_slopes(p, w);
+}
+
+/* Iterates to the end; false when the iterations ran out. Slopes that were carried on may be too
+ * poor for a better step: the end is where differences find none. */
 static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *iterations)
 {
     double before;
     gsl_blas_ddot(w->f, w->f, &before);
     for (int i = 0; i < p->settings->max_iterations; i++) {
         (*iterations)++;
+        const bool are_differences = p->are_differences;
         const int status = gsl_multifit_nlinear_iterate(w);
         if (p->status != WB_OK)
             return false;
-        if (status != GSL_SUCCESS)
-            return true; /* no step makes it better */
-        double now, largest = 0.0;
-        gsl_blas_ddot(w->f, w->f, &now);
-        for (size_t k = 0; k < w->dx->size; k++)
-            largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
-        if (largest < arrived || before - now < settled_sum * now)
+        double now = before, largest = 0.0;
+        bool is_there = status != GSL_SUCCESS; /* no step makes it better */
+        if (!is_there) {
+            gsl_blas_ddot(w->f, w->f, &now);
+            for (size_t k = 0; k < w->dx->size; k++)
+                largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
+            is_there = largest < arrived || before - now < settled_sum * now;
+        }
+        if (is_there && are_differences)
             return true;
-        if (i >= first_judged && before - now < slow_gain * now &&
+        if (is_there && !renew_slopes(p, w))
+            return false;
+        if (!is_there && i >= first_judged && before - now < slow_gain * now &&
             force_misfit(p, w->f) > p->settings->hopeless && p->settings->hopeless > 0.0)
             return false;
         before = now;
@@ -798,9 +907,9 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
         .p = (size_t)p->n_free,
         .params = p,
     };
-    double zero[WB_FIT_MOST_FREE] = {0.0};
+    double at[WB_FIT_MOST_FREE] = {0.0};
     double free_numbers[WB_FIT_MOST_FREE];
-    gsl_vector_view x = gsl_vector_view_array(zero, (size_t)p->n_free);
+    gsl_vector_view x = gsl_vector_view_array(at, (size_t)p->n_free);
     const int started = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
     if (p->status != WB_OK)
         return p->status;
@@ -817,7 +926,7 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
         set_weights(p, w->f, &fit->n_outliers);
         if (!fit->is_converged || (pass > 0 ? fit->n_outliers == before : fit->n_outliers == 0))
             break;
-        memcpy(zero, w->x->data, (size_t)p->n_free * sizeof *zero);
+        memcpy(at, w->x->data, (size_t)p->n_free * sizeof *at);
         if (gsl_multifit_nlinear_init(&x.vector, &fdf, w) != GSL_SUCCESS)
             break;
     }
@@ -829,6 +938,9 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct problem *p,
     fit->uneven_angle = specimen.uneven_angle;
     fit->is_at_bound = (p->candidate->form == WB_LAW_LUDWIK && fabs(free_numbers[3]) > at_bound) ||
                        (p->candidate->is_mixed && fabs(free_numbers[p->n_law - 1]) > at_bound);
+    if (!finish_slopes(p, w))
+        return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: %s: no slopes at the end",
+                          p->data->info.wire, p->data->info.sample, p->candidate->name);
     find_errors(p, w, fit);
     WB_TRY(run_finely(fit, p, why));
     fit->clamp_curvature = p->run.clamp_curvature;
@@ -870,6 +982,8 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     p.weight = calloc(points, sizeof *p.weight);
     p.distance = calloc((size_t)data->n_places + 1, sizeof *p.distance);
     p.last = calloc((size_t)p.n_residuals, sizeof *p.last);
+    p.slopes_f = calloc((size_t)p.n_residuals, sizeof *p.slopes_f);
+    p.slopes = gsl_matrix_calloc((size_t)p.n_residuals, (size_t)p.n_free);
     fit->tension = calloc(points, sizeof *fit->tension);
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
     parameters.trs = gsl_multifit_nlinear_trs_dogleg;
@@ -877,7 +991,8 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
         gsl_multifit_nlinear_trust, &parameters, (size_t)p.n_residuals, (size_t)p.n_free);
     enum wb_status status = WB_OK;
-    if (!p.tension || !p.weight || !p.distance || !p.last || !fit->tension || !w)
+    if (!p.tension || !p.weight || !p.distance || !p.last || !p.slopes_f || !p.slopes ||
+        !fit->tension || !w)
         status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);
     for (int i = 0; status == WB_OK && i < data->n_points; i++)
         p.weight[i] = 1.0;
@@ -893,6 +1008,8 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     free(p.weight);
     free(p.distance);
     free(p.last);
+    free(p.slopes_f);
+    gsl_matrix_free(p.slopes);
     fit->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
     if (status != WB_OK)
         wb_cycle_fit_release(fit);
