@@ -199,16 +199,17 @@ static void print_law(const struct wb_cycle_calibration *c)
 
 static void print_specimens(const struct wb_cycle_calibration *c)
 {
-    printf("%-9s %6s %14s %9s %8s %9s %9s %10s %9s\n", "specimen", "L mm", "bow mm", "level mm",
-           "left mm", "misfit %", "EI N mm2", "springback", "outliers");
+    printf("%-9s %6s %14s %9s %9s %8s %9s %9s %10s %9s\n", "specimen", "L mm", "bow mm",
+           "uneven mm", "level mm", "left mm", "misfit %", "EI N mm2", "springback", "outliers");
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_cycle_member *const member = &c->members[i];
         const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         const struct wb_cycle_fit *const fit = &answer->fit;
-        const double length = member->data.info.length / WB_MM;
+        const double length = member->data.info.length;
+        const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, length);
         char rigidity[NUMBER], springback[NUMBER], left[NUMBER];
-        printf("%-9d %6g %6.2f +- %4.2f %9.2f %8s %9.3f %9s %10s %9d%s%s\n", member->sample, length,
-               0.5 * fit->bow_angle * length, 0.5 * fit->bow_angle_error * length,
+        printf("%-9d %6g %6.2f +- %4.2f %9.2f %9.2f %8s %9.3f %9s %10s %9d%s%s\n", member->sample,
+               length / WB_MM, bow.tip / WB_MM, bow.deviation / WB_MM, bow.uneven / WB_MM,
                /* Adding zero makes no number "-0.00". */
                round(100.0 * fit->level / WB_MM) / 100.0 + 0.0,
                format(member->data.residual_deflection / WB_MM, left), fit->misfit / PERCENT,
@@ -218,6 +219,7 @@ static void print_specimens(const struct wb_cycle_calibration *c)
                fit->is_converged ? "" : "  did not converge",
                fit->is_at_bound ? "  at a bound" : "");
     }
+    printf("uneven: natural offset of the middle from that of an even curvature\n");
     if (c->has_unloading)
         printf("left: deflection where the force has come down to that at zero deflection, as "
                "measured\n");

@@ -331,11 +331,6 @@ struct specimen {
     int sample;
 };
 
-static double fitted_bow(const struct wb_cycle_fit *fit, double length)
-{
-    return 0.5 * fit->bow_angle * length;
-}
-
 /* The bow of the alignment and its standard deviation, m; false where it gave none. */
 static bool aligned_bow(const struct wb_dataset *dataset, double *bow, double *deviation)
 {
@@ -377,13 +372,13 @@ static enum wb_status computed_zero(const struct specimen *specimen, double *ten
 
 static void check_natural_shape(struct wb_cycle_remarks *remarks, const struct specimen *s)
 {
+    const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, s->dataset->info.length);
     if (s->dataset->info.n_natural_shape > 0)
         return;
     say(remarks, WB_CHECK_NOTE, s->sample,
         "wire '%s', sample %d: the dataset has no natural shape; the fit found a bow of %.2f mm "
         "(standard error %.2f mm) by itself, but nothing confirms it: align the recording again",
-        s->wire, s->sample, fitted_bow(s->fit, s->dataset->info.length) / WB_MM,
-        0.5 * s->fit->bow_angle_error * s->dataset->info.length / WB_MM);
+        s->wire, s->sample, bow.tip / WB_MM, bow.deviation / WB_MM);
 }
 
 static void check_travel(struct wb_cycle_remarks *remarks, const struct specimen *s)
@@ -481,7 +476,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
 {
     const struct wb_cycle_data *const data = s->data;
     const double length = data->info.length, level = s->fit->level;
-    const double bow = fitted_bow(s->fit, length);
+    const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, length);
     double zero, bow_before, deviation, better = 0.0;
 
     WB_TRY(computed_zero(s, &zero));
@@ -492,8 +487,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
     const double limit =
         fmax(zero_share * data->max_force, level_limit * level_deviation * fmax(stiffness, 0.0));
     const bool has_bow = aligned_bow(s->dataset, &bow_before, &deviation);
-    const double apart =
-        fabs(bow - bow_before) / hypot(deviation, 0.5 * length * s->fit->bow_angle_error);
+    const double apart = fabs(bow.tip - bow_before) / hypot(deviation, bow.deviation);
     const bool bow_off = has_bow && apart > bow_limit;
     const bool zero_off =
         zero > slack && data->zero_tension > slack && fabs(data->zero_tension - zero) > limit;
@@ -505,7 +499,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
                 "wire '%s', sample %d: the bow of the alignment is %.2f mm, that of the fit %.2f "
                 "mm, %.1f standard deviations apart, expected at most %g; force and level at zero "
                 "agree with the fit's",
-                s->wire, s->sample, bow_before / WB_MM, bow / WB_MM, apart, bow_limit);
+                s->wire, s->sample, bow_before / WB_MM, bow.tip / WB_MM, apart, bow_limit);
         return WB_OK;
     }
     if (!length_is_seen)
@@ -522,7 +516,7 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
         snprintf(bows, sizeof bows,
                  "; bow %.2f mm, %.2f mm by the alignment (%.1f standard "
                  "deviations apart, expected at most %g)",
-                 bow / WB_MM, bow_before / WB_MM, apart, bow_limit);
+                 bow.tip / WB_MM, bow_before / WB_MM, apart, bow_limit);
     say(remarks, WB_CHECK_DOUBT, s->sample,
         "wire '%s', sample %d: %s is wrong: at zero deflection the tension is %.2f mN, the law's "
         "%.2f mN (expected within %.2f mN), and zero deflection lies %.2f mm off (expected within "

@@ -1016,6 +1016,13 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     return status;
 }
 
+struct wb_cycle_bow wb_cycle_fit_bow(const struct wb_cycle_fit *fit, double length)
+{
+    return (struct wb_cycle_bow){.tip = 0.5 * fit->bow_angle * length,
+                                 .deviation = 0.5 * fit->bow_angle_error * length,
+                                 .uneven = 0.125 * fit->uneven_angle * length};
+}
+
 void wb_cycle_fit_release(struct wb_cycle_fit *fit)
 {
     free(fit->tension);

@@ -113,6 +113,13 @@ const char *wb_cycle_fit_number(const struct wb_cycle_fit *fit, int i, char text
 /* The pair of numbers that hang together most; false where that is not known. */
 bool wb_cycle_fit_strongest(const struct wb_cycle_fit *fit, int *one, int *other);
 
+/* The natural shape of a fitted specimen of a length, m: offset of the tip, its standard error, and
+ * how far the middle lies off that of an even curvature. */
+struct wb_cycle_bow {
+    double tip, deviation, uneven;
+};
+struct wb_cycle_bow wb_cycle_fit_bow(const struct wb_cycle_fit *fit, double length);
+
 void wb_cycle_fit_release(struct wb_cycle_fit *fit); /* accepts a zeroed one */
 
 #endif

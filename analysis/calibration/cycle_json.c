@@ -99,6 +99,7 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         const struct wb_cycle_member *const member = &c->members[i];
         const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         const struct wb_cycle_fit *const fit = &answer->fit;
+        const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
         struct wb_json *const item = wb_json_append_object(array);
         wb_json_set_integer(item, "sample", member->sample);
         wb_json_set_number(item, "length_mm", member->data.info.length / WB_MM);
@@ -106,11 +107,9 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
                            answer->bending.flexural_rigidity / N_MM2);
         wb_json_set_number(item, "springback_ratio",
                            c->has_unloading ? answer->bending.springback : (double)NAN);
-        wb_json_set_number(item, "bow_mm", 0.5 * fit->bow_angle * member->data.info.length / WB_MM);
-        wb_json_set_number(item, "bow_uncertainty_mm",
-                           0.5 * fit->bow_angle_error * member->data.info.length / WB_MM);
-        wb_json_set_number(item, "uneven_bow_mm",
-                           0.125 * fit->uneven_angle * member->data.info.length / WB_MM);
+        wb_json_set_number(item, "bow_mm", bow.tip / WB_MM);
+        wb_json_set_number(item, "bow_uncertainty_mm", bow.deviation / WB_MM);
+        wb_json_set_number(item, "uneven_bow_mm", bow.uneven / WB_MM);
         wb_json_set_number(item, "level_mm", fit->level / WB_MM);
         wb_json_set_number(item, "misfit", fit->misfit);
         wb_json_set_number(item, "loading_misfit", fit->loading_misfit);

@@ -83,11 +83,13 @@ static void keep_specimen(const struct wb_cycle_calibration *calibration,
 {
     const struct wb_cycle_fit *const fit = &member->answers[calibration->chosen].fit;
     const double length = member->data.info.length;
+    const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, length);
     *specimen = (struct wb_properties_specimen){
         .sample = member->sample,
         .length = length,
-        .bow = 0.5 * fit->bow_angle * length,
-        .bow_deviation = 0.5 * fit->bow_angle_error * length,
+        .bow = bow.tip,
+        .bow_deviation = bow.deviation,
+        .uneven_bow = bow.uneven,
         .level = fit->level,
         .misfit = fit->misfit,
         .ludwik = member->ludwik,
@@ -337,6 +339,7 @@ static void put_specimens(struct wb_text *text, const struct wb_properties *p)
         put_number(text, "    ", "length_mm", specimen->length / WB_MM);
         put_number(text, "    ", "bow_mm", specimen->bow / WB_MM);
         put_number(text, "    ", "bow_deviation_mm", specimen->bow_deviation / WB_MM);
+        put_number(text, "    ", "uneven_bow_mm", specimen->uneven_bow / WB_MM);
         put_number(text, "    ", "level_mm", specimen->level / WB_MM);
         put_number(text, "    ", "misfit", specimen->misfit);
         put_material(text, "    ", &specimen->ludwik);
@@ -672,6 +675,7 @@ static enum wb_status read_specimens(const struct wb_config_node *node,
             WB_CONFIG_NUMBER("length_mm", &s->length, WB_MM, 1.0, 1e4),
             WB_CONFIG_OPTIONAL_NUMBER("bow_mm", &s->bow, WB_MM, -1e4, 1e4),
             WB_CONFIG_OPTIONAL_NUMBER("bow_deviation_mm", &s->bow_deviation, WB_MM, 0.0, 1e4),
+            WB_CONFIG_OPTIONAL_NUMBER("uneven_bow_mm", &s->uneven_bow, WB_MM, -1e4, 1e4),
             WB_CONFIG_OPTIONAL_NUMBER("level_mm", &s->level, WB_MM, -1e4, 1e4),
             WB_CONFIG_OPTIONAL_NUMBER("misfit", &s->misfit, 1.0, 0.0, 1e6),
             WB_CONFIG_NUMBER("youngs_modulus_MPa", &m->youngs_modulus, WB_MPA, 1e-6, LARGEST_MPA),
@@ -681,7 +685,8 @@ static enum wb_status read_specimens(const struct wb_config_node *node,
             WB_CONFIG_NUMBER("hardening_exponent", &m->hardening_exponent, 1.0, 1e-3, 2.0),
             WB_CONFIG_OPTIONAL_NUMBER("ludwik_misfit", &s->ludwik_misfit, 1.0, 0.0, 1e6),
         };
-        s->bow = s->bow_deviation = s->level = s->misfit = s->ludwik_misfit = (double)NAN;
+        s->bow = s->bow_deviation = s->uneven_bow = s->level = s->misfit = s->ludwik_misfit =
+            (double)NAN;
         m->hardening = WB_HARDENING_ISOTROPIC_POWER;
         m->poissons_ratio = properties->material.poissons_ratio;
         WB_TRY(wb_config_map(wb_config_item(node, i), keys, WB_COUNT(keys)));

@@ -23,8 +23,8 @@
  *     moment_curvature: [{curvature_1_m: 1.5, moment_N_mm: 0.3, low: 0.29, ...}, ...]
  *     hardening_rule: {chosen: ..., supported: true, ...}
  *     ludwik_misfit: 0.004
- *     specimens: [{sample: 1, length_mm: 85, bow_mm: 1.2, level_mm: 0, misfit: 0.0007, and the four
- *                  numbers of its own Ludwik equivalent}, ...]
+ *     specimens: [{sample: 1, length_mm: 85, bow_mm: 1.2, uneven_bow_mm: 0.1, level_mm: 0, misfit:
+ * 0.0007, and the four numbers of its own Ludwik equivalent}, ...]
  */
 #ifndef WB_ANALYSIS_PROPERTIES_H
 #define WB_ANALYSIS_PROPERTIES_H
@@ -47,6 +47,7 @@ struct wb_properties_specimen {
     int sample;
     double length;             /* m */
     double bow, bow_deviation; /* m, natural offset of the tip; NaN unknown */
+    double uneven_bow;         /* m, of the middle off that of an even curvature; NaN unknown */
     double level;              /* m, of zero deflection */
     double misfit;             /* RMS of the force residuals over F_max */
     struct wb_material ludwik; /* bends alike on a first loading */

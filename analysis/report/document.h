@@ -44,7 +44,7 @@ struct wb_document_cell {
     enum wb_document_tone tone;
 };
 
-#define WB_DOCUMENT_COLUMNS 10
+#define WB_DOCUMENT_COLUMNS 11
 
 struct wb_document_table {
     struct wb_document *document;

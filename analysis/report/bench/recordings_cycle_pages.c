@@ -474,34 +474,38 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
         {.heading = "Sample", .right = true},
         {.heading = "<i>EI</i> (N mm\xc2\xb2)", .right = true, .wraps = true},
         {.heading = "Spring- back", .right = true, .wraps = true},
-        {.heading = "Residual deflection (mm)", .right = true, .wraps = true},
+        {.heading = "Left (mm)", .right = true, .wraps = true},
         {.heading = "Bow (mm)", .right = true},
+        {.heading = "Un- even (mm)", .right = true, .wraps = true},
         {.heading = "Level (mm)", .right = true, .wraps = true},
-        {.heading = "Misfit, loading (%)", .right = true, .wraps = true},
-        {.heading = "Misfit, unloading (%)", .right = true, .wraps = true},
-        {.heading = "Markers (mm)", .right = true, .wraps = true},
-        {.heading = "Outliers", .right = true},
+        {.heading = "Misfit up (%)", .right = true, .wraps = true},
+        {.heading = "Misfit back (%)", .right = true, .wraps = true},
+        {.heading = "Mark- ers (mm)", .right = true, .wraps = true},
+        {.heading = "Out- liers", .right = true, .wraps = true},
     };
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     wb_document_heading(document, 2, "", "Samples");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Each sample fitted by itself with the chosen law. Residual deflection: as measured, where "
-        "the force has come down to that at zero deflection. Bow and level: natural offset of the "
-        "tip and error of zero deflection, fitted. Markers: RMS distance to the computed wire. "
-        "Outliers: readings that were left out or weighted down.",
-        10, columns);
+        "Each sample fitted by itself with the chosen law. Left: residual deflection as measured, "
+        "where the force has come down to that at zero deflection. Bow, uneven and level: natural "
+        "offset of the tip, of the middle from an even curvature's, and error of zero deflection, "
+        "fitted. Misfit up and back: RMS of the force residuals of loading and of unloading over "
+        "<i>F</i><sub>max</sub>. Markers: RMS distance to the computed wire. Outliers: readings "
+        "that were left out or weighted down.",
+        11, columns);
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_cycle_member *const member = &c->members[i];
         const struct wb_cycle_answer *const answer = &member->answers[c->chosen];
         const struct wb_cycle_fit *const fit = &answer->fit;
+        const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
         put_number(table, answer->bending.flexural_rigidity / N_MM2);
         put_number(table, c->has_unloading ? answer->bending.springback : (double)NAN);
         wb_pages_cell_number(table, member->data.residual_deflection / WB_MM, 1);
-        put_signed(table, 0.5 * fit->bow_angle * member->data.info.length / WB_MM,
-                   0.5 * fit->bow_angle_error * member->data.info.length / WB_MM);
+        put_signed(table, bow.tip / WB_MM, bow.deviation / WB_MM);
+        wb_pages_cell_number(table, bow.uneven / WB_MM, 2);
         wb_pages_cell_number(table, fit->level / WB_MM, 2);
         wb_pages_cell_number(table, 100.0 * fit->loading_misfit, 3);
         wb_pages_cell_number(table, 100.0 * fit->unloading_misfit, 3);
