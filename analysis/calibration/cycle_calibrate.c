@@ -617,7 +617,9 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
     return WB_OK;
 }
 
-/* The law of the product: means of the logarithms of what the specimens' laws are made of. */
+/* The law of the product. Of parallel parts the means: together they carry the mean of what the
+ * specimens carry. A part that one specimen has and another nearly not would be gone in the mean of
+ * the logarithms. Of Ludwik's law the means of the logarithms of what it is made of. */
 static void average_law(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
                         struct wb_law *average)
 {
@@ -632,7 +634,7 @@ static void average_law(const struct wb_cycle_calibration *calibration, enum wb_
         const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
         share += law->isotropic_share / n;
         for (int k = 0; k < law->n_parts; k++)
-            moduli[k] += log(law->parts[k].modulus) / n;
+            moduli[k] += law->parts[k].modulus / n;
         if (law->form == WB_LAW_LUDWIK) {
             const struct wb_material *const m = &law->material;
             E += log(m->youngs_modulus) / n;
@@ -644,7 +646,7 @@ static void average_law(const struct wb_cycle_calibration *calibration, enum wb_
     if (first->form == WB_LAW_PARALLEL) {
         struct wb_law_part parts[WB_LAW_MOST_PARTS];
         for (int k = 0; k < first->n_parts; k++)
-            parts[k] = (struct wb_law_part){exp(moduli[k]), first->parts[k].yield_strain};
+            parts[k] = (struct wb_law_part){moduli[k], first->parts[k].yield_strain};
         wb_law_init_parallel(average, parts, first->n_parts, share, first->material.poissons_ratio);
         return;
     }

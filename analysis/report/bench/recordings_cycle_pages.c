@@ -456,7 +456,8 @@ static void put_ranked_numbers(struct wb_document *document, const struct wb_cyc
     static const struct wb_document_column columns[] = {{"Law"},
                                                         {.heading = "Numbers", .wraps = true}};
     struct wb_text caption = {0};
-    wb_text_append(&caption, "The laws' numbers: means over the samples, of logarithms.");
+    wb_text_append(&caption,
+                   "The laws' numbers: means over the samples, of Ludwik's of logarithms.");
     struct wb_document_table *const table = wb_pages_start_table(document, &caption, 2, columns);
     for (int i = 0; i < c->n_ranked; i++) {
         struct wb_text numbers = {0};

@@ -320,6 +320,54 @@ static void what_is_said_is_near_the_truth(void **unused)
     assert_true(all.ludwik_misfit < 0.1);
 }
 
+/* Where no law fits, specimens differ in which of the parts they have. */
+static void the_law_carries_the_mean_of_its_specimens(void **unused)
+{
+    (void)unused;
+    struct wb_dataset specimens[SPECIMENS];
+    const struct wb_dataset *given[SPECIMENS];
+    struct wb_cycle_calibrate_settings settings;
+    struct wb_cycle_calibration c;
+    double moment[WB_CYCLE_MOMENTS];
+    for (int i = 0; i < SPECIMENS; i++) {
+        struct fast_rig fast;
+        fast_rig_init(&fast, 2, 85.0 * WB_MM, 2001 + (uint64_t)i);
+        fast.variant = WB_COMPOSITE_MIXED;
+        assert_int_equal(fast_rig_run(&fast, &specimens[i]), WB_OK);
+        specimens[i].info.sample = i + 1;
+        given[i] = &specimens[i];
+    }
+    wb_cycle_calibrate_default_settings(&settings);
+    settings.left_out = 1U << WB_CANDIDATE_LUDWIK_ISOTROPIC | 1U << WB_CANDIDATE_LUDWIK_KINEMATIC;
+    assert_int_equal(wb_cycle_calibrate_run(&c, given, SPECIMENS, &settings, NULL), WB_OK);
+    for (int r = 0; r < c.n_ranked; r++) {
+        const enum wb_candidate candidate = c.ranked[r].candidate;
+        const struct wb_law *const law = &c.ranked[r].law;
+        if (law->form != WB_LAW_PARALLEL)
+            continue;
+        const double diameter = given[0]->info.outer_diameter;
+        double worst = 0.0;
+        assert_int_equal(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, c.curvature, moment),
+                         WB_OK);
+        for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
+            double own[WB_CYCLE_MOMENTS], mean = 0.0;
+            for (int i = 0; i < SPECIMENS; i++) {
+                assert_int_equal(wb_bending_moments(&c.members[i].answers[candidate].fit.law,
+                                                    diameter, WB_CYCLE_MOMENTS, c.curvature, own),
+                                 WB_OK);
+                mean += own[k] / SPECIMENS;
+            }
+            worst = fmax(worst, fabs(moment[k] / mean - 1.0));
+        }
+        print_message("    %s: off the mean of the specimens by %.2g\n",
+                      wb_candidate_name(candidate), worst);
+        assert_close(worst, 0.0, 1e-3);
+    }
+    wb_cycle_calibrate_release(&c);
+    for (int i = 0; i < SPECIMENS; i++)
+        wb_dataset_release(&specimens[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -336,6 +384,7 @@ int main(void)
         cmocka_unit_test(a_stop_at_the_end_is_none),
         cmocka_unit_test(an_unevenly_bent_wire_does_not_change_the_law),
         cmocka_unit_test(what_is_said_is_near_the_truth),
+        cmocka_unit_test(the_law_carries_the_mean_of_its_specimens),
     };
     wb_log_set_sink(discard_message, NULL);
     return cmocka_run_group_tests(tests, start, finish);
