@@ -399,6 +399,17 @@ static void on_stage(void *context, const struct wb_stage_report *report)
     PASS_ON(a, stage, report);
 }
 
+static void on_settings(void *context, const struct wb_stage_settings *settings)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    a->latest.has_settings = true;
+    a->latest.settings = *settings;
+    if (a->writer)
+        wb_writer_push_meta(a->writer, "stage_settings", settings->text);
+    PASS_ON(a, settings, settings);
+}
+
 static void on_probe(void *context, const struct wb_clock_probe *probe)
 {
     struct line *const line = context;
@@ -456,7 +467,13 @@ static void read_line(struct line *line)
 {
     struct wb_acquisition *const a = line->owner;
     struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
-    const struct wb_sink sink = {line, on_load, on_mocap, on_stage, on_probe, on_remark};
+    const struct wb_sink sink = {.context = line,
+                                 .load = on_load,
+                                 .mocap = on_mocap,
+                                 .stage = on_stage,
+                                 .settings = on_settings,
+                                 .probe = on_probe,
+                                 .remark = on_remark};
     for (int i = 0; i < READS_A_STEP && !state->gone; i++) {
         size_t n = 0;
         const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);

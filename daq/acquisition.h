@@ -113,7 +113,9 @@ struct wb_acquisition_latest {
     int64_t mocap_ns;           /* arrival of the last frame */
     struct wb_stage_report stage;
     uint64_t stage_reports;
-    char stage_error[160]; /* last complaint of the stage since the last command; "" */
+    bool has_settings;
+    struct wb_stage_settings settings; /* of the stage's firmware */
+    char stage_error[160];             /* last complaint of the stage since the last command; "" */
 };
 
 /* Current values; owned by the acquisition, refreshed by each step. */

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/bend_recording.h"
+#include "daq/stage_check.h"
 #include "daq/start_check.h"
 #include "daq/tip_watch.h"
 
@@ -242,6 +243,18 @@ static void step_connect(struct wb_bend_test *test)
     }
 }
 
+/* Whether the stage can do the whole test as its firmware is set. */
+static bool check_settings(const struct wb_bend_test *test, char text[WB_START_CHECK_TEXT])
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
+    const struct wb_rig *const rig = &test->run.rig;
+    const double from = latest->stage.position;
+    const struct wb_stage_motion motion = {.from = from,
+                                           .to = from + rig->stage.down * test->request.travel,
+                                           .speed = rig->stage.speed * rig->time_scale};
+    return !latest->has_settings || wb_stage_check(&latest->settings, rig, &motion, text);
+}
+
 static void step_check(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
@@ -259,7 +272,7 @@ static void step_check(struct wb_bend_test *test)
                  "s, at least 10 of each are needed",
                  check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
     if (!enough || !wb_start_check_stage(&latest->stage, test->rig_path, text) ||
-        !wb_start_check_markers(check, &test->specimen, text) ||
+        !check_settings(test, text) || !wb_start_check_markers(check, &test->specimen, text) ||
         !wb_start_check_zero(check, &test->run.rig, test->rig_path, text)) {
         refuse(test, text);
         return;

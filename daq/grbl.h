@@ -22,6 +22,18 @@ enum {
     WB_GRBL_JOG_CANCEL = 0x85
 };
 
+/* Numbers of `$` settings; of the last four the first axis's, the others follow. */
+enum {
+    WB_GRBL_IDLE_DELAY = 1,  /* ms until the motors are switched off after a motion, */
+    WB_GRBL_ALWAYS_ON = 255, /* never with this value */
+    WB_GRBL_INCHES = 13,
+    WB_GRBL_SOFT_LIMITS = 20,
+    WB_GRBL_STEPS = 100,        /* per mm */
+    WB_GRBL_RATE = 110,         /* mm/min */
+    WB_GRBL_ACCELERATION = 120, /* mm/s2 */
+    WB_GRBL_TRAVEL = 130        /* mm */
+};
+
 enum wb_grbl_kind {
     WB_GRBL_LINE_EMPTY,
     WB_GRBL_LINE_OK,      /* ok */

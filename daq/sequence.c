@@ -6,6 +6,7 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/stage_check.h"
 
 /* An earlier line that is not answered keeps a command waiting; the driver stops waiting after 2 s.
  */
@@ -58,9 +59,30 @@ void wb_sequence_give_up(struct wb_sequence *sequence, enum wb_interlock_reason 
     wb_sequence_enter(sequence, WB_SEQUENCE_STOP);
 }
 
+/* False, and all is given up, when the stage cannot do this jog as its firmware is set. */
+static bool jog_is_possible(struct wb_sequence *sequence)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(sequence->acquisition);
+    char text[WB_INTERLOCK_TEXT];
+    if (sequence->command != WB_STAGE_COMMAND_JOG || !latest->has_settings)
+        return true;
+    const double from = latest->stage.position;
+    const struct wb_stage_motion motion = {.from = from,
+                                           .to =
+                                               from + sequence->rig.stage.down * sequence->distance,
+                                           .speed = sequence->speed};
+    if (wb_stage_check(&latest->settings, &sequence->rig, &motion, text))
+        return true;
+    sequence->unsent = false;
+    wb_sequence_give_up(sequence, WB_INTERLOCK_STAGE, "%s", text);
+    return false;
+}
+
 /* Offers the command of this phase to the stage. */
 static void try_to_send(struct wb_sequence *sequence)
 {
+    if (!jog_is_possible(sequence))
+        return;
     const enum wb_status status = wb_acquisition_command(sequence->acquisition, sequence->command,
                                                          sequence->distance, sequence->speed);
     sequence->unsent = status == WB_ERR_BUSY;

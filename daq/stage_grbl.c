@@ -17,6 +17,8 @@
 #define POLL_PERIOD_NS (200 * WB_NS_PER_MS)      /* GRBL advises 5 reports a second at most, */
 #define FAST_POLL_PERIOD_NS (100 * WB_NS_PER_MS) /* and 10 for a while are fine */
 #define FAST_POLL_NS (1000 * WB_NS_PER_MS)
+#define LIST_SETTINGS "$$"
+#define S_PER_MIN 60.0
 #define REPLY_NS (2000 * WB_NS_PER_MS) /* a line is answered in far less, but for homing */
 
 struct grbl_state {
@@ -30,6 +32,10 @@ struct grbl_state {
     enum wb_stage_state state;
     struct wb_grbl_offset offset;
     uint64_t n_unknown;
+    /* The answer to `$$`. Asked for once the stage is idle or in alarm: otherwise it is deaf or
+     * would refuse. */
+    bool asked_settings, tried_settings, is_listing;
+    struct wb_stage_settings settings;
     /* The queue of replies: the one line that waits for its ok. */
     char pending[96];
     bool waits;
@@ -45,6 +51,73 @@ static enum wb_status init(void *opaque, const struct wb_rig *rig)
         return wb_fail(WB_ERR_ARGUMENT, "the stage's axis must be X, Y or Z and down +1 or -1");
     state->axis = rig->stage.axis - 'X';
     return WB_OK;
+}
+
+/* --- settings --- */
+
+static void note_setting(struct grbl_state *state, const struct wb_grbl_line *line)
+{
+    struct wb_stage_settings *const settings = &state->settings;
+    if (!state->is_listing) {
+        memset(settings, 0, sizeof *settings);
+        settings->steps = settings->speed = (double)NAN;
+        settings->acceleration = settings->travel = (double)NAN;
+    }
+    state->is_listing = true;
+    const size_t used = strlen(settings->text);
+    if (used + strlen(line->text) + 1 < sizeof settings->text)
+        snprintf(settings->text + used, sizeof settings->text - used, "%s\n", line->text);
+    switch (line->number) {
+    case WB_GRBL_IDLE_DELAY:
+        settings->lets_go = line->value < WB_GRBL_ALWAYS_ON;
+        break;
+    case WB_GRBL_INCHES:
+        settings->inches = line->value > 0.0;
+        break;
+    case WB_GRBL_SOFT_LIMITS:
+        settings->soft_limits = line->value > 0.0;
+        break;
+    default:
+        if (line->number == WB_GRBL_STEPS + state->axis)
+            settings->steps = line->value / WB_MM;
+        else if (line->number == WB_GRBL_RATE + state->axis)
+            settings->speed = line->value * WB_MM / S_PER_MIN;
+        else if (line->number == WB_GRBL_ACCELERATION + state->axis)
+            settings->acceleration = line->value * WB_MM;
+        else if (line->number == WB_GRBL_TRAVEL + state->axis)
+            settings->travel = line->value * WB_MM;
+    }
+}
+
+/* An `ok` after a list of settings ends it. */
+static void end_settings(struct grbl_state *state, int64_t t_ns, const struct wb_sink *sink)
+{
+    const struct wb_stage_settings *const settings = &state->settings;
+    state->is_listing = false;
+    state->tried_settings = true;
+    wb_driver_remark(sink, WB_LOG_INFO, t_ns, "settings",
+                     "axis %c: %g steps/mm, at most %g mm/s, %g mm/s2, travel %g mm, soft limits "
+                     "%s",
+                     state->rig.stage.axis, settings->steps * WB_MM, settings->speed / WB_MM,
+                     settings->acceleration / WB_MM, settings->travel / WB_MM,
+                     settings->soft_limits ? "on" : "off");
+    if (settings->lets_go)
+        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
+                         "the stage switches its motors off when a motion has ended, and the clamp "
+                         "may sag: set $1=255 in its firmware");
+    if (sink->settings)
+        sink->settings(sink->context, settings);
+}
+
+/* The stage moves all the same; what is not known is not checked. */
+static void miss_settings(struct grbl_state *state, int64_t t_ns, const char *why,
+                          const struct wb_sink *sink)
+{
+    state->tried_settings = true;
+    wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "settings",
+                     "the stage does not tell its settings ($$): %s; its largest speed and its "
+                     "travel are not checked",
+                     why);
 }
 
 /* --- receiving --- */
@@ -82,12 +155,20 @@ static void receive_report(struct grbl_state *state, int64_t t_ns,
     deliver(state, t_ns, position_mm * WB_MM, sink);
 }
 
+/* The line that waits for its reply will get none. */
+static void forget_line(struct grbl_state *state)
+{
+    state->waits = false;
+    state->is_listing = false;
+    state->asked_settings = state->tried_settings;
+}
+
 static void receive_alarm(struct grbl_state *state, int64_t t_ns, int number,
                           const struct wb_sink *sink)
 {
     state->alarm = number > 0 ? number : 99;
     state->state = WB_STAGE_ALARM;
-    state->waits = false;
+    forget_line(state);
     state->position_lost = state->position_lost || wb_grbl_alarm_loses_position(number);
     wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "alarm", "ALARM:%d, %s", number,
                      wb_grbl_alarm_text(number));
@@ -103,15 +184,18 @@ static void receive_banner(struct grbl_state *state, int64_t t_ns, const struct 
                          line->text);
     else
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "firmware", "%s", line->text);
-    state->waits = false;
+    forget_line(state);
     state->offset.known = false;
 }
 
 static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct wb_grbl_line *line,
                           const struct wb_sink *sink)
 {
+    const bool asked = state->waits && strcmp(state->pending, LIST_SETTINGS) == 0;
     state->answered = true;
-    if (line->kind == WB_GRBL_LINE_ERROR)
+    if (line->kind == WB_GRBL_LINE_ERROR && asked)
+        miss_settings(state, t_ns, wb_grbl_error_text(line->number), sink);
+    else if (line->kind == WB_GRBL_LINE_ERROR)
         wb_driver_remark(sink, WB_LOG_ERROR, t_ns, "error", "error:%d, %s%s%s", line->number,
                          wb_grbl_error_text(line->number), state->waits ? ": " : "",
                          state->waits ? state->pending : "");
@@ -120,6 +204,10 @@ static void receive_reply(struct grbl_state *state, int64_t t_ns, const struct w
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "homed",
                          "the stage was homed: its position is known again");
     }
+    if (line->kind == WB_GRBL_LINE_OK && state->is_listing)
+        end_settings(state, t_ns, sink);
+    else if (line->kind == WB_GRBL_LINE_OK && asked)
+        miss_settings(state, t_ns, "its list is empty", sink);
     state->waits = false;
 }
 
@@ -145,6 +233,8 @@ static void receive_line(struct grbl_state *state, int64_t t_ns, const struct wb
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "message", "%s", line.text);
         break;
     case WB_GRBL_LINE_SETTING:
+        note_setting(state, &line);
+        break;
     case WB_GRBL_LINE_EMPTY:
         break;
     case WB_GRBL_LINE_UNKNOWN:
@@ -191,24 +281,6 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     state->next_poll_ns = now_ns + POLL_PERIOD_NS;
 }
 
-static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
-{
-    struct grbl_state *const state = opaque;
-    const uint8_t poll = WB_GRBL_STATUS;
-    state->now_ns = now_ns;
-    /* A lost reply must not lock the stage out for ever. */
-    if (state->waits && now_ns - state->sent_ns > REPLY_NS && strcmp(state->pending, "$H") != 0) {
-        wb_warn("the stage did not answer '%s' within %d ms: check its cable", state->pending,
-                (int)(REPLY_NS / WB_NS_PER_MS));
-        state->waits = false;
-    }
-    if (now_ns < state->next_poll_ns || !wb_outbox_add(outbox, &poll, 1))
-        return;
-    const int64_t period = now_ns < state->fast_until_ns ? FAST_POLL_PERIOD_NS : POLL_PERIOD_NS;
-    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
-    state->next_poll_ns = now_ns + (int64_t)((double)period / scale);
-}
-
 static enum wb_status send_byte(struct wb_outbox *outbox, uint8_t byte)
 {
     if (!wb_outbox_add(outbox, &byte, 1))
@@ -233,10 +305,44 @@ static enum wb_status send_line(struct grbl_state *state, const char *text,
     return WB_OK;
 }
 
+static bool tells_settings(const struct grbl_state *state)
+{
+    return state->state == WB_STAGE_IDLE || state->state == WB_STAGE_ALARM;
+}
+
+static bool must_ask_settings(const struct grbl_state *state)
+{
+    return tells_settings(state) && !state->asked_settings && !state->waits;
+}
+
+static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
+{
+    struct grbl_state *const state = opaque;
+    const uint8_t poll = WB_GRBL_STATUS;
+    state->now_ns = now_ns;
+    /* A lost reply must not lock the stage out for ever. */
+    if (state->waits && now_ns - state->sent_ns > REPLY_NS && strcmp(state->pending, "$H") != 0) {
+        wb_warn("the stage did not answer '%s' within %d ms: check its cable", state->pending,
+                (int)(REPLY_NS / WB_NS_PER_MS));
+        state->waits = false;
+        state->tried_settings = state->tried_settings || state->asked_settings;
+    }
+    if (must_ask_settings(state) && send_line(state, LIST_SETTINGS "\n", outbox) == WB_OK)
+        state->asked_settings = true;
+    if (now_ns < state->next_poll_ns || !wb_outbox_add(outbox, &poll, 1))
+        return;
+    const int64_t period = now_ns < state->fast_until_ns ? FAST_POLL_PERIOD_NS : POLL_PERIOD_NS;
+    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
+    state->next_poll_ns = now_ns + (int64_t)((double)period / scale);
+}
+
 static enum wb_status send_jog(struct grbl_state *state, double distance, double speed,
                                struct wb_outbox *outbox)
 {
     char line[96];
+    /* The caller waits for `ready`, or tries again. */
+    if (!state->tried_settings)
+        return WB_ERR_BUSY;
     if (!wb_grbl_format_jog(line, sizeof line, state->rig.stage.axis,
                             distance * state->rig.stage.down, speed))
         return wb_fail(WB_ERR_ARGUMENT,
@@ -263,7 +369,7 @@ static enum wb_status command(void *opaque, enum wb_stage_command what, double d
         return send_byte(outbox, WB_GRBL_JOG_CANCEL);
     case WB_STAGE_COMMAND_SOFT_RESET:
         /* The firmware forgets what it was sent and will not answer it. */
-        state->waits = false;
+        forget_line(state);
         poll_soon(state);
         return send_byte(outbox, WB_GRBL_SOFT_RESET);
     case WB_STAGE_COMMAND_HOME:
@@ -279,7 +385,8 @@ static enum wb_status command(void *opaque, enum wb_stage_command what, double d
 static bool ready(const void *opaque)
 {
     const struct grbl_state *const state = opaque;
-    return state->answered && state->state != WB_STAGE_UNKNOWN;
+    return state->answered && state->state != WB_STAGE_UNKNOWN &&
+           (state->tried_settings || !tells_settings(state));
 }
 
 /* No `stop`: nothing streams, and whether the stage may go on moving is the caller's decision. */

@@ -44,6 +44,10 @@ struct fake_bench {
     atomic_bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
     atomic_bool stage_overshoots; /* moves beyond the target */
     atomic_bool has_top;          /* answers jogs that end above 0 with error:15 */
+    atomic_bool has_soft_limits;  /* $20, */
+    atomic_int soft_travel_mm;    /* and $130: told only, not enforced */
+    atomic_bool hides_settings;   /* answers $$ with error:1 */
+    atomic_int fastest_mm_min;    /* $110 */
     atomic_int reports_of_100;    /* how many questions for the state are answered; 0: all */
     atomic_int
         readings_at_once; /* the load cell's arrive so many in one piece; 0: each by itself */
@@ -155,6 +159,13 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
         if (line[1] == 'H')
             bench->position_mm = 0.0;
         fake_say(bench, "ok\r\n");
+    } else if (strcmp(line, "$$") == 0 && !bench->hides_settings) {
+        char text[160];
+        snprintf(text, sizeof text,
+                 "$1=255\r\n$13=0\r\n$20=%d\r\n$100=800.000\r\n$110=%d.000\r\n"
+                 "$120=100000.000\r\n$130=%d.000\r\nok\r\n",
+                 bench->has_soft_limits, bench->fastest_mm_min, bench->soft_travel_mm);
+        fake_say(bench, text);
     } else {
         fake_say(bench, "error:1\r\n");
     }
@@ -379,6 +390,8 @@ static inline struct fake_bench *fake_start(void)
     bench->port = ntohs(address.sin_port);
     bench->state = "Idle";
     bench->markers = FAKE_MARKERS;
+    bench->fastest_mm_min = 6000;
+    bench->soft_travel_mm = 200;
     bench->force_mg = 150;
     bench->spring_mg_mm = 500;
     bench->noise = 12345;

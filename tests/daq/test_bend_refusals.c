@@ -49,6 +49,13 @@ static void a_silent_stage_is_told(void **state)
     assert_refused(fixture, "the stage at pty:", false);
 }
 
+static void a_stage_set_slower_than_the_test_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->fastest_mm_min = 1200; /* 0.5 mm/s on this bench, 40 times as fast */
+    assert_refused(fixture, "0.5 mm/s at most ($110=1200 mm/min), and 1 mm/s are wanted", true);
+}
+
 static void a_missing_marker_is_named(void **state)
 {
     struct fixture *const fixture = *state;
@@ -205,6 +212,7 @@ int main(void)
         TEST(a_silent_load_cell_is_told),
         TEST(a_load_cell_of_another_protocol_is_told),
         TEST(a_silent_stage_is_told),
+        TEST(a_stage_set_slower_than_the_test_is_told),
         TEST(a_missing_marker_is_named),
         TEST(a_stray_reflection_does_not_hurt),
         TEST(a_unit_that_contradicts_the_rig_file_is_refused),

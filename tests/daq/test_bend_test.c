@@ -134,6 +134,7 @@ static void meta_tells_who_what_and_how(void **state)
                  {"travel_mm", "2"},
                  {"monotonic_start_ns", ""},
                  {"virtual", "true"},
+                 {"stage_settings", "$110=6000.000\n$120="},
                  {"truth", "truth:\n  spring_mg_mm: 500\n"}};
     for (size_t i = 0; i < sizeof metas / sizeof metas[0]; i++) {
         char *value = NULL;
