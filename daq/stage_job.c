@@ -9,6 +9,7 @@
 #include "base/interrupt.h"
 #include "base/units.h"
 #include "daq/release.h"
+#include "daq/stage_check.h"
 
 #define WB_LOG_DOMAIN "stage"
 
@@ -42,6 +43,7 @@ struct wb_stage_job {
     struct wb_sequence run;
     struct wb_stage_job_request request;
     double most, reach; /* m, release: of one step, and of all of them */
+    double way_up;      /* m, release: from the start to the stage's soft limit; infinite: none */
     double first_force; /* N; NaN before the first reading */
     struct wb_release release;
     bool standing;
@@ -153,11 +155,18 @@ static void end_release(struct wb_stage_job *job)
     finish(job);
 }
 
+/* m: no test goes further down, so no release needs to go further up. */
+static double longest_test(const struct wb_rig *rig)
+{
+    return rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
+}
+
 /* Release: the next step up, or the end of them. */
 static void step_up(struct wb_stage_job *job, double travel)
 {
     const double left = job->reach + travel;
-    const double step = fmin(wb_release_step(&job->release), job->most);
+    const double way_up = job->way_up + travel; /* to the stage's soft limit */
+    const double step = fmin(fmin(wb_release_step(&job->release), job->most), way_up);
     char now[40];
     const double force = wb_release_force(&job->release) / WB_MN;
     if (isfinite(force))
@@ -167,13 +176,15 @@ static void step_up(struct wb_stage_job *job, double travel)
     if (left <= WB_SEQUENCE_TOLERANCE)
         wb_sequence_set_end(&job->run, WB_SEQUENCE_STILL_LOADED,
                             "went up by %.2f mm, but the reading did not level off (%s): look at "
-                            "the strand, then release again or jog",
+                            "the strand; if it is slack the specimen is free, and if not release "
+                            "again or jog up (jog -MM)",
                             -travel / WB_MM, now);
-    else if (job->most < LEAST_STEP)
+    else if (step < LEAST_STEP)
         wb_sequence_set_end(
             &job->run, WB_SEQUENCE_STILL_LOADED,
             "went up by %.2f mm to the end of the machine, but the reading did not level "
-            "off (%s): look at the strand; the stage is free to jog down",
+            "off (%s): look at the strand; if it is tight still, take the specimen out of its "
+            "clamp; the stage is free to jog down",
             -travel / WB_MM, now);
     if (job->run.end != WB_SEQUENCE_RUNNING)
         end_release(job);
@@ -202,9 +213,12 @@ static void begin_motion(struct wb_stage_job *job)
         return;
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
+        job->way_up = latest->has_settings ? wb_stage_check_way_up(&latest->settings, &job->run.rig,
+                                                                   job->run.start_position)
+                                           : HUGE_VAL;
         job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->run.rig.stage.travel)
-                                          : job->run.rig.stage.travel;
-        job->most = job->run.rig.stage.travel;
+                                          : longest_test(&job->run.rig);
+        job->most = job->reach;
         wb_release_init(&job->release, &job->run.rig);
         rest(job, 0.0);
         return;
@@ -217,7 +231,8 @@ static void step_connect(struct wb_stage_job *job)
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
     const bool load_speaks = !load->open || load->samples > 0;
-    if (latest->has_stage && load_speaks && wb_sequence_lasts_ns(&job->run) > STALE_NS) {
+    const bool stage_speaks = latest->has_stage && latest->stream[WB_ROLE_STAGE].ready;
+    if (stage_speaks && load_speaks && wb_sequence_lasts_ns(&job->run) > STALE_NS) {
         const enum wb_stage_state state = latest->stage.state;
         const bool frees =
             job->request.kind == WB_STAGE_JOB_UNLOCK || job->request.kind == WB_STAGE_JOB_RELEASE;

@@ -231,6 +231,41 @@ release_that_meets_the_end_of_the_machine_says_so_and_leaves_the_stage_usable(vo
     assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_SEQUENCE_DONE);
 }
 
+/* By default it goes no further than a test may go down, here 12 mm, and says what to do. */
+static void release_ends_after_the_longest_way_of_a_test(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->spring_mg_mm = 100;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 40.0).end, WB_SEQUENCE_DONE);
+    fixture->rig.limits.travel = 12.0 * WB_MM;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
+    assert_non_null(strstr(result.text, "went up by 12.00 mm"));
+    assert_non_null(strstr(result.text, "look at the strand"));
+    assert_close(bench->position_mm, 28.0, 1e-3);
+}
+
+/* The stage tells its soft limits: it stops before them and no command of it is refused. */
+static void release_ends_at_the_soft_limit(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->position_mm = -20.0;
+    bench->spring_mg_mm = 100;
+    bench->slack_mm = -60;
+    bench->has_soft_limits = true;
+    bench->soft_travel_mm = 27;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
+    assert_non_null(strstr(result.text, "went up by 7.00 mm to the end of the machine"));
+    assert_close(bench->position_mm, -27.0, 1e-3);
+    const struct wb_stage_job_result jog = run(fixture, WB_STAGE_JOB_JOG, -0.5);
+    assert_int_equal(jog.end, WB_SEQUENCE_FAILED);
+    assert_non_null(strstr(jog.text, "beyond the stage's soft limits, -27 mm to 0"));
+    assert_close(bench->position_mm, -27.0, 1e-3);
+}
+
 /* A reading that stays level far from zero will not change on the rest of the way either. */
 static void release_ends_soon_when_the_reading_does_not_change(void **state)
 {
@@ -335,6 +370,8 @@ int main(void)
         TEST(release_waits_for_a_lost_answer),
         TEST(release_does_not_mind_how_bytes_are_handed_over),
         TEST(release_that_meets_the_end_of_the_machine_says_so_and_leaves_the_stage_usable),
+        TEST(release_ends_after_the_longest_way_of_a_test),
+        TEST(release_ends_at_the_soft_limit),
         TEST(release_ends_soon_when_the_reading_does_not_change),
         TEST(release_may_begin_beyond_the_limits),
         TEST(release_stops_when_up_loads),
