@@ -152,6 +152,68 @@ static void jogs_in_a_row_run_on_without_a_halt(void **state)
     assert_close(travel(scene), 4.0 * WB_MM, 1e-9);
 }
 
+/* 14 wait behind the one that is executed; the next line is read when there is room again. */
+static void a_full_planner_lets_lines_wait(void **state)
+{
+    struct scene *const scene = *state;
+    for (int i = 0; i < 15; i++)
+        assert_string_equal(tell(scene, "$J=G91 G21 X0.1 F60\n"), "ok\r\n");
+    assert_string_equal(tell(scene, "$J=G91 G21 X0.1 F60\n"), "");
+    wait(scene, 0.09);
+    assert_string_equal(listen(scene), "");
+    /* 0.1 mm and the start, which costs 10 ms. */
+    wait(scene, 0.021);
+    assert_string_equal(listen(scene), "ok\r\n");
+    wait(scene, 2.0);
+    assert_close(travel(scene), 1.6 * WB_MM, 1e-9);
+    assert_state(scene, "Idle");
+}
+
+/* The planner brakes to rest at the end of what it has; a block that comes while steps of the
+ * braking are laid down already joins after them. */
+static void a_late_block_is_joined_after_the_steps_laid_down(void **state)
+{
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X1 F600\n"); /* at most 7.1 mm/s, 0.14 s up and down */
+    wait(scene, 0.2);
+    const double at = travel(scene);
+    tell(scene, "$J=G91 G21 X9 F600\n");
+    wait(scene, 0.049);
+    const double speed = (travel(scene) - at) / 0.049;
+    assert_true(speed < 4.2 * WB_MM);
+    wait(scene, 0.2);
+    const double then = travel(scene);
+    wait(scene, 0.01);
+    assert_true(travel(scene) - then > 9.0 * 0.01 * WB_MM);
+    wait(scene, 2.0);
+    assert_close(travel(scene), 10.0 * WB_MM, 1e-9);
+}
+
+static void a_cancelled_jog_lets_the_line_behind_it_start(void **state)
+{
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X30 F600\n");
+    wait(scene, 1.1);
+    const double at = travel(scene);
+    assert_string_equal(tell(scene, "\x85$J=G91 G21 X0.5 F600\n"), "");
+    wait(scene, 1.0);
+    assert_string_equal(listen(scene), "ok\r\n");
+    assert_close(travel(scene), at + 1.5 * WB_MM, 3e-6);
+}
+
+static void a_clock_that_runs_fast_makes_the_stage_fast(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct wb_sim_stage_settings settings = plain;
+    settings.clock_error = 0.02;
+    open_scene(&scene, &settings);
+    tell(&scene, "$J=G91 G21 X50 F60\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), (10.2 - 0.01) * WB_MM, 2e-6);
+    assert_non_null(strstr(tell(&scene, "?"), "FS:60,0"));
+}
+
 static void opposite_jogs_wait_for_each_other(void **state)
 {
     struct scene *const scene = *state;
@@ -517,6 +579,10 @@ int main(void)
         cmocka_unit_test(down_can_be_the_negative_direction),
         SCENE_TEST(jogs_beyond_the_travel_are_refused),
         SCENE_TEST(jogs_in_a_row_run_on_without_a_halt),
+        SCENE_TEST(a_full_planner_lets_lines_wait),
+        SCENE_TEST(a_late_block_is_joined_after_the_steps_laid_down),
+        SCENE_TEST(a_cancelled_jog_lets_the_line_behind_it_start),
+        cmocka_unit_test(a_clock_that_runs_fast_makes_the_stage_fast),
         SCENE_TEST(opposite_jogs_wait_for_each_other),
         cmocka_unit_test(a_hold_cancels_a_jog_and_ends_idle),
         SCENE_TEST(a_hold_at_rest_deafens_until_resumed),
