@@ -52,8 +52,9 @@ struct wb_grbl_report {
     char name[16]; /* as sent, "Hold:0" */
     bool has_machine, has_work, has_offset;
     double machine_mm[3], work_mm[3], offset_mm[3]; /* MPos, WPos, WCO */
-    double feed_mm_min;                             /* of FS or F */
-    bool limit[3];                                  /* Pn: a limit switch is pressed */
+    bool has_feed;
+    double feed_mm_min; /* of FS or F */
+    bool limit[3];      /* Pn: a limit switch is pressed */
 };
 
 struct wb_grbl_line {

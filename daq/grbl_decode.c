@@ -73,6 +73,7 @@ static bool parse_field(const char *field, struct wb_grbl_report *report)
         if (parse_triple(strchr(field, ':') + 1, values) == 0)
             return false;
         report->feed_mm_min = values[0];
+        report->has_feed = true;
     } else if (strncmp(field, "Pn:", 3) == 0) {
         for (int axis = 0; axis < 3; axis++)
             report->limit[axis] = strchr(field + 3, "XYZ"[axis]) != NULL;

@@ -142,10 +142,12 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
 {
     struct grbl_jog jog;
     if (grbl_jog_parse(line, &jog)) {
-        const double target = jog.relative ? bench->position_mm + jog.target_mm : jog.target_mm;
+        /* Jogs in a row are one way, as GRBL's planner joins them. */
+        const double from = fake_moves(bench) ? bench->target_mm : bench->position_mm;
+        const double target = jog.relative ? from + jog.target_mm : jog.target_mm;
         if (bench->stage_refuses || (bench->has_top && target < 0.0)) {
             fake_say(bench, "error:15\r\n");
-        } else if (strcmp(bench->state, "Idle") != 0) {
+        } else if (strcmp(bench->state, "Idle") != 0 && !fake_moves(bench)) {
             fake_say(bench, "error:9\r\n");
         } else {
             bench->target_mm = target;

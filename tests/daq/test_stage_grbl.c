@@ -26,7 +26,7 @@ static void feed(void *driver, int64_t t_ns, const char *text)
 
 static enum wb_status command(void *driver, enum wb_stage_command what)
 {
-    return wb_stage_grbl.command(driver, what, 0.002, 0.001, &outbox);
+    return wb_stage_grbl.command(driver, what, 0.002, 0.001, &outbox); /* 2 mm at 1 mm/s */
 }
 
 /* What a stage says first: it stands, and its settings. */
@@ -34,7 +34,9 @@ static void introduce(void *driver)
 {
     feed(driver, 0, "<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
     wb_stage_grbl.tick(driver, 0, &outbox);
-    feed(driver, 0, "$110=600.000\r\n$120=50.000\r\nok\r\n");
+    feed(driver, 0,
+         "$110=600.000\r\n$111=600.000\r\n$112=600.000\r\n$120=50.000\r\n$121=50.000\r\n"
+         "$122=50.000\r\nok\r\n");
     memset(&collect, 0, sizeof collect);
     wb_outbox_clear(&outbox);
 }
@@ -131,12 +133,13 @@ static void downward_jogs_follow_the_rigs_axis_and_sign(void **state)
     void *driver = open_stage('X', 1);
     introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
-    assert_sent("$J=G91 G21 X2.000 F60.000\n");
+    /* The first of many short ones: 10 ms to brake and 150 ms. */
+    assert_sent("$J=G91 G21 X0.160 F60.000\n");
     free(driver);
     driver = open_stage('Z', -1);
     introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
-    assert_sent("$J=G91 G21 Z-2.000 F60.000\n");
+    assert_sent("$J=G91 G21 Z-0.160 F60.000\n");
     free(driver);
 }
 
@@ -150,17 +153,64 @@ static void one_line_waits_for_its_reply(void **state)
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_HOME), WB_ERR_BUSY);
-    assert_int_equal(n_messages, 0);
+    wb_outbox_clear(&outbox);
     /* Reports and messages are no replies. */
-    feed(driver, 0, "<Jog|MPos:0.000,0.000,0.000|FS:60,0>\r\n[MSG:hello]\r\n");
-    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
-    feed(driver, 0, "ok\r\n");
+    feed(driver, 10 * MS, "<Idle|MPos:0.000,0.000,0.000|FS:60,0>\r\n[MSG:hello]\r\n");
+    wb_stage_grbl.tick(driver, 20 * MS, &outbox);
+    assert_int_equal(outbox.n_entries, 0);
+    feed(driver, 30 * MS, "ok\r\n<Jog|MPos:0.000,0.000,0.000|FS:60,0>\r\n");
+    wb_stage_grbl.tick(driver, 110 * MS, &outbox);
+    /* 0.08 mm of 0.16 are done, as predicted. */
+    assert_sent("$J=G91 G21 X0.080 F60.000\n");
+    assert_int_equal(n_messages, 0);
+    wb_log_set_sink(NULL, NULL);
+    free(driver);
+}
+
+/* An error ends the jog: what the firmware still has is cancelled, until it is seen standing. */
+static void a_refused_jog_is_cancelled_until_the_stage_stands(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
-    feed(driver, 0, "error:15\r\n");
+    wb_outbox_clear(&outbox);
+    feed(driver, 10 * MS, "<Jog|MPos:0.010,0.000,0.000|FS:60,0>\r\nerror:15\r\n");
     assert_int_equal(collect_count(&collect, "error"), 1);
     assert_non_null(strstr(collect_text(&collect, "error"), "$J=G91"));
-    assert_int_equal(command(driver, WB_STAGE_COMMAND_UNLOCK), WB_OK);
-    wb_log_set_sink(NULL, NULL);
+    wb_stage_grbl.tick(driver, 20 * MS, &outbox);
+    assert_sent("?\x85");
+    feed(driver, 30 * MS, "<Idle|MPos:0.020,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    /* A line that was under way has started after the first time. */
+    feed(driver, 40 * MS, "<Jog|MPos:0.020,0.000,0.000|FS:60,0>\r\n");
+    wb_stage_grbl.tick(driver, 120 * MS, &outbox);
+    assert_sent("?\x85");
+    feed(driver, 130 * MS, "<Idle|MPos:0.030,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    feed(driver, 230 * MS, "<Idle|MPos:0.030,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    free(driver);
+}
+
+/* Without reports nothing more is sent, and the stage comes to rest by itself. */
+static void a_stage_that_reports_nothing_gets_nothing(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    introduce(driver);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    int lines = 0;
+    for (int64_t t = 20; t < 3000; t += 20) {
+        feed(driver, t * MS, "ok\r\n");
+        wb_outbox_clear(&outbox);
+        wb_stage_grbl.tick(driver, t * MS, &outbox);
+        for (size_t i = 0; i < outbox.n_bytes; i++)
+            lines += outbox.bytes[i] == '\n';
+    }
+    /* 0.4 s of 20 ms each. */
+    if (!(lines >= 8 && lines <= 20))
+        fail_msg("%d lines", lines);
     free(driver);
 }
 
@@ -334,6 +384,8 @@ int main(void)
         cmocka_unit_test(reports_become_samples_of_the_tests_axis),
         cmocka_unit_test(downward_jogs_follow_the_rigs_axis_and_sign),
         cmocka_unit_test(one_line_waits_for_its_reply),
+        cmocka_unit_test(a_refused_jog_is_cancelled_until_the_stage_stands),
+        cmocka_unit_test(a_stage_that_reports_nothing_gets_nothing),
         cmocka_unit_test(real_time_bytes_are_never_refused),
         cmocka_unit_test(status_is_polled_at_5_hz_and_at_10_hz_after_a_hold),
         cmocka_unit_test(alarms_are_samples_at_once),

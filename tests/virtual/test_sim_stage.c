@@ -1,11 +1,7 @@
-/* The simulated GRBL stage: against GRBL's documented answers, and under the real driver. */
+/* The simulated GRBL stage: against GRBL's documented answers. */
 #include "fixtures/virtual/sim_stage.h"
 
-#include <stdlib.h>
-
 #include "base/units.h"
-#include "daq/drivers.h"
-#include "daq/grbl.h"
 #include "fixtures/virtual/random.h"
 #include "tests/check.h"
 
@@ -461,116 +457,6 @@ static void with_a_time_scale_feeds_are_the_hosts(void **state)
     assert_non_null(strstr(tell(&scene, "?"), "FS:600,0"));
 }
 
-/* The real driver on the simulated stage. */
-struct driven {
-    struct scene scene;
-    void *state;
-    struct wb_stage_report last;
-    int reports, errors;
-    int64_t now_ns;
-};
-
-static void keep_report(void *context, const struct wb_stage_report *report)
-{
-    struct driven *const driven = context;
-    driven->last = *report;
-    driven->reports++;
-}
-
-static void keep_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
-                        const char *text)
-{
-    (void)t_ns;
-    (void)kind;
-    (void)text;
-    ((struct driven *)context)->errors += level == WB_LOG_ERROR;
-}
-
-static void exchange(struct driven *driven, struct wb_outbox *outbox)
-{
-    const struct wb_sink sink = {.context = driven, .stage = keep_report, .remark = keep_remark};
-    driven->scene.t = wb_seconds_from_ns(driven->now_ns);
-    wb_sim_stage_receive(&driven->scene.stage, driven->scene.t, outbox->bytes, outbox->n_bytes);
-    wb_outbox_clear(outbox);
-    const char *const text = listen(&driven->scene);
-    wb_stage_grbl.receive(driven->state, driven->now_ns, (const uint8_t *)text, strlen(text),
-                          &sink);
-}
-
-static void live(struct driven *driven, double seconds)
-{
-    struct wb_outbox outbox;
-    wb_outbox_clear(&outbox);
-    for (int i = 0; i < (int)(seconds * 100.0); i++) {
-        driven->now_ns += 10 * WB_NS_PER_MS;
-        wb_stage_grbl.tick(driven->state, driven->now_ns, &outbox);
-        exchange(driven, &outbox);
-    }
-}
-
-static void command(struct driven *driven, enum wb_stage_command what, double distance,
-                    double speed)
-{
-    struct wb_outbox outbox;
-    wb_outbox_clear(&outbox);
-    assert_int_equal(wb_stage_grbl.command(driven->state, what, distance, speed, &outbox), WB_OK);
-    exchange(driven, &outbox);
-}
-
-static void open_driven(struct driven *driven)
-{
-    struct wb_rig rig;
-    struct wb_outbox outbox;
-    memset(driven, 0, sizeof *driven);
-    memset(&rig, 0, sizeof rig);
-    rig.stage.axis = 'X';
-    rig.stage.down = 1;
-    rig.time_scale = 1.0;
-    open_scene(&driven->scene, &plain);
-    driven->state = calloc(1, wb_stage_grbl.state_size);
-    assert_non_null(driven->state);
-    assert_int_equal(wb_stage_grbl.init(driven->state, &rig), WB_OK);
-    wb_outbox_clear(&outbox);
-    wb_stage_grbl.start(driven->state, 0, &outbox);
-    exchange(driven, &outbox);
-    live(driven, 0.1);
-    assert_true(wb_stage_grbl.ready(driven->state));
-}
-
-static void the_real_driver_jogs_holds_resets_and_homes(void **state)
-{
-    (void)state;
-    struct driven driven;
-    open_driven(&driven);
-    assert_close(driven.last.position, -62.0 * WB_MM, 1e-9);
-    command(&driven, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM, 10.0 * WB_MM);
-    live(&driven, 1.0);
-    assert_int_equal(driven.last.state, WB_STAGE_JOG);
-    command(&driven, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
-    live(&driven, 0.5);
-    assert_int_equal(driven.last.state, WB_STAGE_IDLE);
-    const double held = driven.last.position;
-    assert_true(held > -53.0 * WB_MM && held < -50.0 * WB_MM);
-    assert_int_equal(driven.errors, 0);
-
-    command(&driven, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM, 10.0 * WB_MM);
-    live(&driven, 1.0);
-    command(&driven, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
-    live(&driven, 0.5);
-    assert_int_equal(driven.last.state, WB_STAGE_ALARM);
-    assert_int_equal(driven.last.alarm, 3);
-    assert_int_equal(driven.errors, 1);
-
-    command(&driven, WB_STAGE_COMMAND_HOME, 0.0, 0.0);
-    live(&driven, 15.0);
-    assert_int_equal(driven.last.state, WB_STAGE_IDLE);
-    assert_int_equal(driven.last.alarm, 0);
-    assert_close(driven.last.position, -62.0 * WB_MM, 1e-9);
-    command(&driven, WB_STAGE_COMMAND_JOG, 100.0 * WB_MM, 10.0 * WB_MM);
-    assert_int_equal(driven.errors, 2);
-    free(driven.state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -599,7 +485,6 @@ int main(void)
         SCENE_TEST(a_reset_empties_the_receive_buffer),
         cmocka_unit_test(endless_lines_are_refused),
         cmocka_unit_test(with_a_time_scale_feeds_are_the_hosts),
-        cmocka_unit_test(the_real_driver_jogs_holds_resets_and_homes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
