@@ -291,6 +291,7 @@ static void step_check(struct wb_bend_test *test)
 /* True when the motion under way has ended at its target; stops the test when it cannot. */
 static bool arrived(struct wb_bend_test *test)
 {
+    char text[80];
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
     if (latest->stage_reports == test->run.reports_seen) {
         if (wb_sequence_lasts_ns(&test->run) > test->run.allowed_ns)
@@ -313,6 +314,8 @@ static bool arrived(struct wb_bend_test *test)
     }
     if (fabs(travel - test->run.target) <= WB_SEQUENCE_TOLERANCE) {
         wb_acquisition_motion_ended(test->run.acquisition);
+        if (wb_sequence_note_speed(&test->run, text, sizeof text))
+            wb_warn("the stage moved %s: was its feed overridden, or does it stall?", text);
         return true;
     }
     /* The first idle reports may be older than the command. */

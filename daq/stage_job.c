@@ -358,6 +358,7 @@ static void step_home(struct wb_stage_job *job)
 
 static void step_move(struct wb_stage_job *job)
 {
+    char text[80];
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     if (wb_sequence_lasts_ns(&job->run) > job->run.allowed_ns)
         wb_sequence_give_up(
@@ -373,7 +374,9 @@ static void step_move(struct wb_stage_job *job)
     }
     if (fabs(travel - job->run.target) <= WB_SEQUENCE_TOLERANCE) {
         wb_acquisition_motion_ended(job->run.acquisition);
-        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE, "moved by %.3f mm", travel / WB_MM);
+        const bool is_off = wb_sequence_note_speed(&job->run, text, sizeof text);
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE, "moved by %.3f mm%s%s", travel / WB_MM,
+                            is_off ? " " : "", is_off ? text : "");
         finish(job);
         return;
     }

@@ -42,6 +42,7 @@ struct fake_bench {
     atomic_bool stage_wild;       /* ignores the soft reset too, and answers nothing then */
     atomic_bool stage_refuses;    /* answers jogs with error:15 */
     atomic_bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
+    atomic_bool is_slow;          /* moves at half the speed it is told */
     atomic_bool stage_overshoots; /* moves beyond the target */
     atomic_bool has_top;          /* answers jogs that end above 0 with error:15 */
     atomic_bool has_soft_limits;  /* $20, */
@@ -151,7 +152,7 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
             fake_say(bench, "error:9\r\n");
         } else {
             bench->target_mm = target;
-            bench->feed_mm_s = jog.feed_mm_min / 60.0;
+            bench->feed_mm_s = jog.feed_mm_min / 60.0 * (bench->is_slow ? 0.5 : 1.0);
             bench->state = "Jog";
             if (!atomic_exchange(&bench->stage_forgets_ok, false))
                 fake_say(bench, "ok\r\n");

@@ -79,6 +79,18 @@ static void jog_moves_by_the_distance_down_and_up(void **state)
     assert_int_equal(fixture->bench->holds, 0);
 }
 
+static void a_slow_jog_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->is_slow = true;
+    fixture->bench->spring_mg_mm = 10;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 40.0);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
+    if (!strstr(result.text, "moved by 40.000 mm at 0.") ||
+        !strstr(result.text, "instead of 1 mm/s"))
+        fail_msg("'%s' does not tell its speed", result.text);
+}
+
 static void jog_stops_at_the_force_limit_within_20_ms(void **state)
 {
     struct fixture *const fixture = *state;
@@ -359,6 +371,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(jog_moves_by_the_distance_down_and_up),
+        TEST(a_slow_jog_is_told),
         TEST(jog_stops_at_the_force_limit_within_20_ms),
         TEST(jog_beyond_the_travel_is_refused),
         TEST(jog_of_a_locked_stage_says_how_to_unlock),
