@@ -703,6 +703,13 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
 
 /* --- opening and closing --- */
 
+/* A stage that loses its position whenever a command opens its port would have to be homed each
+ * time. */
+static bool must_keep_dtr(const char *address)
+{
+    return strncmp(address, "serial:", 7) == 0 && !strstr(address, ",dtr=");
+}
+
 static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, const char *address,
                                 const char *protocol)
 {
@@ -720,7 +727,10 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
         return wb_fail(WB_ERR_MEMORY, "no memory for the %s driver", protocol);
     a->n_lines++; /* from here on closing frees it */
     WB_TRY(line->driver->init(line->state, &a->rig));
-    WB_TRY(wb_stream_open(&line->stream, address));
+    char kept[WB_RIG_TEXT + 16];
+    snprintf(kept, sizeof kept, "%s%s", address,
+             role == WB_ROLE_STAGE && must_keep_dtr(address) ? ",dtr=keep" : "");
+    WB_TRY(wb_stream_open(&line->stream, kept));
     a->by_role[role] = line;
     a->latest.stream[role].open = true;
     return WB_OK;

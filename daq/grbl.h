@@ -80,9 +80,13 @@ struct wb_grbl_offset {
 bool wb_grbl_position(const struct wb_grbl_report *report, struct wb_grbl_offset *offset, int axis,
                       double *position_mm);
 
-/* What an error or alarm number means, in a few words; never NULL. */
+/* What an error or alarm number means, in a few words; never NULL. No alarm number, 0, is a stage
+ * that is locked because it was not homed since it was switched on or reset. */
 const char *wb_grbl_error_text(int number);
 const char *wb_grbl_alarm_text(int number);
+
+/* Why a stage in state Alarm is in it, "ALARM:1, hard limit: ..." */
+void wb_grbl_alarm_reason(const struct wb_stage_report *report, char *text, size_t size);
 
 /* True for alarms after which the firmware no longer knows where the stage is. */
 bool wb_grbl_alarm_loses_position(int number);

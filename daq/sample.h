@@ -73,6 +73,7 @@ struct wb_stage_report {
     enum wb_stage_state state;
     double position; /* m, machine position of the test's axis as commanded; NaN when not sent */
     int alarm;       /* last ALARM number, 0 none */
+    bool was_reset;  /* the firmware started anew since its port was opened, and not at our word */
 };
 
 /* What the firmware of a stage is set to, for the test's axis. A number that it did not tell is

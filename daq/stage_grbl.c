@@ -34,7 +34,9 @@ struct grbl_state {
     /* What the firmware told. */
     bool answered;
     bool position_lost, limit_pressed;
-    int alarm; /* last ALARM number, 0 none */
+    bool resets;    /* we have just told it to start anew */
+    bool was_reset; /* it did so by itself, or because its port was opened */
+    int alarm;      /* last ALARM number, 0 none */
     enum wb_stage_state state;
     struct wb_grbl_offset offset;
     uint64_t n_unknown;
@@ -187,8 +189,11 @@ static void deliver(const struct grbl_state *state, int64_t t_ns, double positio
 {
     if (!sink->stage)
         return;
-    const struct wb_stage_report report = {
-        .t_ns = t_ns, .state = state->state, .position = position, .alarm = state->alarm};
+    const struct wb_stage_report report = {.t_ns = t_ns,
+                                           .state = state->state,
+                                           .position = position,
+                                           .alarm = state->alarm,
+                                           .was_reset = state->was_reset};
     sink->stage(sink->context, &report);
 }
 
@@ -247,6 +252,8 @@ static void receive_banner(struct grbl_state *state, int64_t t_ns, const struct 
                          line->text);
     else
         wb_driver_remark(sink, WB_LOG_INFO, t_ns, "firmware", "%s", line->text);
+    state->was_reset = state->was_reset || !state->resets;
+    state->resets = false;
     forget_line(state);
     state->offset.known = false;
 }
@@ -458,6 +465,7 @@ static enum wb_status command(void *opaque, enum wb_stage_command what, double d
         cancel_feed(state);
         return send_byte(outbox, WB_GRBL_JOG_CANCEL);
     case WB_STAGE_COMMAND_SOFT_RESET:
+        state->resets = true;
         /* The firmware forgets what it was sent and will not answer it. */
         forget_line(state);
         poll_soon(state);

@@ -8,6 +8,7 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/grbl.h"
 #include "daq/release.h"
 #include "daq/stage_check.h"
 
@@ -226,6 +227,16 @@ static void begin_motion(struct wb_stage_job *job)
     wb_sequence_jog_to(&job->run, job->request.distance, job->request.speed, PHASE_MOVE);
 }
 
+static void give_up_in_alarm(struct wb_stage_job *job, const struct wb_stage_report *report)
+{
+    char reason[256];
+    wb_grbl_alarm_reason(report, reason, sizeof reason);
+    wb_sequence_give_up(&job->run, WB_INTERLOCK_ALARM,
+                        "the stage is in alarm (%s): mend the cause, then run 'home', or 'unlock' "
+                        "if it has no limit switch",
+                        reason);
+}
+
 static void step_connect(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
@@ -247,10 +258,7 @@ static void step_connect(struct wb_stage_job *job)
                  (job->request.kind == WB_STAGE_JOB_HOME && state == WB_STAGE_ALARM))
             begin_motion(job);
         else if (state == WB_STAGE_ALARM)
-            wb_sequence_give_up(
-                &job->run, WB_INTERLOCK_ALARM,
-                "the stage is in alarm (%d): mend the cause, then run 'unlock' or 'home'",
-                latest->stage.alarm);
+            give_up_in_alarm(job, &latest->stage);
         else if (state == WB_STAGE_HOLD)
             wb_sequence_give_up(
                 &job->run, WB_INTERLOCK_STAGE,

@@ -42,6 +42,7 @@ struct fake_bench {
     atomic_bool stage_wild;       /* ignores the soft reset too, and answers nothing then */
     atomic_bool stage_refuses;    /* answers jogs with error:15 */
     atomic_bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
+    atomic_bool starts_anew;      /* resets itself into alarm at the next byte */
     atomic_bool is_slow;          /* moves at half the speed it is told */
     atomic_bool stage_overshoots; /* moves beyond the target */
     atomic_bool has_top;          /* answers jogs that end above 0 with error:15 */
@@ -202,6 +203,10 @@ static inline void fake_stage_bytes(struct fake_bench *bench, const char *bytes,
 {
     for (size_t i = 0; i < n; i++) {
         const unsigned char byte = (unsigned char)bytes[i];
+        if (atomic_exchange(&bench->starts_anew, false)) {
+            bench->state = "Alarm";
+            fake_say(bench, "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n");
+        }
         if (byte == '?') {
             fake_report(bench);
         } else if (byte == '!') {

@@ -128,7 +128,27 @@ static void jog_of_a_locked_stage_says_how_to_unlock(void **state)
     fixture->bench->state = "Alarm";
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
     assert_int_equal(result.end, WB_SEQUENCE_FAILED);
+    assert_non_null(strstr(result.text, "locked: it was not homed since"));
     assert_non_null(strstr(result.text, "'unlock'"));
+}
+
+/* What an Arduino does that is reset by the edge on DTR: home, close, open, and all is lost. */
+static void a_stage_reset_by_opening_its_port_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->starts_anew = true;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_HOME, 0.0).end, WB_SEQUENCE_DONE);
+    fixture->bench->starts_anew = true;
+    struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
+    assert_int_equal(result.end, WB_SEQUENCE_FAILED);
+    assert_non_null(strstr(result.text, "started anew when the port was opened"));
+    assert_non_null(strstr(result.text, "dtr=on or off"));
+    assert_non_null(strstr(result.text, "run 'home'"));
+    /* A reset of our own is none of that. */
+    assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_SEQUENCE_DONE);
+    fixture->bench->state = "Alarm";
+    result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
+    assert_null(strstr(result.text, "anew"));
 }
 
 static void jog_without_a_reading_is_refused(void **state)
@@ -375,6 +395,7 @@ int main(void)
         TEST(jog_stops_at_the_force_limit_within_20_ms),
         TEST(jog_beyond_the_travel_is_refused),
         TEST(jog_of_a_locked_stage_says_how_to_unlock),
+        TEST(a_stage_reset_by_opening_its_port_is_told),
         TEST(jog_without_a_reading_is_refused),
         TEST(ctrl_c_stops_a_jog),
         TEST(home_waits_for_the_end_of_homing),
