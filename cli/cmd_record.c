@@ -184,8 +184,8 @@ static void tell_stop(const struct wb_bend_test_result *result, const char *rig_
                  "the bench");
     else if (result->displaced && isfinite(result->travel))
         wb_warn("the stage stands at %.2f mm and the specimen stays as it is; free it with "
-                "'wirebench stage %s release'",
-                result->travel / WB_MM, rig_path);
+                "'wirebench stage %s release %.0f', which goes up by no more than that many mm",
+                result->travel / WB_MM, rig_path, ceil(fabs(result->travel) / WB_MM) + 1.0);
     else if (result->displaced)
         wb_warn("the specimen stays as it is; free it with 'wirebench stage %s release'", rig_path);
 }

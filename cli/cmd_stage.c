@@ -90,7 +90,7 @@ static const struct argp argp = {
         "unlock   brings the stage out of hold or alarm without moving it.\n"
         "release  frees a specimen after a stop: brings the stage out of hold or alarm and goes "
         "slowly up until the strand is slack (the reading stays level over 0.75 mm), at most by "
-        "MM (default: the stage's travel).\n"
+        "MM (default: limits.travel_mm of the rig file).\n"
         "check    compares the load cell with a known mass (default: the rig's "
         "check_mass_g), and adds the outcome to the log beside the rig file (RIG.checks.csv).\v"
         "While the stage moves the load cell is watched: force limit, overload, a change of "

@@ -399,6 +399,17 @@ static void on_stage(void *context, const struct wb_stage_report *report)
     PASS_ON(a, stage, report);
 }
 
+static void on_settings(void *context, const struct wb_stage_settings *settings)
+{
+    struct line *const line = context;
+    struct wb_acquisition *const a = line->owner;
+    a->latest.has_settings = true;
+    a->latest.settings = *settings;
+    if (a->writer)
+        wb_writer_push_meta(a->writer, "stage_settings", settings->text);
+    PASS_ON(a, settings, settings);
+}
+
 static void on_probe(void *context, const struct wb_clock_probe *probe)
 {
     struct line *const line = context;
@@ -456,7 +467,13 @@ static void read_line(struct line *line)
 {
     struct wb_acquisition *const a = line->owner;
     struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
-    const struct wb_sink sink = {line, on_load, on_mocap, on_stage, on_probe, on_remark};
+    const struct wb_sink sink = {.context = line,
+                                 .load = on_load,
+                                 .mocap = on_mocap,
+                                 .stage = on_stage,
+                                 .settings = on_settings,
+                                 .probe = on_probe,
+                                 .remark = on_remark};
     for (int i = 0; i < READS_A_STEP && !state->gone; i++) {
         size_t n = 0;
         const enum wb_status status = wb_stream_read(line->stream, a->buffer, sizeof a->buffer, &n);
@@ -473,6 +490,7 @@ static void read_line(struct line *line)
         note_kernel_drops(line, t_ns);
         state->chunks++;
         state->bytes += n;
+        wb_diagnosis_add(&state->heard, a->buffer, n);
         if (a->writer)
             (void)wb_writer_push_chunk(a->writer, line->id, t_ns, a->buffer, n);
         line->driver->receive(line->state, t_ns, a->buffer, n, &sink);
@@ -686,6 +704,13 @@ enum wb_acquisition_end wb_acquisition_step(struct wb_acquisition *a, int64_t ti
 
 /* --- opening and closing --- */
 
+/* A stage that loses its position whenever a command opens its port would have to be homed each
+ * time. */
+static bool must_keep_dtr(const char *address)
+{
+    return strncmp(address, "serial:", 7) == 0 && !strstr(address, ",dtr=");
+}
+
 static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, const char *address,
                                 const char *protocol)
 {
@@ -703,7 +728,10 @@ static enum wb_status open_line(struct wb_acquisition *a, enum wb_role role, con
         return wb_fail(WB_ERR_MEMORY, "no memory for the %s driver", protocol);
     a->n_lines++; /* from here on closing frees it */
     WB_TRY(line->driver->init(line->state, &a->rig));
-    WB_TRY(wb_stream_open(&line->stream, address));
+    char kept[WB_RIG_TEXT + 16];
+    snprintf(kept, sizeof kept, "%s%s", address,
+             role == WB_ROLE_STAGE && must_keep_dtr(address) ? ",dtr=keep" : "");
+    WB_TRY(wb_stream_open(&line->stream, kept));
     a->by_role[role] = line;
     a->latest.stream[role].open = true;
     return WB_OK;

@@ -18,6 +18,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
+#include "daq/diagnosis.h"
 #include "daq/driver.h"
 #include "daq/interlock.h"
 #include "daq/loss.h"
@@ -99,6 +100,7 @@ struct wb_acquisition_stream_state {
     double rate;      /* valid samples/s, smoothed over about a second */
     uint64_t samples; /* decoded, valid or not */
     uint64_t chunks, bytes;
+    struct wb_diagnosis heard;  /* its first bytes, for what to say when nothing is understood */
     uint64_t drops;             /* reads lost by the writer, and datagrams lost in the kernel */
     struct wb_loss_counts loss; /* samples that the instrument sent and that never came */
     bool is_losing;             /* and they are more than chance */
@@ -113,7 +115,9 @@ struct wb_acquisition_latest {
     int64_t mocap_ns;           /* arrival of the last frame */
     struct wb_stage_report stage;
     uint64_t stage_reports;
-    char stage_error[160]; /* last complaint of the stage since the last command; "" */
+    bool has_settings;
+    struct wb_stage_settings settings; /* of the stage's firmware */
+    char stage_error[160];             /* last complaint of the stage since the last command; "" */
 };
 
 /* Current values; owned by the acquisition, refreshed by each step. */

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "base/version.h"
 #include "daq/bend_recording.h"
+#include "daq/stage_check.h"
 #include "daq/start_check.h"
 #include "daq/tip_watch.h"
 
@@ -148,23 +149,22 @@ static void complain_silence(struct wb_bend_test *test)
     const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
     const struct wb_acquisition_stream_state *const mocap = &latest->stream[WB_ROLE_MOCAP];
     const struct wb_acquisition_stream_state *const stage = &latest->stream[WB_ROLE_STAGE];
-    if (!latest->has_load && load->bytes > 0)
-        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
-                            "the load cell at %s sent %" PRIu64
-                            " bytes, but no reading that can be decoded: "
-                            "check load_cell.protocol, its line settings and its unit",
-                            test->run.rig.load_cell.address, load->bytes);
-    else if (!latest->has_load)
-        wb_sequence_give_up(
-            &test->run, WB_INTERLOCK_STREAM_LOST,
-            "the load cell at %s sent nothing within %g s: check power, cable and baud rate",
-            test->run.rig.load_cell.address, waited);
-    else if (!latest->has_stage)
+    char sent[96], cause[WB_DIAGNOSIS_TEXT];
+    if (!latest->has_load) {
+        snprintf(sent, sizeof sent, "nothing within %g s", waited);
+        if (load->bytes > 0)
+            snprintf(sent, sizeof sent, "%" PRIu64 " bytes, but no reading that can be decoded",
+                     load->bytes);
+        wb_diagnosis_load(&load->heard, &stage->heard, &test->run.rig, cause);
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST, "the load cell at %s sent %s: %s",
+                            test->run.rig.load_cell.address, sent, cause);
+    } else if (!stage->ready) {
+        wb_diagnosis_stage(&stage->heard, &test->run.rig, cause);
         wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
                             "the stage at %s gave no status within %g s (%" PRIu64
-                            " bytes came): check power, cable and stage.protocol",
-                            test->run.rig.stage.address, waited, stage->bytes);
-    else if (mocap->bytes == 0)
+                            " bytes came): %s",
+                            test->run.rig.stage.address, waited, stage->bytes, cause);
+    } else if (mocap->bytes == 0)
         wb_sequence_give_up(
             &test->run, WB_INTERLOCK_STREAM_LOST,
             "no NatNet answer from %s within %g s: check that the server streams, its address "
@@ -242,6 +242,18 @@ static void step_connect(struct wb_bend_test *test)
     }
 }
 
+/* Whether the stage can do the whole test as its firmware is set. */
+static bool check_settings(const struct wb_bend_test *test, char text[WB_START_CHECK_TEXT])
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
+    const struct wb_rig *const rig = &test->run.rig;
+    const double from = latest->stage.position;
+    const struct wb_stage_motion motion = {.from = from,
+                                           .to = from + rig->stage.down * test->request.travel,
+                                           .speed = rig->stage.speed * rig->time_scale};
+    return !latest->has_settings || wb_stage_check(&latest->settings, rig, &motion, text);
+}
+
 static void step_check(struct wb_bend_test *test)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
@@ -259,7 +271,7 @@ static void step_check(struct wb_bend_test *test)
                  "s, at least 10 of each are needed",
                  check->load.n, check->n_frames, wb_seconds_from_ns(waited_ns));
     if (!enough || !wb_start_check_stage(&latest->stage, test->rig_path, text) ||
-        !wb_start_check_markers(check, &test->specimen, text) ||
+        !check_settings(test, text) || !wb_start_check_markers(check, &test->specimen, text) ||
         !wb_start_check_zero(check, &test->run.rig, test->rig_path, text)) {
         refuse(test, text);
         return;
@@ -278,6 +290,7 @@ static void step_check(struct wb_bend_test *test)
 /* True when the motion under way has ended at its target; stops the test when it cannot. */
 static bool arrived(struct wb_bend_test *test)
 {
+    char text[80];
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
     if (latest->stage_reports == test->run.reports_seen) {
         if (wb_sequence_lasts_ns(&test->run) > test->run.allowed_ns)
@@ -300,6 +313,8 @@ static bool arrived(struct wb_bend_test *test)
     }
     if (fabs(travel - test->run.target) <= WB_SEQUENCE_TOLERANCE) {
         wb_acquisition_motion_ended(test->run.acquisition);
+        if (wb_sequence_note_speed(&test->run, text, sizeof text))
+            wb_warn("the stage moved %s: was its feed overridden, or does it stall?", text);
         return true;
     }
     /* The first idle reports may be older than the command. */

@@ -22,6 +22,18 @@ enum {
     WB_GRBL_JOG_CANCEL = 0x85
 };
 
+/* Numbers of `$` settings; of the last four the first axis's, the others follow. */
+enum {
+    WB_GRBL_IDLE_DELAY = 1,  /* ms until the motors are switched off after a motion, */
+    WB_GRBL_ALWAYS_ON = 255, /* never with this value */
+    WB_GRBL_INCHES = 13,
+    WB_GRBL_SOFT_LIMITS = 20,
+    WB_GRBL_STEPS = 100,        /* per mm */
+    WB_GRBL_RATE = 110,         /* mm/min */
+    WB_GRBL_ACCELERATION = 120, /* mm/s2 */
+    WB_GRBL_TRAVEL = 130        /* mm */
+};
+
 enum wb_grbl_kind {
     WB_GRBL_LINE_EMPTY,
     WB_GRBL_LINE_OK,      /* ok */
@@ -40,8 +52,9 @@ struct wb_grbl_report {
     char name[16]; /* as sent, "Hold:0" */
     bool has_machine, has_work, has_offset;
     double machine_mm[3], work_mm[3], offset_mm[3]; /* MPos, WPos, WCO */
-    double feed_mm_min;                             /* of FS or F */
-    bool limit[3];                                  /* Pn: a limit switch is pressed */
+    bool has_feed;
+    double feed_mm_min; /* of FS or F */
+    bool limit[3];      /* Pn: a limit switch is pressed */
 };
 
 struct wb_grbl_line {
@@ -67,9 +80,13 @@ struct wb_grbl_offset {
 bool wb_grbl_position(const struct wb_grbl_report *report, struct wb_grbl_offset *offset, int axis,
                       double *position_mm);
 
-/* What an error or alarm number means, in a few words; never NULL. */
+/* What an error or alarm number means, in a few words; never NULL. No alarm number, 0, is a stage
+ * that is locked because it was not homed since it was switched on or reset. */
 const char *wb_grbl_error_text(int number);
 const char *wb_grbl_alarm_text(int number);
+
+/* Why a stage in state Alarm is in it, "ALARM:1, hard limit: ..." */
+void wb_grbl_alarm_reason(const struct wb_stage_report *report, char *text, size_t size);
 
 /* True for alarms after which the firmware no longer knows where the stage is. */
 bool wb_grbl_alarm_loses_position(int number);

@@ -73,6 +73,7 @@ static bool parse_field(const char *field, struct wb_grbl_report *report)
         if (parse_triple(strchr(field, ':') + 1, values) == 0)
             return false;
         report->feed_mm_min = values[0];
+        report->has_feed = true;
     } else if (strncmp(field, "Pn:", 3) == 0) {
         for (int axis = 0; axis < 3; axis++)
             report->limit[axis] = strchr(field + 3, "XYZ"[axis]) != NULL;
@@ -212,6 +213,7 @@ const char *wb_grbl_error_text(int number)
 const char *wb_grbl_alarm_text(int number)
 {
     static const char *const texts[] = {
+        [0] = "it was not homed since it was switched on or reset",
         [1] = "hard limit: the position is lost, home the stage",
         [2] = "soft limit: the move goes beyond the machine's travel",
         [3] = "reset while moving: the position is lost, home the stage",
@@ -223,6 +225,19 @@ const char *wb_grbl_alarm_text(int number)
         [9] = "homing failed: no limit switch found",
     };
     return text_of(texts, WB_COUNT(texts), number);
+}
+
+void wb_grbl_alarm_reason(const struct wb_stage_report *report, char *text, size_t size)
+{
+    if (report->alarm > 0)
+        snprintf(text, size, "ALARM:%d, %s", report->alarm, wb_grbl_alarm_text(report->alarm));
+    else if (report->was_reset)
+        snprintf(text, size,
+                 "its controller started anew when the port was opened and has forgotten its "
+                 "position; an Arduino does so at the first time after plugging in, and each time "
+                 "where stage.address has dtr=on or off");
+    else
+        snprintf(text, size, "locked: %s", wb_grbl_alarm_text(0));
 }
 
 bool wb_grbl_alarm_loses_position(int number)

@@ -19,7 +19,7 @@
  * when the clamp came to rest then counts no longer. */
 #define GROUP_READINGS 4
 #define GROUP_NS (150 * WB_NS_PER_MS)
-#define GROUPS_MAX 16 /* a reading that does not calm down is taken as it is */
+#define GROUPS_MAX 16 /* a reading that does not calm down is taken as it is then */
 
 void wb_release_init(struct wb_release *release, const struct wb_rig *rig)
 {
@@ -79,10 +79,23 @@ static void push_place(struct wb_release *release, double force, double error)
     release->resting = false;
 }
 
+/* N, standard error of the mean of both groups. */
+static double error_of_mean(const struct wb_release *release)
+{
+    return sqrt(variance(release) / (release->now.n + release->before.n));
+}
+
+/* Level readings at two rests like this one would be seen to be level over the least way. */
+static bool is_sharp(const struct wb_release *release)
+{
+    const double slope = LEVEL_SHARE * release->capacity / LEVEL_OVER;
+    return M_SQRT2 * CERTAINTY * error_of_mean(release) <= 0.75 * slope * WB_RELEASE_LEVEL_WAY;
+}
+
 static void end_rest(struct wb_release *release)
 {
     const int n = release->now.n + release->before.n;
-    push_place(release, (release->now.sum + release->before.sum) / n, sqrt(variance(release) / n));
+    push_place(release, (release->now.sum + release->before.sum) / n, error_of_mean(release));
 }
 
 /* An overloaded cell has no number to tell, but the strand is surely not slack. */
@@ -113,11 +126,19 @@ void wb_release_add(struct wb_release *release, const struct wb_load_sample *sam
     if (now->n < GROUP_READINGS || now->last_ns - now->first_ns < release->group_ns)
         return;
     release->groups++;
-    if (release->groups >= 2 && (release->groups >= GROUPS_MAX || groups_agree(release))) {
+    const bool agrees = release->groups >= 2 && groups_agree(release);
+    if (release->groups >= GROUPS_MAX || (agrees && is_sharp(release))) {
         end_rest(release);
         return;
     }
-    release->before = *now;
+    if (agrees) {
+        /* A noisy cell is read for longer: the strand is then seen slack after a shorter way. */
+        release->before.n += now->n;
+        release->before.sum += now->sum;
+        release->before.squares += now->squares;
+    } else {
+        release->before = *now;
+    }
     memset(now, 0, sizeof *now);
 }
 

@@ -297,6 +297,7 @@ static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig
         WB_CONFIG_INTEGER("down", &stage->down, -1000, 1000),
         WB_CONFIG_NUMBER("travel_mm", &stage->travel, WB_MM, 0.1, 5000.0),
         WB_CONFIG_NUMBER("speed_mm_s", &stage->speed, WB_MM, 0.001, 1000.0),
+        WB_CONFIG_OPTIONAL_NUMBER("steps_per_mm", &stage->steps, 1.0 / WB_MM, 0.1, 1e6),
     };
     WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
     strcpy(stage->protocol, stage_protocols[protocol]);

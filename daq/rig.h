@@ -33,6 +33,7 @@
  *       down: +1                       # sign of the axis when the clamp goes down
  *       travel_mm: 60                  # usable travel from the start position
  *       speed_mm_s: 1
+ *       steps_per_mm: 800              # optional, what the firmware must be set to
  *     strand:                          # optional, absent: the tip hangs on the cell itself
  *       length_mm: 760
  *       counterweight_g: 2.7
@@ -107,6 +108,7 @@ struct wb_rig_stage {
     int down;      /* +1 or -1 */
     double travel; /* m, usable downward travel from where the test starts */
     double speed;  /* m/s */
+    double steps;  /* motor steps per m that the firmware must be set to; 0: not checked */
 };
 
 struct wb_rig_limits {

@@ -73,6 +73,21 @@ struct wb_stage_report {
     enum wb_stage_state state;
     double position; /* m, machine position of the test's axis as commanded; NaN when not sent */
     int alarm;       /* last ALARM number, 0 none */
+    bool was_reset;  /* the firmware started anew since its port was opened, and not at our word */
+};
+
+/* What the firmware of a stage is set to, for the test's axis. A number that it did not tell is
+ * NaN.
+ */
+struct wb_stage_settings {
+    double steps;        /* motor steps per m */
+    double speed;        /* m/s, largest; a faster command is slowed down without a word */
+    double acceleration; /* m/s2 */
+    double travel;       /* m: positions are -travel to 0 where soft_limits */
+    bool soft_limits;
+    bool inches;     /* positions are reported in inches */
+    bool lets_go;    /* the motor is switched off when a motion has ended */
+    char text[1280]; /* all of it as the firmware prints it, one setting a line */
 };
 
 /* One probe of a device's clock (Cristian): the device read `t_device` between the two host
@@ -88,6 +103,7 @@ struct wb_sink {
     void (*load)(void *context, const struct wb_load_sample *sample);
     void (*mocap)(void *context, const struct wb_mocap_frame *frame);
     void (*stage)(void *context, const struct wb_stage_report *report);
+    void (*settings)(void *context, const struct wb_stage_settings *settings);
     void (*probe)(void *context, const struct wb_clock_probe *probe);
     /* A remark for the recording's events and the operator: server connected, line rejected,
      * alarm, version not known, ... `kind` is one lower-case word. */

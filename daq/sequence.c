@@ -6,10 +6,13 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/stage_check.h"
 
 /* An earlier line that is not answered keeps a command waiting; the driver stops waiting after 2 s.
  */
 #define SEND_NS (4 * WB_NS_PER_S)
+
+#define RAMP_S 0.5 /* to reach a speed, of a stage that hides its acceleration */
 
 double wb_sequence_travel(const struct wb_sequence *sequence, double position)
 {
@@ -58,14 +61,71 @@ void wb_sequence_give_up(struct wb_sequence *sequence, enum wb_interlock_reason 
     wb_sequence_enter(sequence, WB_SEQUENCE_STOP);
 }
 
+/* False, and all is given up, when the stage cannot do this jog as its firmware is set. */
+static bool jog_is_possible(struct wb_sequence *sequence)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(sequence->acquisition);
+    char text[WB_INTERLOCK_TEXT];
+    if (sequence->command != WB_STAGE_COMMAND_JOG || !latest->has_settings)
+        return true;
+    const double from = latest->stage.position;
+    const struct wb_stage_motion motion = {.from = from,
+                                           .to =
+                                               from + sequence->rig.stage.down * sequence->distance,
+                                           .speed = sequence->speed};
+    if (wb_stage_check(&latest->settings, &sequence->rig, &motion, text))
+        return true;
+    sequence->unsent = false;
+    wb_sequence_give_up(sequence, WB_INTERLOCK_STAGE, "%s", text);
+    return false;
+}
+
+static void begin_watch(struct wb_sequence *sequence)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(sequence->acquisition);
+    const double told = latest->has_settings ? latest->settings.acceleration : 0.0;
+    const struct wb_motion_limits top = {sequence->speed,
+                                         told > 0.0 ? told : sequence->speed / RAMP_S};
+    const double from = wb_sequence_travel(sequence, latest->stage.position);
+    if (sequence->command == WB_STAGE_COMMAND_JOG)
+        wb_speed_watch_begin(&sequence->watch, from, from + sequence->distance, &top);
+    sequence->reports_watched = latest->stage_reports;
+}
+
+static void follow_watch(struct wb_sequence *sequence)
+{
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(sequence->acquisition);
+    if (latest->stage_reports == sequence->reports_watched || sequence->unsent)
+        return;
+    sequence->reports_watched = latest->stage_reports;
+    wb_speed_watch_add(&sequence->watch, latest->stage.t_ns,
+                       wb_sequence_travel(sequence, latest->stage.position));
+}
+
+bool wb_sequence_note_speed(struct wb_sequence *sequence, char *text, size_t size)
+{
+    const double scale = sequence->rig.time_scale * WB_MM;
+    const double speed = wb_speed_watch_speed(&sequence->watch) / scale;
+    if (!isfinite(speed))
+        return false;
+    wb_acquisition_event(sequence->acquisition, "speed",
+                         "{\"commanded_mm_s\": %.6g, \"actual_mm_s\": %.6g}",
+                         sequence->speed / scale, speed);
+    snprintf(text, size, "at %.3g mm/s instead of %.3g mm/s", speed, sequence->speed / scale);
+    return wb_speed_watch_is_off(&sequence->watch);
+}
+
 /* Offers the command of this phase to the stage. */
 static void try_to_send(struct wb_sequence *sequence)
 {
+    if (!jog_is_possible(sequence))
+        return;
     const enum wb_status status = wb_acquisition_command(sequence->acquisition, sequence->command,
                                                          sequence->distance, sequence->speed);
     sequence->unsent = status == WB_ERR_BUSY;
     if (status == WB_OK) {
         wb_sequence_enter(sequence, sequence->phase);
+        begin_watch(sequence);
         sequence->allowed_ns =
             5 * WB_NS_PER_S + wb_ns_from_seconds(1.5 * fabs(sequence->distance) / sequence->speed);
     } else if (!sequence->unsent) {
@@ -120,6 +180,7 @@ bool wb_sequence_wait(struct wb_sequence *sequence, int64_t timeout_ns, bool sta
         sequence->phase < WB_SEQUENCE_STOP)
         wb_sequence_give_up(sequence, WB_INTERLOCK_STREAM_LOST,
                             "the instruments cannot be waited for");
+    follow_watch(sequence);
     note_trip(sequence, started);
     /* Before the interlock is armed nothing moves. */
     if (wb_interrupted() && sequence->phase < WB_SEQUENCE_STOP)

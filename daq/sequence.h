@@ -10,6 +10,7 @@
 
 #include "daq/acquisition.h"
 #include "daq/rig.h"
+#include "daq/speed_watch.h"
 
 /* The last two phases of every sequence; its own count from 0. */
 enum {
@@ -42,10 +43,12 @@ struct wb_sequence {
     int idle_reports; /* in a row, of this phase */
     /* The command of this phase. */
     enum wb_stage_command command;
-    double distance, speed; /* m, m/s of the host's time */
-    bool unsent;            /* the stage has not taken it yet */
-    double start_position;  /* m, machine; NaN before it is known */
-    double target;          /* m travel of the motion under way */
+    double distance, speed;      /* m, m/s of the host's time */
+    struct wb_speed_watch watch; /* of a jog, in m/s of the host's time */
+    uint64_t reports_watched;
+    bool unsent;           /* the stage has not taken it yet */
+    double start_position; /* m, machine; NaN before it is known */
+    double target;         /* m travel of the motion under way */
     enum wb_sequence_end end;
     char text[WB_INTERLOCK_TEXT]; /* why it ended */
 };
@@ -74,6 +77,10 @@ void wb_sequence_send(struct wb_sequence *sequence, enum wb_stage_command comman
 
 /* The same with a jog to a travel from the start. */
 void wb_sequence_jog_to(struct wb_sequence *sequence, double target, double speed, int phase);
+
+/* A jog has arrived: notes its speed as an event. True when it is not the commanded one; `text`
+ * then receives "at 0.5 mm/s instead of 1 mm/s". */
+bool wb_sequence_note_speed(struct wb_sequence *sequence, char *text, size_t size);
 
 /* Waits for bytes at most timeout_ns, notes a trip of the interlock and an interrupt, and offers
  * the phase's command again. False when there is nothing more to do in this step. A limit that

@@ -8,7 +8,9 @@
 
 #include "base/interrupt.h"
 #include "base/units.h"
+#include "daq/grbl.h"
 #include "daq/release.h"
+#include "daq/stage_check.h"
 
 #define WB_LOG_DOMAIN "stage"
 
@@ -42,6 +44,7 @@ struct wb_stage_job {
     struct wb_sequence run;
     struct wb_stage_job_request request;
     double most, reach; /* m, release: of one step, and of all of them */
+    double way_up;      /* m, release: from the start to the stage's soft limit; infinite: none */
     double first_force; /* N; NaN before the first reading */
     struct wb_release release;
     bool standing;
@@ -153,11 +156,18 @@ static void end_release(struct wb_stage_job *job)
     finish(job);
 }
 
+/* m: no test goes further down, so no release needs to go further up. */
+static double longest_test(const struct wb_rig *rig)
+{
+    return rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
+}
+
 /* Release: the next step up, or the end of them. */
 static void step_up(struct wb_stage_job *job, double travel)
 {
     const double left = job->reach + travel;
-    const double step = fmin(wb_release_step(&job->release), job->most);
+    const double way_up = job->way_up + travel; /* to the stage's soft limit */
+    const double step = fmin(fmin(wb_release_step(&job->release), job->most), way_up);
     char now[40];
     const double force = wb_release_force(&job->release) / WB_MN;
     if (isfinite(force))
@@ -167,13 +177,15 @@ static void step_up(struct wb_stage_job *job, double travel)
     if (left <= WB_SEQUENCE_TOLERANCE)
         wb_sequence_set_end(&job->run, WB_SEQUENCE_STILL_LOADED,
                             "went up by %.2f mm, but the reading did not level off (%s): look at "
-                            "the strand, then release again or jog",
+                            "the strand; if it is slack the specimen is free, and if not release "
+                            "again or jog up (jog -MM)",
                             -travel / WB_MM, now);
-    else if (job->most < LEAST_STEP)
+    else if (step < LEAST_STEP)
         wb_sequence_set_end(
             &job->run, WB_SEQUENCE_STILL_LOADED,
             "went up by %.2f mm to the end of the machine, but the reading did not level "
-            "off (%s): look at the strand; the stage is free to jog down",
+            "off (%s): look at the strand; if it is tight still, take the specimen out of its "
+            "clamp; the stage is free to jog down",
             -travel / WB_MM, now);
     if (job->run.end != WB_SEQUENCE_RUNNING)
         end_release(job);
@@ -202,9 +214,12 @@ static void begin_motion(struct wb_stage_job *job)
         return;
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
+        job->way_up = latest->has_settings ? wb_stage_check_way_up(&latest->settings, &job->run.rig,
+                                                                   job->run.start_position)
+                                           : HUGE_VAL;
         job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->run.rig.stage.travel)
-                                          : job->run.rig.stage.travel;
-        job->most = job->run.rig.stage.travel;
+                                          : longest_test(&job->run.rig);
+        job->most = job->reach;
         wb_release_init(&job->release, &job->run.rig);
         rest(job, 0.0);
         return;
@@ -212,12 +227,24 @@ static void begin_motion(struct wb_stage_job *job)
     wb_sequence_jog_to(&job->run, job->request.distance, job->request.speed, PHASE_MOVE);
 }
 
+static void give_up_in_alarm(struct wb_stage_job *job, const struct wb_stage_report *report)
+{
+    char reason[256];
+    wb_grbl_alarm_reason(report, reason, sizeof reason);
+    wb_sequence_give_up(&job->run, WB_INTERLOCK_ALARM,
+                        "the stage is in alarm (%s): mend the cause, then run 'home', or 'unlock' "
+                        "if it has no limit switch",
+                        reason);
+}
+
 static void step_connect(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
+    char cause[WB_DIAGNOSIS_TEXT];
     const bool load_speaks = !load->open || load->samples > 0;
-    if (latest->has_stage && load_speaks && wb_sequence_lasts_ns(&job->run) > STALE_NS) {
+    const bool stage_speaks = latest->has_stage && latest->stream[WB_ROLE_STAGE].ready;
+    if (stage_speaks && load_speaks && wb_sequence_lasts_ns(&job->run) > STALE_NS) {
         const enum wb_stage_state state = latest->stage.state;
         const bool frees =
             job->request.kind == WB_STAGE_JOB_UNLOCK || job->request.kind == WB_STAGE_JOB_RELEASE;
@@ -232,10 +259,7 @@ static void step_connect(struct wb_stage_job *job)
                  (job->request.kind == WB_STAGE_JOB_HOME && state == WB_STAGE_ALARM))
             begin_motion(job);
         else if (state == WB_STAGE_ALARM)
-            wb_sequence_give_up(
-                &job->run, WB_INTERLOCK_ALARM,
-                "the stage is in alarm (%d): mend the cause, then run 'unlock' or 'home'",
-                latest->stage.alarm);
+            give_up_in_alarm(job, &latest->stage);
         else if (state == WB_STAGE_HOLD)
             wb_sequence_give_up(
                 &job->run, WB_INTERLOCK_STAGE,
@@ -261,17 +285,18 @@ static void step_connect(struct wb_stage_job *job)
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
                             "the load cell's port %s went away: check its cable and power",
                             job->run.rig.load_cell.address);
-    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns && !latest->has_stage)
-        wb_sequence_give_up(
-            &job->run, WB_INTERLOCK_STREAM_LOST,
-            "the stage at %s gave no status within %g s: check power, cable and stage.protocol",
-            job->run.rig.stage.address, job->request.connect_timeout);
-    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns)
-        wb_sequence_give_up(
-            &job->run, WB_INTERLOCK_STREAM_LOST,
-            "the load cell at %s sent no reading within %g s: check it, or move blindly with "
-            "--without-load-cell",
-            job->run.rig.load_cell.address, job->request.connect_timeout);
+    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns && !stage_speaks) {
+        wb_diagnosis_stage(&latest->stream[WB_ROLE_STAGE].heard, &job->run.rig, cause);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                            "the stage at %s gave no status within %g s: %s",
+                            job->run.rig.stage.address, job->request.connect_timeout, cause);
+    } else if (wb_sequence_lasts_ns(&job->run) > allowed_ns) {
+        wb_diagnosis_load(&load->heard, &latest->stream[WB_ROLE_STAGE].heard, &job->run.rig, cause);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                            "the load cell at %s sent no reading within %g s: %s; or move blindly "
+                            "with --without-load-cell",
+                            job->run.rig.load_cell.address, job->request.connect_timeout, cause);
+    }
 }
 
 /* True when a report came that cannot be older than the command of this phase. */
@@ -343,6 +368,7 @@ static void step_home(struct wb_stage_job *job)
 
 static void step_move(struct wb_stage_job *job)
 {
+    char text[80];
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     if (wb_sequence_lasts_ns(&job->run) > job->run.allowed_ns)
         wb_sequence_give_up(
@@ -358,7 +384,9 @@ static void step_move(struct wb_stage_job *job)
     }
     if (fabs(travel - job->run.target) <= WB_SEQUENCE_TOLERANCE) {
         wb_acquisition_motion_ended(job->run.acquisition);
-        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE, "moved by %.3f mm", travel / WB_MM);
+        const bool is_off = wb_sequence_note_speed(&job->run, text, sizeof text);
+        wb_sequence_set_end(&job->run, WB_SEQUENCE_DONE, "moved by %.3f mm%s%s", travel / WB_MM,
+                            is_off ? " " : "", is_off ? text : "");
         finish(job);
         return;
     }

@@ -28,9 +28,9 @@ enum wb_stage_job_kind {
 
 struct wb_stage_job_request {
     enum wb_stage_job_kind kind;
-    double distance; /* m: of a jog, positive down; of a release the most it goes up, 0: the stage's
-                        travel */
-    double speed;    /* m/s; 0: the rig's, of a release half of it */
+    double distance;        /* m: of a jog, positive down; of a release the most it goes up, 0: the
+                               longest way that a test may go down */
+    double speed;           /* m/s; 0: the rig's, of a release half of it */
     bool without_load_cell; /* move blindly: the cell is not connected */
     double connect_timeout; /* s of host time; 0: 6 s */
 };

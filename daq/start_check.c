@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "daq/grbl.h"
 #include "daq/marker_check.h"
 
 #define ZERO_SHARE 0.1
@@ -34,6 +35,7 @@ bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_
                           char text[WB_START_CHECK_TEXT])
 {
     const size_t size = WB_START_CHECK_TEXT;
+    char reason[256];
     switch (report->state) {
     case WB_STAGE_IDLE:
         if (isfinite(report->position))
@@ -44,11 +46,11 @@ bool wb_start_check_stage(const struct wb_stage_report *report, const char *rig_
                  rig_path);
         break;
     case WB_STAGE_ALARM:
-        snprintf(
-            text, size,
-            "the stage is in alarm (%d): mend the cause, then run 'wirebench stage %s unlock', "
-            "or 'home' in its place",
-            report->alarm, rig_path);
+        wb_grbl_alarm_reason(report, reason, sizeof reason);
+        snprintf(text, size,
+                 "the stage is in alarm (%s): mend the cause, then run 'wirebench stage %s home', "
+                 "or, if it has no limit switch, 'wirebench stage %s unlock'",
+                 reason, rig_path, rig_path);
         break;
     case WB_STAGE_HOLD:
         snprintf(text, size,

@@ -7,11 +7,10 @@
  *     udp:HOST:PORT,group=ADDR:PORT[,interface=ADDR]   commands to HOST:PORT, data from a
  *                                              multicast group, joined on that interface
  *     memory:                                  bytes pushed in by the caller (replay, tests)
- * After a port's path, in any order: baud rate (default 9600), frame (default 8n1), dtr=on|off,
- * rts=on|off, flow=none|xonxoff|rtscts. The path may be a link such as /dev/serial/by-id/...
- * A group of 255.255.255.255:PORT takes a server's broadcasts; `interface` is an address or a
- * name such as eth0.
- * All streams are non-blocking. A stream is used by one thread.
+ * After a port's path, in any order: baud rate (default 9600), frame (default 8n1),
+ * dtr=on|off|keep, rts=on|off, flow=none|xonxoff|rtscts. The path may be a link such as
+ * /dev/serial/by-id/... A group of 255.255.255.255:PORT takes a server's broadcasts; `interface` is
+ * an address or a name such as eth0. All streams are non-blocking. A stream is used by one thread.
  */
 #ifndef WB_DAQ_STREAM_H
 #define WB_DAQ_STREAM_H

@@ -61,6 +61,8 @@ static bool parse_baud(const char *text, int *baud)
 
 static bool parse_option(const char *text, struct wb_stream_line *line)
 {
+    if (strcmp(text, "dtr=keep") == 0)
+        return line->keeps_dtr = true;
     if (strncmp(text, "dtr=", 4) == 0)
         return parse_switch(text + 4, &line->dtr);
     if (strncmp(text, "rts=", 4) == 0)
@@ -94,7 +96,7 @@ enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *lin
         if (!parse_option(option, line))
             return wb_fail(WB_ERR_ARGUMENT,
                            "line setting '%s' of '%s' is not known: expected a baud rate, bits "
-                           "parity and stop bits such as 8n1, dtr=on|off, rts=on|off or "
+                           "parity and stop bits such as 8n1, dtr=on|off|keep, rts=on|off or "
                            "flow=none|xonxoff|rtscts",
                            option, line->path);
         at += n;

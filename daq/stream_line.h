@@ -12,17 +12,18 @@
 /* A write that takes longer fails. */
 #define WB_STREAM_WRITE_TIMEOUT_NS INT64_C(50000000)
 
-/* `PATH[,BAUD][,8n1][,dtr=on|off][,rts=on|off][,flow=none|xonxoff|rtscts]`, in any order after the
- * path. */
+/* `PATH[,BAUD][,8n1][,dtr=on|off|keep][,rts=on|off][,flow=none|xonxoff|rtscts]`, in any order after
+ * the path. */
 struct wb_stream_line {
     char path[256];
-    int baud;    /* default 9600 */
-    int bits;    /* 5 to 8 */
-    char parity; /* 'n', 'e' or 'o' */
-    int stop;    /* 1 or 2 */
-    int dtr;     /* +1 on, -1 off, 0 as the driver leaves it */
-    int rts;     /* the same */
-    char flow;   /* 'n' none, 'x' XON/XOFF, 'r' RTS/CTS */
+    int baud;       /* default 9600 */
+    int bits;       /* 5 to 8 */
+    char parity;    /* 'n', 'e' or 'o' */
+    int stop;       /* 1 or 2 */
+    int dtr;        /* +1 on, -1 off, 0 as the driver leaves it */
+    bool keeps_dtr; /* and after closing, so that the next opening is no edge on it */
+    int rts;        /* the same */
+    char flow;      /* 'n' none, 'x' XON/XOFF, 'r' RTS/CTS */
 };
 
 WB_MUST_CHECK enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line);

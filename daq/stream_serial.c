@@ -85,8 +85,8 @@ static enum wb_status apply_line(struct sp_port *port, const struct wb_stream_li
 }
 
 /* What libserialport does not offer, where the driver takes it: no second opener, arrival without
- * the 16 ms timer of FTDI chips, and with dtr=off no pulse on DTR at closing, which would reset an
- * Arduino. */
+ * the 16 ms timer of FTDI chips, and with dtr=off or keep no pulse on DTR at closing: the edge of
+ * the next opening would reset an Arduino. */
 static void tune(int descriptor, const struct wb_stream_line *line)
 {
     if (ioctl(descriptor, TIOCEXCL) != 0)
@@ -98,7 +98,7 @@ static void tune(int descriptor, const struct wb_stream_line *line)
             wb_debug("low latency of '%s' cannot be set: %s", line->path, strerror(errno));
     }
     struct termios settings;
-    if (line->dtr < 0 && tcgetattr(descriptor, &settings) == 0) {
+    if ((line->dtr < 0 || line->keeps_dtr) && tcgetattr(descriptor, &settings) == 0) {
         settings.c_cflag &= ~(tcflag_t)HUPCL;
         if (tcsetattr(descriptor, TCSANOW, &settings) != 0)
             wb_debug("hang-up at closing of '%s' cannot be switched off", line->path);

@@ -56,6 +56,9 @@ bool wb_writer_push_chunk(struct wb_writer *writer, int stream, int64_t t_ns, co
 void wb_writer_push_event(struct wb_writer *writer, int64_t t_ns, const char *kind,
                           const char *text);
 
+/* A meta value known only after the recording began; a later value of a key replaces it. */
+void wb_writer_push_meta(struct wb_writer *writer, const char *key, const char *value);
+
 /* A clock probe: the device read t_device (s) at t_host_ns, give or take rtt_ns / 2. False when it
  * was dropped (and counted). */
 bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_ns, double t_device,

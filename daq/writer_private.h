@@ -6,9 +6,6 @@
 
 void wb_writer_default_settings(struct wb_writer_settings *settings);
 
-/* A meta value known only later (how the recording ended). */
-void wb_writer_push_meta(struct wb_writer *writer, const char *key, const char *value);
-
 void wb_writer_counts(const struct wb_writer *writer, struct wb_writer_counts *counts);
 
 #endif

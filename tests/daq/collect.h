@@ -16,6 +16,8 @@ struct collect {
     struct wb_load_sample load[COLLECT_MAX];
     struct wb_mocap_frame mocap; /* the last one */
     struct wb_stage_report stage[COLLECT_MAX];
+    int n_settings;
+    struct wb_stage_settings settings; /* the last ones */
     struct wb_clock_probe probes[COLLECT_MAX];
     struct {
         enum wb_log_level level;
@@ -46,6 +48,13 @@ static inline void collect_stage(void *context, const struct wb_stage_report *re
     collect->stage[collect->n_stage++] = *report;
 }
 
+static inline void collect_settings(void *context, const struct wb_stage_settings *settings)
+{
+    struct collect *const collect = context;
+    collect->n_settings++;
+    collect->settings = *settings;
+}
+
 static inline void collect_probe(void *context, const struct wb_clock_probe *probe)
 {
     struct collect *const collect = context;
@@ -67,8 +76,13 @@ static inline void collect_remark(void *context, enum wb_log_level level, int64_
 
 static inline struct wb_sink collect_sink(struct collect *collect)
 {
-    return (struct wb_sink){collect,       collect_load,  collect_mocap,
-                            collect_stage, collect_probe, collect_remark};
+    return (struct wb_sink){.context = collect,
+                            .load = collect_load,
+                            .mocap = collect_mocap,
+                            .stage = collect_stage,
+                            .settings = collect_settings,
+                            .probe = collect_probe,
+                            .remark = collect_remark};
 }
 
 /* How many remarks of a kind were made. */

@@ -42,8 +42,14 @@ struct fake_bench {
     atomic_bool stage_wild;       /* ignores the soft reset too, and answers nothing then */
     atomic_bool stage_refuses;    /* answers jogs with error:15 */
     atomic_bool stage_forgets_ok; /* obeys the next jog, but its answer is lost */
+    atomic_bool starts_anew;      /* resets itself into alarm at the next byte */
+    atomic_bool is_slow;          /* moves at half the speed it is told */
     atomic_bool stage_overshoots; /* moves beyond the target */
     atomic_bool has_top;          /* answers jogs that end above 0 with error:15 */
+    atomic_bool has_soft_limits;  /* $20, */
+    atomic_int soft_travel_mm;    /* and $130: told only, not enforced */
+    atomic_bool hides_settings;   /* answers $$ with error:1 */
+    atomic_int fastest_mm_min;    /* $110 */
     atomic_int reports_of_100;    /* how many questions for the state are answered; 0: all */
     atomic_int
         readings_at_once; /* the load cell's arrive so many in one piece; 0: each by itself */
@@ -138,14 +144,16 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
 {
     struct grbl_jog jog;
     if (grbl_jog_parse(line, &jog)) {
-        const double target = jog.relative ? bench->position_mm + jog.target_mm : jog.target_mm;
+        /* Jogs in a row are one way, as GRBL's planner joins them. */
+        const double from = fake_moves(bench) ? bench->target_mm : bench->position_mm;
+        const double target = jog.relative ? from + jog.target_mm : jog.target_mm;
         if (bench->stage_refuses || (bench->has_top && target < 0.0)) {
             fake_say(bench, "error:15\r\n");
-        } else if (strcmp(bench->state, "Idle") != 0) {
+        } else if (strcmp(bench->state, "Idle") != 0 && !fake_moves(bench)) {
             fake_say(bench, "error:9\r\n");
         } else {
             bench->target_mm = target;
-            bench->feed_mm_s = jog.feed_mm_min / 60.0;
+            bench->feed_mm_s = jog.feed_mm_min / 60.0 * (bench->is_slow ? 0.5 : 1.0);
             bench->state = "Jog";
             if (!atomic_exchange(&bench->stage_forgets_ok, false))
                 fake_say(bench, "ok\r\n");
@@ -155,6 +163,13 @@ static inline void fake_obey_line(struct fake_bench *bench, const char *line)
         if (line[1] == 'H')
             bench->position_mm = 0.0;
         fake_say(bench, "ok\r\n");
+    } else if (strcmp(line, "$$") == 0 && !bench->hides_settings) {
+        char text[160];
+        snprintf(text, sizeof text,
+                 "$1=255\r\n$13=0\r\n$20=%d\r\n$100=800.000\r\n$110=%d.000\r\n"
+                 "$120=100000.000\r\n$130=%d.000\r\nok\r\n",
+                 bench->has_soft_limits, bench->fastest_mm_min, bench->soft_travel_mm);
+        fake_say(bench, text);
     } else {
         fake_say(bench, "error:1\r\n");
     }
@@ -188,6 +203,10 @@ static inline void fake_stage_bytes(struct fake_bench *bench, const char *bytes,
 {
     for (size_t i = 0; i < n; i++) {
         const unsigned char byte = (unsigned char)bytes[i];
+        if (atomic_exchange(&bench->starts_anew, false)) {
+            bench->state = "Alarm";
+            fake_say(bench, "\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n");
+        }
         if (byte == '?') {
             fake_report(bench);
         } else if (byte == '!') {
@@ -379,6 +398,8 @@ static inline struct fake_bench *fake_start(void)
     bench->port = ntohs(address.sin_port);
     bench->state = "Idle";
     bench->markers = FAKE_MARKERS;
+    bench->fastest_mm_min = 6000;
+    bench->soft_travel_mm = 200;
     bench->force_mg = 150;
     bench->spring_mg_mm = 500;
     bench->noise = 12345;

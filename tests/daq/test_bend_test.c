@@ -134,6 +134,7 @@ static void meta_tells_who_what_and_how(void **state)
                  {"travel_mm", "2"},
                  {"monotonic_start_ns", ""},
                  {"virtual", "true"},
+                 {"stage_settings", "$110=6000.000\n$120="},
                  {"truth", "truth:\n  spring_mg_mm: 500\n"}};
     for (size_t i = 0; i < sizeof metas / sizeof metas[0]; i++) {
         char *value = NULL;
@@ -334,7 +335,7 @@ static void hold_a_deaf_stage(struct fixture *fixture, struct fake_latency *late
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_and_get_down(fixture, &test);
-    bench->stage_deaf = true;
+    bench->stage_deaf = bench->stage_overshoots = true;
     bench->overload = true;
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
@@ -361,6 +362,7 @@ static void a_stage_that_obeys_nothing_is_called_moving(void **state)
     struct wb_bend_test_result result;
     open_and_get_down(fixture, &test);
     fixture->bench->stage_deaf = fixture->bench->stage_wild = true;
+    fixture->bench->stage_overshoots = true;
     fixture->bench->overload = true;
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);

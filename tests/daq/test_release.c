@@ -159,6 +159,22 @@ static void late_readings_do_not_pretend_a_slack_strand(void **state)
     }
 }
 
+/* A cell as noisy as 1 % of its capacity: it is read for longer, and the way stays short. */
+static void a_noisy_cell_is_read_for_longer(void **state)
+{
+    (void)state;
+    int within = 0;
+    for (uint64_t seed = 1; seed <= 50; seed++) {
+        struct bench bench = make(slack_below_12_mm);
+        bench.noise = 2.0 * WB_MN;
+        bench.seed = seed;
+        assert_int_equal(release_from(&bench, 32.0 * WB_MM), WB_RELEASE_SLACK);
+        assert_true(bench.travel < 11.25 * WB_MM);
+        within += bench.travel > 8.5 * WB_MM;
+    }
+    assert_true(within >= 45);
+}
+
 static void a_noisy_cell_needs_a_longer_way_and_tells_no_lie(void **state)
 {
     (void)state;
@@ -224,6 +240,7 @@ int main(void)
         cmocka_unit_test(a_slack_strand_is_seen),
         cmocka_unit_test(the_way_readings_arrive_does_not_matter),
         cmocka_unit_test(late_readings_do_not_pretend_a_slack_strand),
+        cmocka_unit_test(a_noisy_cell_is_read_for_longer),
         cmocka_unit_test(a_noisy_cell_needs_a_longer_way_and_tells_no_lie),
         cmocka_unit_test(a_strand_that_is_slack_from_the_start_moves_one_step),
         cmocka_unit_test(a_level_reading_far_from_zero_is_no_slack_strand_and_ends_it),

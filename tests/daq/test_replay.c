@@ -56,7 +56,11 @@ static struct log *play(const char *path, double rate, int stop_after,
     struct log *log = calloc(1, sizeof *log);
     assert_non_null(log);
     log->stop_after = stop_after;
-    const struct wb_sink sink = {log, take_load, take_mocap, take_stage, NULL, take_remark};
+    const struct wb_sink sink = {.context = log,
+                                 .load = take_load,
+                                 .mocap = take_mocap,
+                                 .stage = take_stage,
+                                 .remark = take_remark};
     struct wb_recording *recording = NULL;
     struct wb_rig rig;
     assert_int_equal(wb_recording_open(&recording, path), WB_OK);
@@ -115,7 +119,11 @@ static struct log *feed_directly(struct wb_recording *recording, const struct wb
     struct log *log = calloc(1, sizeof *log);
     assert_non_null(log);
     struct feeding feeding = {.driver = {&wb_loadcell_generic, &wb_natnet_client, &wb_stage_grbl},
-                              .sink = {log, take_load, take_mocap, take_stage, NULL, take_remark}};
+                              .sink = {.context = log,
+                                       .load = take_load,
+                                       .mocap = take_mocap,
+                                       .stage = take_stage,
+                                       .remark = take_remark}};
     /* A live driver has said hello before it hears anything. */
     struct wb_outbox outbox;
     for (int i = 0; i < 3; i++) {

@@ -26,7 +26,19 @@ static void feed(void *driver, int64_t t_ns, const char *text)
 
 static enum wb_status command(void *driver, enum wb_stage_command what)
 {
-    return wb_stage_grbl.command(driver, what, 0.002, 0.001, &outbox);
+    return wb_stage_grbl.command(driver, what, 0.002, 0.001, &outbox); /* 2 mm at 1 mm/s */
+}
+
+/* What a stage says first: it stands, and its settings. */
+static void introduce(void *driver)
+{
+    feed(driver, 0, "<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
+    wb_stage_grbl.tick(driver, 0, &outbox);
+    feed(driver, 0,
+         "$110=600.000\r\n$111=600.000\r\n$112=600.000\r\n$120=50.000\r\n$121=50.000\r\n"
+         "$122=50.000\r\nok\r\n");
+    memset(&collect, 0, sizeof collect);
+    wb_outbox_clear(&outbox);
 }
 
 static void assert_sent(const char *expected)
@@ -43,6 +55,59 @@ static void ignore_messages(void *context, enum wb_log_level level, const char *
     (void)domain;
     (void)message;
     ++*(int *)context;
+}
+
+static void settings_are_asked_for_once_and_delivered(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('Y', -1);
+    wb_stage_grbl.start(driver, 0, &outbox);
+    assert_sent("?");
+    /* On hold it is deaf: a question would wait for ever. */
+    feed(driver, 1, "<Hold:0|MPos:1.000,2.000,3.000|FS:0,0>\r\n");
+    wb_stage_grbl.tick(driver, 20 * MS, &outbox);
+    assert_int_equal(outbox.n_entries, 0);
+    assert_true(wb_stage_grbl.ready(driver));
+    feed(driver, 1, "<Idle|MPos:1.000,2.000,3.000|FS:0,0>\r\n");
+    assert_false(wb_stage_grbl.ready(driver));
+    wb_stage_grbl.tick(driver, 40 * MS, &outbox);
+    assert_sent("$$\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    /* A report may come in between. */
+    feed(driver, 2,
+         "$1=25\r\n$13=1\r\n$20=1\r\n$100=250.000\r\n$101=800.000\r\n$110=500.000\r\n"
+         "$111=600.000\r\n<Idle|MPos:1.000,2.000,3.000|FS:0,0>\r\n$121=50.000\r\n"
+         "$131=64.000\r\n");
+    assert_int_equal(collect.n_settings, 0);
+    feed(driver, 3, "ok\r\n");
+    assert_int_equal(collect.n_settings, 1);
+    const struct wb_stage_settings *const settings = &collect.settings;
+    assert_close(settings->steps, 800e3, 1e-6);
+    assert_close(settings->speed, 10e-3, 1e-15);
+    assert_close(settings->acceleration, 50e-3, 1e-15);
+    assert_close(settings->travel, 64e-3, 1e-15);
+    assert_true(settings->inches && settings->soft_limits && settings->lets_go);
+    assert_int_equal(strncmp(settings->text, "$1=25\n$13=1\n$20=1\n", 18), 0);
+    assert_non_null(strstr(settings->text, "\n$131=64.000\n"));
+    assert_true(wb_stage_grbl.ready(driver));
+    assert_int_equal(collect_count(&collect, "settings"), 2);
+    wb_stage_grbl.tick(driver, 60 * MS, &outbox);
+    assert_int_equal(outbox.n_entries, 0);
+    free(driver);
+}
+
+static void a_stage_that_hides_its_settings_is_taken_with_a_remark(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    feed(driver, 1, "<Idle|MPos:1.000,2.000,3.000|FS:0,0>\r\n");
+    wb_stage_grbl.tick(driver, 20 * MS, &outbox);
+    feed(driver, 2, "error:3\r\n");
+    assert_non_null(strstr(collect_text(&collect, "settings"), "does not tell its settings"));
+    assert_int_equal(collect_count(&collect, "error"), 0);
+    assert_int_equal(collect.n_settings, 0);
+    assert_true(wb_stage_grbl.ready(driver));
+    free(driver);
 }
 
 static void reports_become_samples_of_the_tests_axis(void **state)
@@ -66,12 +131,15 @@ static void downward_jogs_follow_the_rigs_axis_and_sign(void **state)
 {
     (void)state;
     void *driver = open_stage('X', 1);
+    introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
-    assert_sent("$J=G91 G21 X2.000 F60.000\n");
+    /* The first of many short ones: 10 ms to brake and 150 ms. */
+    assert_sent("$J=G91 G21 X0.160 F60.000\n");
     free(driver);
     driver = open_stage('Z', -1);
+    introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
-    assert_sent("$J=G91 G21 Z-2.000 F60.000\n");
+    assert_sent("$J=G91 G21 Z-0.160 F60.000\n");
     free(driver);
 }
 
@@ -81,20 +149,68 @@ static void one_line_waits_for_its_reply(void **state)
     int n_messages = 0;
     wb_log_set_sink(ignore_messages, &n_messages);
     void *const driver = open_stage('X', 1);
+    introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_HOME), WB_ERR_BUSY);
-    assert_int_equal(n_messages, 0);
+    wb_outbox_clear(&outbox);
     /* Reports and messages are no replies. */
-    feed(driver, 0, "<Jog|MPos:0.000,0.000,0.000|FS:60,0>\r\n[MSG:hello]\r\n");
-    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
-    feed(driver, 0, "ok\r\n");
+    feed(driver, 10 * MS, "<Idle|MPos:0.000,0.000,0.000|FS:60,0>\r\n[MSG:hello]\r\n");
+    wb_stage_grbl.tick(driver, 20 * MS, &outbox);
+    assert_int_equal(outbox.n_entries, 0);
+    feed(driver, 30 * MS, "ok\r\n<Jog|MPos:0.000,0.000,0.000|FS:60,0>\r\n");
+    wb_stage_grbl.tick(driver, 110 * MS, &outbox);
+    /* 0.08 mm of 0.16 are done, as predicted. */
+    assert_sent("$J=G91 G21 X0.080 F60.000\n");
+    assert_int_equal(n_messages, 0);
+    wb_log_set_sink(NULL, NULL);
+    free(driver);
+}
+
+/* An error ends the jog: what the firmware still has is cancelled, until it is seen standing. */
+static void a_refused_jog_is_cancelled_until_the_stage_stands(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
-    feed(driver, 0, "error:15\r\n");
+    wb_outbox_clear(&outbox);
+    feed(driver, 10 * MS, "<Jog|MPos:0.010,0.000,0.000|FS:60,0>\r\nerror:15\r\n");
     assert_int_equal(collect_count(&collect, "error"), 1);
     assert_non_null(strstr(collect_text(&collect, "error"), "$J=G91"));
-    assert_int_equal(command(driver, WB_STAGE_COMMAND_UNLOCK), WB_OK);
-    wb_log_set_sink(NULL, NULL);
+    wb_stage_grbl.tick(driver, 20 * MS, &outbox);
+    assert_sent("?\x85");
+    feed(driver, 30 * MS, "<Idle|MPos:0.020,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    /* A line that was under way has started after the first time. */
+    feed(driver, 40 * MS, "<Jog|MPos:0.020,0.000,0.000|FS:60,0>\r\n");
+    wb_stage_grbl.tick(driver, 120 * MS, &outbox);
+    assert_sent("?\x85");
+    feed(driver, 130 * MS, "<Idle|MPos:0.030,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_ERR_BUSY);
+    feed(driver, 230 * MS, "<Idle|MPos:0.030,0.000,0.000|FS:0,0>\r\n");
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    free(driver);
+}
+
+/* Without reports nothing more is sent, and the stage comes to rest by itself. */
+static void a_stage_that_reports_nothing_gets_nothing(void **state)
+{
+    (void)state;
+    void *const driver = open_stage('X', 1);
+    introduce(driver);
+    assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
+    int lines = 0;
+    for (int64_t t = 20; t < 3000; t += 20) {
+        feed(driver, t * MS, "ok\r\n");
+        wb_outbox_clear(&outbox);
+        wb_stage_grbl.tick(driver, t * MS, &outbox);
+        for (size_t i = 0; i < outbox.n_bytes; i++)
+            lines += outbox.bytes[i] == '\n';
+    }
+    /* 0.4 s of 20 ms each. */
+    if (!(lines >= 8 && lines <= 20))
+        fail_msg("%d lines", lines);
     free(driver);
 }
 
@@ -102,6 +218,7 @@ static void real_time_bytes_are_never_refused(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
+    introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
     wb_outbox_clear(&outbox);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_HOLD), WB_OK);
@@ -146,6 +263,7 @@ static void alarms_are_samples_at_once(void **state)
 {
     (void)state;
     void *const driver = open_stage('X', 1);
+    introduce(driver);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
     feed(driver, 1, "ok\r\n<Jog|MPos:1.000,0.000,0.000|FS:60,0>\r\nALARM:1\r\n");
     assert_int_equal(collect.n_stage, 2);
@@ -187,6 +305,7 @@ static void a_banner_out_of_the_blue_is_a_reset(void **state)
     void *const driver = open_stage('X', 1);
     feed(driver, 1, "\r\nGrbl 1.1h ['$' for help]\r\n");
     assert_int_equal(collect_count(&collect, "firmware"), 1);
+    introduce(driver);
     feed(driver, 2, "<Idle|MPos:1.000,0.000,0.000|FS:0,0>\r\n");
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
     feed(driver, 3, "\r\nGrbl 1.1h ['$' for help]\r\n");
@@ -201,6 +320,7 @@ static void a_lost_reply_does_not_lock_the_stage_out(void **state)
     int n_messages = 0;
     wb_log_set_sink(ignore_messages, &n_messages);
     void *const driver = open_stage('X', 1);
+    introduce(driver);
     wb_stage_grbl.start(driver, 0, &outbox);
     assert_int_equal(command(driver, WB_STAGE_COMMAND_JOG), WB_OK);
     wb_stage_grbl.tick(driver, 1900 * MS, &outbox);
@@ -220,6 +340,7 @@ static void impossible_jogs_are_refused(void **state)
     int n_messages = 0;
     wb_log_set_sink(ignore_messages, &n_messages);
     void *const driver = open_stage('X', 1);
+    introduce(driver);
     assert_int_equal(wb_stage_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-7, 1e-3, &outbox),
                      WB_ERR_ARGUMENT);
     assert_int_equal(wb_stage_grbl.command(driver, WB_STAGE_COMMAND_JOG, 1e-3, 0.0, &outbox),
@@ -258,9 +379,13 @@ static void pressed_switch_is_told_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(settings_are_asked_for_once_and_delivered),
+        cmocka_unit_test(a_stage_that_hides_its_settings_is_taken_with_a_remark),
         cmocka_unit_test(reports_become_samples_of_the_tests_axis),
         cmocka_unit_test(downward_jogs_follow_the_rigs_axis_and_sign),
         cmocka_unit_test(one_line_waits_for_its_reply),
+        cmocka_unit_test(a_refused_jog_is_cancelled_until_the_stage_stands),
+        cmocka_unit_test(a_stage_that_reports_nothing_gets_nothing),
         cmocka_unit_test(real_time_bytes_are_never_refused),
         cmocka_unit_test(status_is_polled_at_5_hz_and_at_10_hz_after_a_hold),
         cmocka_unit_test(alarms_are_samples_at_once),

@@ -79,6 +79,18 @@ static void jog_moves_by_the_distance_down_and_up(void **state)
     assert_int_equal(fixture->bench->holds, 0);
 }
 
+static void a_slow_jog_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->is_slow = true;
+    fixture->bench->spring_mg_mm = 10;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 40.0);
+    assert_int_equal(result.end, WB_SEQUENCE_DONE);
+    if (!strstr(result.text, "moved by 40.000 mm at 0.") ||
+        !strstr(result.text, "instead of 1 mm/s"))
+        fail_msg("'%s' does not tell its speed", result.text);
+}
+
 static void jog_stops_at_the_force_limit_within_20_ms(void **state)
 {
     struct fixture *const fixture = *state;
@@ -116,7 +128,27 @@ static void jog_of_a_locked_stage_says_how_to_unlock(void **state)
     fixture->bench->state = "Alarm";
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
     assert_int_equal(result.end, WB_SEQUENCE_FAILED);
+    assert_non_null(strstr(result.text, "locked: it was not homed since"));
     assert_non_null(strstr(result.text, "'unlock'"));
+}
+
+/* What an Arduino does that is reset by the edge on DTR: home, close, open, and all is lost. */
+static void a_stage_reset_by_opening_its_port_is_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    fixture->bench->starts_anew = true;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_HOME, 0.0).end, WB_SEQUENCE_DONE);
+    fixture->bench->starts_anew = true;
+    struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
+    assert_int_equal(result.end, WB_SEQUENCE_FAILED);
+    assert_non_null(strstr(result.text, "started anew when the port was opened"));
+    assert_non_null(strstr(result.text, "dtr=on or off"));
+    assert_non_null(strstr(result.text, "run 'home'"));
+    /* A reset of our own is none of that. */
+    assert_int_equal(run(fixture, WB_STAGE_JOB_UNLOCK, 0.0).end, WB_SEQUENCE_DONE);
+    fixture->bench->state = "Alarm";
+    result = run(fixture, WB_STAGE_JOB_JOG, 1.0);
+    assert_null(strstr(result.text, "anew"));
 }
 
 static void jog_without_a_reading_is_refused(void **state)
@@ -231,6 +263,41 @@ release_that_meets_the_end_of_the_machine_says_so_and_leaves_the_stage_usable(vo
     assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 2.0).end, WB_SEQUENCE_DONE);
 }
 
+/* By default it goes no further than a test may go down, here 12 mm, and says what to do. */
+static void release_ends_after_the_longest_way_of_a_test(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->spring_mg_mm = 100;
+    assert_int_equal(run(fixture, WB_STAGE_JOB_JOG, 40.0).end, WB_SEQUENCE_DONE);
+    fixture->rig.limits.travel = 12.0 * WB_MM;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
+    assert_non_null(strstr(result.text, "went up by 12.00 mm"));
+    assert_non_null(strstr(result.text, "look at the strand"));
+    assert_close(bench->position_mm, 28.0, 1e-3);
+}
+
+/* The stage tells its soft limits: it stops before them and no command of it is refused. */
+static void release_ends_at_the_soft_limit(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench *const bench = fixture->bench;
+    bench->position_mm = -20.0;
+    bench->spring_mg_mm = 100;
+    bench->slack_mm = -60;
+    bench->has_soft_limits = true;
+    bench->soft_travel_mm = 27;
+    const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
+    assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
+    assert_non_null(strstr(result.text, "went up by 7.00 mm to the end of the machine"));
+    assert_close(bench->position_mm, -27.0, 1e-3);
+    const struct wb_stage_job_result jog = run(fixture, WB_STAGE_JOB_JOG, -0.5);
+    assert_int_equal(jog.end, WB_SEQUENCE_FAILED);
+    assert_non_null(strstr(jog.text, "beyond the stage's soft limits, -27 mm to 0"));
+    assert_close(bench->position_mm, -27.0, 1e-3);
+}
+
 /* A reading that stays level far from zero will not change on the rest of the way either. */
 static void release_ends_soon_when_the_reading_does_not_change(void **state)
 {
@@ -324,9 +391,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(jog_moves_by_the_distance_down_and_up),
+        TEST(a_slow_jog_is_told),
         TEST(jog_stops_at_the_force_limit_within_20_ms),
         TEST(jog_beyond_the_travel_is_refused),
         TEST(jog_of_a_locked_stage_says_how_to_unlock),
+        TEST(a_stage_reset_by_opening_its_port_is_told),
         TEST(jog_without_a_reading_is_refused),
         TEST(ctrl_c_stops_a_jog),
         TEST(home_waits_for_the_end_of_homing),
@@ -335,6 +404,8 @@ int main(void)
         TEST(release_waits_for_a_lost_answer),
         TEST(release_does_not_mind_how_bytes_are_handed_over),
         TEST(release_that_meets_the_end_of_the_machine_says_so_and_leaves_the_stage_usable),
+        TEST(release_ends_after_the_longest_way_of_a_test),
+        TEST(release_ends_at_the_soft_limit),
         TEST(release_ends_soon_when_the_reading_does_not_change),
         TEST(release_may_begin_beyond_the_limits),
         TEST(release_stops_when_up_loads),

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "daq/acquisition.h"
 #include "daq/stream.h"
 #include "tests/check.h"
 
@@ -129,6 +130,51 @@ static void dtr_and_rts_lines_are_set(void **state)
     assert_false(ask_shim("wb_shim_modem_lines") & TIOCM_DTR);
     assert_true(ask_shim("wb_shim_modem_lines") & TIOCM_RTS);
     wb_stream_close(stream);
+}
+
+static bool hangs_up_at_closing(const struct bench *bench, const char *address)
+{
+    struct termios set;
+    assert_int_equal(tcgetattr(bench->master, &set), 0);
+    set.c_cflag |= HUPCL;
+    assert_int_equal(tcsetattr(bench->master, TCSANOW, &set), 0);
+    struct wb_stream *const stream = open_stream(address);
+    assert_int_equal(tcgetattr(bench->master, &set), 0);
+    wb_stream_close(stream);
+    return (set.c_cflag & HUPCL) != 0;
+}
+
+static void dtr_stays_after_closing_if_told(void **state)
+{
+    const struct bench *const bench = *state;
+    assert_true(hangs_up_at_closing(bench, "serial:" PORT ",115200,8n1"));
+    assert_false(hangs_up_at_closing(bench, "serial:" PORT ",115200,8n1,dtr=off"));
+    assert_true(hangs_up_at_closing(bench, "serial:" PORT ",115200,8n1,dtr=on"));
+    assert_false(hangs_up_at_closing(bench, "serial:" PORT ",115200,8n1,dtr=keep"));
+    assert_true(ask_shim("wb_shim_modem_lines") & TIOCM_DTR);
+}
+
+/* A command for the stage opens its port, closes it, and the next opens it again. */
+static void a_stages_port_keeps_dtr_by_default(void **state)
+{
+    const struct bench *const bench = *state;
+    struct wb_rig rig = {.time_scale = 1.0};
+    struct wb_acquisition *acquisition;
+    struct termios set;
+    rig.stage.axis = 'X';
+    rig.stage.down = 1;
+    strcpy(rig.stage.protocol, "grbl");
+    for (int i = 0; i < 2; i++) {
+        strcpy(rig.stage.address, i ? "serial:" PORT ",115200,dtr=on" : "serial:" PORT ",115200");
+        assert_int_equal(tcgetattr(bench->master, &set), 0);
+        set.c_cflag |= HUPCL;
+        assert_int_equal(tcsetattr(bench->master, TCSANOW, &set), 0);
+        assert_int_equal(wb_acquisition_open(&acquisition, &rig, WB_ACQUISITION_STAGE, NULL),
+                         WB_OK);
+        assert_int_equal(tcgetattr(bench->master, &set), 0);
+        assert_int_equal((set.c_cflag & HUPCL) != 0, i);
+        wb_acquisition_close(acquisition);
+    }
 }
 
 static void bytes_pass_unchanged_both_ways(void **state)
@@ -258,6 +304,8 @@ int main(void)
 #define FACT(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
         FACT(line_settings_reach_the_terminal),
         FACT(dtr_and_rts_lines_are_set),
+        FACT(dtr_stays_after_closing_if_told),
+        FACT(a_stages_port_keeps_dtr_by_default),
         FACT(bytes_pass_unchanged_both_ways),
         FACT(write_that_nobody_takes_times_out),
         FACT(unplugged_port_is_told),

@@ -261,11 +261,14 @@ static void a_jog_loads_the_wire(void **state)
     start_bench(scene, settings);
     connect_to(scene);
     listen_until(scene, 20, 20);
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(scene->acquisition);
+    while (!latest->stream[WB_ROLE_STAGE].ready)
+        listen_for(scene, 0.02);
+    assert_close(latest->settings.speed, 200.0 * WB_MM, 1e-9);
     const double zero = scene->ears.force[scene->ears.n_load - 1];
     assert_int_equal(wb_acquisition_command(scene->acquisition, WB_STAGE_COMMAND_JOG, 10.0 * WB_MM,
                                             20.0 * WB_MM),
                      WB_OK);
-    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(scene->acquisition);
     const int64_t end_ns = wb_progress_now_ns() + 20 * WB_NS_PER_S;
     while (!(latest->stage.position > -52.001 * WB_MM && latest->stage.state == WB_STAGE_IDLE)) {
         assert_true(wb_progress_now_ns() < end_ns);

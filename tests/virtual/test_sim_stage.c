@@ -1,11 +1,7 @@
-/* The simulated GRBL stage: against GRBL's documented answers, and under the real driver. */
+/* The simulated GRBL stage: against GRBL's documented answers. */
 #include "fixtures/virtual/sim_stage.h"
 
-#include <stdlib.h>
-
 #include "base/units.h"
-#include "daq/drivers.h"
-#include "daq/grbl.h"
 #include "fixtures/virtual/random.h"
 #include "tests/check.h"
 
@@ -150,6 +146,68 @@ static void jogs_in_a_row_run_on_without_a_halt(void **state)
     wait(scene, 3.0);
     assert_state(scene, "Idle");
     assert_close(travel(scene), 4.0 * WB_MM, 1e-9);
+}
+
+/* 14 wait behind the one that is executed; the next line is read when there is room again. */
+static void a_full_planner_lets_lines_wait(void **state)
+{
+    struct scene *const scene = *state;
+    for (int i = 0; i < 15; i++)
+        assert_string_equal(tell(scene, "$J=G91 G21 X0.1 F60\n"), "ok\r\n");
+    assert_string_equal(tell(scene, "$J=G91 G21 X0.1 F60\n"), "");
+    wait(scene, 0.09);
+    assert_string_equal(listen(scene), "");
+    /* 0.1 mm and the start, which costs 10 ms. */
+    wait(scene, 0.021);
+    assert_string_equal(listen(scene), "ok\r\n");
+    wait(scene, 2.0);
+    assert_close(travel(scene), 1.6 * WB_MM, 1e-9);
+    assert_state(scene, "Idle");
+}
+
+/* The planner brakes to rest at the end of what it has; a block that comes while steps of the
+ * braking are laid down already joins after them. */
+static void a_late_block_is_joined_after_the_steps_laid_down(void **state)
+{
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X1 F600\n"); /* at most 7.1 mm/s, 0.14 s up and down */
+    wait(scene, 0.2);
+    const double at = travel(scene);
+    tell(scene, "$J=G91 G21 X9 F600\n");
+    wait(scene, 0.049);
+    const double speed = (travel(scene) - at) / 0.049;
+    assert_true(speed < 4.2 * WB_MM);
+    wait(scene, 0.2);
+    const double then = travel(scene);
+    wait(scene, 0.01);
+    assert_true(travel(scene) - then > 9.0 * 0.01 * WB_MM);
+    wait(scene, 2.0);
+    assert_close(travel(scene), 10.0 * WB_MM, 1e-9);
+}
+
+static void a_cancelled_jog_lets_the_line_behind_it_start(void **state)
+{
+    struct scene *const scene = *state;
+    tell(scene, "$J=G91 G21 X30 F600\n");
+    wait(scene, 1.1);
+    const double at = travel(scene);
+    assert_string_equal(tell(scene, "\x85$J=G91 G21 X0.5 F600\n"), "");
+    wait(scene, 1.0);
+    assert_string_equal(listen(scene), "ok\r\n");
+    assert_close(travel(scene), at + 1.5 * WB_MM, 3e-6);
+}
+
+static void a_clock_that_runs_fast_makes_the_stage_fast(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct wb_sim_stage_settings settings = plain;
+    settings.clock_error = 0.02;
+    open_scene(&scene, &settings);
+    tell(&scene, "$J=G91 G21 X50 F60\n");
+    wait(&scene, 10.0);
+    assert_close(travel(&scene), (10.2 - 0.01) * WB_MM, 2e-6);
+    assert_non_null(strstr(tell(&scene, "?"), "FS:60,0"));
 }
 
 static void opposite_jogs_wait_for_each_other(void **state)
@@ -399,116 +457,6 @@ static void with_a_time_scale_feeds_are_the_hosts(void **state)
     assert_non_null(strstr(tell(&scene, "?"), "FS:600,0"));
 }
 
-/* The real driver on the simulated stage. */
-struct driven {
-    struct scene scene;
-    void *state;
-    struct wb_stage_report last;
-    int reports, errors;
-    int64_t now_ns;
-};
-
-static void keep_report(void *context, const struct wb_stage_report *report)
-{
-    struct driven *const driven = context;
-    driven->last = *report;
-    driven->reports++;
-}
-
-static void keep_remark(void *context, enum wb_log_level level, int64_t t_ns, const char *kind,
-                        const char *text)
-{
-    (void)t_ns;
-    (void)kind;
-    (void)text;
-    ((struct driven *)context)->errors += level == WB_LOG_ERROR;
-}
-
-static void exchange(struct driven *driven, struct wb_outbox *outbox)
-{
-    const struct wb_sink sink = {.context = driven, .stage = keep_report, .remark = keep_remark};
-    driven->scene.t = wb_seconds_from_ns(driven->now_ns);
-    wb_sim_stage_receive(&driven->scene.stage, driven->scene.t, outbox->bytes, outbox->n_bytes);
-    wb_outbox_clear(outbox);
-    const char *const text = listen(&driven->scene);
-    wb_stage_grbl.receive(driven->state, driven->now_ns, (const uint8_t *)text, strlen(text),
-                          &sink);
-}
-
-static void live(struct driven *driven, double seconds)
-{
-    struct wb_outbox outbox;
-    wb_outbox_clear(&outbox);
-    for (int i = 0; i < (int)(seconds * 100.0); i++) {
-        driven->now_ns += 10 * WB_NS_PER_MS;
-        wb_stage_grbl.tick(driven->state, driven->now_ns, &outbox);
-        exchange(driven, &outbox);
-    }
-}
-
-static void command(struct driven *driven, enum wb_stage_command what, double distance,
-                    double speed)
-{
-    struct wb_outbox outbox;
-    wb_outbox_clear(&outbox);
-    assert_int_equal(wb_stage_grbl.command(driven->state, what, distance, speed, &outbox), WB_OK);
-    exchange(driven, &outbox);
-}
-
-static void open_driven(struct driven *driven)
-{
-    struct wb_rig rig;
-    struct wb_outbox outbox;
-    memset(driven, 0, sizeof *driven);
-    memset(&rig, 0, sizeof rig);
-    rig.stage.axis = 'X';
-    rig.stage.down = 1;
-    rig.time_scale = 1.0;
-    open_scene(&driven->scene, &plain);
-    driven->state = calloc(1, wb_stage_grbl.state_size);
-    assert_non_null(driven->state);
-    assert_int_equal(wb_stage_grbl.init(driven->state, &rig), WB_OK);
-    wb_outbox_clear(&outbox);
-    wb_stage_grbl.start(driven->state, 0, &outbox);
-    exchange(driven, &outbox);
-    live(driven, 0.1);
-    assert_true(wb_stage_grbl.ready(driven->state));
-}
-
-static void the_real_driver_jogs_holds_resets_and_homes(void **state)
-{
-    (void)state;
-    struct driven driven;
-    open_driven(&driven);
-    assert_close(driven.last.position, -62.0 * WB_MM, 1e-9);
-    command(&driven, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM, 10.0 * WB_MM);
-    live(&driven, 1.0);
-    assert_int_equal(driven.last.state, WB_STAGE_JOG);
-    command(&driven, WB_STAGE_COMMAND_HOLD, 0.0, 0.0);
-    live(&driven, 0.5);
-    assert_int_equal(driven.last.state, WB_STAGE_IDLE);
-    const double held = driven.last.position;
-    assert_true(held > -53.0 * WB_MM && held < -50.0 * WB_MM);
-    assert_int_equal(driven.errors, 0);
-
-    command(&driven, WB_STAGE_COMMAND_JOG, 20.0 * WB_MM, 10.0 * WB_MM);
-    live(&driven, 1.0);
-    command(&driven, WB_STAGE_COMMAND_SOFT_RESET, 0.0, 0.0);
-    live(&driven, 0.5);
-    assert_int_equal(driven.last.state, WB_STAGE_ALARM);
-    assert_int_equal(driven.last.alarm, 3);
-    assert_int_equal(driven.errors, 1);
-
-    command(&driven, WB_STAGE_COMMAND_HOME, 0.0, 0.0);
-    live(&driven, 15.0);
-    assert_int_equal(driven.last.state, WB_STAGE_IDLE);
-    assert_int_equal(driven.last.alarm, 0);
-    assert_close(driven.last.position, -62.0 * WB_MM, 1e-9);
-    command(&driven, WB_STAGE_COMMAND_JOG, 100.0 * WB_MM, 10.0 * WB_MM);
-    assert_int_equal(driven.errors, 2);
-    free(driven.state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -517,6 +465,10 @@ int main(void)
         cmocka_unit_test(down_can_be_the_negative_direction),
         SCENE_TEST(jogs_beyond_the_travel_are_refused),
         SCENE_TEST(jogs_in_a_row_run_on_without_a_halt),
+        SCENE_TEST(a_full_planner_lets_lines_wait),
+        SCENE_TEST(a_late_block_is_joined_after_the_steps_laid_down),
+        SCENE_TEST(a_cancelled_jog_lets_the_line_behind_it_start),
+        cmocka_unit_test(a_clock_that_runs_fast_makes_the_stage_fast),
         SCENE_TEST(opposite_jogs_wait_for_each_other),
         cmocka_unit_test(a_hold_cancels_a_jog_and_ends_idle),
         SCENE_TEST(a_hold_at_rest_deafens_until_resumed),
@@ -533,7 +485,6 @@ int main(void)
         SCENE_TEST(a_reset_empties_the_receive_buffer),
         cmocka_unit_test(endless_lines_are_refused),
         cmocka_unit_test(with_a_time_scale_feeds_are_the_hosts),
-        cmocka_unit_test(the_real_driver_jogs_holds_resets_and_homes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

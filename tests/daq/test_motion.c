@@ -1,4 +1,4 @@
-#include "fixtures/virtual/motion.h"
+#include "daq/motion.h"
 
 #include "tests/check.h"
 

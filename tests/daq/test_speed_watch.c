@@ -1,0 +1,64 @@
+/* The speed of a motion from the stage's reports. */
+#include "daq/speed_watch.h"
+
+#include "base/units.h"
+#include "tests/check.h"
+
+static const struct wb_motion_limits top = {2.0 * WB_MM, 10.0 * WB_MM};
+
+/* Reports five times a second of a motion whose speed is `share` of the commanded one, each late by
+ * up to `late` s. */
+static struct wb_speed_watch watch_motion(double from, double to, double share, double late)
+{
+    struct wb_speed_watch watch;
+    struct wb_motion motion;
+    const struct wb_motion_limits real = {share * top.speed, top.acceleration};
+    wb_speed_watch_begin(&watch, from, to, &top);
+    wb_motion_plan(&motion, 0.05, from, 0.0, to, &real);
+    for (int i = 0; 0.2 * i < wb_motion_finish(&motion) + 1.0; i++) {
+        double x = from, v;
+        if (0.2 * i > motion.start)
+            wb_motion_at(&motion, 0.2 * i, &x, &v);
+        wb_speed_watch_add(&watch, wb_ns_from_seconds(0.2 * i + (i % 2) * late), x);
+    }
+    return watch;
+}
+
+static void the_speed_is_that_between_the_ramps(void **state)
+{
+    (void)state;
+    struct wb_speed_watch watch = watch_motion(0.0, 50.0 * WB_MM, 1.0, 0.0);
+    assert_close(wb_speed_watch_speed(&watch), 2.0 * WB_MM, 1e-9);
+    assert_false(wb_speed_watch_is_off(&watch));
+    watch = watch_motion(50.0 * WB_MM, 0.0, 0.98, 0.0);
+    assert_close(wb_speed_watch_speed(&watch), 1.96 * WB_MM, 1e-9);
+    assert_true(wb_speed_watch_is_off(&watch));
+}
+
+static void late_reports_are_no_other_speed(void **state)
+{
+    (void)state;
+    struct wb_speed_watch watch = watch_motion(0.0, 4.0 * WB_MM, 1.0, 0.04);
+    assert_true(isfinite(wb_speed_watch_speed(&watch)));
+    assert_false(wb_speed_watch_is_off(&watch));
+    watch = watch_motion(0.0, 4.0 * WB_MM, 0.5, 0.04);
+    assert_true(wb_speed_watch_is_off(&watch));
+}
+
+static void a_short_motion_tells_nothing(void **state)
+{
+    (void)state;
+    const struct wb_speed_watch watch = watch_motion(0.0, 2.0 * WB_MM, 1.0, 0.0);
+    assert_true(isnan(wb_speed_watch_speed(&watch)));
+    assert_false(wb_speed_watch_is_off(&watch));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_speed_is_that_between_the_ramps),
+        cmocka_unit_test(late_reports_are_no_other_speed),
+        cmocka_unit_test(a_short_motion_tells_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
