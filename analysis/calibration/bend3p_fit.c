@@ -13,6 +13,7 @@
 #include <gsl/gsl_multifit_nlinear.h>
 #include <gsl/gsl_spline.h>
 
+#include "analysis/calibration/least_squares.h"
 #include "base/units.h"
 #include "fe/trial/bending3p.h"
 
@@ -52,7 +53,7 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
      .fallback = 2.0,
      .option = "part-prior",
      .argument = "X",
-     .help = "Prior of the second differences of the logarithms of the parts' moduli"},
+     .help = "Prior of the second differences of the logarithms of the moduli of parts that yield"},
     {.name = "contact_prior",
      .type = WB_SETTING_NUMBER,
      .offset = AT(contact_prior),
@@ -281,10 +282,8 @@ static int residuals(struct problem *p, const double *x, double *r)
     if (status != GSL_SUCCESS)
         return status;
     law_of(p, x, &law);
-    for (int i = 1; i + 1 < WB_BEND3P_PARTS; i++)
-        r[at++] = log(law.parts[i - 1].modulus * law.parts[i + 1].modulus /
-                      (law.parts[i].modulus * law.parts[i].modulus)) /
-                  p->settings->modulus_prior;
+    at += wb_least_squares_smooth_parts(law.parts, WB_BEND3P_PARTS, p->settings->modulus_prior,
+                                        r + at);
     r[at++] = (contact - data->first_contact) / (p->settings->contact_prior * span);
     if (p->n_law > WB_BEND3P_PARTS)
         r[at++] = (p->start_share + x[WB_BEND3P_PARTS]) / share_prior;
@@ -318,27 +317,6 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     }
     free(base);
     return status;
-}
-
-static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w)
-{
-    double before;
-    gsl_blas_ddot(w->f, w->f, &before);
-    for (int i = 0; i < p->settings->max_iterations; i++) {
-        const int status = gsl_multifit_nlinear_iterate(w);
-        if (p->status != WB_OK)
-            return false;
-        if (status != GSL_SUCCESS)
-            return true; /* no step makes it better */
-        double now, largest = 0.0;
-        gsl_blas_ddot(w->f, w->f, &now);
-        for (size_t k = 0; k < w->dx->size; k++)
-            largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
-        if (largest < arrived || before - now < settled_sum * now)
-            return true;
-        before = now;
-    }
-    return false;
 }
 
 /* Neighbouring residuals of one sign tell the same: how many in a row, over the two of noise. */
@@ -401,7 +379,13 @@ static enum wb_status search(struct problem *p, gsl_multifit_nlinear_workspace *
                           "with a nose of %.3g mm and friction %.2g from the first guess",
                           p->data->info.wire, p->data->info.sample, p->deepest / WB_MM,
                           p->bench->nose_radius / WB_MM, p->bench->friction);
-    fit->is_converged = iterate(p, w);
+    const struct wb_least_squares_search how = {
+        .max_iterations = p->settings->max_iterations,
+        .smallest_step = arrived,
+        .smallest_gain = settled_sum,
+        .status = &p->status,
+    };
+    fit->is_converged = wb_least_squares_iterate(w, &how, NULL);
     if (p->status != WB_OK)
         return p->status;
     /* The curve of the answer itself, not of the last trial. */
@@ -468,16 +452,12 @@ enum wb_status wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend
                           data->info.wire, data->info.sample, bench->compliance / WB_MM);
     p.n_law = WB_BEND3P_PARTS + data->has_unloading;
     p.n_free = p.n_law + 1;
-    p.n_residuals = data->n_points + WB_BEND3P_PARTS - 2 + 1 + data->has_unloading;
+    p.n_residuals = data->n_points + WB_BEND3P_PARTS - 3 + 1 + data->has_unloading;
     p.force_scale = fmax(data->noise, settings->force_share * data->max_force);
     start_law(&p, start);
     WB_TRY(make_bending(&p));
 
-    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    parameters.trs = gsl_multifit_nlinear_trs_dogleg;
-    parameters.scale = gsl_multifit_nlinear_scale_levenberg;
-    gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
-        gsl_multifit_nlinear_trust, &parameters, (size_t)p.n_residuals, (size_t)p.n_free);
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
     const enum wb_status status =
         w ? search(&p, w, fit, why)
           : wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);

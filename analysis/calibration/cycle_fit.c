@@ -14,6 +14,7 @@
 #include <gsl/gsl_multifit_nlinear.h>
 
 #include "analysis/calibration/cycle_model.h"
+#include "analysis/calibration/least_squares.h"
 #include "analysis/dataset/fit.h"
 #include "base/units.h"
 
@@ -375,13 +376,8 @@ static int prior_residuals(const struct problem *p, const double *free, const st
     r[at++] = free[p->n_law + LEVEL] / p->settings->level_prior;
     r[at++] = free[p->n_law + UNEVEN] / p->settings->uneven_prior;
     if (c->form == WB_LAW_PARALLEL) {
-        /* Strands that yield one after another do so about evenly. What stays elastic, jacket and
-         * hardening, is of another kind and may be as stiff as it is. */
-        const struct wb_law_part *const part = law->parts;
-        for (int i = 1; i + 2 < WB_FIT_PARTS; i++)
-            r[at++] = log(part[i - 1].modulus * part[i + 1].modulus /
-                          (part[i].modulus * part[i].modulus)) /
-                      p->settings->modulus_prior;
+        at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings->modulus_prior,
+                                            r + at);
     } else {
         r[at++] = free[3] / logistic_prior;
     }
@@ -486,30 +482,33 @@ static double force_misfit(const struct problem *p, const gsl_vector *f)
     return sqrt(sum / n) * p->force_scale / p->data->max_force;
 }
 
+/* A fit that is far off and comes nearer too slowly. */
+struct hopeless {
+    const struct problem *problem;
+    const gsl_multifit_nlinear_workspace *workspace;
+};
+
+static bool is_hopeless(void *context, int iteration, double gain)
+{
+    const struct hopeless *const h = context;
+    const double limit = h->problem->settings->hopeless;
+    return iteration >= first_judged && gain < slow_gain && limit > 0.0 &&
+           force_misfit(h->problem, h->workspace->f) > limit;
+}
+
 /* Iterates to the end; false when the iterations ran out. */
 static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *iterations)
 {
-    double before;
-    gsl_blas_ddot(w->f, w->f, &before);
-    for (int i = 0; i < p->settings->max_iterations; i++) {
-        (*iterations)++;
-        const int status = gsl_multifit_nlinear_iterate(w);
-        if (p->status != WB_OK)
-            return false;
-        if (status != GSL_SUCCESS)
-            return true; /* no step makes it better */
-        double now, largest = 0.0;
-        gsl_blas_ddot(w->f, w->f, &now);
-        for (size_t k = 0; k < w->dx->size; k++)
-            largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
-        if (largest < arrived || before - now < settled_sum * now)
-            return true;
-        if (i >= first_judged && before - now < slow_gain * now &&
-            force_misfit(p, w->f) > p->settings->hopeless && p->settings->hopeless > 0.0)
-            return false;
-        before = now;
-    }
-    return false;
+    struct hopeless hopeless = {p, w};
+    const struct wb_least_squares_search search = {
+        .max_iterations = p->settings->max_iterations,
+        .smallest_step = arrived,
+        .smallest_gain = settled_sum,
+        .status = &p->status,
+        .gives_up = is_hopeless,
+        .context = &hopeless,
+    };
+    return wb_least_squares_iterate(w, &search, iterations);
 }
 
 enum {
@@ -871,11 +870,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     p.distance = calloc((size_t)data->n_places + 1, sizeof *p.distance);
     p.last = calloc((size_t)p.n_residuals, sizeof *p.last);
     fit->tension = calloc(points, sizeof *fit->tension);
-    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    parameters.trs = gsl_multifit_nlinear_trs_dogleg;
-    parameters.scale = gsl_multifit_nlinear_scale_levenberg;
-    gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
-        gsl_multifit_nlinear_trust, &parameters, (size_t)p.n_residuals, (size_t)p.n_free);
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
     enum wb_status status = WB_OK;
     if (!p.tension || !p.weight || !p.distance || !p.last || !fit->tension || !w)
         status = wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);

@@ -1,0 +1,53 @@
+#include "analysis/calibration/least_squares.h"
+
+#include <math.h>
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_errno.h>
+
+gsl_multifit_nlinear_workspace *wb_least_squares_create(int n_residuals, int n_free)
+{
+    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
+    parameters.trs = gsl_multifit_nlinear_trs_dogleg;
+    parameters.scale = gsl_multifit_nlinear_scale_levenberg;
+    return gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, (size_t)n_residuals,
+                                      (size_t)n_free);
+}
+
+bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *w,
+                              const struct wb_least_squares_search *search, int *iterations)
+{
+    double before;
+    gsl_blas_ddot(w->f, w->f, &before);
+    for (int i = 0; i < search->max_iterations; i++) {
+        if (iterations)
+            (*iterations)++;
+        const int status = gsl_multifit_nlinear_iterate(w);
+        if (*search->status != WB_OK)
+            return false;
+        if (status != GSL_SUCCESS)
+            return true; /* no step makes it better */
+        double now, largest = 0.0;
+        gsl_blas_ddot(w->f, w->f, &now);
+        for (size_t k = 0; k < w->dx->size; k++)
+            largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
+        const double gain = (before - now) / now;
+        if (largest < search->smallest_step || gain < search->smallest_gain || now == 0.0)
+            return true;
+        if (search->gives_up && search->gives_up(search->context, i, gain))
+            return false;
+        before = now;
+    }
+    return false;
+}
+
+int wb_least_squares_smooth_parts(const struct wb_law_part *part, int n, double deviation,
+                                  double *residuals)
+{
+    int at = 0;
+    for (int i = 1; i + 2 < n; i++)
+        residuals[at++] =
+            log(part[i - 1].modulus * part[i + 1].modulus / (part[i].modulus * part[i].modulus)) /
+            deviation;
+    return at;
+}
