@@ -67,7 +67,7 @@ static void take_bench(struct wb_bend3p_calibration *c, const struct wb_machine 
     if (!nose.known)
         nose = (struct wb_band){true, roller, least_nose * roller, most_nose * roller};
     c->is_compliance_known = machine->compliance.known;
-    c->bench = (struct wb_bend3p_bench){
+    c->bench = (struct wb_three_point_bench){
         .friction = friction.value,
         .nose_radius = nose.value,
         .compliance = machine->compliance.known ? machine->compliance.value : 0.0,
@@ -90,14 +90,15 @@ static enum wb_status describe(struct wb_bend3p_member *m, const struct wb_bend3
         const struct wb_law *const law = &m->fit.moved[i];
         double moment[WB_BEND3P_MOMENTS];
         WB_TRY(wb_bending_moments(law, d, WB_BEND3P_MOMENTS, c->curvature, moment));
+        const double by = m->fit.moved_by[i];
         m->rigidity_error +=
-            pow(log(law->material.youngs_modulus / m->fit.law.material.youngs_modulus), 2);
+            pow(log(law->material.youngs_modulus / m->fit.law.material.youngs_modulus) / by, 2);
         for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
-            m->moment_error[k] += pow(log(moment[k] / m->moment[k]), 2);
+            m->moment_error[k] += pow(log(moment[k] / m->moment[k]) / by, 2);
     }
-    m->rigidity_error = sqrt(m->rigidity_error) / WB_BEND3P_MOVED;
+    m->rigidity_error = sqrt(m->rigidity_error);
     for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
-        m->moment_error[k] = sqrt(m->moment_error[k]) / WB_BEND3P_MOVED;
+        m->moment_error[k] = sqrt(m->moment_error[k]);
     return WB_OK;
 }
 
@@ -203,8 +204,8 @@ static enum wb_status fit_members(struct wb_bend3p_calibration *c,
             return wb_fail_to(why, WB_ERR_TIMEOUT, "stopped");
         if (m->data.n_points == 0)
             continue;
-        m->is_fitted =
-            wb_bend3p_fit_run(&m->fit, &m->data, &c->bench, NULL, &s->fit, &m->why) == WB_OK;
+        m->is_fitted = wb_bend3p_fit_run(&m->fit, &m->data, &c->bench, &c->strains, NULL, &s->fit,
+                                         &m->why) == WB_OK;
         if (!m->is_fitted)
             continue;
         c->n_fitted++;
@@ -236,7 +237,7 @@ static void widen(struct wb_estimate *e, double ratio)
 
 /* The fits again, from where they ended, with another bench. */
 static enum wb_status vary(struct wb_bend3p_calibration *c, struct wb_bend3p_variant *variant,
-                           const struct wb_bend3p_bench *bench,
+                           const struct wb_three_point_bench *bench,
                            const struct wb_bend3p_calibrate_settings *s, int all, int *done,
                            struct wb_reason *why)
 {
@@ -251,7 +252,8 @@ static enum wb_status vary(struct wb_bend3p_calibration *c, struct wb_bend3p_var
             return wb_fail_to(why, WB_ERR_TIMEOUT, "stopped");
         if (!m->is_fitted || !variant->is_possible)
             continue;
-        if (wb_bend3p_fit_run(&fit, &m->data, bench, &m->fit, &s->fit, &reason) != WB_OK) {
+        if (wb_bend3p_fit_run(&fit, &m->data, bench, &c->strains, &m->fit, &s->fit, &reason) !=
+            WB_OK) {
             variant->is_possible = false;
             continue;
         }
@@ -279,21 +281,16 @@ static enum wb_status run(struct wb_bend3p_calibration *c, const struct wb_datas
 {
     const int all = c->n_members * (1 + WB_BEND3P_VARIANTS);
     int done = 0;
-    double low = HUGE_VAL, high = 0.0;
 
+    c->strains = (struct wb_bend3p_strains){HUGE_VAL, 0.0};
     take_bench(c, &datasets[0]->info.machine);
     for (int i = 0; i < c->n_members; i++) {
         struct wb_bend3p_member *const m = &c->members[i];
-        double first, last;
         if (wb_bend3p_data_make(&m->data, datasets[i], &s->data, &m->why) != WB_OK)
             continue;
-        wb_bend3p_fit_strains(&m->data, &first, &last);
-        low = fmin(low, first);
-        high = fmax(high, last);
-    }
-    if (high > 0.0) {
-        c->bench.first_strain = low;
-        c->bench.last_strain = high;
+        const struct wb_bend3p_strains own = wb_bend3p_fit_strains(&m->data);
+        c->strains.first = fmin(c->strains.first, own.first);
+        c->strains.last = fmax(c->strains.last, own.last);
     }
     WB_TRY(fit_members(c, s, all, &done, why));
     wb_bend3p_calibrate_law(c, -1, &c->law);
@@ -303,7 +300,7 @@ static enum wb_status run(struct wb_bend3p_calibration *c, const struct wb_datas
     find_estimates(c, &(struct numbers){room, room + c->n_members});
     free(room);
     for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
-        struct wb_bend3p_bench bench = c->bench;
+        struct wb_three_point_bench bench = c->bench;
         /* Known: there is nothing to vary. */
         if (c->variants[i].value == (i < 2 ? bench.friction : bench.nose_radius)) {
             c->variants[i].misfit = c->misfit;

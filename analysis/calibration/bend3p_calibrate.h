@@ -46,12 +46,13 @@ enum {
 
 struct wb_bend3p_calibration {
     int n_members, n_fitted, n_series;
-    struct wb_bend3p_member *members; /* (n_members), owned */
-    struct wb_bend3p_bench bench;     /* as taken: known, or the middle of the band */
-    bool is_compliance_known;         /* else taken as none */
-    double misfit;                    /* RMS over the specimens */
-    double series_deviation;          /* s of ln EI between the means of series; NaN: one */
-    double largest_curvature;         /* 1/m */
+    struct wb_bend3p_member *members;  /* (n_members), owned */
+    struct wb_three_point_bench bench; /* as taken: known, or the middle of the band */
+    struct wb_bend3p_strains strains;  /* of the parts of all laws */
+    bool is_compliance_known;          /* else taken as none */
+    double misfit;                     /* RMS over the specimens */
+    double series_deviation;           /* s of ln EI between the means of series; NaN: one */
+    double largest_curvature;          /* 1/m */
     struct wb_estimate rigidity;
     /* Every test has a way back: a loading alone, whose first points the seating takes, leaves EI
      * to the law's form where the wire yields early. */

@@ -11,6 +11,7 @@
 #include <stdbool.h>
 
 #include "analysis/calibration/bend3p_data.h"
+#include "analysis/calibration/three_point_model.h"
 #include "base/reason.h"
 #include "base/setting.h"
 #include "base/status.h"
@@ -21,10 +22,9 @@ enum {
     WB_BEND3P_MOST_FREE = 9 /* and first contact, isotropic share */
 };
 
-/* What is given of the bench. */
-struct wb_bend3p_bench {
-    double friction, nose_radius, compliance; /* 1, m, m/N */
-    double first_strain, last_strain; /* yield strains of the parts; 0: as the data ask for */
+/* Yield strains of the parts, spaced by logarithm. */
+struct wb_bend3p_strains {
+    double first, last;
 };
 
 struct wb_bend3p_fit_settings {
@@ -47,23 +47,25 @@ struct wb_bend3p_fit {
     double misfit;                             /* RMS of the force residuals over F_max */
     double largest_curvature;                  /* 1/m, in the middle */
     double wrapped;                            /* rad, largest */
-    /* The law moved by WB_BEND3P_MOVED standard errors in independent directions, the first
-     * contact's error among them: see struct wb_cycle_fit. */
+    /* The law moved by so many standard errors in independent directions, the first contact's
+     * error among them: see struct wb_cycle_fit. */
     int n_moved;
+    double moved_by[WB_BEND3P_MOST_FREE];
     struct wb_law moved[WB_BEND3P_MOST_FREE];
     int runs;
     double cpu_s;
 };
-#define WB_BEND3P_MOVED 0.1
 
 /* The yield strains that a test asks for. */
-void wb_bend3p_fit_strains(const struct wb_bend3p_data *data, double *first, double *last);
+struct wb_bend3p_strains wb_bend3p_fit_strains(const struct wb_bend3p_data *data);
 
-/* `start`: a fit of the same test to begin with, or NULL. WB_ERR_CONVERGENCE where the beam does
+/* `start`: a fit of the same test to begin with, or NULL; `strains` NULL: those of the test.
+ * WB_ERR_CONVERGENCE where the beam does
  * not come to the end of the test; the reason goes to `why` (NULL: logged). */
 WB_MUST_CHECK enum wb_status
 wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend3p_data *data,
-                  const struct wb_bend3p_bench *bench, const struct wb_bend3p_fit *start,
-                  const struct wb_bend3p_fit_settings *settings, struct wb_reason *why);
+                  const struct wb_three_point_bench *bench, const struct wb_bend3p_strains *strains,
+                  const struct wb_bend3p_fit *start, const struct wb_bend3p_fit_settings *settings,
+                  struct wb_reason *why);
 
 #endif

@@ -1,12 +1,21 @@
 #include "analysis/calibration/least_squares.h"
 
 #include <math.h>
+#include <pthread.h>
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 
+static void silence_gsl(void)
+{
+    gsl_set_error_handler_off();
+}
+
 gsl_multifit_nlinear_workspace *wb_least_squares_create(int n_residuals, int n_free)
 {
+    /* GSL's default handler aborts the program. */
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, silence_gsl);
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
     parameters.trs = gsl_multifit_nlinear_trs_dogleg;
     parameters.scale = gsl_multifit_nlinear_scale_levenberg;

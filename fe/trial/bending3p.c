@@ -303,6 +303,17 @@ enum wb_status wb_bending3p_set_law(struct wb_bending3p *bending, const struct w
     return WB_OK;
 }
 
+enum wb_status wb_bending3p_set_curvature(struct wb_bending3p *bending,
+                                          double (*natural_curvature)(void *context,
+                                                                      double from_middle),
+                                          void *context)
+{
+    bending->natural_curvature = natural_curvature;
+    bending->curvature_context = context;
+    WB_TRY(wb_beam_set_curvature(bending->beam, natural_curvature ? curvature_of : NULL, bending));
+    return start(bending);
+}
+
 double wb_bending3p_contact_level(const struct wb_bending3p *bending)
 {
     return bending->state.contact_level;

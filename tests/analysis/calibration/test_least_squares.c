@@ -2,6 +2,7 @@
 #include "analysis/calibration/least_squares.h"
 
 #include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
 
 #include "tests/check.h"
 
@@ -128,10 +129,20 @@ static void the_elastic_part_may_be_as_stiff_as_it_is(void **unused)
     assert_close(r[1], 0.5, 1e-12);
 }
 
+static void errors_of_the_library_do_not_end_the_program(void **unused)
+{
+    (void)unused;
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(POINTS, 2);
+    gsl_matrix *const nothing = gsl_matrix_calloc(2, 2);
+    assert_int_not_equal(gsl_linalg_cholesky_decomp1(nothing), GSL_SUCCESS);
+    gsl_matrix_free(nothing);
+    gsl_multifit_nlinear_free(w);
+}
+
 int main(void)
 {
-    gsl_set_error_handler_off();
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_of_the_library_do_not_end_the_program),
         cmocka_unit_test(decay_is_found_again),
         cmocka_unit_test(iterations_run_out),
         cmocka_unit_test(a_search_may_be_given_up),
