@@ -377,9 +377,12 @@ static void press(struct wb_bending3p *b, double level, bool with_tangent)
 
 /* --- equilibrium --- */
 
+/* The largest of a node's forces, which are finite. (fmax() is a call, for NaN's sake.) */
 static double size_of(const double force[3], double lever)
 {
-    return fmax(fmax(fabs(force[0]), fabs(force[1])), fabs(force[2]) * lever);
+    const double x = fabs(force[0]), y = fabs(force[1]), t = fabs(force[2]) * lever;
+    const double larger = x > y ? x : y;
+    return larger > t ? larger : t;
 }
 
 /* The middle's x is held; with half a wire its rotation too. */
