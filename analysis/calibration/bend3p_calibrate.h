@@ -69,7 +69,8 @@ struct wb_bend3p_calibration {
 struct wb_bend3p_calibrate_settings {
     struct wb_bend3p_data_settings data;
     struct wb_bend3p_fit_settings fit;
-    bool (*progress)(void *context, int done, int all); /* NULL; false stops */
+    int threads;                                        /* 0: as many as there are processors */
+    bool (*progress)(void *context, int done, int all); /* NULL; false stops. One at a time. */
     void *progress_context;
 };
 enum {

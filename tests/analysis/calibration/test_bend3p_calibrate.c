@@ -275,6 +275,50 @@ static void series_are_not_averaged_away(void **unused)
     wb_bend3p_calibrate_release(&c);
 }
 
+static bool stop_at_the_second(void *context, int done, int all)
+{
+    *(int *)context = done;
+    assert_int_equal(all, 2 * (1 + WB_BEND3P_VARIANTS));
+    return done < 2;
+}
+
+static void threads_change_nothing_and_a_stop_ends(void **unused)
+{
+    (void)unused;
+    struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
+    struct wb_dataset datasets[2];
+    const struct wb_dataset *const pointers[2] = {&datasets[0], &datasets[1]};
+    struct wb_bend3p_calibration one, three;
+    struct wb_reason why;
+    int done = 0;
+    for (int i = 0; i < 2; i++) {
+        const struct test_made made = {
+            .modulus_factor = 1.0 + 0.1 * i, .friction = 0.2, .nose_radius = 2e-3, .noise = 2e-3};
+        make(&datasets[i], &made, "");
+        datasets[i].info.machine.friction.known = false;
+    }
+    settings.fit.max_iterations = 3;
+    settings.threads = 1;
+    assert_int_equal(wb_bend3p_calibrate_run(&one, pointers, 2, &settings, NULL), WB_OK);
+    settings.threads = 3;
+    assert_int_equal(wb_bend3p_calibrate_run(&three, pointers, 2, &settings, NULL), WB_OK);
+    assert_close(one.rigidity.low, three.rigidity.low, 0.0);
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        assert_close(one.moment[k].value, three.moment[k].value, 0.0);
+        assert_close(one.moment[k].candidates_low, three.moment[k].candidates_low, 0.0);
+        assert_true(one.moment[k].candidates_low < one.moment[k].value);
+    }
+    wb_bend3p_calibrate_release(&one);
+    wb_bend3p_calibrate_release(&three);
+    settings.threads = 1;
+    settings.progress = stop_at_the_second;
+    settings.progress_context = &done;
+    assert_int_equal(wb_bend3p_calibrate_run(&one, pointers, 2, &settings, &why), WB_ERR_TIMEOUT);
+    assert_int_equal(done, 2);
+    wb_dataset_release(&datasets[0]);
+    wb_dataset_release(&datasets[1]);
+}
+
 static void other_tests_are_refused(void **unused)
 {
     (void)unused;
@@ -310,6 +354,7 @@ int main(void)
         cmocka_unit_test(kink_and_given_travel_end_the_range),
         cmocka_unit_test(friction_is_not_told_by_the_curve_but_is_in_the_band),
         cmocka_unit_test(series_are_not_averaged_away),
+        cmocka_unit_test(threads_change_nothing_and_a_stop_ends),
         cmocka_unit_test(other_tests_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
