@@ -19,7 +19,9 @@
 
 static const double difference = 1e-3; /* of the free numbers, for slopes */
 static const double arrived = 5e-4;    /* largest step of a free number at the end */
-static const double settled_sum = 1e-5;
+static const double settled_sum = 1e-4;
+/* Of the modulus that a part starts with: less is nothing, and the search for it would go on. */
+static const double least_modulus = 3e-3;
 static const double lost_residual = 1e4;
 static const double contact_scale = 2e-3; /* of the span: unit of the first contact's number */
 static const double share_prior = 4.0;    /* of the logistic number */
@@ -73,7 +75,7 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
      .offset = AT(max_iterations),
      .least = 1,
      .largest = 10000,
-     .fallback = 30,
+     .fallback = 40,
      .option = "curve-iterations",
      .argument = "N",
      .help = "Most iterations of a fit"},
@@ -110,8 +112,9 @@ static void law_of(const struct problem *p, const double *x, struct wb_law *law)
     const double poissons_ratio =
         p->data->info.poissons_ratio > 0.0 ? p->data->info.poissons_ratio : 0.4;
     for (int i = 0; i < WB_BEND3P_PARTS; i++)
-        parts[i] =
-            (struct wb_law_part){p->start_modulus[i] * exp(fmin(x[i], 50.0)), p->yield_strain[i]};
+        parts[i] = (struct wb_law_part){p->start_modulus[i] *
+                                            (least_modulus + wb_least_squares_positive(x[i])),
+                                        p->yield_strain[i]};
     wb_law_init_parallel(law, parts, WB_BEND3P_PARTS, share, poissons_ratio);
 }
 

@@ -232,22 +232,13 @@ static double logistic(double x)
     return 1.0 / (1.0 + exp(-x));
 }
 
-/* A positive number that is 1 at x = 0, grows nearly linearly above and falls by an exponential
- * below. The tension is nearly linear in the moduli, so that linear steps arrive soon; moduli that
- * go to nothing stay positive. */
-static double positive(double x)
-{
-    const double rise = x * M_E / (M_E - 1.0);
-    return rise > 50.0 ? rise + log(M_E - 1.0) : log1p((M_E - 1.0) * exp(rise));
-}
-
 static double largest_exponent_of(const struct candidate *c)
 {
     return c->is_mixed || c->isotropic_share < 1.0 ? largest_kinematic_exponent : largest_exponent;
 }
 
 /* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
- * the start, see positive(); and the logistic share of mixed hardening. */
+ * the start, see wb_least_squares_positive(); and the logistic share of mixed hardening. */
 static void law_of(const struct problem *p, const double *free, struct wb_law *law)
 {
     const struct candidate *const c = p->candidate;
@@ -270,7 +261,7 @@ static void law_of(const struct problem *p, const double *free, struct wb_law *l
     struct wb_law_part parts[WB_FIT_PARTS];
     const double ratio = p->grid->last_strain / p->grid->first_strain;
     for (int i = 0; i < WB_FIT_PARTS; i++) {
-        parts[i].modulus = p->start_modulus[i] * positive(free[i]);
+        parts[i].modulus = p->start_modulus[i] * wb_least_squares_positive(free[i]);
         parts[i].yield_strain =
             i == WB_FIT_PARTS - 1
                 ? (double)INFINITY

@@ -50,6 +50,12 @@ bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *w,
     return false;
 }
 
+double wb_least_squares_positive(double x)
+{
+    const double rise = x * M_E / (M_E - 1.0);
+    return rise > 50.0 ? rise + log(M_E - 1.0) : log1p((M_E - 1.0) * exp(rise));
+}
+
 int wb_least_squares_smooth_parts(const struct wb_law_part *part, int n, double deviation,
                                   double *residuals)
 {

@@ -32,6 +32,11 @@ struct wb_least_squares_search {
 bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *workspace,
                               const struct wb_least_squares_search *search, int *iterations);
 
+/* A positive number that is 1 at x = 0, grows nearly linearly above and falls by an exponential
+ * below. Forces are nearly linear in moduli, so that linear steps arrive soon; moduli that go to
+ * nothing stay positive. */
+double wb_least_squares_positive(double x);
+
 /* Residuals of the prior that parallel parts which yield one after another do so about evenly: the
  * second differences of ln(modulus), over `deviation`. The last part, which stays elastic, is of
  * another kind (jacket, hardening) and may be as stiff as it is. Returns their number, n - 3, for

@@ -139,6 +139,20 @@ static void errors_of_the_library_do_not_end_the_program(void **unused)
     gsl_multifit_nlinear_free(w);
 }
 
+static void moduli_stay_positive_and_grow_evenly(void **unused)
+{
+    (void)unused;
+    assert_close(wb_least_squares_positive(0.0), 1.0, 1e-12);
+    for (double x = -50.0; x < 60.0; x += 0.5) {
+        const double y = wb_least_squares_positive(x), next = wb_least_squares_positive(x + 0.5);
+        assert_true(y > 0.0 && next > y);
+        if (x > 3.0)
+            assert_close_relative(next - y, 0.5 * M_E / (M_E - 1.0), 0.01);
+        if (x < -3.0)
+            assert_close_relative(next / y, exp(0.5 * M_E / (M_E - 1.0)), 0.01);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -147,6 +161,7 @@ int main(void)
         cmocka_unit_test(iterations_run_out),
         cmocka_unit_test(a_search_may_be_given_up),
         cmocka_unit_test(a_failure_of_the_residuals_ends_the_search),
+        cmocka_unit_test(moduli_stay_positive_and_grow_evenly),
         cmocka_unit_test(the_elastic_part_may_be_as_stiff_as_it_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
