@@ -329,6 +329,7 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
         .max_iterations = p->settings->max_iterations,
         .smallest_step = arrived,
         .smallest_gain = settled_sum,
+        .patience = 1,
         .status = &p->status,
     };
     fit->is_converged = wb_least_squares_iterate(w, &how, NULL);

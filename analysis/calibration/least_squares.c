@@ -27,6 +27,7 @@ bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *w,
                               const struct wb_least_squares_search *search, int *iterations)
 {
     double before;
+    int settled = 0;
     gsl_blas_ddot(w->f, w->f, &before);
     for (int i = 0; i < search->max_iterations; i++) {
         if (iterations)
@@ -41,7 +42,8 @@ bool wb_least_squares_iterate(gsl_multifit_nlinear_workspace *w,
         for (size_t k = 0; k < w->dx->size; k++)
             largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
         const double gain = (before - now) / now;
-        if (largest < search->smallest_step || gain < search->smallest_gain || now == 0.0)
+        settled = gain < search->smallest_gain ? settled + 1 : 0;
+        if (largest < search->smallest_step || settled > search->patience || now == 0.0)
             return true;
         if (search->gives_up && search->gives_up(search->context, i, gain))
             return false;

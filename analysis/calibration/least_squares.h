@@ -18,7 +18,8 @@ gsl_multifit_nlinear_workspace *wb_least_squares_create(int n_residuals, int n_f
 struct wb_least_squares_search {
     int max_iterations;
     double smallest_step; /* it has arrived when no free number moves by more, */
-    double smallest_gain; /* or the sum of squares falls by no more than this part of itself */
+    double smallest_gain; /* or the sum of squares falls by no more than this part of itself, */
+    int patience;         /* more than so often in a row: a step may overshoot to an equal height */
     /* Set by the residuals where they cannot be computed: ends the search. */
     const enum wb_status *status;
     /* Whether to end early: asked after `iteration`, from 0, which made the sum of squares smaller

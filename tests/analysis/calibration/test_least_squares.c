@@ -75,6 +75,21 @@ static void iterations_run_out(void **unused)
     assert_int_equal(iterations, 2);
 }
 
+static void small_gains_end_it_when_patience_does(void **unused)
+{
+    (void)unused;
+    for (int patience = 0; patience < 3; patience++) {
+        struct decay decay = {0};
+        struct wb_least_squares_search how = {
+            .max_iterations = 100, .smallest_step = 0.0, .smallest_gain = 1e9};
+        double x[2];
+        int iterations;
+        how.patience = patience;
+        assert_true(search(&decay, &how, x, &iterations));
+        assert_int_equal(iterations, 1 + patience);
+    }
+}
+
 static bool third(void *context, int iteration, double gain)
 {
     double *const gains = context;
@@ -158,6 +173,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_of_the_library_do_not_end_the_program),
         cmocka_unit_test(decay_is_found_again),
+        cmocka_unit_test(small_gains_end_it_when_patience_does),
         cmocka_unit_test(iterations_run_out),
         cmocka_unit_test(a_search_may_be_given_up),
         cmocka_unit_test(a_failure_of_the_residuals_ends_the_search),
