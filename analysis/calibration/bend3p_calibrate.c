@@ -56,8 +56,8 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
     return WB_OK;
 }
 
-/* What the machine says, and the ends of what it leaves open. */
-static void take_bench(struct wb_bend3p_calibration *c, const struct wb_machine *machine)
+void wb_bend3p_calibrate_bench(const struct wb_machine *machine, struct wb_three_point_bench *bench,
+                               struct wb_bend3p_variant ends[WB_BEND3P_VARIANTS])
 {
     const double roller = machine->roller_radius;
     struct wb_band friction = machine->friction, nose = machine->nose_radius;
@@ -66,16 +66,16 @@ static void take_bench(struct wb_bend3p_calibration *c, const struct wb_machine 
                                     most_friction};
     if (!nose.known)
         nose = (struct wb_band){true, roller, least_nose * roller, most_nose * roller};
-    c->is_compliance_known = machine->compliance.known;
-    c->bench = (struct wb_three_point_bench){
+    *bench = (struct wb_three_point_bench){
         .friction = friction.value,
         .nose_radius = nose.value,
         .compliance = machine->compliance.known ? machine->compliance.value : 0.0,
     };
-    const double ends[WB_BEND3P_VARIANTS] = {friction.least, friction.most, nose.least, nose.most};
+    const double values[WB_BEND3P_VARIANTS] = {friction.least, friction.most, nose.least,
+                                               nose.most};
     for (int i = 0; i < WB_BEND3P_VARIANTS; i++)
-        c->variants[i] = (struct wb_bend3p_variant){
-            .name = i < 2 ? "friction" : "nose radius", .value = ends[i], .is_possible = true};
+        ends[i] = (struct wb_bend3p_variant){
+            .name = i < 2 ? "friction" : "nose radius", .value = values[i], .is_possible = true};
 }
 
 /* Rigidity and moments of a law; errors by its moved companions. */
@@ -368,7 +368,8 @@ static enum wb_status run(struct wb_bend3p_calibration *c, const struct wb_datas
         .calibration = c, .settings = s, .all = c->n_members * (1 + WB_BEND3P_VARIANTS)};
 
     c->strains = (struct wb_bend3p_strains){HUGE_VAL, 0.0};
-    take_bench(c, &datasets[0]->info.machine);
+    wb_bend3p_calibrate_bench(&datasets[0]->info.machine, &c->bench, c->variants);
+    c->is_compliance_known = datasets[0]->info.machine.compliance.known;
     for (int i = 0; i < c->n_members; i++) {
         struct wb_bend3p_member *const m = &c->members[i];
         if (wb_bend3p_data_make(&m->data, datasets[i], &s->data, &m->why) != WB_OK)

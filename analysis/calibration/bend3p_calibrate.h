@@ -78,6 +78,12 @@ enum {
 };
 extern const struct wb_setting_table wb_bend3p_calibrate_tables[WB_BEND3P_CALIBRATE_TABLES];
 
+/* The bench as it is taken for: what the machine file says, or the middle of its band, or of the
+ * one above where it says nothing; no compliance where it says none. `ends` receives name and value
+ * of the bands' ends. */
+void wb_bend3p_calibrate_bench(const struct wb_machine *machine, struct wb_three_point_bench *bench,
+                               struct wb_bend3p_variant ends[WB_BEND3P_VARIANTS]);
+
 /* WB_ERR_DATA for datasets of several wires or benches, or where none can be fitted; WB_ERR_TIMEOUT
  * where `progress` stopped it. The reason goes to `why` (NULL: logged). */
 WB_MUST_CHECK enum wb_status

@@ -23,9 +23,8 @@ static const double elastic_zone = 0.05;
 /* Deflection over length from there on in which the slope past yield is taken, and the smallest
  * exponent made of it. */
 static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
-/* Candidates count up to this many times the best misfit; a rule is supported up to this one. */
+/* Candidates count up to this many times the best misfit. */
 static const double counts_up_to = 2.0;
-static const double largest_supported = 5e-3;
 /* Standard errors of a fit on either side of a candidate's number. */
 static const double range_errors = 2.0;
 /* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
@@ -429,8 +428,8 @@ static void choose(struct wb_cycle_calibration *calibration)
     }
     const int chosen = simplest >= 0 ? simplest : alike >= 0 ? alike : 0;
     calibration->chosen = calibration->ranked[chosen].candidate;
-    calibration->is_supported =
-        calibration->has_unloading && !calibration->is_stopped && best->misfit <= largest_supported;
+    calibration->is_supported = calibration->has_unloading && !calibration->is_stopped &&
+                                best->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
 }
 
 /* Numbers of a specimen that are averaged. */

@@ -9,29 +9,15 @@
 
 #define WB_LOG_DOMAIN "validation"
 
-/* The loading's points; *n of them. */
+/* Deflection of a point of the loading. */
 static double way_of(const struct wb_bend3p_member *member, int i)
 {
     return member->data.points[i].travel - member->data.first_contact;
 }
 
-static int count_loading(const struct wb_bend3p_member *member)
-{
-    int n = 0;
-    while (n < member->data.n_points && !member->data.points[n].is_unloading)
-        n++;
-    return n;
-}
-
 static double force_of(const struct wb_bend3p_member *member, double at)
 {
-    const int n = count_loading(member);
-    int i = 1;
-    while (i + 1 < n && way_of(member, i) < at)
-        i++;
-    const double a = way_of(member, i - 1), b = way_of(member, i);
-    const double before = member->data.points[i - 1].force;
-    return before + (at - a) / (b - a) * (member->data.points[i].force - before);
+    return wb_bend3p_data_force(&member->data, at + member->data.first_contact, false);
 }
 
 /* --- tests left out --- */
@@ -46,7 +32,7 @@ static enum wb_status find_grid(struct wb_left_out *r, const struct wb_bend3p_ca
             continue;
         r->n++;
         from = fmax(from, way_of(m, 0));
-        to = fmin(to, way_of(m, count_loading(m) - 1));
+        to = fmin(to, way_of(m, wb_bend3p_data_count_loading(&m->data) - 1));
     }
     if (r->n < 2)
         return wb_fail_to(why, WB_ERR_DATA, "%d of %d tests fitted: none can be left out", r->n,

@@ -3,109 +3,9 @@
 #include <stdlib.h>
 
 #include "analysis/calibration/bending.h"
-#include "fe/trial/bending3p.h"
-#include "tests/check.h"
-#include "tests/fe/rod/wires.h"
-
-/* A machine's test of a wire of type 2, computed: what the calibration should find again. */
-struct test_made {
-    double modulus_factor; /* on E, sigma_Y and K */
-    double softness;       /* K over this; 0: 1 */
-    double friction, nose_radius, compliance;
-    double contact; /* m of travel before the wire is touched */
-    double zero;    /* N */
-    double noise;   /* N, alternating */
-    double slip;    /* m of deflection at which the force drops by a tenth; 0: none */
-    bool with_way_back;
-};
-
-static const double span = 20e-3, deepest = 5e-3;
-
-static struct wb_material material_of(const struct test_made *made)
-{
-    struct wb_material material = test_wire_type(2).material;
-    material.youngs_modulus *= made->modulus_factor;
-    material.yield_stress *= made->modulus_factor;
-    material.strength_coefficient *= made->modulus_factor;
-    if (made->softness > 0.0)
-        material.strength_coefficient /= made->softness;
-    return material;
-}
-
-static void add_row(struct wb_dataset *dataset, const struct test_made *made, double travel,
-                    double force, enum wb_phase phase)
-{
-    static uint64_t random = 20261123;
-    const struct wb_row row = {
-        .t = (double)NAN,
-        .cycle = 1,
-        .phase = phase,
-        .deflection = travel,
-        .tension = force,
-        .force = force + made->zero + made->noise * (2.0 * test_random(&random) - 1.0),
-        .stage = (double)NAN,
-        .tip_x = (double)NAN,
-        .tip_angle = (double)NAN,
-    };
-    assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
-}
-
-static void make(struct wb_dataset *dataset, const struct test_made *made, const char *series)
-{
-    const double d = test_wire_type(2).diameter;
-    const struct wb_band unknown = {false, (double)NAN, (double)NAN, (double)NAN};
-    const struct wb_material material = material_of(made);
-    struct wb_section section;
-    struct wb_bending3p *bending;
-
-    assert_int_equal(wb_dataset_init(dataset), WB_OK);
-    dataset->info = (struct wb_test_info){
-        .wire = "type2",
-        .sample = 1,
-        .length = span,
-        .outer_diameter = d,
-        .poissons_ratio = 0.39,
-        .rest_level = (double)NAN,
-        .kind = WB_TEST_THREE_POINT,
-        .has_machine = true,
-        .machine = {.name = "made",
-                    .kind = WB_TEST_THREE_POINT,
-                    .span = span,
-                    .roller_radius = 2e-3,
-                    .nose_radius = {true, made->nose_radius, made->nose_radius, made->nose_radius},
-                    .friction = {true, made->friction, made->friction, made->friction},
-                    .compliance = {true, made->compliance, made->compliance, made->compliance},
-                    .speed = unknown},
-        .piece = {.usable_travel = unknown, .outer_diameter = d},
-    };
-    snprintf(dataset->info.piece.series, sizeof dataset->info.piece.series, "%s", series);
-    assert_int_equal(wb_section_init_circle(&section, d, &material, 40), WB_OK);
-    const struct wb_bending3p_model model = {
-        .section = &section,
-        .diameter = d,
-        .span = span,
-        .support_radius = 2e-3,
-        .nose_radius = made->nose_radius,
-        .friction = made->friction,
-        .compliance = made->compliance,
-    };
-    assert_int_equal(wb_bending3p_create(&bending, &model), WB_OK);
-    for (int i = 0; i < 20 && made->contact > 0.0; i++)
-        add_row(dataset, made, made->contact * i / 20.0, 0.0, WB_PHASE_LOAD);
-    const int n = 200;
-    for (int i = 0; i <= (made->with_way_back ? 2 * n : n); i++) {
-        struct wb_bending3p_point point;
-        const double w = deepest * (i <= n ? i : 2 * n - i) / n;
-        assert_int_equal(wb_bending3p_move(bending, w, &point), WB_OK);
-        assert_int_equal(point.end, WB_BENDING3P_CONVERGED);
-        const bool slipped = made->slip > 0.0 && w >= made->slip;
-        add_row(dataset, made, made->contact + point.travel,
-                slipped ? 0.9 * point.force : point.force,
-                i <= n ? WB_PHASE_LOAD : WB_PHASE_UNLOAD);
-    }
-    wb_bending3p_destroy(bending);
-    wb_section_release(&section);
-}
+#include "analysis/calibration/properties.h"
+#include "tests/analysis/calibration/properties_path.h"
+#include "tests/analysis/three_point_data.h"
 
 static struct wb_bend3p_calibrate_settings settings_of_defaults(void)
 {
@@ -131,9 +31,10 @@ static struct wb_bend3p_calibration calibrate(struct wb_dataset *datasets, int n
 }
 
 /* The calibrated moments and rigidity against the truth, which lies in the intervals too. */
-static void compare_with_truth(const struct wb_bend3p_calibration *c, const struct test_made *made)
+static void compare_with_truth(const struct wb_bend3p_calibration *c,
+                               const struct three_point_made *made)
 {
-    const struct wb_material material = material_of(made);
+    const struct wb_material material = three_point_material(made);
     const double d = test_wire_type(2).diameter;
     double moment[WB_BEND3P_MOMENTS];
     struct wb_law law;
@@ -154,21 +55,21 @@ static void compare_with_truth(const struct wb_bend3p_calibration *c, const stru
 static void law_and_first_contact_are_found_again(void **unused)
 {
     (void)unused;
-    const struct test_made made = {.modulus_factor = 1.0,
-                                   .friction = 0.3,
-                                   .nose_radius = 2e-3,
-                                   .compliance = 0.05e-3,
-                                   .contact = 0.4e-3,
-                                   .zero = 0.02,
-                                   .noise = 2e-3};
+    const struct three_point_made made = {.modulus_factor = 1.0,
+                                          .friction = 0.3,
+                                          .nose_radius = 2e-3,
+                                          .compliance = 0.05e-3,
+                                          .contact = 0.4e-3,
+                                          .zero = 0.02,
+                                          .noise = 2e-3};
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     struct wb_bend3p_calibration c = calibrate(&dataset, 1);
     const struct wb_bend3p_member *const m = &c.members[0];
     assert_true(m->is_fitted && m->fit.is_converged && m->data.is_zeroed);
     assert_close(m->data.zero_force, made.zero, 1e-3);
     assert_close(m->fit.first_contact, made.contact,
-                 fmax(2.0 * m->fit.first_contact_error, 2e-3 * span));
+                 fmax(2.0 * m->fit.first_contact_error, 2e-3 * three_point_span));
     assert_true(m->fit.first_contact_error > 0.0);
     assert_true(c.misfit < 2e-3);
     assert_false(c.is_rigidity_identifiable);
@@ -179,14 +80,19 @@ static void law_and_first_contact_are_found_again(void **unused)
 static void way_back_tells_the_hardening_rule(void **unused)
 {
     (void)unused;
-    const struct test_made made = {
+    const struct three_point_made made = {
         .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3, .with_way_back = true};
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     struct wb_bend3p_calibration c = calibrate(&dataset, 1);
     assert_true(c.members[0].data.has_unloading);
     assert_true(c.is_rigidity_identifiable);
     assert_true(c.law.isotropic_share > 0.8); /* the wire's is isotropic */
+    struct wb_properties read;
+    assert_int_equal(wb_properties_write_bend3p(path, &c, NULL, 0, true), WB_OK);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    assert_true(read.is_rule_tested && read.is_rule_supported);
+    assert_close_relative(read.rigidity.value, c.rigidity.value, 1e-9);
     compare_with_truth(&c, &made);
     wb_bend3p_calibrate_release(&c);
 }
@@ -195,10 +101,10 @@ static void way_back_tells_the_hardening_rule(void **unused)
 static void wire_that_hardly_hardens_is_found_with_its_errors(void **unused)
 {
     (void)unused;
-    const struct test_made made = {
+    const struct three_point_made made = {
         .modulus_factor = 1.0, .softness = 50.0, .friction = 0.3, .nose_radius = 2e-3};
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     struct wb_bend3p_calibration c = calibrate(&dataset, 1);
     const struct wb_bend3p_member *const m = &c.members[0];
     assert_int_equal(m->fit.n_moved, WB_BEND3P_PARTS + 1);
@@ -211,18 +117,18 @@ static void wire_that_hardly_hardens_is_found_with_its_errors(void **unused)
 static void kink_and_given_travel_end_the_range(void **unused)
 {
     (void)unused;
-    const struct test_made made = {
+    const struct three_point_made made = {
         .modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3, .noise = 1e-3, .slip = 3.2e-3};
     struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
     struct wb_bend3p_data data;
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     assert_int_equal(wb_bend3p_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
     assert_int_equal(data.limit, WB_BEND3P_LIMIT_KINK);
     assert_close(data.usable, made.slip, 0.1e-3);
     for (int i = 1; i < data.n_points; i++)
         assert_true(data.points[i].travel > data.points[i - 1].travel);
-    assert_true(data.points[0].travel >= data.first_contact + 0.00999 * span);
+    assert_true(data.points[0].travel >= data.first_contact + 0.00999 * three_point_span);
     wb_bend3p_data_release(&data);
     settings.data.usable = 2e-3;
     assert_int_equal(wb_bend3p_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
@@ -235,9 +141,10 @@ static void kink_and_given_travel_end_the_range(void **unused)
 static void friction_is_not_told_by_the_curve_but_is_in_the_band(void **unused)
 {
     (void)unused;
-    const struct test_made made = {.modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3};
+    const struct three_point_made made = {
+        .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3};
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     dataset.info.machine.friction.known = false;
     struct wb_bend3p_calibration c = calibrate(&dataset, 1);
     assert_close(c.bench.friction, 0.3, 1e-12);
@@ -260,11 +167,11 @@ static void series_are_not_averaged_away(void **unused)
     (void)unused;
     struct wb_dataset datasets[4];
     for (int i = 0; i < 4; i++) {
-        const struct test_made made = {.modulus_factor = i < 2 ? 1.15 : 0.87,
-                                       .friction = 0.2,
-                                       .nose_radius = 2e-3,
-                                       .noise = 2e-3};
-        make(&datasets[i], &made, i < 2 ? "1" : "1b");
+        const struct three_point_made made = {.modulus_factor = i < 2 ? 1.15 : 0.87,
+                                              .friction = 0.2,
+                                              .nose_radius = 2e-3,
+                                              .noise = 2e-3};
+        three_point_make(&datasets[i], &made, i < 2 ? "1" : "1b");
     }
     struct wb_bend3p_calibration c = calibrate(datasets, 4);
     assert_int_equal(c.n_series, 2);
@@ -272,6 +179,17 @@ static void series_are_not_averaged_away(void **unused)
     assert_close(c.series_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
     /* Two means: t of one degree of freedom. */
     assert_true(c.moment[4].high / c.moment[4].low > 2.0);
+    /* The properties keep how far series differ, not how far tests do; so does the file. */
+    struct wb_properties properties, read;
+    wb_properties_from_bend3p(&c, &properties);
+    assert_int_equal(wb_properties_units(&properties), 2);
+    assert_close(properties.stiffness_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
+    assert_int_equal(wb_properties_write_bend3p(path, &c, NULL, 0, true), WB_OK);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    assert_int_equal(read.n_series, 2);
+    assert_int_equal(read.n_samples, 4);
+    assert_close_relative(read.stiffness_deviation, properties.stiffness_deviation, 1e-9);
+    assert_false(read.is_rule_tested);
     wb_bend3p_calibrate_release(&c);
 }
 
@@ -292,9 +210,9 @@ static void threads_change_nothing_and_a_stop_ends(void **unused)
     struct wb_reason why;
     int done = 0;
     for (int i = 0; i < 2; i++) {
-        const struct test_made made = {
+        const struct three_point_made made = {
             .modulus_factor = 1.0 + 0.1 * i, .friction = 0.2, .nose_radius = 2e-3, .noise = 2e-3};
-        make(&datasets[i], &made, "");
+        three_point_make(&datasets[i], &made, "");
         datasets[i].info.machine.friction.known = false;
     }
     settings.fit.max_iterations = 3;
@@ -322,18 +240,19 @@ static void threads_change_nothing_and_a_stop_ends(void **unused)
 static void other_tests_are_refused(void **unused)
 {
     (void)unused;
-    const struct test_made made = {.modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3};
+    const struct three_point_made made = {
+        .modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3};
     const struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
     struct wb_dataset datasets[2];
     const struct wb_dataset *pointers[2] = {&datasets[0], &datasets[1]};
     struct wb_bend3p_calibration c;
     struct wb_reason why;
-    make(&datasets[0], &made, "");
-    make(&datasets[1], &made, "");
-    datasets[1].info.length = 2.0 * span;
+    three_point_make(&datasets[0], &made, "");
+    three_point_make(&datasets[1], &made, "");
+    datasets[1].info.length = 2.0 * three_point_span;
     assert_int_equal(wb_bend3p_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "different benches"));
-    datasets[1].info.length = span;
+    datasets[1].info.length = three_point_span;
     snprintf(datasets[1].info.wire, sizeof datasets[1].info.wire, "other");
     assert_int_equal(wb_bend3p_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "expected one wire"));
@@ -357,5 +276,5 @@ int main(void)
         cmocka_unit_test(threads_change_nothing_and_a_stop_ends),
         cmocka_unit_test(other_tests_are_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_path, remove_folder);
 }
