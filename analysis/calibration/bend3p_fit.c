@@ -23,8 +23,11 @@ static const double settled_sum = 1e-4;
 /* Of the modulus that a part starts with: less is nothing, and the search for it would go on. */
 static const double least_modulus = 3e-3;
 static const double lost_residual = 1e4;
-static const double contact_scale = 2e-3; /* of the span: unit of the first contact's number */
-static const double share_prior = 4.0;    /* of the logistic number */
+static const double contact_scale = 2e-3; /* of the span: unit of the first contact's number, */
+static const double bow_scale = 1e-2;     /* and of the natural bow's */
+/* A bow is told by the readings where they leave less than this part of its prior. */
+static const double told_part = 0.5;
+static const double share_prior = 4.0; /* of the logistic number */
 /* What no reading and no prior tells stays finite by a prior of this weight; a law is moved by this
  * many standard errors, and no number by more than that. Units of the free numbers. */
 static const double know_nothing = 1e-6, moved_by = 0.1, farthest = 1.0;
@@ -61,6 +64,16 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
      .option = "contact-prior",
      .argument = "R",
      .help = "Part of the span by which the first contact may well be off where it seems to be"},
+    {.name = "bow_prior",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(bow_prior),
+     .least = 1e-6,
+     .largest = 0.1,
+     .otherwise = "straight",
+     .option = "bow-prior",
+     .argument = "R",
+     .help = "Part of the span by which a wire may well be bowed on the rollers where its "
+             "specimen's file does not say"},
     {.name = "half_elements",
      .type = WB_SETTING_INTEGER,
      .offset = AT(n_elements),
@@ -88,7 +101,10 @@ struct problem {
     const struct wb_bend3p_strains *strains;
     const struct wb_bend3p_fit_settings *settings;
     struct wb_three_point_model *model;
-    int n_law, n_free, n_residuals; /* n_law: moduli, and share */
+    /* The law's numbers (moduli, and share), the bow where it is free, and last the contact. */
+    int n_law, n_curve, n_free, n_residuals; /* n_curve: those that change the curve */
+    double bow, bow_deviation;               /* m: where it is looked for, and its prior; 0: held */
+    double start_bow;
     double start_modulus[WB_BEND3P_PARTS], yield_strain[WB_BEND3P_PARTS];
     double start_share;
     double contact, force_scale;
@@ -102,7 +118,18 @@ struct problem {
     enum wb_status status;
 };
 
-/* The isotropic share comes last of the law's numbers, the first contact after them. */
+static double contact_of(const struct problem *p, const double *x)
+{
+    return p->contact + contact_scale * p->data->info.length * x[p->n_free - 1];
+}
+
+static double bow_of(const struct problem *p, const double *x)
+{
+    return p->start_bow +
+           (p->bow_deviation > 0.0 ? bow_scale * p->data->info.length * x[p->n_law] : 0.0);
+}
+
+/* The isotropic share comes last of the law's numbers. */
 static void law_of(const struct problem *p, const double *x, struct wb_law *law)
 {
     struct wb_law_part parts[WB_BEND3P_PARTS];
@@ -150,6 +177,7 @@ static void start_law(struct problem *p, const struct wb_bend3p_fit *start)
         p->start_modulus[i] = E / WB_BEND3P_PARTS;
     }
     p->contact = data->first_contact;
+    p->start_bow = p->bow;
     p->start_share = 0.0;
     if (!start)
         return;
@@ -158,6 +186,7 @@ static void start_law(struct problem *p, const struct wb_bend3p_fit *start)
         p->yield_strain[i] = start->law.parts[i].yield_strain;
     }
     p->contact = start->first_contact;
+    p->start_bow = start->bow;
     const double share = fmin(fmax(start->law.isotropic_share, 1e-3), 1.0 - 1e-3);
     p->start_share = log(share / (1.0 - share));
 }
@@ -165,7 +194,7 @@ static void start_law(struct problem *p, const struct wb_bend3p_fit *start)
 /* The whole curve of a law; `reached` of the run says whether it came to its end. */
 static void compute(struct problem *p, const double *x)
 {
-    const size_t size = (size_t)p->n_law * sizeof *x;
+    const size_t size = (size_t)p->n_curve * sizeof *x;
     struct wb_law law;
     struct wb_reason why;
 
@@ -178,15 +207,16 @@ static void compute(struct problem *p, const double *x)
     if (wb_law_check(&law, &why) != WB_OK)
         return;
     p->runs++;
-    p->status =
-        wb_three_point_model_run(p->model, &law, 0.0, p->deepest, p->data->has_unloading, &p->run);
+    p->status = wb_three_point_model_run(
+        p->model, &law, wb_three_point_model_curvature(&p->data->info, bow_of(p, x)), p->deepest,
+        p->data->has_unloading, &p->run);
 }
 
 static int residuals(struct problem *p, const double *x, double *r)
 {
     const struct wb_bend3p_data *const data = p->data;
     const double span = data->info.length;
-    const double contact = p->contact + contact_scale * span * x[p->n_law];
+    const double contact = contact_of(p, x);
     struct wb_law law;
     int at = 0;
 
@@ -208,6 +238,8 @@ static int residuals(struct problem *p, const double *x, double *r)
     at += wb_least_squares_smooth_parts(law.parts, WB_BEND3P_PARTS, p->settings->modulus_prior,
                                         r + at);
     r[at++] = (contact - data->first_contact) / (p->settings->contact_prior * span);
+    if (p->bow_deviation > 0.0)
+        r[at++] = (bow_of(p, x) - p->bow) / p->bow_deviation;
     if (p->n_law > WB_BEND3P_PARTS)
         r[at++] = (p->start_share + x[WB_BEND3P_PARTS]) / share_prior;
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
@@ -232,7 +264,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     for (int step = 0; step < p->n_free && status == GSL_SUCCESS; step++) {
         const int k = p->n_free - 1 - step; /* the contact first, while the curve is there */
         memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
-        const double by = k == p->n_law ? 10.0 * difference : difference;
+        const double by = k >= p->n_law ? 10.0 * difference : difference;
         moved[k] += by;
         status = residuals(p, moved, other);
         for (size_t i = 0; i < n; i++)
@@ -251,19 +283,43 @@ static double alike_in_a_row(const gsl_vector *f, int n)
     return fmax(1.0, 0.5 * n / rows);
 }
 
-/* The covariance over `variance`, in the lower triangle. */
-static bool find_covariance(const gsl_matrix *J, gsl_matrix *covariance)
+/* What the numbers owe to the readings, whose variance is `variance`, and to the priors, which are
+ * as far off as their standard deviations say: H^-1 (variance Jr'Jr + Jp'Jp) H^-1. */
+static bool find_covariance(const gsl_matrix *J, size_t n_readings, double variance,
+                            gsl_matrix *covariance)
 {
-    gsl_matrix_set_identity(covariance);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, covariance);
-    return gsl_linalg_cholesky_decomp1(covariance) == GSL_SUCCESS &&
-           gsl_linalg_cholesky_invert(covariance) == GSL_SUCCESS;
+    const size_t n = J->size2;
+    const gsl_matrix_const_view readings = gsl_matrix_const_submatrix(J, 0, 0, n_readings, n);
+    const gsl_matrix_const_view priors =
+        gsl_matrix_const_submatrix(J, n_readings, 0, J->size1 - n_readings, n);
+    gsl_matrix *const H = gsl_matrix_alloc(n, n), *const M = gsl_matrix_alloc(n, n),
+                      *const HM = gsl_matrix_alloc(n, n);
+    bool good = H && M && HM;
+    if (good) {
+        gsl_matrix_set_identity(H);
+        gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, H);
+        gsl_matrix_set_identity(M);
+        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &priors.matrix, &priors.matrix, know_nothing,
+                       M);
+        gsl_blas_dgemm(CblasTrans, CblasNoTrans, variance, &readings.matrix, &readings.matrix, 1.0,
+                       M);
+        good = gsl_linalg_cholesky_decomp1(H) == GSL_SUCCESS &&
+               gsl_linalg_cholesky_invert(H) == GSL_SUCCESS;
+    }
+    if (good) {
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, H, M, 0.0, HM);
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, HM, H, 0.0, covariance);
+    }
+    gsl_matrix_free(H);
+    gsl_matrix_free(M);
+    gsl_matrix_free(HM);
+    return good;
 }
 
 /* The law moved along the columns of the covariance's triangular factor, which the covariance is
  * destroyed for. */
-static void move_law(const struct problem *p, const gsl_vector *x, double deviation,
-                     gsl_matrix *covariance, struct wb_bend3p_fit *fit)
+static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
+                     struct wb_bend3p_fit *fit)
 {
     const size_t n = (size_t)p->n_free;
     fit->n_moved = 0;
@@ -272,11 +328,10 @@ static void move_law(const struct problem *p, const gsl_vector *x, double deviat
     for (size_t k = 0; k < n; k++) {
         double step[WB_BEND3P_MOST_FREE], largest = 1e-300;
         for (size_t i = k; i < n; i++)
-            largest = fmax(largest, deviation * fabs(gsl_matrix_get(covariance, i, k)));
+            largest = fmax(largest, fabs(gsl_matrix_get(covariance, i, k)));
         const double by = fmin(moved_by, farthest / largest);
         for (size_t i = 0; i < n; i++)
-            step[i] = gsl_vector_get(x, i) +
-                      (i < k ? 0.0 : by * deviation * gsl_matrix_get(covariance, i, k));
+            step[i] = gsl_vector_get(x, i) + (i < k ? 0.0 : by * gsl_matrix_get(covariance, i, k));
         law_of(p, step, &fit->moved[fit->n_moved]);
         fit->moved_by[fit->n_moved++] = by;
     }
@@ -285,20 +340,29 @@ static void move_law(const struct problem *p, const gsl_vector *x, double deviat
 static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_bend3p_fit *fit)
 {
-    const size_t n = (size_t)p->n_free, contact = (size_t)p->n_law;
+    const size_t n = (size_t)p->n_free, contact = n - 1, bow = (size_t)p->n_law;
+    const double span = p->data->info.length;
     gsl_matrix *const covariance = gsl_matrix_alloc(n, n);
-    double sum;
     fit->first_contact_error = (double)NAN;
     if (!covariance)
         return;
-    gsl_blas_ddot(w->f, w->f, &sum);
-    /* Not less than the points' own error: a curve without noise is not known without end. */
-    const double variance = fmax(sum / fmax(1.0, p->data->n_points - p->n_free), 0.0) *
-                            alike_in_a_row(w->f, p->data->n_points);
-    if (find_covariance(w->J, covariance)) {
-        fit->first_contact_error = contact_scale * p->data->info.length *
-                                   sqrt(variance * gsl_matrix_get(covariance, contact, contact));
-        move_law(p, w->x, sqrt(variance), covariance, fit);
+    double sum = 0.0;
+    for (size_t i = 0; i < (size_t)p->data->n_points; i++)
+        sum += pow(gsl_vector_get(w->f, i), 2);
+    const double variance =
+        sum / fmax(1.0, p->data->n_points - p->n_free) * alike_in_a_row(w->f, p->data->n_points);
+    if (find_covariance(w->J, (size_t)p->data->n_points, variance, covariance)) {
+        const double of_contact = sqrt(gsl_matrix_get(covariance, contact, contact));
+        fit->first_contact_error = contact_scale * span * of_contact;
+        if (p->bow_deviation > 0.0) {
+            const double of_bow = sqrt(gsl_matrix_get(covariance, bow, bow));
+            fit->bow_error = bow_scale * span * of_bow;
+            fit->bow_contact_correlation =
+                gsl_matrix_get(covariance, bow, contact) / (of_bow * of_contact);
+            fit->bow_off = (fit->bow - p->bow) / p->bow_deviation;
+            fit->is_bow_told = fit->bow_error < told_part * p->bow_deviation;
+        }
+        move_law(p, w->x, covariance, fit);
     }
     gsl_matrix_free(covariance);
 }
@@ -347,12 +411,23 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
                           p->data->info.wire, p->data->info.sample);
     fit->misfit = sqrt(sum / p->data->n_points) * p->force_scale / p->data->max_force;
     law_of(p, w->x->data, &fit->law);
-    fit->first_contact =
-        p->contact + contact_scale * p->data->info.length * gsl_vector_get(w->x, (size_t)p->n_law);
+    fit->first_contact = contact_of(p, w->x->data);
+    fit->bow = bow_of(p, w->x->data);
     fit->largest_curvature = p->run.largest_curvature;
     fit->wrapped = p->run.wrapped;
     find_errors(p, w, fit);
     return WB_OK;
+}
+
+/* What the specimen's file says of the bow: a number holds it, a band is two standard deviations on
+ * either side. */
+static void take_bow(struct problem *p)
+{
+    const struct wb_test_info *const info = &p->data->info;
+    const struct wb_band *const given = &info->piece.natural_bow;
+    p->bow = given->known ? given->value : 0.0;
+    p->bow_deviation =
+        given->known ? 0.25 * (given->most - given->least) : p->settings->bow_prior * info->length;
 }
 
 enum wb_status wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend3p_data *data,
@@ -377,8 +452,11 @@ enum wb_status wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend
                           "wire '%s', sample %d: a compliance of %.3g mm/N takes all of the travel",
                           data->info.wire, data->info.sample, bench->compliance / WB_MM);
     p.n_law = WB_BEND3P_PARTS + data->has_unloading;
-    p.n_free = p.n_law + 1;
-    p.n_residuals = data->n_points + WB_BEND3P_PARTS - 3 + 1 + data->has_unloading;
+    take_bow(&p);
+    const int is_bow_free = p.bow_deviation > 0.0;
+    p.n_curve = p.n_law + is_bow_free;
+    p.n_free = p.n_curve + 1;
+    p.n_residuals = data->n_points + WB_BEND3P_PARTS - 3 + 1 + is_bow_free + data->has_unloading;
     p.force_scale = fmax(data->noise, settings->force_share * data->max_force);
     start_law(&p, start);
     law_of(&p, no_step, &law);

@@ -1,9 +1,10 @@
 /* A law fitted to one three-point bending test, with its first contact.
  *
  * Least squares (GSL multifit_nlinear, dogleg) on the force. Free are the moduli of parallel parts
- * (fe/material/law.h) at given yield strains, the travel of the first contact, and, where there is
- * a way back, the isotropic share. Friction, the nose's radius and the machine's compliance are the
- * caller's: the curves do not tell them (theory, "Three-point bending").
+ * (fe/material/law.h) at given yield strains, the travel of the first contact, the natural bow,
+ * and, where there is a way back, the isotropic share. Friction, the nose's radius and the
+ * machine's compliance are the caller's: the curves do not tell them (theory, "Three-point
+ * bending").
  */
 #ifndef WB_ANALYSIS_BEND3P_FIT_H
 #define WB_ANALYSIS_BEND3P_FIT_H
@@ -18,8 +19,8 @@
 #include "fe/material/law.h"
 
 enum {
-    WB_BEND3P_PARTS = 7,    /* of the law, the last elastic */
-    WB_BEND3P_MOST_FREE = 9 /* and first contact, isotropic share */
+    WB_BEND3P_PARTS = 7,     /* of the law, the last elastic */
+    WB_BEND3P_MOST_FREE = 10 /* and isotropic share, natural bow, first contact */
 };
 
 /* Yield strains of the parts, spaced by logarithm. */
@@ -32,21 +33,30 @@ struct wb_bend3p_fit_settings {
     double modulus_prior; /* 1, of the second differences of ln(modulus) */
     double contact_prior; /* of the span: standard deviation of the first contact about the place
                              where the readings show it */
+    double bow_prior;     /* of the span: the same of the natural bow about none, where the specimen
+                             does not say; 0: straight */
     int n_elements;       /* of half the wire */
     int max_iterations;
 };
 enum {
-    WB_BEND3P_FIT_ROWS = 5
+    WB_BEND3P_FIT_ROWS = 6
 };
 extern const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS];
 
 struct wb_bend3p_fit {
     struct wb_law law;
     double first_contact, first_contact_error; /* m of travel */
-    bool is_converged;                         /* else the iterations ran out */
-    double misfit;                             /* RMS of the force residuals over F_max */
-    double largest_curvature;                  /* 1/m, in the middle */
-    double wrapped;                            /* rad, largest */
+    /* How far the wire's middle lies below its places on the rollers by nature (hollow upwards),
+     * m. Where the readings do not tell it, its error is the prior's; 0: held. */
+    double bow, bow_error;
+    bool is_bow_told;
+    double bow_off; /* from the middle of its prior, in the prior's standard deviations: beyond two
+                       it takes up what the law cannot follow */
+    double bow_contact_correlation; /* of their errors */
+    bool is_converged;              /* else the iterations ran out */
+    double misfit;                  /* RMS of the force residuals over F_max */
+    double largest_curvature;       /* 1/m, in the middle */
+    double wrapped;                 /* rad, largest */
     /* The law moved by so many standard errors in independent directions, the first contact's
      * error among them: see struct wb_cycle_fit. */
     int n_moved;

@@ -535,6 +535,9 @@ static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *
         put_number(text, "      ", "rigidity_error", m->rigidity_error);
         put_number(text, "      ", "first_contact_mm", m->fit.first_contact / WB_MM);
         put_number(text, "      ", "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
+        put_number(text, "      ", "natural_bow_mm", m->fit.bow / WB_MM);
+        put_number(text, "      ", "natural_bow_error_mm", m->fit.bow_error / WB_MM);
+        wb_text_append(text, "      natural_bow_told: %s\n", m->fit.is_bow_told ? "true" : "false");
         put_number(text, "      ", "usable_mm", m->data.usable / WB_MM);
         wb_text_append(text, "      usable_by: \"%s\"\n", wb_bend3p_limit_name(m->data.limit));
         put_number(text, "      ", "misfit", m->fit.misfit);

@@ -64,26 +64,29 @@ static void find_scatter(struct wb_left_out *r, const struct wb_bend3p_calibrati
     r->expected = sqrt(r->n / (r->n - 1.0)) * r->scatter;
 }
 
-/* Where the others' fits put the first contact beyond where the readings show it. */
-static double contact_of_others(const struct wb_bend3p_calibration *c, int without)
+/* Where the others' fits put the first contact beyond where the readings show it, and their bow. */
+static double contact_of_others(const struct wb_bend3p_calibration *c, int without, double *bow)
 {
-    double sum = 0.0;
+    double sum = 0.0, bows = 0.0;
     int n = 0;
     for (int i = 0; i < c->n_members; i++) {
         if (!c->members[i].is_fitted || i == without)
             continue;
         sum += c->members[i].fit.first_contact - c->members[i].data.first_contact;
+        bows += c->members[i].fit.bow;
         n++;
     }
+    *bow = bows / n;
     return sum / n;
 }
 
 static enum wb_status compute(struct wb_three_point_model *model,
                               const struct wb_bend3p_calibration *c, const struct wb_law *law,
-                              double to, struct wb_reason *why)
+                              double bow, double to, struct wb_reason *why)
 {
+    const double curvature = wb_three_point_model_curvature(&c->members[0].data.info, bow);
     struct wb_three_point_run run;
-    WB_TRY(wb_three_point_model_run(model, law, 0.0, to, false, &run));
+    WB_TRY(wb_three_point_model_run(model, law, curvature, to, false, &run));
     if (!run.reached)
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
                           "wire '%s': the model of the others comes to %.3g of %.3g mm (%s)",
@@ -95,14 +98,15 @@ static enum wb_status compute(struct wb_three_point_model *model,
 static enum wb_status leave_out(struct wb_left_out *r, const struct wb_bend3p_calibration *c, int i,
                                 int n_elements, double *squares, struct wb_reason *why)
 {
-    const double contact = contact_of_others(c, i);
+    double bow;
+    const double contact = contact_of_others(c, i, &bow);
     struct wb_three_point_model *model;
     struct wb_law law;
     wb_bend3p_calibrate_law(c, i, &law);
     WB_TRY(
         wb_three_point_model_create(&model, &c->members[0].data.info, &c->bench, &law, n_elements));
     const enum wb_status status =
-        compute(model, c, &law, r->deflection[WB_LEFT_OUT_GRID - 1] - contact, why);
+        compute(model, c, &law, bow, r->deflection[WB_LEFT_OUT_GRID - 1] - contact, why);
     for (int k = 0; k < WB_LEFT_OUT_GRID && status == WB_OK; k++) {
         const double at = wb_three_point_model_force(model, r->deflection[k] - contact, false);
         const double test = force_of(&c->members[i], r->deflection[k]);

@@ -18,6 +18,7 @@ struct three_point_made {
     double noise;   /* N, alternating */
     double slip;    /* m of deflection at which the force drops by a tenth; 0: none */
     bool with_way_back;
+    double bow; /* m, see struct wb_bend3p_fit */
 };
 
 static const double three_point_span = 20e-3, three_point_deepest = 5e-3;
@@ -52,6 +53,13 @@ static inline void three_point_add_row(struct wb_dataset *dataset,
     assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
 }
 
+static inline double three_point_curvature(void *context, double from_middle)
+{
+    const struct three_point_made *const made = context;
+    (void)from_middle;
+    return 8.0 * made->bow / (three_point_span * three_point_span);
+}
+
 static inline void three_point_make(struct wb_dataset *dataset, const struct three_point_made *made,
                                     const char *series)
 {
@@ -79,7 +87,7 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
                     .friction = {true, made->friction, made->friction, made->friction},
                     .compliance = {true, made->compliance, made->compliance, made->compliance},
                     .speed = unknown},
-        .piece = {.usable_travel = unknown, .outer_diameter = d},
+        .piece = {.usable_travel = unknown, .natural_bow = unknown, .outer_diameter = d},
     };
     snprintf(dataset->info.piece.series, sizeof dataset->info.piece.series, "%s", series);
     assert_int_equal(wb_section_init_circle(&section, d, &material, 40), WB_OK);
@@ -91,6 +99,8 @@ static inline void three_point_make(struct wb_dataset *dataset, const struct thr
         .nose_radius = made->nose_radius,
         .friction = made->friction,
         .compliance = made->compliance,
+        .natural_curvature = three_point_curvature,
+        .curvature_context = (void *)(uintptr_t)made,
     };
     assert_int_equal(wb_bending3p_create(&bending, &model), WB_OK);
     for (int i = 0; i < 20 && made->contact > 0.0; i++)

@@ -114,6 +114,62 @@ static void wire_that_hardly_hardens_is_found_with_its_errors(void **unused)
     wb_bend3p_calibrate_release(&c);
 }
 
+static double moment_of(const struct three_point_made *made, double curvature)
+{
+    const struct wb_material material = three_point_material(made);
+    struct wb_law law;
+    double moment;
+    wb_law_init_ludwik(&law, &material);
+    assert_int_equal(wb_bending_moments(&law, test_wire_type(2).diameter, 1, &curvature, &moment),
+                     WB_OK);
+    return moment;
+}
+
+/* 0.3 mm is 0.015 of the span. The curve hardly tells it, and the moment hangs on it. */
+static void bow_of_the_specimen_is_taken_into_account(void **unused)
+{
+    (void)unused;
+    const struct three_point_made made = {.modulus_factor = 1.0,
+                                          .friction = 0.3,
+                                          .nose_radius = 2e-3,
+                                          .contact = 0.2e-3,
+                                          .noise = 2e-3,
+                                          .bow = 0.3e-3};
+    const struct wb_band says[] = {{false, (double)NAN, (double)NAN, (double)NAN},
+                                   {true, 0.3e-3, 0.3e-3, 0.3e-3},
+                                   {true, 0.2e-3, 0.0, 0.4e-3},
+                                   {true, 0.0, -1e-3, 1e-3}};
+    double misfit[4];
+    for (int i = 0; i < 4; i++) {
+        struct wb_dataset dataset;
+        three_point_make(&dataset, &made, "");
+        dataset.info.piece.natural_bow = says[i];
+        struct wb_bend3p_calibration c = calibrate(&dataset, 1);
+        const struct wb_bend3p_fit *const fit = &c.members[0].fit;
+        misfit[i] = fit->misfit;
+        print_message("bow %+.3f +- %.3f mm (prior %+.3f +- %.3f), told: %d, correlation with the "
+                      "contact %+.2f, misfit %.2g\n",
+                      1e3 * fit->bow, 1e3 * fit->bow_error, 1e3 * says[i].value,
+                      250.0 * (says[i].most - says[i].least), fit->is_bow_told,
+                      fit->bow_contact_correlation, fit->misfit);
+        const double truth = moment_of(&made, c.largest_curvature);
+        print_message("    M at the largest curvature %+.2f %%, interval %.3g to %.3g of it\n",
+                      100.0 * (c.moment[4].value / truth - 1.0), c.moment[4].low / truth,
+                      c.moment[4].high / truth);
+        /* Straight is wrong; a number and a band hold the truth. */
+        assert_int_equal(c.moment[4].low < truth && truth<c.moment[4].high, i> 0);
+        if (i == 1)
+            compare_with_truth(&c, &made);
+        if (i < 2)
+            assert_true(fit->bow_error == 0.0 && !fit->is_bow_told);
+        else
+            assert_close(fit->bow, made.bow, 2.5 * fit->bow_error);
+        assert_close(fit->bow, i == 0 ? 0.0 : made.bow, i < 2 ? 1e-12 : 0.3e-3);
+        wb_bend3p_calibrate_release(&c);
+    }
+    assert_true(misfit[1] < misfit[0]);
+}
+
 static void kink_and_given_travel_end_the_range(void **unused)
 {
     (void)unused;
@@ -270,6 +326,7 @@ int main(void)
         cmocka_unit_test(law_and_first_contact_are_found_again),
         cmocka_unit_test(way_back_tells_the_hardening_rule),
         cmocka_unit_test(wire_that_hardly_hardens_is_found_with_its_errors),
+        cmocka_unit_test(bow_of_the_specimen_is_taken_into_account),
         cmocka_unit_test(kink_and_given_travel_end_the_range),
         cmocka_unit_test(friction_is_not_told_by_the_curve_but_is_in_the_band),
         cmocka_unit_test(series_are_not_averaged_away),
