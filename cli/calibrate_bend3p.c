@@ -44,6 +44,16 @@ static void print_member(const struct wb_bend3p_member *m)
            2.0 * m->fit.first_contact_error / WB_MM, m->data.usable / WB_MM,
            wb_bend3p_limit_name(m->data.limit), m->fit.misfit,
            m->data.has_unloading ? ", with the way back" : "");
+    if (m->fit.bow_error > 0.0)
+        printf("    natural bow %+.3f +- %.2g mm, %s; correlation with the first contact %+.2f\n",
+               m->fit.bow / WB_MM, 2.0 * m->fit.bow_error / WB_MM,
+               fabs(m->fit.bow_off) > 2.0
+                   ? "far off its prior: it takes up what the law cannot follow"
+               : m->fit.is_bow_told ? "told by the curve"
+                                    : "not told by the curve: its prior",
+               m->fit.bow_contact_correlation);
+    else if (m->fit.bow != 0.0)
+        printf("    natural bow %+.3f mm, given\n", m->fit.bow / WB_MM);
 }
 
 static void print_text(const struct wb_bend3p_calibration *c)
@@ -139,6 +149,11 @@ static int print_json(const struct wb_bend3p_calibration *c)
         wb_json_set_number(item, "rigidity_error", m->rigidity_error);
         wb_json_set_number(item, "first_contact_mm", m->fit.first_contact / WB_MM);
         wb_json_set_number(item, "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
+        wb_json_set_number(item, "natural_bow_mm", m->fit.bow / WB_MM);
+        wb_json_set_number(item, "natural_bow_error_mm", m->fit.bow_error / WB_MM);
+        wb_json_set_boolean(item, "natural_bow_told", m->fit.is_bow_told);
+        wb_json_set_number(item, "natural_bow_off_prior", m->fit.bow_off);
+        wb_json_set_number(item, "bow_contact_correlation", m->fit.bow_contact_correlation);
         wb_json_set_number(item, "usable_mm", m->data.usable / WB_MM);
         wb_json_set_text(item, "usable_by", wb_bend3p_limit_name(m->data.limit));
         wb_json_set_boolean(item, "with_unloading", m->data.has_unloading);

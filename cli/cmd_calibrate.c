@@ -106,6 +106,9 @@ static void note_option(void *input, const struct wb_setting *row)
         const struct wb_setting_table *const table = &wb_bend3p_calibrate_tables[t];
         is_bend3p = is_bend3p || (row >= table->rows && row < table->rows + table->n);
     }
+    /* --threads serves all but the paper's, which has one. */
+    if (strcmp(row->option, "threads") == 0)
+        return;
     const enum method method = is_bend3p ? THREE_POINT : is_papers ? PAPER : CYCLE;
     if (!o->of[method])
         o->of[method] = row;
@@ -445,6 +448,7 @@ static int run(struct options *o)
         return WB_EXIT_USAGE;
     if (o->names_method && o->method == THREE_POINT)
         wb_info("three-point bending: --method is for tests of cantilevers");
+    o->bend3p.threads = o->cycle.settings.threads;
     if (o->method == THREE_POINT)
         return wb_calibrate_bend3p(&o->bend3p, &o->datasets, &o->common);
     return o->method == PAPER ? run_paper(o) : run_cycle(o);

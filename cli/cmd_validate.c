@@ -6,11 +6,14 @@
 #include "analysis/calibration/properties.h"
 #include "analysis/validation/validate.h"
 #include "analysis/validation/validate_json.h"
+#include "analysis/validation/validate_tables.h"
+#include "analysis/validation/validate_three_point.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/settings.h"
+#include "cli/validate_three_point.h"
 
 #define WB_LOG_DOMAIN "validate"
 
@@ -35,17 +38,24 @@ static const struct argp argp = {
         "Predicts tests with calibrated properties and scores each part of them apart: the first "
         "loading (eqs. 18 and 19, beside a linear elastic prediction), the way back, the "
         "deflection that is left, the energy that later cycles lose, and shapes. Datasets are "
-        "grouped by wire, length and loading, and each group is averaged.\v"
+        "grouped by wire, length and loading, those of three-point bending by bench, and each "
+        "group is averaged.\v"
         "Errors are over F_max, the largest force of the measured average, or over the largest "
         "deflection of tests with a follower force. Exit code 3: a prediction was cut short "
-        "because the beam did not converge.",
+        "because the beam did not converge, or a three-point test cannot serve.",
 };
 
-/* The datasets in groups of one wire, length and loading, with the result of each group. */
+/* Of one wire, length and loading, or of one wire on one bench of three-point bending. */
+struct group {
+    bool is_three_point;
+    struct wb_validate_result result;
+    struct wb_validate_three_point three_point;
+};
+
 struct groups {
     int n;
-    int *of;                            /* (datasets) group of each */
-    struct wb_validate_result *results; /* (n) */
+    int *of;             /* (datasets) group of each */
+    struct group *items; /* (n) */
 };
 
 static enum wb_status run_group(const struct options *o, const struct wb_properties *properties,
@@ -61,8 +71,12 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
         if (groups->of[i] == group)
             members[n++] = datasets->pointers[i];
     }
+    struct group *const g = &groups->items[group];
+    g->is_three_point = members[0]->info.kind == WB_TEST_THREE_POINT;
     const enum wb_status status =
-        wb_validate_run(&groups->results[group], properties, members, n, &o->settings, NULL);
+        g->is_three_point
+            ? wb_validate_three_point_run(&g->three_point, properties, members, n, NULL)
+            : wb_validate_run(&g->result, properties, members, n, &o->settings, NULL);
     free(members);
     return status;
 }
@@ -71,11 +85,11 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
                                  struct groups *groups)
 {
     WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs + 1, o->common.n - 1,
-                            WB_TEST_BIT(WB_TEST_CANTILEVER)));
+                            WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
     const size_t n = (size_t)o->datasets.n;
     groups->of = calloc(n, sizeof *groups->of);
-    groups->results = calloc(n, sizeof *groups->results);
-    if (!groups->of || !groups->results)
+    groups->items = calloc(n, sizeof *groups->items);
+    if (!groups->of || !groups->items)
         return wb_fail(WB_ERR_MEMORY, "no memory for %d datasets", o->datasets.n);
     groups->n = wb_curve_group(o->datasets.pointers, o->datasets.n, groups->of);
     for (int i = 0; i < groups->n; i++)
@@ -87,31 +101,52 @@ static enum wb_status run_groups(struct options *o, const struct wb_properties *
 static void csv_name(char *name, size_t size, const struct wb_test_info *info, const char *what)
 {
     snprintf(name, size, "%s-L%g%s%s.csv", info->wire, info->length / WB_MM,
-             info->is_follower ? "-follower" : "", what);
+             info->kind == WB_TEST_THREE_POINT ? "-three-point"
+             : info->is_follower               ? "-follower"
+                                               : "",
+             what);
     for (char *c = name; *c; c++) {
         if (*c == '/' || *c == ' ' || (unsigned char)*c < 0x20)
             *c = '_';
     }
 }
 
+static enum wb_status write_table(const char *folder, const struct group *g, bool unloading)
+{
+    char name[128], path[WB_PATH];
+    csv_name(name, sizeof name, g->is_three_point ? &g->three_point.info : &g->result.info,
+             unloading ? "-unloading" : "");
+    WB_TRY(wb_file_join(path, folder, name));
+    if (g->is_three_point)
+        return wb_validate_three_point_write_csv(&g->three_point, unloading, path);
+    return unloading ? wb_validate_write_unloading(&g->result, path)
+                     : wb_validate_write_csv(&g->result, path);
+}
+
 static enum wb_status write_tables(const struct options *o, const struct groups *groups)
 {
     const char *const folder = o->common.output;
-    char name[128], path[WB_PATH];
+    struct wb_text scores = {0};
+    char path[WB_PATH];
     WB_TRY(wb_file_prepare_output(folder, o->common.force));
     for (int i = 0; i < groups->n; i++) {
-        const struct wb_validate_result *const result = &groups->results[i];
-        csv_name(name, sizeof name, &result->info, "");
-        WB_TRY(wb_file_join(path, folder, name));
-        WB_TRY(wb_validate_write_csv(result, path));
-        if (result->cycles.n == 0)
-            continue;
-        csv_name(name, sizeof name, &result->info, "-unloading");
-        WB_TRY(wb_file_join(path, folder, name));
-        WB_TRY(wb_validate_write_unloading(result, path));
+        const struct group *const g = &groups->items[i];
+        WB_TRY(write_table(folder, g, false));
+        if ((g->is_three_point ? g->three_point.unloading.n : g->result.cycles.n) > 0)
+            WB_TRY(write_table(folder, g, true));
     }
     WB_TRY(wb_file_join(path, folder, "scores.csv"));
-    return wb_validate_write_scores(groups->results, groups->n, path);
+    wb_validate_tables_put_heading(&scores);
+    for (int i = 0; i < groups->n; i++) {
+        const struct group *const g = &groups->items[i];
+        if (g->is_three_point)
+            wb_validate_three_point_put_scores(&scores, &g->three_point);
+        else
+            wb_validate_put_scores(&scores, &g->result);
+    }
+    const enum wb_status status = wb_file_write_text(path, &scores);
+    wb_text_release(&scores);
+    return status;
 }
 
 static void set_prediction(struct wb_json *object, const struct wb_prediction *prediction)
@@ -130,8 +165,12 @@ static int print_json(const struct options *o, const struct wb_properties *prope
     wb_json_set_text(root, "wire", properties->wire);
     struct wb_json *const array = wb_json_set_array(root, "groups");
     for (int i = 0; i < groups->n; i++) {
-        const struct wb_validate_result *const r = &groups->results[i];
+        const struct wb_validate_result *const r = &groups->items[i].result;
         struct wb_json *const item = wb_json_append_object(array);
+        if (groups->items[i].is_three_point) {
+            wb_validate_three_point_put_json(item, &groups->items[i].three_point);
+            continue;
+        }
         wb_json_set_text(item, "wire", r->info.wire);
         wb_json_set_number(item, "length_mm", r->info.length / WB_MM);
         wb_json_set_integer(item, "samples", r->curve.n_samples);
@@ -239,10 +278,14 @@ static int deliver(const struct options *o, const struct wb_properties *properti
             return code;
     }
     for (int i = 0; i < groups->n; i++) {
-        const struct wb_prediction *const prediction = &groups->results[i].elastoplastic;
-        if (!o->common.json)
-            print_group(&groups->results[i]);
-        complete = complete && prediction->n_reached == prediction->n;
+        const struct group *const g = &groups->items[i];
+        const struct wb_prediction *const prediction = &g->result.elastoplastic;
+        if (!o->common.json && g->is_three_point)
+            wb_validate_three_point_print(&g->three_point);
+        else if (!o->common.json)
+            print_group(&g->result);
+        complete = complete && (g->is_three_point ? g->three_point.n_used == g->three_point.n_tests
+                                                  : prediction->n_reached == prediction->n);
     }
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
@@ -267,9 +310,11 @@ int wb_cmd_validate(int argc, char **argv)
         status = run_groups(&options, &properties, &groups);
     const int code =
         status == WB_OK ? deliver(&options, &properties, &groups) : wb_command_exit(status);
-    for (int i = 0; i < groups.n; i++)
-        wb_validate_result_release(&groups.results[i]);
-    free(groups.results);
+    for (int i = 0; i < groups.n; i++) {
+        wb_validate_result_release(&groups.items[i].result);
+        wb_validate_three_point_release(&groups.items[i].three_point);
+    }
+    free(groups.items);
     free(groups.of);
     wb_datasets_release(&options.datasets);
     wb_command_release(&options.common);

@@ -4,12 +4,12 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/calibration/bending.h"
 #include "base/units.h"
+#include "base/workers.h"
 
 #define WB_LOG_DOMAIN "three-point"
 
@@ -56,8 +56,8 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
     return WB_OK;
 }
 
-/* What the machine says, and the ends of what it leaves open. */
-static void take_bench(struct wb_bend3p_calibration *c, const struct wb_machine *machine)
+void wb_bend3p_calibrate_bench(const struct wb_machine *machine, struct wb_three_point_bench *bench,
+                               struct wb_bend3p_variant ends[WB_BEND3P_VARIANTS])
 {
     const double roller = machine->roller_radius;
     struct wb_band friction = machine->friction, nose = machine->nose_radius;
@@ -66,16 +66,16 @@ static void take_bench(struct wb_bend3p_calibration *c, const struct wb_machine 
                                     most_friction};
     if (!nose.known)
         nose = (struct wb_band){true, roller, least_nose * roller, most_nose * roller};
-    c->is_compliance_known = machine->compliance.known;
-    c->bench = (struct wb_bend3p_bench){
+    *bench = (struct wb_three_point_bench){
         .friction = friction.value,
         .nose_radius = nose.value,
         .compliance = machine->compliance.known ? machine->compliance.value : 0.0,
     };
-    const double ends[WB_BEND3P_VARIANTS] = {friction.least, friction.most, nose.least, nose.most};
+    const double values[WB_BEND3P_VARIANTS] = {friction.least, friction.most, nose.least,
+                                               nose.most};
     for (int i = 0; i < WB_BEND3P_VARIANTS; i++)
-        c->variants[i] = (struct wb_bend3p_variant){
-            .name = i < 2 ? "friction" : "nose radius", .value = ends[i], .is_possible = true};
+        ends[i] = (struct wb_bend3p_variant){
+            .name = i < 2 ? "friction" : "nose radius", .value = values[i], .is_possible = true};
 }
 
 /* Rigidity and moments of a law; errors by its moved companions. */
@@ -90,14 +90,15 @@ static enum wb_status describe(struct wb_bend3p_member *m, const struct wb_bend3
         const struct wb_law *const law = &m->fit.moved[i];
         double moment[WB_BEND3P_MOMENTS];
         WB_TRY(wb_bending_moments(law, d, WB_BEND3P_MOMENTS, c->curvature, moment));
+        const double by = m->fit.moved_by[i];
         m->rigidity_error +=
-            pow(log(law->material.youngs_modulus / m->fit.law.material.youngs_modulus), 2);
+            pow(log(law->material.youngs_modulus / m->fit.law.material.youngs_modulus) / by, 2);
         for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
-            m->moment_error[k] += pow(log(moment[k] / m->moment[k]), 2);
+            m->moment_error[k] += pow(log(moment[k] / m->moment[k]) / by, 2);
     }
-    m->rigidity_error = sqrt(m->rigidity_error) / WB_BEND3P_MOVED;
+    m->rigidity_error = sqrt(m->rigidity_error);
     for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
-        m->moment_error[k] = sqrt(m->moment_error[k]) / WB_BEND3P_MOVED;
+        m->moment_error[k] = sqrt(m->moment_error[k]);
     return WB_OK;
 }
 
@@ -185,26 +186,66 @@ void wb_bend3p_calibrate_law(const struct wb_bend3p_calibration *c, int without,
     wb_law_init_parallel(law, mean, WB_BEND3P_PARTS, share, any->material.poissons_ratio);
 }
 
-static bool goes_on(const struct wb_bend3p_calibrate_settings *s, int done, int all)
+/* --- fits side by side --- */
+
+struct work {
+    struct wb_bend3p_calibration *calibration;
+    const struct wb_bend3p_calibrate_settings *settings;
+    struct variant_fit *fits; /* (n_members x WB_BEND3P_VARIANTS); NULL: the members' own */
+    int done, all;
+    bool stopped;
+};
+
+/* A member's fit with another bench. */
+struct variant_fit {
+    bool is_fitted;
+    struct wb_bend3p_fit fit;
+};
+
+static bool count_fit(void *context, int index, enum wb_status status)
 {
-    return !s->progress || s->progress(s->progress_context, done, all);
+    struct work *const work = context;
+    const struct wb_bend3p_calibrate_settings *const s = work->settings;
+    (void)index, (void)status;
+    work->done++;
+    work->stopped = s->progress && !s->progress(s->progress_context, work->done, work->all);
+    return !work->stopped;
 }
 
-static enum wb_status fit_members(struct wb_bend3p_calibration *c,
-                                  const struct wb_bend3p_calibrate_settings *s, int all, int *done,
-                                  struct wb_reason *why)
+static enum wb_status run_side_by_side(struct work *work, int n, enum wb_status (*job)(void *, int),
+                                       struct wb_reason *why)
 {
+    const struct wb_workers workers = {.n = n,
+                                       .n_threads = work->settings->threads,
+                                       .job = job,
+                                       .done = count_fit,
+                                       .context = work};
+    (void)wb_workers_run(&workers);
+    return work->stopped ? wb_fail_to(why, WB_ERR_TIMEOUT, "stopped") : WB_OK;
+}
+
+/* That a member cannot be fitted is its own affair. */
+static enum wb_status fit_member(void *context, int index)
+{
+    struct work *const work = context;
+    struct wb_bend3p_calibration *const c = work->calibration;
+    struct wb_bend3p_member *const m = &c->members[index];
+    m->is_fitted =
+        m->data.n_points > 0 && wb_bend3p_fit_run(&m->fit, &m->data, &c->bench, &c->strains, NULL,
+                                                  &work->settings->fit, &m->why) == WB_OK;
+    return WB_OK;
+}
+
+static enum wb_status fit_members(struct work *work, struct wb_reason *why)
+{
+    struct wb_bend3p_calibration *const c = work->calibration;
     double sum = 0.0;
+    WB_TRY(run_side_by_side(work, c->n_members, fit_member, why));
     c->largest_curvature = HUGE_VAL;
     c->is_rigidity_identifiable = true;
     for (int i = 0; i < c->n_members; i++) {
-        struct wb_bend3p_member *const m = &c->members[i];
-        if (!goes_on(s, (*done)++, all))
-            return wb_fail_to(why, WB_ERR_TIMEOUT, "stopped");
-        if (m->data.n_points == 0)
-            continue;
-        m->is_fitted =
-            wb_bend3p_fit_run(&m->fit, &m->data, &c->bench, NULL, &s->fit, &m->why) == WB_OK;
+        const struct wb_bend3p_member *const m = &c->members[i];
+        c->cpu_s += m->fit.cpu_s;
         if (!m->is_fitted)
             continue;
         c->n_fitted++;
@@ -228,42 +269,63 @@ static enum wb_status fit_members(struct wb_bend3p_calibration *c,
     return WB_OK;
 }
 
+/* --- another bench --- */
+
+/* The bench with one number at an end of its band; false where it is known: nothing to vary. */
+static bool variant_bench(const struct wb_bend3p_calibration *c, int variant,
+                          struct wb_three_point_bench *bench)
+{
+    *bench = c->bench;
+    double *const number = variant < 2 ? &bench->friction : &bench->nose_radius;
+    if (*number == c->variants[variant].value)
+        return false;
+    *number = c->variants[variant].value;
+    return true;
+}
+
+/* A member's fit again, from where it ended. */
+static enum wb_status fit_variant(void *context, int index)
+{
+    struct work *const work = context;
+    const struct wb_bend3p_calibration *const c = work->calibration;
+    const struct wb_bend3p_member *const m = &c->members[index / WB_BEND3P_VARIANTS];
+    struct variant_fit *const fit = &work->fits[index];
+    struct wb_three_point_bench bench;
+    struct wb_reason unused;
+    if (m->is_fitted && variant_bench(c, index % WB_BEND3P_VARIANTS, &bench))
+        fit->is_fitted = wb_bend3p_fit_run(&fit->fit, &m->data, &bench, &c->strains, &m->fit,
+                                           &work->settings->fit, &unused) == WB_OK;
+    return WB_OK;
+}
+
 static void widen(struct wb_estimate *e, double ratio)
 {
     e->candidates_low = fmin(e->candidates_low, e->value * ratio);
     e->candidates_high = fmax(e->candidates_high, e->value * ratio);
 }
 
-/* The fits again, from where they ended, with another bench. */
-static enum wb_status vary(struct wb_bend3p_calibration *c, struct wb_bend3p_variant *variant,
-                           const struct wb_bend3p_bench *bench,
-                           const struct wb_bend3p_calibrate_settings *s, int all, int *done,
-                           struct wb_reason *why)
+static enum wb_status compare(struct wb_bend3p_calibration *c, int index,
+                              const struct variant_fit *fits)
 {
+    struct wb_bend3p_variant *const variant = &c->variants[index];
     const double d = c->members[0].data.info.outer_diameter;
     double sum = 0.0, ratio = 0.0, ratios[WB_BEND3P_MOMENTS] = {0.0};
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_bend3p_member *const m = &c->members[i];
-        struct wb_bend3p_fit fit;
-        struct wb_reason reason;
+        const struct variant_fit *const of = &fits[i * WB_BEND3P_VARIANTS + index];
         double moment[WB_BEND3P_MOMENTS];
-        if (!goes_on(s, (*done)++, all))
-            return wb_fail_to(why, WB_ERR_TIMEOUT, "stopped");
-        if (!m->is_fitted || !variant->is_possible)
+        if (!m->is_fitted)
             continue;
-        if (wb_bend3p_fit_run(&fit, &m->data, bench, &m->fit, &s->fit, &reason) != WB_OK) {
-            variant->is_possible = false;
-            continue;
-        }
-        WB_TRY(wb_bending_moments(&fit.law, d, WB_BEND3P_MOMENTS, c->curvature, moment));
-        sum += fit.misfit * fit.misfit / c->n_fitted;
-        ratio +=
-            log(fit.law.material.youngs_modulus / m->fit.law.material.youngs_modulus) / c->n_fitted;
+        variant->is_possible = variant->is_possible && of->is_fitted;
+        if (!variant->is_possible)
+            return WB_OK;
+        WB_TRY(wb_bending_moments(&of->fit.law, d, WB_BEND3P_MOMENTS, c->curvature, moment));
+        sum += of->fit.misfit * of->fit.misfit / c->n_fitted;
+        ratio += log(of->fit.law.material.youngs_modulus / m->fit.law.material.youngs_modulus) /
+                 c->n_fitted;
         for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
             ratios[k] += log(moment[k] / m->moment[k]) / c->n_fitted;
     }
-    if (!variant->is_possible)
-        return WB_OK;
     variant->misfit = sqrt(sum);
     variant->rigidity = exp(ratio);
     widen(&c->rigidity, variant->rigidity);
@@ -274,48 +336,56 @@ static enum wb_status vary(struct wb_bend3p_calibration *c, struct wb_bend3p_var
     return WB_OK;
 }
 
+static enum wb_status vary(struct work *work, struct wb_reason *why)
+{
+    struct wb_bend3p_calibration *const c = work->calibration;
+    const int n = c->n_members * WB_BEND3P_VARIANTS;
+    struct wb_three_point_bench bench;
+    work->fits = calloc((size_t)n, sizeof *work->fits);
+    if (!work->fits)
+        return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d fits", n);
+    enum wb_status status = run_side_by_side(work, n, fit_variant, why);
+    for (int i = 0; i < n; i++)
+        c->cpu_s += work->fits[i].fit.cpu_s;
+    for (int i = 0; i < WB_BEND3P_VARIANTS && status == WB_OK; i++) {
+        if (variant_bench(c, i, &bench)) {
+            status = compare(c, i, work->fits);
+            continue;
+        }
+        c->variants[i].misfit = c->misfit;
+        c->variants[i].rigidity = 1.0;
+        for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+            c->variants[i].moment[k] = 1.0;
+    }
+    free(work->fits);
+    return status;
+}
+
 static enum wb_status run(struct wb_bend3p_calibration *c, const struct wb_dataset *const *datasets,
                           const struct wb_bend3p_calibrate_settings *s, struct wb_reason *why)
 {
-    const int all = c->n_members * (1 + WB_BEND3P_VARIANTS);
-    int done = 0;
-    double low = HUGE_VAL, high = 0.0;
+    struct work work = {
+        .calibration = c, .settings = s, .all = c->n_members * (1 + WB_BEND3P_VARIANTS)};
 
-    take_bench(c, &datasets[0]->info.machine);
+    c->strains = (struct wb_bend3p_strains){HUGE_VAL, 0.0};
+    wb_bend3p_calibrate_bench(&datasets[0]->info.machine, &c->bench, c->variants);
+    c->is_compliance_known = datasets[0]->info.machine.compliance.known;
     for (int i = 0; i < c->n_members; i++) {
         struct wb_bend3p_member *const m = &c->members[i];
-        double first, last;
         if (wb_bend3p_data_make(&m->data, datasets[i], &s->data, &m->why) != WB_OK)
             continue;
-        wb_bend3p_fit_strains(&m->data, &first, &last);
-        low = fmin(low, first);
-        high = fmax(high, last);
+        const struct wb_bend3p_strains own = wb_bend3p_fit_strains(&m->data);
+        c->strains.first = fmin(c->strains.first, own.first);
+        c->strains.last = fmax(c->strains.last, own.last);
     }
-    if (high > 0.0) {
-        c->bench.first_strain = low;
-        c->bench.last_strain = high;
-    }
-    WB_TRY(fit_members(c, s, all, &done, why));
+    WB_TRY(fit_members(&work, why));
     wb_bend3p_calibrate_law(c, -1, &c->law);
     double *const room = calloc(2 * (size_t)c->n_members, sizeof *room);
     if (!room)
         return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", c->n_members);
     find_estimates(c, &(struct numbers){room, room + c->n_members});
     free(room);
-    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
-        struct wb_bend3p_bench bench = c->bench;
-        /* Known: there is nothing to vary. */
-        if (c->variants[i].value == (i < 2 ? bench.friction : bench.nose_radius)) {
-            c->variants[i].misfit = c->misfit;
-            c->variants[i].rigidity = 1.0;
-            for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
-                c->variants[i].moment[k] = 1.0;
-            done += c->n_members;
-            continue;
-        }
-        *(i < 2 ? &bench.friction : &bench.nose_radius) = c->variants[i].value;
-        WB_TRY(vary(c, &c->variants[i], &bench, s, all, &done, why));
-    }
+    WB_TRY(vary(&work, why));
     return wb_bending_ludwik(&c->law, datasets[0]->info.outer_diameter, c->largest_curvature,
                              &c->ludwik, &c->ludwik_misfit);
 }
@@ -325,14 +395,12 @@ enum wb_status wb_bend3p_calibrate_run(struct wb_bend3p_calibration *calibration
                                        const struct wb_bend3p_calibrate_settings *settings,
                                        struct wb_reason *why)
 {
-    const clock_t begin = clock();
     *calibration = (struct wb_bend3p_calibration){.n_members = n};
     WB_TRY(check_same(datasets, n, why));
     calibration->members = calloc((size_t)n, sizeof *calibration->members);
     if (!calibration->members)
         return wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d tests", n);
     const enum wb_status status = run(calibration, datasets, settings, why);
-    calibration->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
     if (status != WB_OK)
         wb_bend3p_calibrate_release(calibration);
     return status;

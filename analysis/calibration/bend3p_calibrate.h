@@ -46,12 +46,13 @@ enum {
 
 struct wb_bend3p_calibration {
     int n_members, n_fitted, n_series;
-    struct wb_bend3p_member *members; /* (n_members), owned */
-    struct wb_bend3p_bench bench;     /* as taken: known, or the middle of the band */
-    bool is_compliance_known;         /* else taken as none */
-    double misfit;                    /* RMS over the specimens */
-    double series_deviation;          /* s of ln EI between the means of series; NaN: one */
-    double largest_curvature;         /* 1/m */
+    struct wb_bend3p_member *members;  /* (n_members), owned */
+    struct wb_three_point_bench bench; /* as taken: known, or the middle of the band */
+    struct wb_bend3p_strains strains;  /* of the parts of all laws */
+    bool is_compliance_known;          /* else taken as none */
+    double misfit;                     /* RMS over the specimens */
+    double series_deviation;           /* s of ln EI between the means of series; NaN: one */
+    double largest_curvature;          /* 1/m */
     struct wb_estimate rigidity;
     /* Every test has a way back: a loading alone, whose first points the seating takes, leaves EI
      * to the law's form where the wire yields early. */
@@ -68,13 +69,20 @@ struct wb_bend3p_calibration {
 struct wb_bend3p_calibrate_settings {
     struct wb_bend3p_data_settings data;
     struct wb_bend3p_fit_settings fit;
-    bool (*progress)(void *context, int done, int all); /* NULL; false stops */
+    int threads;                                        /* 0: as many as there are processors */
+    bool (*progress)(void *context, int done, int all); /* NULL; false stops. One at a time. */
     void *progress_context;
 };
 enum {
     WB_BEND3P_CALIBRATE_TABLES = 2
 };
 extern const struct wb_setting_table wb_bend3p_calibrate_tables[WB_BEND3P_CALIBRATE_TABLES];
+
+/* The bench as it is taken for: what the machine file says, or the middle of its band, or of the
+ * one above where it says nothing; no compliance where it says none. `ends` receives name and value
+ * of the bands' ends. */
+void wb_bend3p_calibrate_bench(const struct wb_machine *machine, struct wb_three_point_bench *bench,
+                               struct wb_bend3p_variant ends[WB_BEND3P_VARIANTS]);
 
 /* WB_ERR_DATA for datasets of several wires or benches, or where none can be fitted; WB_ERR_TIMEOUT
  * where `progress` stopped it. The reason goes to `why` (NULL: logged). */

@@ -327,6 +327,26 @@ enum wb_status wb_bend3p_data_make(struct wb_bend3p_data *data, const struct wb_
     return status;
 }
 
+int wb_bend3p_data_count_loading(const struct wb_bend3p_data *data)
+{
+    int n = 0;
+    while (n < data->n_points && !data->points[n].is_unloading)
+        n++;
+    return n;
+}
+
+double wb_bend3p_data_force(const struct wb_bend3p_data *data, double travel, bool is_unloading)
+{
+    const int loading = wb_bend3p_data_count_loading(data);
+    const int end = is_unloading ? data->n_points : loading;
+    const double sense = is_unloading ? -1.0 : 1.0;
+    int i = (is_unloading ? loading : 0) + 1;
+    while (i + 1 < end && sense * data->points[i].travel < sense * travel)
+        i++;
+    const struct wb_bend3p_point *const a = &data->points[i - 1], *const b = &data->points[i];
+    return a->force + (travel - a->travel) / (b->travel - a->travel) * (b->force - a->force);
+}
+
 void wb_bend3p_data_release(struct wb_bend3p_data *data)
 {
     free(data->points);

@@ -62,6 +62,11 @@ WB_MUST_CHECK enum wb_status wb_bend3p_data_make(struct wb_bend3p_data *data,
                                                  const struct wb_dataset *dataset,
                                                  const struct wb_bend3p_data_settings *settings,
                                                  struct wb_reason *why);
+/* How many of its points are of the loading. */
+int wb_bend3p_data_count_loading(const struct wb_bend3p_data *data);
+/* Force at a travel between the points of the loading or of the way back (straight lines; before
+ * and beyond them the first or last goes on). */
+double wb_bend3p_data_force(const struct wb_bend3p_data *data, double travel, bool is_unloading);
 void wb_bend3p_data_release(struct wb_bend3p_data *data); /* accepts a zeroed one */
 
 #endif

@@ -4,31 +4,33 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
-#include <gsl/gsl_spline.h>
 
+#include "analysis/calibration/least_squares.h"
+#include "base/progress.h"
 #include "base/units.h"
-#include "fe/trial/bending3p.h"
 
 #define WB_LOG_DOMAIN "three-point"
 
-enum {
-    STEPS = 36, /* of the computed loading, */
-    BACK = 24   /* and of its way back */
-};
-
 static const double difference = 1e-3; /* of the free numbers, for slopes */
 static const double arrived = 5e-4;    /* largest step of a free number at the end */
-static const double settled_sum = 1e-5;
+static const double settled_sum = 1e-4;
+/* Of the modulus that a part starts with: less is nothing, and the search for it would go on. */
+static const double least_modulus = 3e-3;
 static const double lost_residual = 1e4;
-static const double contact_scale = 2e-3; /* of the span: unit of the first contact's number */
-static const double share_prior = 4.0;    /* of the logistic number */
+static const double contact_scale = 2e-3; /* of the span: unit of the first contact's number, */
+static const double bow_scale = 1e-2;     /* and of the natural bow's */
+/* A bow is told by the readings where they leave less than this part of its prior. */
+static const double told_part = 0.5;
+static const double share_prior = 4.0; /* of the logistic number */
+/* What no reading and no prior tells stays finite by a prior of this weight; a law is moved by this
+ * many standard errors, and no number by more than that. Units of the free numbers. */
+static const double know_nothing = 1e-6, moved_by = 0.1, farthest = 1.0;
 /* Parts may yield before the first point, down to this part of its strain. */
 static const double before_first = 0.25;
 
@@ -52,7 +54,7 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
      .fallback = 2.0,
      .option = "part-prior",
      .argument = "X",
-     .help = "Prior of the second differences of the logarithms of the parts' moduli"},
+     .help = "Prior of the second differences of the logarithms of the moduli of parts that yield"},
     {.name = "contact_prior",
      .type = WB_SETTING_NUMBER,
      .offset = AT(contact_prior),
@@ -62,6 +64,16 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
      .option = "contact-prior",
      .argument = "R",
      .help = "Part of the span by which the first contact may well be off where it seems to be"},
+    {.name = "bow_prior",
+     .type = WB_SETTING_NUMBER,
+     .offset = AT(bow_prior),
+     .least = 1e-6,
+     .largest = 0.1,
+     .otherwise = "straight",
+     .option = "bow-prior",
+     .argument = "R",
+     .help = "Part of the span by which a wire may well be bowed on the rollers where its "
+             "specimen's file does not say"},
     {.name = "half_elements",
      .type = WB_SETTING_INTEGER,
      .offset = AT(n_elements),
@@ -76,7 +88,7 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
      .offset = AT(max_iterations),
      .least = 1,
      .largest = 10000,
-     .fallback = 30,
+     .fallback = 40,
      .option = "curve-iterations",
      .argument = "N",
      .help = "Most iterations of a fit"},
@@ -86,27 +98,38 @@ const struct wb_setting wb_bend3p_fit_rows[WB_BEND3P_FIT_ROWS] = {
 
 struct problem {
     const struct wb_bend3p_data *data;
-    const struct wb_bend3p_bench *bench;
+    const struct wb_bend3p_strains *strains;
     const struct wb_bend3p_fit_settings *settings;
-    struct wb_bending3p *bending;
-    int n_law, n_free, n_residuals; /* n_law: moduli, and share */
+    struct wb_three_point_model *model;
+    /* The law's numbers (moduli, and share), the bow where it is free, and last the contact. */
+    int n_law, n_curve, n_free, n_residuals; /* n_curve: those that change the curve */
+    double bow, bow_deviation;               /* m: where it is looked for, and its prior; 0: held */
+    double start_bow;
     double start_modulus[WB_BEND3P_PARTS], yield_strain[WB_BEND3P_PARTS];
     double start_share;
     double contact, force_scale;
     double deepest; /* m: the largest deflection that is computed */
 
-    /* The curve of the law last computed: what a nose does, whenever it came. */
+    /* The law last computed: what a nose does, whenever it came. */
     double of[WB_BEND3P_MOST_FREE];
-    bool is_computed, reached;
-    int n_curve, n_back;
-    double travel[STEPS + 1], force[STEPS + 1]; /* beyond the first contact */
-    double back_travel[BACK + 1], back_force[BACK + 1];
-    double largest_curvature, wrapped;
+    bool is_computed;
+    struct wb_three_point_run run;
     int runs;
     enum wb_status status;
 };
 
-/* The isotropic share comes last of the law's numbers, the first contact after them. */
+static double contact_of(const struct problem *p, const double *x)
+{
+    return p->contact + contact_scale * p->data->info.length * x[p->n_free - 1];
+}
+
+static double bow_of(const struct problem *p, const double *x)
+{
+    return p->start_bow +
+           (p->bow_deviation > 0.0 ? bow_scale * p->data->info.length * x[p->n_law] : 0.0);
+}
+
+/* The isotropic share comes last of the law's numbers. */
 static void law_of(const struct problem *p, const double *x, struct wb_law *law)
 {
     struct wb_law_part parts[WB_BEND3P_PARTS];
@@ -116,8 +139,9 @@ static void law_of(const struct problem *p, const double *x, struct wb_law *law)
     const double poissons_ratio =
         p->data->info.poissons_ratio > 0.0 ? p->data->info.poissons_ratio : 0.4;
     for (int i = 0; i < WB_BEND3P_PARTS; i++)
-        parts[i] =
-            (struct wb_law_part){p->start_modulus[i] * exp(fmin(x[i], 50.0)), p->yield_strain[i]};
+        parts[i] = (struct wb_law_part){p->start_modulus[i] *
+                                            (least_modulus + wb_least_squares_positive(x[i])),
+                                        p->yield_strain[i]};
     wb_law_init_parallel(law, parts, WB_BEND3P_PARTS, share, poissons_ratio);
 }
 
@@ -127,12 +151,12 @@ static double strain_at(const struct wb_bend3p_data *data, double deflection)
     return 6.0 * deflection * data->info.outer_diameter / (data->info.length * data->info.length);
 }
 
-void wb_bend3p_fit_strains(const struct wb_bend3p_data *data, double *first, double *last)
+struct wb_bend3p_strains wb_bend3p_fit_strains(const struct wb_bend3p_data *data)
 {
     const double way = fmax(data->points[0].travel - data->first_contact, 1e-3 * data->info.length);
-    *first = before_first * strain_at(data, way);
     /* A wire that yields bends more sharply in the middle. */
-    *last = 1.5 * strain_at(data, data->usable - data->first_contact);
+    return (struct wb_bend3p_strains){before_first * strain_at(data, way),
+                                      1.5 * strain_at(data, data->usable - data->first_contact)};
 }
 
 static void start_law(struct problem *p, const struct wb_bend3p_fit *start)
@@ -143,21 +167,17 @@ static void start_law(struct problem *p, const struct wb_bend3p_fit *start)
     const double way = fmax(first->travel - data->first_contact, 1e-3 * span);
     const double EI = fmax(first->force, 1e-3 * data->max_force) * pow(span, 3) / (48.0 * way);
     const double E = EI * 64.0 / (M_PI * pow(d, 4));
-    double low, high;
-    wb_bend3p_fit_strains(data, &low, &high);
-    if (p->bench->first_strain > 0.0) {
-        low = p->bench->first_strain;
-        high = p->bench->last_strain;
-    }
-    const double ratio = high / low;
+    const struct wb_bend3p_strains strains = p->strains ? *p->strains : wb_bend3p_fit_strains(data);
+    const double ratio = strains.last / strains.first;
 
     for (int i = 0; i < WB_BEND3P_PARTS; i++) {
         p->yield_strain[i] = i + 1 < WB_BEND3P_PARTS
-                                 ? low * pow(ratio, (double)i / (WB_BEND3P_PARTS - 1))
+                                 ? strains.first * pow(ratio, (double)i / (WB_BEND3P_PARTS - 1))
                                  : (double)INFINITY;
         p->start_modulus[i] = E / WB_BEND3P_PARTS;
     }
     p->contact = data->first_contact;
+    p->start_bow = p->bow;
     p->start_share = 0.0;
     if (!start)
         return;
@@ -166,28 +186,15 @@ static void start_law(struct problem *p, const struct wb_bend3p_fit *start)
         p->yield_strain[i] = start->law.parts[i].yield_strain;
     }
     p->contact = start->first_contact;
+    p->start_bow = start->bow;
     const double share = fmin(fmax(start->law.isotropic_share, 1e-3), 1.0 - 1e-3);
     p->start_share = log(share / (1.0 - share));
 }
 
-/* One equilibrium of the curve; false when it is not reached. */
-static bool add(struct problem *p, double deflection, double *travel, double *force)
-{
-    struct wb_bending3p_point point;
-    p->status = wb_bending3p_move(p->bending, deflection, &point);
-    if (p->status != WB_OK || point.end != WB_BENDING3P_CONVERGED)
-        return false;
-    *travel = point.travel;
-    *force = point.force;
-    p->largest_curvature = fmax(p->largest_curvature, point.middle_curvature);
-    p->wrapped = fmax(p->wrapped, point.wrapped);
-    return true;
-}
-
-/* The whole curve of a law; `reached` says whether it came to its end. */
+/* The whole curve of a law; `reached` of the run says whether it came to its end. */
 static void compute(struct problem *p, const double *x)
 {
-    const size_t size = (size_t)p->n_law * sizeof *x;
+    const size_t size = (size_t)p->n_curve * sizeof *x;
     struct wb_law law;
     struct wb_reason why;
 
@@ -195,97 +202,44 @@ static void compute(struct problem *p, const double *x)
         return;
     memcpy(p->of, x, size);
     p->is_computed = true;
-    p->reached = false;
-    p->n_curve = p->n_back = 0;
-    p->largest_curvature = p->wrapped = 0.0;
+    p->run = (struct wb_three_point_run){.reached = false};
     law_of(p, x, &law);
     if (wb_law_check(&law, &why) != WB_OK)
         return;
     p->runs++;
-    p->status = wb_bending3p_set_law(p->bending, &law);
-    if (p->status != WB_OK)
-        return;
-    p->travel[0] = p->force[0] = 0.0;
-    for (int i = 1; i <= STEPS; i++) {
-        /* Denser at the start, where the curve bends most. */
-        const double part = (double)i / STEPS;
-        if (!add(p, p->deepest * part * (0.35 + 0.65 * part), &p->travel[i], &p->force[i]))
-            return;
-        p->n_curve = i;
-        if (!(p->travel[i] > p->travel[i - 1]))
-            return;
-    }
-    for (int i = 0; p->data->has_unloading && i <= BACK; i++) {
-        /* From the turn on; kept by growing travel. */
-        const int at = BACK - i;
-        double *const travel = &p->back_travel[at], *const force = &p->back_force[at];
-        if (!add(p, p->deepest * (1.0 - pow((double)i / BACK, 1.5)), travel, force))
-            return;
-        p->n_back++;
-    }
-    p->reached = true;
-}
-
-/* Force of a branch at a travel; zero before its first point. Beyond the last it goes on straight.
- */
-static double force_on(gsl_spline *spline, gsl_interp_accel *accel, const double *x,
-                       const double *y, int n, double at)
-{
-    if (at <= x[0])
-        return y[0];
-    if (at >= x[n - 1])
-        return y[n - 1] + (at - x[n - 1]) * (y[n - 1] - y[n - 2]) / (x[n - 1] - x[n - 2]);
-    return gsl_spline_eval(spline, at, accel);
+    p->status = wb_three_point_model_run(
+        p->model, &law, wb_three_point_model_curvature(&p->data->info, bow_of(p, x)), p->deepest,
+        p->data->has_unloading, &p->run);
 }
 
 static int residuals(struct problem *p, const double *x, double *r)
 {
     const struct wb_bend3p_data *const data = p->data;
     const double span = data->info.length;
-    const double contact = p->contact + contact_scale * span * x[p->n_law];
+    const double contact = contact_of(p, x);
     struct wb_law law;
     int at = 0;
 
     compute(p, x);
     if (p->status != WB_OK)
         return GSL_EFAILED;
-    if (!p->reached) {
+    if (!p->run.reached) {
         for (int i = 0; i < p->n_residuals; i++)
             r[i] = lost_residual;
         return GSL_SUCCESS;
     }
-    const int n_back = p->n_back;
-    gsl_interp_accel *const accel = gsl_interp_accel_alloc();
-    gsl_spline *const there = gsl_spline_alloc(gsl_interp_steffen, STEPS + 1);
-    gsl_spline *const back =
-        n_back > 3 ? gsl_spline_alloc(gsl_interp_steffen, (size_t)n_back) : NULL;
-    int status = accel && there && (back || n_back <= 3) ? GSL_SUCCESS : GSL_ENOMEM;
-    if (status == GSL_SUCCESS)
-        status = gsl_spline_init(there, p->travel, p->force, STEPS + 1);
-    if (status == GSL_SUCCESS && back)
-        status = gsl_spline_init(back, p->back_travel, p->back_force, (size_t)n_back);
-    for (int i = 0; status == GSL_SUCCESS && i < data->n_points; i++) {
+    for (int i = 0; i < data->n_points; i++) {
         const struct wb_bend3p_point *const point = &data->points[i];
-        const double way = point->travel - contact;
-        if (i > 0 && point->is_unloading && !data->points[i - 1].is_unloading)
-            gsl_interp_accel_reset(accel);
-        const double force = point->is_unloading && back
-                                 ? force_on(back, accel, p->back_travel, p->back_force, n_back, way)
-                                 : force_on(there, accel, p->travel, p->force, STEPS + 1, way);
+        const double force =
+            wb_three_point_model_force(p->model, point->travel - contact, point->is_unloading);
         r[at++] = (force - point->force) / p->force_scale;
     }
-    gsl_spline_free(there);
-    if (back)
-        gsl_spline_free(back);
-    gsl_interp_accel_free(accel);
-    if (status != GSL_SUCCESS)
-        return status;
     law_of(p, x, &law);
-    for (int i = 1; i + 1 < WB_BEND3P_PARTS; i++)
-        r[at++] = log(law.parts[i - 1].modulus * law.parts[i + 1].modulus /
-                      (law.parts[i].modulus * law.parts[i].modulus)) /
-                  p->settings->modulus_prior;
+    at += wb_least_squares_smooth_parts(law.parts, WB_BEND3P_PARTS, p->settings->modulus_prior,
+                                        r + at);
     r[at++] = (contact - data->first_contact) / (p->settings->contact_prior * span);
+    if (p->bow_deviation > 0.0)
+        r[at++] = (bow_of(p, x) - p->bow) / p->bow_deviation;
     if (p->n_law > WB_BEND3P_PARTS)
         r[at++] = (p->start_share + x[WB_BEND3P_PARTS]) / share_prior;
     return at == p->n_residuals ? GSL_SUCCESS : GSL_ESANITY;
@@ -310,7 +264,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     for (int step = 0; step < p->n_free && status == GSL_SUCCESS; step++) {
         const int k = p->n_free - 1 - step; /* the contact first, while the curve is there */
         memcpy(moved, x->data, (size_t)p->n_free * sizeof *moved);
-        const double by = k == p->n_law ? 10.0 * difference : difference;
+        const double by = k >= p->n_law ? 10.0 * difference : difference;
         moved[k] += by;
         status = residuals(p, moved, other);
         for (size_t i = 0; i < n; i++)
@@ -318,27 +272,6 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     }
     free(base);
     return status;
-}
-
-static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w)
-{
-    double before;
-    gsl_blas_ddot(w->f, w->f, &before);
-    for (int i = 0; i < p->settings->max_iterations; i++) {
-        const int status = gsl_multifit_nlinear_iterate(w);
-        if (p->status != WB_OK)
-            return false;
-        if (status != GSL_SUCCESS)
-            return true; /* no step makes it better */
-        double now, largest = 0.0;
-        gsl_blas_ddot(w->f, w->f, &now);
-        for (size_t k = 0; k < w->dx->size; k++)
-            largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
-        if (largest < arrived || before - now < settled_sum * now)
-            return true;
-        before = now;
-    }
-    return false;
 }
 
 /* Neighbouring residuals of one sign tell the same: how many in a row, over the two of noise. */
@@ -350,38 +283,93 @@ static double alike_in_a_row(const gsl_vector *f, int n)
     return fmax(1.0, 0.5 * n / rows);
 }
 
+/* What the numbers owe to the readings, whose variance is `variance`, and to the priors, which are
+ * as far off as their standard deviations say: H^-1 (variance Jr'Jr + Jp'Jp) H^-1. */
+static bool find_covariance(const gsl_matrix *J, size_t n_readings, double variance,
+                            gsl_matrix *covariance)
+{
+    const size_t n = J->size2;
+    const gsl_matrix_const_view readings = gsl_matrix_const_submatrix(J, 0, 0, n_readings, n);
+    const gsl_matrix_const_view priors =
+        gsl_matrix_const_submatrix(J, n_readings, 0, J->size1 - n_readings, n);
+    gsl_matrix *const H = gsl_matrix_alloc(n, n), *const M = gsl_matrix_alloc(n, n),
+                      *const HM = gsl_matrix_alloc(n, n);
+    bool good = H && M && HM;
+    if (good) {
+        gsl_matrix_set_identity(H);
+        gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, H);
+        gsl_matrix_set_identity(M);
+        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &priors.matrix, &priors.matrix, know_nothing,
+                       M);
+        gsl_blas_dgemm(CblasTrans, CblasNoTrans, variance, &readings.matrix, &readings.matrix, 1.0,
+                       M);
+        good = gsl_linalg_cholesky_decomp1(H) == GSL_SUCCESS &&
+               gsl_linalg_cholesky_invert(H) == GSL_SUCCESS;
+    }
+    if (good) {
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, H, M, 0.0, HM);
+        gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, HM, H, 0.0, covariance);
+    }
+    gsl_matrix_free(H);
+    gsl_matrix_free(M);
+    gsl_matrix_free(HM);
+    return good;
+}
+
+/* The law moved along the columns of the covariance's triangular factor, which the covariance is
+ * destroyed for. */
+static void move_law(const struct problem *p, const gsl_vector *x, gsl_matrix *covariance,
+                     struct wb_bend3p_fit *fit)
+{
+    const size_t n = (size_t)p->n_free;
+    fit->n_moved = 0;
+    if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
+        return;
+    for (size_t k = 0; k < n; k++) {
+        double step[WB_BEND3P_MOST_FREE], largest = 1e-300;
+        for (size_t i = k; i < n; i++)
+            largest = fmax(largest, fabs(gsl_matrix_get(covariance, i, k)));
+        const double by = fmin(moved_by, farthest / largest);
+        for (size_t i = 0; i < n; i++)
+            step[i] = gsl_vector_get(x, i) + (i < k ? 0.0 : by * gsl_matrix_get(covariance, i, k));
+        law_of(p, step, &fit->moved[fit->n_moved]);
+        fit->moved_by[fit->n_moved++] = by;
+    }
+}
+
 static void find_errors(struct problem *p, gsl_multifit_nlinear_workspace *w,
                         struct wb_bend3p_fit *fit)
 {
-    const size_t n = (size_t)p->n_free;
+    const size_t n = (size_t)p->n_free, contact = n - 1, bow = (size_t)p->n_law;
+    const double span = p->data->info.length;
     gsl_matrix *const covariance = gsl_matrix_alloc(n, n);
-    double sum;
     fit->first_contact_error = (double)NAN;
     if (!covariance)
         return;
-    gsl_blas_ddot(w->f, w->f, &sum);
-    /* Not less than the points' own error: a curve without noise is not known without end. */
-    const double variance = fmax(sum / fmax(1.0, p->data->n_points - p->n_free), 0.0) *
-                            alike_in_a_row(w->f, p->data->n_points);
-    if (gsl_multifit_nlinear_covar(w->J, 0.0, covariance) == GSL_SUCCESS) {
-        fit->first_contact_error = contact_scale * p->data->info.length *
-                                   sqrt(variance * gsl_matrix_get(covariance, n - 1, n - 1));
-        if (gsl_linalg_cholesky_decomp1(covariance) == GSL_SUCCESS) {
-            for (size_t k = 0; k < n; k++) {
-                double x[WB_BEND3P_MOST_FREE];
-                for (size_t i = 0; i < n; i++)
-                    x[i] = gsl_vector_get(w->x, i) + (i < k ? 0.0
-                                                            : WB_BEND3P_MOVED * sqrt(variance) *
-                                                                  gsl_matrix_get(covariance, i, k));
-                law_of(p, x, &fit->moved[fit->n_moved++]);
-            }
+    double sum = 0.0;
+    for (size_t i = 0; i < (size_t)p->data->n_points; i++)
+        sum += pow(gsl_vector_get(w->f, i), 2);
+    const double variance =
+        sum / fmax(1.0, p->data->n_points - p->n_free) * alike_in_a_row(w->f, p->data->n_points);
+    if (find_covariance(w->J, (size_t)p->data->n_points, variance, covariance)) {
+        const double of_contact = sqrt(gsl_matrix_get(covariance, contact, contact));
+        fit->first_contact_error = contact_scale * span * of_contact;
+        if (p->bow_deviation > 0.0) {
+            const double of_bow = sqrt(gsl_matrix_get(covariance, bow, bow));
+            fit->bow_error = bow_scale * span * of_bow;
+            fit->bow_contact_correlation =
+                gsl_matrix_get(covariance, bow, contact) / (of_bow * of_contact);
+            fit->bow_off = (fit->bow - p->bow) / p->bow_deviation;
+            fit->is_bow_told = fit->bow_error < told_part * p->bow_deviation;
         }
+        move_law(p, w->x, covariance, fit);
     }
     gsl_matrix_free(covariance);
 }
 
-static enum wb_status search(struct problem *p, gsl_multifit_nlinear_workspace *w,
-                             struct wb_bend3p_fit *fit, struct wb_reason *why)
+static enum wb_status search(struct problem *p, const struct wb_three_point_bench *bench,
+                             gsl_multifit_nlinear_workspace *w, struct wb_bend3p_fit *fit,
+                             struct wb_reason *why)
 {
     gsl_multifit_nlinear_fdf fdf = {
         .f = gsl_residuals,
@@ -395,13 +383,20 @@ static enum wb_status search(struct problem *p, gsl_multifit_nlinear_workspace *
     const int started = gsl_multifit_nlinear_init(&x.vector, &fdf, w);
     if (p->status != WB_OK)
         return p->status;
-    if (started != GSL_SUCCESS || !p->reached)
+    if (started != GSL_SUCCESS || !p->run.reached)
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
                           "wire '%s', sample %d: the beam does not come to %.3g mm of deflection "
                           "with a nose of %.3g mm and friction %.2g from the first guess",
                           p->data->info.wire, p->data->info.sample, p->deepest / WB_MM,
-                          p->bench->nose_radius / WB_MM, p->bench->friction);
-    fit->is_converged = iterate(p, w);
+                          bench->nose_radius / WB_MM, bench->friction);
+    const struct wb_least_squares_search how = {
+        .max_iterations = p->settings->max_iterations,
+        .smallest_step = arrived,
+        .smallest_gain = settled_sum,
+        .patience = 1,
+        .status = &p->status,
+    };
+    fit->is_converged = wb_least_squares_iterate(w, &how, NULL);
     if (p->status != WB_OK)
         return p->status;
     /* The curve of the answer itself, not of the last trial. */
@@ -411,80 +406,70 @@ static enum wb_status search(struct problem *p, gsl_multifit_nlinear_workspace *
     for (int i = 0; status == GSL_SUCCESS && i < p->data->n_points; i++)
         sum += r[i] * r[i];
     free(r);
-    if (status != GSL_SUCCESS || !p->reached)
+    if (status != GSL_SUCCESS || !p->run.reached)
         return wb_fail_to(why, WB_ERR_CONVERGENCE, "wire '%s', sample %d: the fit was lost",
                           p->data->info.wire, p->data->info.sample);
     fit->misfit = sqrt(sum / p->data->n_points) * p->force_scale / p->data->max_force;
     law_of(p, w->x->data, &fit->law);
-    fit->first_contact =
-        p->contact + contact_scale * p->data->info.length * gsl_vector_get(w->x, (size_t)p->n_law);
-    fit->largest_curvature = p->largest_curvature;
-    fit->wrapped = p->wrapped;
+    fit->first_contact = contact_of(p, w->x->data);
+    fit->bow = bow_of(p, w->x->data);
+    fit->largest_curvature = p->run.largest_curvature;
+    fit->wrapped = p->run.wrapped;
     find_errors(p, w, fit);
     return WB_OK;
 }
 
-static enum wb_status make_bending(struct problem *p)
+/* What the specimen's file says of the bow: a number holds it, a band is two standard deviations on
+ * either side. */
+static void take_bow(struct problem *p)
 {
     const struct wb_test_info *const info = &p->data->info;
-    const double no_step[WB_BEND3P_MOST_FREE] = {0.0};
-    struct wb_section section = {0};
-    struct wb_law law;
-
-    law_of(p, no_step, &law);
-    WB_TRY(wb_section_init_law(&section, info->outer_diameter, &law, 0));
-    const struct wb_bending3p_model model = {
-        .section = &section,
-        .diameter = info->outer_diameter,
-        .span = info->length,
-        .support_radius = info->machine.roller_radius,
-        .nose_radius = p->bench->nose_radius,
-        .friction = p->bench->friction,
-        .compliance = p->bench->compliance,
-        .n_elements = p->settings->n_elements,
-    };
-    const enum wb_status status = wb_bending3p_create(&p->bending, &model);
-    wb_section_release(&section);
-    return status;
+    const struct wb_band *const given = &info->piece.natural_bow;
+    p->bow = given->known ? given->value : 0.0;
+    p->bow_deviation =
+        given->known ? 0.25 * (given->most - given->least) : p->settings->bow_prior * info->length;
 }
 
 enum wb_status wb_bend3p_fit_run(struct wb_bend3p_fit *fit, const struct wb_bend3p_data *data,
-                                 const struct wb_bend3p_bench *bench,
+                                 const struct wb_three_point_bench *bench,
+                                 const struct wb_bend3p_strains *strains,
                                  const struct wb_bend3p_fit *start,
                                  const struct wb_bend3p_fit_settings *settings,
                                  struct wb_reason *why)
 {
-    const clock_t begin = clock();
-    struct problem p = {.data = data, .bench = bench, .settings = settings};
-    double last_force = data->points[0].force, last_travel = data->usable;
+    const double begin = wb_progress_thread_cpu();
+    const double no_step[WB_BEND3P_MOST_FREE] = {0.0};
+    struct problem p = {.data = data, .strains = strains, .settings = settings};
+    struct wb_law law;
+    double last_force = data->points[0].force;
 
     for (int i = 0; i < data->n_points && !data->points[i].is_unloading; i++)
         last_force = data->points[i].force;
     *fit = (struct wb_bend3p_fit){.is_converged = false};
-    p.deepest = last_travel - data->first_contact - bench->compliance * last_force;
+    p.deepest = data->usable - data->first_contact - bench->compliance * last_force;
     if (!(p.deepest > 0.0))
         return wb_fail_to(why, WB_ERR_DATA,
                           "wire '%s', sample %d: a compliance of %.3g mm/N takes all of the travel",
                           data->info.wire, data->info.sample, bench->compliance / WB_MM);
     p.n_law = WB_BEND3P_PARTS + data->has_unloading;
-    p.n_free = p.n_law + 1;
-    p.n_residuals = data->n_points + WB_BEND3P_PARTS - 2 + 1 + data->has_unloading;
+    take_bow(&p);
+    const int is_bow_free = p.bow_deviation > 0.0;
+    p.n_curve = p.n_law + is_bow_free;
+    p.n_free = p.n_curve + 1;
+    p.n_residuals = data->n_points + WB_BEND3P_PARTS - 3 + 1 + is_bow_free + data->has_unloading;
     p.force_scale = fmax(data->noise, settings->force_share * data->max_force);
     start_law(&p, start);
-    WB_TRY(make_bending(&p));
+    law_of(&p, no_step, &law);
+    WB_TRY(wb_three_point_model_create(&p.model, &data->info, bench, &law, settings->n_elements));
 
-    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    parameters.trs = gsl_multifit_nlinear_trs_dogleg;
-    parameters.scale = gsl_multifit_nlinear_scale_levenberg;
-    gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
-        gsl_multifit_nlinear_trust, &parameters, (size_t)p.n_residuals, (size_t)p.n_free);
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
     const enum wb_status status =
-        w ? search(&p, w, fit, why)
+        w ? search(&p, bench, w, fit, why)
           : wb_fail_to(why, WB_ERR_MEMORY, "no memory for %d points", data->n_points);
     if (w)
         gsl_multifit_nlinear_free(w);
-    wb_bending3p_destroy(p.bending);
+    wb_three_point_model_destroy(p.model);
     fit->runs = p.runs;
-    fit->cpu_s = (double)(clock() - begin) / CLOCKS_PER_SEC;
+    fit->cpu_s = wb_progress_thread_cpu() - begin;
     return status;
 }

@@ -1,19 +1,18 @@
 #include "analysis/calibration/cycle_calibrate.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_errno.h>
 
 #include "analysis/calibration/first_guess.h"
 #include "analysis/calibration/first_guess_private.h"
+#include "base/progress.h"
 #include "base/units.h"
+#include "base/workers.h"
 
 #define WB_LOG_DOMAIN "calibrate"
 
@@ -24,9 +23,8 @@ static const double elastic_zone = 0.05;
 /* Deflection over length from there on in which the slope past yield is taken, and the smallest
  * exponent made of it. */
 static const double slope_zone = 0.03, smallest_first_exponent = 0.05;
-/* Candidates count up to this many times the best misfit; a rule is supported up to this one. */
+/* Candidates count up to this many times the best misfit. */
 static const double counts_up_to = 2.0;
-static const double largest_supported = 5e-3;
 /* Standard errors of a fit on either side of a candidate's number. */
 static const double range_errors = 2.0;
 /* And at most this much of a logarithm, a factor of ten: beyond it nothing is known, and the slopes
@@ -256,69 +254,45 @@ struct work {
     const struct wb_dataset *const *datasets;
     const struct wb_cycle_calibrate_settings *settings;
     const struct wb_cycle_grid *grid; /* NULL: Ludwik's candidates */
-    pthread_mutex_t lock;
-    int next, done, all;
+    int done, all;
     bool stopped;
     enum wb_status status; /* the first failure */
 };
 
-static double thread_time(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static int take_next(struct work *work)
-{
-    pthread_mutex_lock(&work->lock);
-    const int i = work->stopped || work->next >= work->calibration->n_members ? -1 : work->next++;
-    pthread_mutex_unlock(&work->lock);
-    return i;
-}
-
-static void finish_one(struct work *work, enum wb_status status)
-{
-    const struct wb_cycle_calibrate_settings *const s = work->settings;
-    pthread_mutex_lock(&work->lock);
-    work->done++;
-    if (status != WB_OK && work->status == WB_OK)
-        work->status = status;
-    if (s->progress && !s->progress(s->progress_context, work->done, work->all))
-        work->stopped = true;
-    pthread_mutex_unlock(&work->lock);
-}
-
-static void *work_on(void *context)
+static enum wb_status fit_member(void *context, int index)
 {
     struct work *const work = context;
-    for (int i = take_next(work); i >= 0; i = take_next(work)) {
-        struct wb_cycle_member *const member = &work->calibration->members[i];
-        const double begin = thread_time();
-        const enum wb_status status = work->grid
-                                          ? fit_parallels(member, work->grid, work->settings)
-                                          : fit_ludwiks(member, work->datasets[i], work->settings);
-        member->cpu_s += thread_time() - begin;
-        finish_one(work, status);
-    }
-    return NULL;
+    struct wb_cycle_member *const member = &work->calibration->members[index];
+    const double begin = wb_progress_thread_cpu();
+    const enum wb_status status = work->grid
+                                      ? fit_parallels(member, work->grid, work->settings)
+                                      : fit_ludwiks(member, work->datasets[index], work->settings);
+    member->cpu_s += wb_progress_thread_cpu() - begin;
+    return status;
+}
+
+static bool finish_member(void *context, int index, enum wb_status status)
+{
+    struct work *const work = context;
+    (void)index;
+    const struct wb_cycle_calibrate_settings *const s = work->settings;
+    work->done++;
+    if (work->status == WB_OK)
+        work->status = status;
+    work->stopped = s->progress && !s->progress(s->progress_context, work->done, work->all);
+    return !work->stopped;
 }
 
 static enum wb_status work_side_by_side(struct work *work)
 {
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    const int wanted = work->settings->threads > 0 ? work->settings->threads : (int)processors;
-    const int n = wanted < 1 ? 1 : wanted > MOST_THREADS ? MOST_THREADS : wanted;
-    pthread_t threads[MOST_THREADS];
-    int started = 0;
-    work->next = 0;
-    for (int i = 1; i < n && i < work->calibration->n_members; i++) {
-        if (pthread_create(&threads[started], NULL, work_on, work) == 0)
-            started++;
-    }
-    (void)work_on(work);
-    for (int i = 0; i < started; i++)
-        pthread_join(threads[i], NULL);
+    const struct wb_workers workers = {
+        .n = work->stopped ? 0 : work->calibration->n_members,
+        .n_threads = work->settings->threads,
+        .job = fit_member,
+        .done = finish_member,
+        .context = work,
+    };
+    (void)wb_workers_run(&workers);
     return work->status;
 }
 
@@ -454,8 +428,8 @@ static void choose(struct wb_cycle_calibration *calibration)
     }
     const int chosen = simplest >= 0 ? simplest : alike >= 0 ? alike : 0;
     calibration->chosen = calibration->ranked[chosen].candidate;
-    calibration->is_supported =
-        calibration->has_unloading && !calibration->is_stopped && best->misfit <= largest_supported;
+    calibration->is_supported = calibration->has_unloading && !calibration->is_stopped &&
+                                best->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
 }
 
 /* Numbers of a specimen that are averaged. */
@@ -787,7 +761,6 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
         .calibration = calibration,
         .datasets = datasets,
         .settings = settings,
-        .lock = PTHREAD_MUTEX_INITIALIZER,
         .all = 2 * calibration->n_members,
         .status = WB_OK,
     };

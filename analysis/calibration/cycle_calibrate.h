@@ -56,6 +56,9 @@ struct wb_cycle_answer {
     double moment_error[WB_CYCLE_MOMENTS];
 };
 
+/* A hardening rule is supported by fits of loading and unloading up to this misfit. */
+#define WB_CYCLE_LARGEST_SUPPORTED 5e-3
+
 struct wb_cycle_member {
     int sample;
     struct wb_cycle_data data;

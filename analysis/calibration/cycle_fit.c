@@ -14,6 +14,7 @@
 #include <gsl/gsl_multifit_nlinear.h>
 
 #include "analysis/calibration/cycle_model.h"
+#include "analysis/calibration/least_squares.h"
 #include "analysis/dataset/fit.h"
 #include "base/units.h"
 
@@ -228,6 +229,7 @@ struct problem {
     double *slopes_f;                       /* beside these residuals; (n_residuals) */
     double differences_x[WB_FIT_MOST_FREE]; /* where differences were taken last */
     bool has_slopes, are_differences;       /* false: carried on from earlier ones */
+    bool moved_by_differences;              /* those of the last step */
     double force_scale;                     /* N */
     struct wb_cycle_run run;
     int runs;
@@ -245,22 +247,13 @@ static double logistic(double x)
     return 1.0 / (1.0 + exp(-x));
 }
 
-/* A positive number that is 1 at x = 0, grows nearly linearly above and falls by an exponential
- * below. The tension is nearly linear in the moduli, so that linear steps arrive soon; moduli that
- * go to nothing stay positive. */
-static double positive(double x)
-{
-    const double rise = x * M_E / (M_E - 1.0);
-    return rise > 50.0 ? rise + log(M_E - 1.0) : log1p((M_E - 1.0) * exp(rise));
-}
-
 static double largest_exponent_of(const struct candidate *c)
 {
     return c->is_mixed || c->isotropic_share < 1.0 ? largest_kinematic_exponent : largest_exponent;
 }
 
 /* ln E, ln sigma_Y, ln(hardening stress at the middle), logistic exponent; or moduli over those of
- * the start, see positive(); and the logistic share of mixed hardening. */
+ * the start, see wb_least_squares_positive(); and the logistic share of mixed hardening. */
 static void law_of(const struct problem *p, const double *free, struct wb_law *law)
 {
     const struct candidate *const c = p->candidate;
@@ -283,7 +276,7 @@ static void law_of(const struct problem *p, const double *free, struct wb_law *l
     struct wb_law_part parts[WB_FIT_PARTS];
     const double ratio = p->grid->last_strain / p->grid->first_strain;
     for (int i = 0; i < WB_FIT_PARTS; i++) {
-        parts[i].modulus = p->start_modulus[i] * positive(free[i]);
+        parts[i].modulus = p->start_modulus[i] * wb_least_squares_positive(free[i]);
         parts[i].yield_strain =
             i == WB_FIT_PARTS - 1
                 ? (double)INFINITY
@@ -389,13 +382,8 @@ static int prior_residuals(const struct problem *p, const double *free, const st
     r[at++] = free[p->n_law + LEVEL] / p->settings->level_prior;
     r[at++] = free[p->n_law + UNEVEN] / p->settings->uneven_prior;
     if (c->form == WB_LAW_PARALLEL) {
-        /* Strands that yield one after another do so about evenly. What stays elastic, jacket and
-         * hardening, is of another kind and may be as stiff as it is. */
-        const struct wb_law_part *const part = law->parts;
-        for (int i = 1; i + 2 < WB_FIT_PARTS; i++)
-            r[at++] = log(part[i - 1].modulus * part[i + 1].modulus /
-                          (part[i].modulus * part[i].modulus)) /
-                      p->settings->modulus_prior;
+        at += wb_least_squares_smooth_parts(law->parts, WB_FIT_PARTS, p->settings->modulus_prior,
+                                            r + at);
     } else {
         r[at++] = free[3] / logistic_prior;
     }
@@ -517,6 +505,7 @@ static int gsl_slopes(const gsl_vector *x, void *context, gsl_matrix *J)
     int status = GSL_SUCCESS;
     if (!p->has_last || !is_at(p, p->last_x, x))
         return GSL_ESANITY;
+    p->moved_by_differences = p->are_differences;
     if (!p->has_slopes || (!is_at(p, p->slopes_x, x) && !carry_slopes(p, x->data))) {
         status = find_slopes(p, x->data);
         p->has_slopes = p->are_differences = status == GSL_SUCCESS;
@@ -589,36 +578,44 @@ static bool finish_slopes(struct problem *p, gsl_multifit_nlinear_workspace *w)
     return (p->are_differences && farthest_off < near) || renew_slopes(p, w);
 }
 
-/* Iterates to the end; false when the iterations ran out. Slopes that were carried on may be too
- * poor for a better step: the end is where differences find none. */
+struct fitted {
+    struct problem *problem;
+    gsl_multifit_nlinear_workspace *workspace;
+};
+
+/* A fit that is far off and comes nearer too slowly. */
+static bool is_hopeless(void *context, int iteration, double gain)
+{
+    const struct fitted *const f = context;
+    const double limit = f->problem->settings->hopeless;
+    return iteration >= first_judged && gain < slow_gain && limit > 0.0 &&
+           force_misfit(f->problem, f->workspace->f) > limit;
+}
+
+/* Slopes that were carried on may be too poor for a better step: the end is where differences find
+ * none. */
+static bool takes_differences(void *context, bool moved)
+{
+    const struct fitted *const f = context;
+    const struct problem *const p = f->problem;
+    const bool were_differences = moved ? p->moved_by_differences : p->are_differences;
+    return !were_differences && renew_slopes(f->problem, f->workspace);
+}
+
+/* Iterates to the end; false when the iterations ran out. */
 static bool iterate(struct problem *p, gsl_multifit_nlinear_workspace *w, int *iterations)
 {
-    double before;
-    gsl_blas_ddot(w->f, w->f, &before);
-    for (int i = 0; i < p->settings->max_iterations; i++) {
-        (*iterations)++;
-        const bool are_differences = p->are_differences;
-        const int status = gsl_multifit_nlinear_iterate(w);
-        if (p->status != WB_OK)
-            return false;
-        double now = before, largest = 0.0;
-        bool is_there = status != GSL_SUCCESS; /* no step makes it better */
-        if (!is_there) {
-            gsl_blas_ddot(w->f, w->f, &now);
-            for (size_t k = 0; k < w->dx->size; k++)
-                largest = fmax(largest, fabs(gsl_vector_get(w->dx, k)));
-            is_there = largest < arrived || before - now < settled_sum * now;
-        }
-        if (is_there && are_differences)
-            return true;
-        if (is_there && !renew_slopes(p, w))
-            return false;
-        if (!is_there && i >= first_judged && before - now < slow_gain * now &&
-            force_misfit(p, w->f) > p->settings->hopeless && p->settings->hopeless > 0.0)
-            return false;
-        before = now;
-    }
-    return false;
+    struct fitted fitted = {p, w};
+    const struct wb_least_squares_search search = {
+        .max_iterations = p->settings->max_iterations,
+        .smallest_step = arrived,
+        .smallest_gain = settled_sum,
+        .status = &p->status,
+        .gives_up = is_hopeless,
+        .goes_on = takes_differences,
+        .context = &fitted,
+    };
+    return wb_least_squares_iterate(w, &search, iterations);
 }
 
 enum {
@@ -985,11 +982,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     p.slopes_f = calloc((size_t)p.n_residuals, sizeof *p.slopes_f);
     p.slopes = gsl_matrix_calloc((size_t)p.n_residuals, (size_t)p.n_free);
     fit->tension = calloc(points, sizeof *fit->tension);
-    gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-    parameters.trs = gsl_multifit_nlinear_trs_dogleg;
-    parameters.scale = gsl_multifit_nlinear_scale_levenberg;
-    gsl_multifit_nlinear_workspace *const w = gsl_multifit_nlinear_alloc(
-        gsl_multifit_nlinear_trust, &parameters, (size_t)p.n_residuals, (size_t)p.n_free);
+    gsl_multifit_nlinear_workspace *const w = wb_least_squares_create(p.n_residuals, p.n_free);
     enum wb_status status = WB_OK;
     if (!p.tension || !p.weight || !p.distance || !p.last || !p.slopes_f || !p.slopes ||
         !fit->tension || !w)

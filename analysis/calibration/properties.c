@@ -106,11 +106,16 @@ static double misfit_of_chosen(const struct wb_cycle_calibration *calibration)
     return (double)NAN;
 }
 
+int wb_properties_units(const struct wb_properties *properties)
+{
+    return properties->n_series > 1 ? properties->n_series : properties->n_samples;
+}
+
 /* How far specimens differ, from the interval of a moment well within the data: EI carries more of
  * the fits' own noise. */
 static void find_deviation(struct wb_properties *properties)
 {
-    const int n = properties->n_samples, at = properties->n_moments / 2;
+    const int n = wb_properties_units(properties), at = properties->n_moments / 2;
     if (n < 2 || properties->n_moments < 1)
         return;
     const struct wb_estimate *const moment = &properties->moment[at];
@@ -462,6 +467,40 @@ enum wb_status wb_properties_write(const char *path, const struct wb_calibrate_r
 
 /* --- calibrations on three-point bending --- */
 
+/* All tests have a way back, and the law follows both ways. */
+static bool has_tested_rule(const struct wb_bend3p_calibration *c)
+{
+    return c->is_rigidity_identifiable;
+}
+
+void wb_properties_from_bend3p(const struct wb_bend3p_calibration *c,
+                               struct wb_properties *properties)
+{
+    const struct wb_test_info *const info = &c->members[0].data.info;
+    make_unknown(properties);
+    snprintf(properties->wire, sizeof properties->wire, "%s", info->wire);
+    properties->outer_diameter = info->outer_diameter;
+    properties->mass_per_length = info->mass_per_length;
+    properties->material = c->ludwik;
+    properties->rms = c->misfit;
+    properties->n_samples = c->n_fitted;
+    properties->n_series = c->n_series;
+    properties->is_virtual = info->is_virtual;
+    properties->law = c->law;
+    properties->ludwik_misfit = c->ludwik_misfit;
+    properties->largest_curvature = c->largest_curvature;
+    if (c->is_rigidity_identifiable)
+        properties->rigidity = c->rigidity;
+    properties->is_rule_tested = has_tested_rule(c);
+    properties->is_rule_supported = has_tested_rule(c) && c->misfit <= WB_CYCLE_LARGEST_SUPPORTED;
+    properties->n_moments = WB_BEND3P_MOMENTS;
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        properties->curvature[k] = c->curvature[k];
+        properties->moment[k] = c->moment[k];
+    }
+    find_deviation(properties);
+}
+
 static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *c)
 {
     wb_text_append(text, "three_point:\n");
@@ -472,6 +511,7 @@ static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *
     put_number(text, "  ", "friction", c->bench.friction);
     put_number(text, "  ", "compliance_mm_N", c->bench.compliance / WB_MM);
     wb_text_append(text, "  compliance_known: %s\n", c->is_compliance_known ? "true" : "false");
+    wb_text_append(text, "  series: %d\n", c->n_series);
     put_number(text, "  ", "series_deviation", c->series_deviation);
     wb_text_append(text, "  # the fits again with what the curves do not tell; EI over that above\n"
                          "  bands:\n");
@@ -498,6 +538,9 @@ static void put_bench(struct wb_text *text, const struct wb_bend3p_calibration *
         put_number(text, "      ", "rigidity_error", m->rigidity_error);
         put_number(text, "      ", "first_contact_mm", m->fit.first_contact / WB_MM);
         put_number(text, "      ", "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
+        put_number(text, "      ", "natural_bow_mm", m->fit.bow / WB_MM);
+        put_number(text, "      ", "natural_bow_error_mm", m->fit.bow_error / WB_MM);
+        wb_text_append(text, "      natural_bow_told: %s\n", m->fit.is_bow_told ? "true" : "false");
         put_number(text, "      ", "usable_mm", m->data.usable / WB_MM);
         wb_text_append(text, "      usable_by: \"%s\"\n", wb_bend3p_limit_name(m->data.limit));
         put_number(text, "      ", "misfit", m->fit.misfit);
@@ -510,12 +553,7 @@ static void format_bend3p(struct wb_text *text, const struct wb_bend3p_calibrati
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     struct wb_properties p;
-    make_unknown(&p);
-    p.n_moments = WB_BEND3P_MOMENTS;
-    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
-        p.curvature[k] = c->curvature[k];
-        p.moment[k] = c->moment[k];
-    }
+    wb_properties_from_bend3p(c, &p);
     put_wire(text, info);
     wb_text_append(text,
                    "# These four numbers are derived from the law below: Ludwik's, isotropic, "
@@ -535,6 +573,12 @@ static void format_bend3p(struct wb_text *text, const struct wb_bend3p_calibrati
         wb_text_append(text, "# flexural_rigidity_N_mm2: not identifiable from loading alone\n");
     put_number(text, "", "largest_curvature_1_m", c->largest_curvature);
     put_moments(text, &p);
+    wb_text_append(text,
+                   "# tested where all tests have a way back, supported where the law then follows "
+                   "within 0.5 %% of F_max\n"
+                   "hardening_rule:\n  chosen: \"%s\"\n  tested: %s\n  supported: %s\n",
+                   wb_candidate_name(WB_CANDIDATE_PARALLEL_MIXED),
+                   p.is_rule_tested ? "true" : "false", p.is_rule_supported ? "true" : "false");
     put_bench(text, c);
     wb_text_append(text, "calibration:\n");
     put_number(text, "  ", "rms", c->misfit);
@@ -660,6 +704,24 @@ static enum wb_status read_rule(const struct wb_config_node *node, struct wb_pro
     return wb_config_map(node, keys, WB_COUNT(keys));
 }
 
+static enum wb_status read_three_point(const struct wb_config_node *node,
+                                       struct wb_properties *properties)
+{
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_OPTIONAL_INTEGER("series", &properties->n_series, 0, 100000),
+        WB_CONFIG_IGNORED("span_mm"),
+        WB_CONFIG_IGNORED("roller_radius_mm"),
+        WB_CONFIG_IGNORED("nose_radius_mm"),
+        WB_CONFIG_IGNORED("friction"),
+        WB_CONFIG_IGNORED("compliance_mm_N"),
+        WB_CONFIG_IGNORED("compliance_known"),
+        WB_CONFIG_IGNORED("series_deviation"),
+        WB_CONFIG_IGNORED("bands"),
+        WB_CONFIG_IGNORED("tests"),
+    };
+    return wb_config_map(node, keys, WB_COUNT(keys));
+}
+
 static enum wb_status read_specimens(const struct wb_config_node *node,
                                      struct wb_properties *properties)
 {
@@ -700,7 +762,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
     static const char *const methods[] = {"cycle", "paper", "three-point", NULL};
     const struct wb_config_node *deviations = NULL, *calibration = NULL, *law = NULL;
     const struct wb_config_node *rigidity = NULL, *springback = NULL, *moments = NULL;
-    const struct wb_config_node *rule = NULL, *specimens = NULL;
+    const struct wb_config_node *rule = NULL, *specimens = NULL, *three_point = NULL;
     int method = 0;
     struct wb_material *const material = &properties->material;
     const struct wb_config_key keys[] = {
@@ -727,7 +789,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_CONFIG_OPTIONAL_NODE("moment_curvature", &moments),
         WB_CONFIG_OPTIONAL_NODE("hardening_rule", &rule),
         WB_CONFIG_OPTIONAL_NODE("specimens", &specimens),
-        WB_CONFIG_IGNORED("three_point"),
+        WB_CONFIG_OPTIONAL_NODE("three_point", &three_point),
     };
     material->hardening = WB_HARDENING_ISOTROPIC_POWER;
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
@@ -742,6 +804,8 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_TRY(read_moments(moments, properties));
     if (rule)
         WB_TRY(read_rule(rule, properties));
+    if (three_point)
+        WB_TRY(read_three_point(three_point, properties));
     return specimens ? read_specimens(specimens, properties) : WB_OK;
 }
 

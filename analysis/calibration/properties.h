@@ -68,6 +68,7 @@ struct wb_properties {
     double stiffness_deviation; /* standard deviation of ln(M) over the calibration's samples; NaN
                                    unknown */
     int n_samples;              /* of the calibration; 0 unknown */
+    int n_series;               /* that they belong to, of three-point tests; 0 unknown */
     bool is_virtual;
     /* The law, of which `material` is the Ludwik equivalent; of files without one Ludwik's,
      * isotropic, of `material`. */
@@ -82,6 +83,10 @@ struct wb_properties {
     int n_specimens;                                       /* 0 unknown */
     struct wb_properties_specimen specimens[WB_PROPERTIES_MOST_SPECIMENS];
 };
+
+/* How many means the calibration's intervals are made of: series where there are several, else
+ * samples; 0 unknown. */
+int wb_properties_units(const struct wb_properties *properties);
 
 /* Reads a properties file; errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_properties_read(const char *path, struct wb_properties *properties);
@@ -105,5 +110,7 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties);
+void wb_properties_from_bend3p(const struct wb_bend3p_calibration *calibration,
+                               struct wb_properties *properties);
 
 #endif

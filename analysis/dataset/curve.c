@@ -224,10 +224,22 @@ static bool same(double a, double b, double relative)
 }
 
 /* Same wire, length and loading: tests that may be averaged. */
+static bool same_band(const struct wb_band *a, const struct wb_band *b)
+{
+    return a->known == b->known && (!a->known || (a->least == b->least && a->most == b->most));
+}
+
+static bool same_bench(const struct wb_machine *a, const struct wb_machine *b)
+{
+    return a->roller_radius == b->roller_radius && same_band(&a->nose_radius, &b->nose_radius) &&
+           same_band(&a->friction, &b->friction) && same_band(&a->compliance, &b->compliance);
+}
+
 static bool same_kind(const struct wb_test_info *a, const struct wb_test_info *b)
 {
     return strcmp(a->wire, b->wire) == 0 && fabs(a->length - b->length) <= SAME_LENGTH &&
-           a->is_follower == b->is_follower;
+           a->is_follower == b->is_follower && a->kind == b->kind &&
+           (a->kind != WB_TEST_THREE_POINT || same_bench(&a->machine, &b->machine));
 }
 
 static enum wb_status check_same_test(const struct wb_test_info *a, const struct wb_test_info *b,

@@ -69,8 +69,8 @@ double wb_curve_scatter(const struct wb_curve *curve);
  * test, and up to the largest deflection that is wanted (0: any). */
 size_t wb_curve_end_of_loading(const struct wb_dataset *dataset, double largest_deflection);
 
-/* Numbers datasets by kind in the order of their first appearance: group[i] from 0. Returns the
- * number of groups. */
+/* Numbers datasets by kind (wire, length, loading; bench of three-point tests) in the order of
+ * their first appearance: group[i] from 0. Returns the number of groups. */
 int wb_curve_group(const struct wb_dataset *const *datasets, int n, int *group);
 
 /* Mean of the samples' natural shapes, as far as they are known, and everything else of `info` from

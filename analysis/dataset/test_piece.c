@@ -29,12 +29,12 @@ static void clear(struct wb_test_piece *piece)
 {
     memset(piece, 0, sizeof *piece);
     piece->outer_diameter = piece->length = piece->area = (double)NAN;
-    piece->usable_travel = unknown;
+    piece->usable_travel = piece->natural_bow = unknown;
 }
 
 /* What a file says before it is made into a piece: NaN and 0 where it says nothing. */
 struct said {
-    const struct wb_config_node *usable;
+    const struct wb_config_node *usable, *bow;
     double area, strand_diameter, inner_diameter, width, thickness;
     int strands, constituent;
     bool has_constituent;
@@ -87,12 +87,12 @@ static enum wb_status take_area(const struct wb_config_node *root, const struct 
 /* --- the file --- */
 
 /* A number, or a list of the least and the most. */
-static enum wb_status read_usable(const struct wb_config_node *node, struct wb_band *band)
+static enum wb_status read_band(const struct wb_config_node *node, const char *name, double least,
+                                struct wb_band *band)
 {
-    static const char name[] = "usable_travel_mm";
     double numbers[2];
     int n = 1;
-    const struct wb_config_key number = WB_CONFIG_NUMBER(name, &numbers[0], WB_MM, 1e-6, 1e5);
+    const struct wb_config_key number = WB_CONFIG_NUMBER(name, &numbers[0], WB_MM, least, 1e5);
     if (wb_config_length(node) < 0)
         WB_TRY(wb_config_value(node, &number));
     else
@@ -153,7 +153,7 @@ static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_
                                 struct wb_test_piece *piece, struct wb_reason *why)
 {
     const double none = (double)NAN;
-    struct said said = {NULL, none, none, none, none, none, 0, 0, false};
+    struct said said = {NULL, NULL, none, none, none, none, none, 0, 0, false};
     const struct wb_config_key table[] = {
         WB_CONFIG_TEXT("wire", piece->wire),
         WB_CONFIG_INTEGER("sample", &piece->sample, 1, 100000),
@@ -163,6 +163,7 @@ static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_
         WB_CONFIG_OPTIONAL_NUMBER("mass_per_length_g_m", &piece->mass_per_length, GRAM_PER_METRE,
                                   1e-6, 1e6),
         WB_CONFIG_OPTIONAL_NODE("usable_travel_mm", &said.usable),
+        WB_CONFIG_OPTIONAL_NODE("natural_bow_mm", &said.bow),
         {.name = "constituent",
          .type = WB_CONFIG_TYPE_CHOICE,
          .optional = true,
@@ -183,7 +184,12 @@ static enum wb_status read_root(const struct wb_config_node *root, enum wb_test_
     if (piece->wire[0] == '\0')
         return wb_config_refuse(root, "wire", "expected the name of the product");
     if (said.usable)
-        WB_TRY(read_usable(said.usable, &piece->usable_travel));
+        WB_TRY(read_band(said.usable, "usable_travel_mm", 1e-6, &piece->usable_travel));
+    if (said.bow && kind != WB_TEST_THREE_POINT)
+        return wb_config_refuse(root, "natural_bow_mm",
+                                "only specimens of three-point bending have one");
+    if (said.bow)
+        WB_TRY(read_band(said.bow, "natural_bow_mm", -1e5, &piece->natural_bow));
     WB_TRY(check_kind(root, &said, kind, piece));
     if (kind != WB_TEST_TENSILE && !isfinite(piece->outer_diameter))
         return take_wire(root, piece, why);
@@ -233,6 +239,15 @@ static void set(struct wb_json *object, const char *key, double value, double un
         wb_json_set_number(object, key, rounded(value / unit));
 }
 
+static void set_band(struct wb_json *object, const char *key, const struct wb_band *band)
+{
+    if (!band->known)
+        return;
+    struct wb_json *const list = wb_json_set_array(object, key);
+    wb_json_append_number(list, rounded(band->least / WB_MM));
+    wb_json_append_number(list, rounded(band->most / WB_MM));
+}
+
 void wb_test_piece_set_json(const struct wb_test_piece *piece, struct wb_json *object)
 {
     if (piece->series[0])
@@ -241,11 +256,8 @@ void wb_test_piece_set_json(const struct wb_test_piece *piece, struct wb_json *o
     set(object, "length_mm", piece->length, WB_MM);
     set(object, "mass_per_length_g_m",
         piece->mass_per_length > 0.0 ? piece->mass_per_length : (double)NAN, GRAM_PER_METRE);
-    if (piece->usable_travel.known) {
-        struct wb_json *const list = wb_json_set_array(object, "usable_travel_mm");
-        wb_json_append_number(list, rounded(piece->usable_travel.least / WB_MM));
-        wb_json_append_number(list, rounded(piece->usable_travel.most / WB_MM));
-    }
+    set_band(object, "usable_travel_mm", &piece->usable_travel);
+    set_band(object, "natural_bow_mm", &piece->natural_bow);
     if (isfinite(piece->area)) {
         wb_json_set_text(object, "constituent", wb_test_piece_constituent_name(piece->constituent));
         set(object, "area_mm2", piece->area, SQUARE_MM);
@@ -264,14 +276,16 @@ static bool get(const struct wb_json *object, const char *key, double unit, doub
     return true;
 }
 
-static bool get_usable(const struct wb_json *object, struct wb_band *band)
+/* A list of two numbers above `limit`, or none. */
+static bool get_band(const struct wb_json *object, const char *key, double limit,
+                     struct wb_band *band)
 {
-    const struct wb_json *const list = wb_json_get(object, "usable_travel_mm");
+    const struct wb_json *const list = wb_json_get(object, key);
     double least, most;
     if (!list)
         return true;
     if (wb_json_length(list) != 2 || !wb_json_number(wb_json_item(list, 0), &least) ||
-        !wb_json_number(wb_json_item(list, 1), &most) || !(least > 0.0) || !(most >= least))
+        !wb_json_number(wb_json_item(list, 1), &most) || !(least > limit) || !(most >= least))
         return false;
     least *= WB_MM;
     most *= WB_MM;
@@ -312,8 +326,10 @@ enum wb_status wb_test_piece_get_json(struct wb_test_piece *piece, const struct 
         wrong = "length_mm: expected a positive number";
     else if (!get(object, "mass_per_length_g_m", GRAM_PER_METRE, &read.mass_per_length))
         wrong = "mass_per_length_g_m: expected a positive number";
-    else if (!get_usable(object, &read.usable_travel))
+    else if (!get_band(object, "usable_travel_mm", 0.0, &read.usable_travel))
         wrong = "usable_travel_mm: expected a list of two positive numbers, the least first";
+    else if (!get_band(object, "natural_bow_mm", -HUGE_VAL, &read.natural_bow))
+        wrong = "natural_bow_mm: expected a list of two numbers, the least first";
     else if (!get(object, "area_mm2", SQUARE_MM, &read.area))
         wrong = "area_mm2: expected a positive number";
     else if (!get_constituent(object, &read))

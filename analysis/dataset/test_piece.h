@@ -8,6 +8,8 @@
  *     length_mm: 30                # optional; of a cantilever it is required: the free length
  *     mass_per_length_g_m: 2.1     # optional
  *     usable_travel_mm: 4          # optional: what comes later serves no fit; or a band [4, 10]
+ *     natural_bow_mm: 0.2          # optional, three-point: how far the middle lies below the
+ * places on # the rollers before the test; or a band [-0.3, 0.3]
  *
  * Of a tensile test, what was pulled and the area that carries the load, as one of
  *
@@ -46,6 +48,7 @@ struct wb_test_piece {
     double mass_per_length;       /* kg/m; 0 not known */
     double poissons_ratio;        /* of the wire's file; 0 not known */
     struct wb_band usable_travel; /* m */
+    struct wb_band natural_bow;   /* m */
     enum wb_constituent constituent;
     double area; /* m2 that carries the load of a tensile test; NaN: not one */
 };

@@ -4,104 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/calibration/three_point_model.h"
 #include "base/units.h"
-#include "fe/trial/bending3p.h"
 
 #define WB_LOG_DOMAIN "validation"
 
-enum {
-    STEPS = 48 /* of a computed loading */
-};
-
-struct curve {
-    int n;
-    double travel[STEPS + 1], force[STEPS + 1];
-};
-
-static double interpolate(const struct curve *curve, double at)
-{
-    for (int i = 1; i < curve->n; i++) {
-        const double a = curve->travel[i - 1], b = curve->travel[i];
-        if (at <= b && b > a)
-            return curve->force[i - 1] +
-                   fmax(0.0, at - a) / (b - a) * (curve->force[i] - curve->force[i - 1]);
-    }
-    return curve->force[curve->n - 1];
-}
-
-/* The loading's points; *n of them. */
+/* Deflection of a point of the loading. */
 static double way_of(const struct wb_bend3p_member *member, int i)
 {
     return member->data.points[i].travel - member->data.first_contact;
 }
 
-static int count_loading(const struct wb_bend3p_member *member)
-{
-    int n = 0;
-    while (n < member->data.n_points && !member->data.points[n].is_unloading)
-        n++;
-    return n;
-}
-
 static double force_of(const struct wb_bend3p_member *member, double at)
 {
-    const int n = count_loading(member);
-    int i = 1;
-    while (i + 1 < n && way_of(member, i) < at)
-        i++;
-    const double a = way_of(member, i - 1), b = way_of(member, i);
-    const double before = member->data.points[i - 1].force;
-    return before + (at - a) / (b - a) * (member->data.points[i].force - before);
-}
-
-/* --- the model --- */
-
-static enum wb_status trace(struct curve *curve, struct wb_bending3p *bending, double to,
-                            const struct wb_test_info *info, struct wb_reason *why)
-{
-    curve->travel[0] = curve->force[0] = 0.0;
-    curve->n = 1;
-    for (int i = 1; i <= STEPS; i++) {
-        struct wb_bending3p_point point;
-        const double part = (double)i / STEPS;
-        WB_TRY(wb_bending3p_move(bending, to * part * (0.35 + 0.65 * part), &point));
-        if (point.end != WB_BENDING3P_CONVERGED)
-            return wb_fail_to(why, WB_ERR_CONVERGENCE,
-                              "wire '%s': the model of the others comes to %.3g of %.3g mm (%s)",
-                              info->wire, curve->travel[i - 1] / WB_MM, to / WB_MM,
-                              wb_bending3p_end_name(point.end));
-        curve->travel[i] = point.travel;
-        curve->force[i] = point.force;
-        curve->n = i + 1;
-    }
-    return WB_OK;
-}
-
-static enum wb_status compute(struct curve *curve, const struct wb_bend3p_calibration *c,
-                              const struct wb_law *law, double to, int n_elements,
-                              struct wb_reason *why)
-{
-    const struct wb_test_info *const info = &c->members[0].data.info;
-    struct wb_section section = {0};
-    struct wb_bending3p *bending;
-    WB_TRY(wb_section_init_law(&section, info->outer_diameter, law, 0));
-    const struct wb_bending3p_model model = {
-        .section = &section,
-        .diameter = info->outer_diameter,
-        .span = info->length,
-        .support_radius = info->machine.roller_radius,
-        .nose_radius = c->bench.nose_radius,
-        .friction = c->bench.friction,
-        .compliance = c->bench.compliance,
-        .n_elements = n_elements,
-    };
-    enum wb_status status = wb_bending3p_create(&bending, &model);
-    wb_section_release(&section);
-    if (status != WB_OK)
-        return status;
-    status = trace(curve, bending, to, info, why);
-    wb_bending3p_destroy(bending);
-    return status;
+    return wb_bend3p_data_force(&member->data, at + member->data.first_contact, false);
 }
 
 /* --- tests left out --- */
@@ -116,7 +32,7 @@ static enum wb_status find_grid(struct wb_left_out *r, const struct wb_bend3p_ca
             continue;
         r->n++;
         from = fmax(from, way_of(m, 0));
-        to = fmin(to, way_of(m, count_loading(m) - 1));
+        to = fmin(to, way_of(m, wb_bend3p_data_count_loading(&m->data) - 1));
     }
     if (r->n < 2)
         return wb_fail_to(why, WB_ERR_DATA, "%d of %d tests fitted: none can be left out", r->n,
@@ -148,37 +64,58 @@ static void find_scatter(struct wb_left_out *r, const struct wb_bend3p_calibrati
     r->expected = sqrt(r->n / (r->n - 1.0)) * r->scatter;
 }
 
-/* Where the others' fits put the first contact beyond where the readings show it. */
-static double contact_of_others(const struct wb_bend3p_calibration *c, int without)
+/* Where the others' fits put the first contact beyond where the readings show it, and their bow. */
+static double contact_of_others(const struct wb_bend3p_calibration *c, int without, double *bow)
 {
-    double sum = 0.0;
+    double sum = 0.0, bows = 0.0;
     int n = 0;
     for (int i = 0; i < c->n_members; i++) {
         if (!c->members[i].is_fitted || i == without)
             continue;
         sum += c->members[i].fit.first_contact - c->members[i].data.first_contact;
+        bows += c->members[i].fit.bow;
         n++;
     }
+    *bow = bows / n;
     return sum / n;
+}
+
+static enum wb_status compute(struct wb_three_point_model *model,
+                              const struct wb_bend3p_calibration *c, const struct wb_law *law,
+                              double bow, double to, struct wb_reason *why)
+{
+    const double curvature = wb_three_point_model_curvature(&c->members[0].data.info, bow);
+    struct wb_three_point_run run;
+    WB_TRY(wb_three_point_model_run(model, law, curvature, to, false, &run));
+    if (!run.reached)
+        return wb_fail_to(why, WB_ERR_CONVERGENCE,
+                          "wire '%s': the model of the others comes to %.3g of %.3g mm (%s)",
+                          c->members[0].data.info.wire, run.travel / WB_MM, to / WB_MM,
+                          wb_bending3p_end_name(run.end));
+    return WB_OK;
 }
 
 static enum wb_status leave_out(struct wb_left_out *r, const struct wb_bend3p_calibration *c, int i,
                                 int n_elements, double *squares, struct wb_reason *why)
 {
-    const double contact = contact_of_others(c, i);
+    double bow;
+    const double contact = contact_of_others(c, i, &bow);
+    struct wb_three_point_model *model;
     struct wb_law law;
-    struct curve curve;
     wb_bend3p_calibrate_law(c, i, &law);
     WB_TRY(
-        compute(&curve, c, &law, r->deflection[WB_LEFT_OUT_GRID - 1] - contact, n_elements, why));
-    for (int k = 0; k < WB_LEFT_OUT_GRID; k++) {
-        const double model = interpolate(&curve, r->deflection[k] - contact);
+        wb_three_point_model_create(&model, &c->members[0].data.info, &c->bench, &law, n_elements));
+    const enum wb_status status =
+        compute(model, c, &law, bow, r->deflection[WB_LEFT_OUT_GRID - 1] - contact, why);
+    for (int k = 0; k < WB_LEFT_OUT_GRID && status == WB_OK; k++) {
+        const double at = wb_three_point_model_force(model, r->deflection[k] - contact, false);
         const double test = force_of(&c->members[i], r->deflection[k]);
         const double others = (r->n * r->mean[k] - test) / (r->n - 1);
-        r->offset[k] += (model - others) / r->n;
-        *squares += pow(model - test, 2);
+        r->offset[k] += (at - others) / r->n;
+        *squares += pow(at - test, 2);
     }
-    return WB_OK;
+    wb_three_point_model_destroy(model);
+    return status;
 }
 
 enum wb_status wb_left_out_run(struct wb_left_out *result,

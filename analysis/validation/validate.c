@@ -6,20 +6,18 @@
 #include <string.h>
 #include <time.h>
 
-#include <gsl/gsl_cdf.h>
-
 #include "analysis/calibration/computed.h"
 #include "analysis/calibration/cycle_bow.h"
 #include "analysis/calibration/scatter.h"
 #include "analysis/dataset/errors.h"
+#include "analysis/validation/expected.h"
 #include "analysis/validation/marker_distance.h"
 #include "analysis/validation/validate_private.h"
+#include "analysis/validation/validate_tables.h"
 #include "base/file.h"
-#include "base/number.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "base/version.h"
 
 #define WB_LOG_DOMAIN "validate"
 
@@ -39,8 +37,8 @@
  * own, which is known as far as its least bent specimen, is not. */
 #define BEYOND 1.1
 
-static enum wb_status check_wire(const struct wb_properties *properties,
-                                 const struct wb_test_info *info, struct wb_reason *why)
+enum wb_status wb_validate_check_wire(const struct wb_properties *properties,
+                                      const struct wb_test_info *info, struct wb_reason *why)
 {
     const double ratio = info->outer_diameter / properties->outer_diameter;
     if (!(fabs(ratio - 1.0) <= SAME_DIAMETER))
@@ -198,35 +196,21 @@ static double deviation_of(double scatter, double residual_scatter, double G)
 static void judge_scatter(struct wb_validate_result *result, const struct wb_properties *properties,
                           double G)
 {
-    const int n = result->curve.n_samples, m = properties->n_samples;
+    const int n = result->curve.n_samples, m = wb_properties_units(properties);
     result->scatter_rms = wb_curve_scatter(&result->curve);
     const double own = deviation_of(result->scatter_rms, result->residual_scatter_rms, G);
     const double calibrated =
         isfinite(properties->stiffness_deviation)
             ? properties->stiffness_deviation
             : deviation_of(properties->scatter_rms, properties->residual_scatter_rms, G);
-    double squares = 0.0;
-    int degrees = 0;
-    result->stiffness_deviation = (double)NAN;
-    result->expected_rms = result->expected_rms_95 = result->scatter_share = (double)NAN;
-    if (n > 1 && isfinite(own)) {
-        squares += (n - 1) * own * own;
-        degrees += n - 1;
-    }
-    if (m > 1 && isfinite(calibrated)) {
-        squares += (m - 1) * calibrated * calibrated;
-        degrees += m - 1;
-    }
-    if (degrees == 0)
-        return;
-    result->stiffness_degrees = degrees;
-    result->stiffness_deviation = sqrt(squares / degrees);
-    result->expected_rms =
-        result->stiffness_deviation * sqrt(1.0 / n + (m > 0 ? 1.0 / m : 0.0)) * G;
-    result->expected_rms_95 = gsl_cdf_tdist_Pinv(0.975, degrees) * result->expected_rms;
-    const double rms = result->elastoplastic.rms;
-    if (rms > 0.0)
-        result->scatter_share = fmin(1.0, pow(result->expected_rms / rms, 2));
+    const struct wb_expected e =
+        wb_expected_find(&(struct wb_expected_group){n, own},
+                         &(struct wb_expected_group){m, calibrated}, G, result->elastoplastic.rms);
+    result->stiffness_deviation = e.deviation;
+    result->stiffness_degrees = e.degrees;
+    result->expected_rms = e.rms;
+    result->expected_rms_95 = e.rms_95;
+    result->scatter_share = e.share;
 }
 
 /* A prediction that goes nowhere is an error, one that is cut short is warned about. */
@@ -384,7 +368,7 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
     if (status == WB_OK) {
         wb_curve_mean_info(datasets, n, &made.info);
         wb_curve_warn_unknown_shapes(datasets, n);
-        status = check_wire(properties, &made.info, why);
+        status = wb_validate_check_wire(properties, &made.info, why);
     }
     if (status == WB_OK && !(wb_curve_scale(&made.curve) > 0.0))
         status = wb_fail_to(why, WB_ERR_DATA, "wire '%s': the measured %s is never positive",
@@ -410,13 +394,6 @@ enum wb_status wb_validate_run(struct wb_validate_result *result,
     return WB_OK;
 }
 
-/* A number, or an empty field when there is none. */
-static void put_field(struct wb_text *text, double value, char end)
-{
-    char number[WB_NUMBER_TEXT];
-    wb_text_append(text, "%s%c", isfinite(value) ? wb_number_format(value, number) : "", end);
-}
-
 static void put_rows(struct wb_text *text, const struct wb_validate_result *result)
 {
     const struct wb_curve *const curve = &result->curve;
@@ -428,40 +405,16 @@ static void put_rows(struct wb_text *text, const struct wb_validate_result *resu
                              : "deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,"
                                "elastoplastic_error,elastic_N,elastic_error\n");
     for (int i = 0; i < curve->n; i++) {
-        put_field(text, i * (curve->step / grid_unit), ',');
-        put_field(text, curve->value[i] / unit, ',');
-        put_field(text, curve->low[i] / unit, ',');
-        put_field(text, curve->high[i] / unit, ',');
-        put_field(text, curve->deviation[i] / unit, ',');
-        put_field(text, result->elastoplastic.value[i] / unit, ',');
-        put_field(text, result->elastoplastic.error[i], ',');
-        put_field(text, result->elastic.value[i] / unit, ',');
-        put_field(text, result->elastic.error[i], '\n');
+        wb_validate_tables_put(text, i * (curve->step / grid_unit), ',');
+        wb_validate_tables_put(text, curve->value[i] / unit, ',');
+        wb_validate_tables_put(text, curve->low[i] / unit, ',');
+        wb_validate_tables_put(text, curve->high[i] / unit, ',');
+        wb_validate_tables_put(text, curve->deviation[i] / unit, ',');
+        wb_validate_tables_put(text, result->elastoplastic.value[i] / unit, ',');
+        wb_validate_tables_put(text, result->elastoplastic.error[i], ',');
+        wb_validate_tables_put(text, result->elastic.value[i] / unit, ',');
+        wb_validate_tables_put(text, result->elastic.error[i], '\n');
     }
-}
-
-/* The wire's name without what would break a table. */
-static void plain_name(char *name, size_t size, const struct wb_validate_result *result)
-{
-    snprintf(name, size, "%s", result->info.wire);
-    for (char *c = name; *c; c++) {
-        if ((unsigned char)*c < 0x20 || *c == ',')
-            *c = ' ';
-    }
-}
-
-/* The first line: whose data they are. */
-static void put_origin(struct wb_text *text, const struct wb_validate_result *result)
-{
-    char wire[sizeof result->info.wire];
-    plain_name(wire, sizeof wire, result);
-    wb_text_append(text, "# %swire %s, L = %g mm, %d %s, wirebench %s (%s)\n",
-                   result->info.is_virtual      ? "virtual rig, "
-                   : result->info.is_simulation ? "simulation, "
-                                                : "",
-                   wire, result->info.length / WB_MM, result->curve.n_samples,
-                   result->curve.n_samples == 1 ? "sample" : "samples", wb_version(),
-                   wb_version_revision());
 }
 
 static enum wb_status write_text(struct wb_text *text, const char *path)
@@ -474,7 +427,7 @@ static enum wb_status write_text(struct wb_text *text, const char *path)
 enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, const char *path)
 {
     struct wb_text text = {0};
-    put_origin(&text, result);
+    wb_validate_tables_put_origin(&text, &result->info, result->curve.n_samples);
     put_rows(&text, result);
     return write_text(&text, path);
 }
@@ -484,64 +437,45 @@ enum wb_status wb_validate_write_unloading(const struct wb_validate_result *resu
 {
     const struct wb_validate_cycles *const cycles = &result->cycles;
     struct wb_text text = {0};
-    put_origin(&text, result);
+    wb_validate_tables_put_origin(&text, &result->info, result->curve.n_samples);
     wb_text_append(&text, "deflection_mm,measured_N,elastoplastic_N,elastoplastic_error\n");
     for (int i = 0; i < cycles->n; i++) {
         const double difference = cycles->measured[i] - cycles->computed[i];
-        put_field(&text, cycles->deflection[i] / WB_MM, ',');
-        put_field(&text, cycles->measured[i], ',');
-        put_field(&text, cycles->computed[i], ',');
-        put_field(&text, fabs(difference) / result->curve.max_force, '\n');
+        wb_validate_tables_put(&text, cycles->deflection[i] / WB_MM, ',');
+        wb_validate_tables_put(&text, cycles->measured[i], ',');
+        wb_validate_tables_put(&text, cycles->computed[i], ',');
+        wb_validate_tables_put(&text, fabs(difference) / result->curve.max_force, '\n');
     }
     return write_text(&text, path);
 }
 
-/* A row of scores.csv; what is NaN stays empty. */
-static void put_score(struct wb_text *text, const struct wb_validate_result *result,
-                      const char *score, const double values[3], const char *unit)
-{
-    char wire[sizeof result->info.wire];
-    plain_name(wire, sizeof wire, result);
-    wb_text_append(text, "%s,%g,%s,", wire, result->info.length / WB_MM, score);
-    for (int i = 0; i < 3; i++)
-        put_field(text, values[i], ',');
-    wb_text_append(text, "%s\n", unit);
-}
-
-static void put_scores(struct wb_text *text, const struct wb_validate_result *result)
+void wb_validate_put_scores(struct wb_text *text, const struct wb_validate_result *result)
 {
     const struct wb_validate_cycles *const cycles = &result->cycles;
     const double none = (double)NAN;
-    put_score(text, result, "loading", (double[]){none, none, result->elastoplastic.rms}, "1");
-    put_score(text, result, "loading_perfect_model_95",
-              (double[]){none, none, result->expected_rms_95}, "1");
-    put_score(text, result, "shapes", (double[]){none, none, result->shape_rms / WB_MM}, "mm");
+    wb_validate_tables_put_score(text, &result->info, "loading",
+                                 (double[]){none, none, result->elastoplastic.rms}, "1");
+    wb_validate_tables_put_score(text, &result->info, "loading_perfect_model_95",
+                                 (double[]){none, none, result->expected_rms_95}, "1");
+    wb_validate_tables_put_score(text, &result->info, "shapes",
+                                 (double[]){none, none, result->shape_rms / WB_MM}, "mm");
     if (cycles->n_samples == 0)
         return;
-    put_score(text, result, "unloading", (double[]){none, none, cycles->rms}, "1");
+    wb_validate_tables_put_score(text, &result->info, "unloading",
+                                 (double[]){none, none, cycles->rms}, "1");
     const double left = cycles->residual_measured, computed_left = cycles->residual_computed;
-    put_score(text, result, "residual_deflection",
-              (double[]){left / WB_MM, computed_left / WB_MM, (computed_left - left) / WB_MM},
-              "mm");
+    wb_validate_tables_put_score(
+        text, &result->info, "residual_deflection",
+        (double[]){left / WB_MM, computed_left / WB_MM, (computed_left - left) / WB_MM}, "mm");
     for (int i = 0; i < cycles->n_loops; i++) {
         const struct wb_validate_loop *const loop = &cycles->loops[i];
         char name[40];
         snprintf(name, sizeof name, "loop_energy_cycle_%d", loop->cycle);
-        put_score(text, result, name,
-                  (double[]){loop->measured / WB_MJ, loop->computed / WB_MJ,
-                             loop->computed / loop->measured - 1.0},
-                  "mJ");
+        wb_validate_tables_put_score(text, &result->info, name,
+                                     (double[]){loop->measured / WB_MJ, loop->computed / WB_MJ,
+                                                loop->computed / loop->measured - 1.0},
+                                     "mJ");
     }
-}
-
-enum wb_status wb_validate_write_scores(const struct wb_validate_result *results, int n,
-                                        const char *path)
-{
-    struct wb_text text = {0};
-    wb_text_append(&text, "wire,length_mm,score,measured,computed,error,unit\n");
-    for (int i = 0; i < n; i++)
-        put_scores(&text, &results[i]);
-    return write_text(&text, path);
 }
 
 void wb_validate_result_release(struct wb_validate_result *result)

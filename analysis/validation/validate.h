@@ -27,6 +27,7 @@
 #include "analysis/validation/validate_cycle.h"
 #include "base/reason.h"
 #include "base/status.h"
+#include "base/text.h"
 
 /* A computed loading curve on the grid of a measured one. */
 struct wb_prediction {
@@ -89,9 +90,14 @@ WB_MUST_CHECK enum wb_status wb_validate_write_csv(const struct wb_validate_resu
  * are tensions less that at zero deflection. */
 WB_MUST_CHECK enum wb_status wb_validate_write_unloading(const struct wb_validate_result *result,
                                                          const char *path);
-/* The scores of n results, a row each: wire,length_mm,score,measured,computed,error,unit. */
-WB_MUST_CHECK enum wb_status wb_validate_write_scores(const struct wb_validate_result *results,
-                                                      int n, const char *path);
+/* Appends its scores, a row each: analysis/validation/validate_tables.h. */
+void wb_validate_put_scores(struct wb_text *text, const struct wb_validate_result *result);
+
+/* WB_ERR_DATA where the properties are of a wire of another diameter; another name is warned about.
+ */
+WB_MUST_CHECK enum wb_status wb_validate_check_wire(const struct wb_properties *properties,
+                                                    const struct wb_test_info *info,
+                                                    struct wb_reason *why);
 
 /* Frees and zeroes; accepts a zeroed one. */
 void wb_validate_result_release(struct wb_validate_result *result);

@@ -9,6 +9,9 @@ void wb_band_clear(struct wb_band *band)
            (size_t)band->n * (size_t)wb_band_row(band->width) * sizeof *band->values);
 }
 
+/* Part of the largest entry of a column from which on the diagonal's own serves as pivot. */
+static const double large_enough = 0.1;
+
 static double *row_of(const struct wb_band *band, int row)
 {
     return band->values + (size_t)row * (size_t)wb_band_row(band->width);
@@ -28,35 +31,67 @@ void wb_band_hold(struct wb_band *band, int row, double value, double *b)
     b[row] = value;
 }
 
-/* Entry j of a row of band storage is of column row - width + j. Elimination of column k works on
- * rows k .. k + width, whose entries from column k to k + 2 width may be filled. */
-bool wb_band_solve(struct wb_band *band, double *b)
+/* row -= factor times pivot, n entries. */
+static void subtract(double *restrict row, const double *restrict pivot, double factor, int n)
 {
-    const int n = band->n, w = band->width, length = wb_band_row(w);
+    for (int j = 0; j < n; j++)
+        row[j] -= factor * pivot[j];
+}
+
+static bool scale_row(double *row, int n, double *b)
+{
+    double largest = 0.0;
+    for (int j = 0; j < n; j++)
+        largest = fabs(row[j]) > largest ? fabs(row[j]) : largest;
+    if (!(largest > 0.0) || !isfinite(largest))
+        return false;
+    const double factor = 1.0 / largest;
+    for (int j = 0; j < n; j++)
+        row[j] *= factor;
+    *b *= factor;
+    return true;
+}
+
+/* The row from k to `last` to eliminate column k with: its own where its entry is not small against
+ * the others, because an exchange fills the band. */
+static int find_pivot(const struct wb_band *band, int k, int last)
+{
+    const int w = band->width;
+    const double own = fabs(row_of(band, k)[w]);
+    double largest = own;
+    int pivot = k;
+    for (int i = k + 1; i <= last; i++) {
+        const double size = fabs(row_of(band, i)[k - i + w]);
+        if (size > largest) {
+            largest = size;
+            pivot = i;
+        }
+    }
+    return own >= large_enough * largest ? k : pivot;
+}
+
+/* Entry j of a row of band storage is of column row - width + j. Elimination of column k works on
+ * rows k .. k + width. The pivot's row is filled up to column `reach`, which is at most k + 2
+ * width; without exchanges of rows it stays at the row's own end, k + width. */
+static inline bool solve(struct wb_band *band, double *b, const int w)
+{
+    const int n = band->n;
+    int reach = 0;
 
     for (int i = 0; i < n; i++) {
-        double *row = row_of(band, i), largest = 0.0;
-        for (int j = 0; j <= 2 * w; j++)
-            largest = fmax(largest, fabs(row[j]));
-        if (!(largest > 0.0) || !isfinite(largest))
+        if (!scale_row(row_of(band, i), 2 * w + 1, &b[i]))
             return false;
-        for (int j = 0; j < length; j++)
-            row[j] /= largest;
-        b[i] /= largest;
     }
     for (int k = 0; k < n; k++) {
         const int last = k + w < n - 1 ? k + w : n - 1;
-        const int right = k + 2 * w < n - 1 ? k + 2 * w : n - 1;
-        int pivot = k;
-        for (int i = k + 1; i <= last; i++) {
-            if (fabs(row_of(band, i)[k - i + w]) > fabs(row_of(band, pivot)[k - pivot + w]))
-                pivot = i;
-        }
+        const int pivot = find_pivot(band, k, last);
+        const int end = pivot + w < n - 1 ? pivot + w : n - 1;
         double *P = row_of(band, k);
+        reach = end > reach ? end : reach;
         if (pivot != k) {
             double *Q = row_of(band, pivot);
-            for (int j = k; j <= right; j++) {
-                /* The pivot's row ends at column pivot + 2 width, which is never before `right`. */
+            for (int j = k; j <= reach; j++) {
+                /* The pivot's row has room up to column pivot + 2 width, never before `reach`. */
                 const double kept = P[j - k + w];
                 P[j - k + w] = Q[j - pivot + w];
                 Q[j - pivot + w] = kept;
@@ -67,13 +102,17 @@ bool wb_band_solve(struct wb_band *band, double *b)
         }
         if (!(fabs(P[w]) > 0.0))
             return false;
+        const double inverse = 1.0 / P[w];
+        P[w] = inverse;
         for (int i = k + 1; i <= last; i++) {
-            double *Q = row_of(band, i);
-            const double factor = Q[k - i + w] / P[w];
+            double *Q = row_of(band, i) + (k - i + w);
+            const double factor = Q[0] * inverse;
             if (factor == 0.0)
                 continue;
-            for (int j = k + 1; j <= right; j++)
-                Q[j - i + w] -= factor * P[j - k + w];
+            if (reach - k == w)
+                subtract(Q + 1, P + w + 1, factor, w);
+            else
+                subtract(Q + 1, P + w + 1, factor, reach - k);
             b[i] -= factor * b[k];
         }
     }
@@ -83,9 +122,15 @@ bool wb_band_solve(struct wb_band *band, double *b)
         double sum = b[k];
         for (int j = k + 1; j <= right; j++)
             sum -= P[j - k + w] * b[j];
-        b[k] = sum / P[w];
+        b[k] = sum * P[w];
         if (!isfinite(b[k]))
             return false;
     }
     return true;
+}
+
+bool wb_band_solve(struct wb_band *band, double *b)
+{
+    /* The band of a beam, with loops of known length. */
+    return band->width == 8 ? solve(band, b, 8) : solve(band, b, band->width);
 }

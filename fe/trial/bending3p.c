@@ -303,6 +303,17 @@ enum wb_status wb_bending3p_set_law(struct wb_bending3p *bending, const struct w
     return WB_OK;
 }
 
+enum wb_status wb_bending3p_set_curvature(struct wb_bending3p *bending,
+                                          double (*natural_curvature)(void *context,
+                                                                      double from_middle),
+                                          void *context)
+{
+    bending->natural_curvature = natural_curvature;
+    bending->curvature_context = context;
+    WB_TRY(wb_beam_set_curvature(bending->beam, natural_curvature ? curvature_of : NULL, bending));
+    return start(bending);
+}
+
 double wb_bending3p_contact_level(const struct wb_bending3p *bending)
 {
     return bending->state.contact_level;
@@ -366,9 +377,12 @@ static void press(struct wb_bending3p *b, double level, bool with_tangent)
 
 /* --- equilibrium --- */
 
+/* The largest of a node's forces, which are finite. (fmax() is a call, for NaN's sake.) */
 static double size_of(const double force[3], double lever)
 {
-    return fmax(fmax(fabs(force[0]), fabs(force[1])), fabs(force[2]) * lever);
+    const double x = fabs(force[0]), y = fabs(force[1]), t = fabs(force[2]) * lever;
+    const double larger = x > y ? x : y;
+    return larger > t ? larger : t;
 }
 
 /* The middle's x is held; with half a wire its rotation too. */

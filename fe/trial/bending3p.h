@@ -44,7 +44,7 @@ struct wb_bending3p_model {
     bool whole;                         /* compute both halves */
     /* Natural curvature, 1/m, over the arc length from the middle (m; negative on the left, never
      * asked for by half a wire); positive is hollow upwards, as the nose bends it. NULL: straight.
-     * Called at creation. */
+     * Called at creation, and by wb_bending3p_set_curvature(). */
     double (*natural_curvature)(void *context, double from_middle);
     void *curvature_context;
 };
@@ -90,6 +90,14 @@ void wb_bending3p_destroy(struct wb_bending3p *bending); /* accepts NULL */
  * back to the virgin wire at rest. Keeps all memory. */
 WB_MUST_CHECK enum wb_status wb_bending3p_set_law(struct wb_bending3p *bending,
                                                   const struct wb_law *law);
+
+/* Exchanges the natural curvature, as in the model, and goes back to the virgin wire at rest.
+ * WB_ERR_ARGUMENT where it is too bent to lie on the rollers: then only another curvature serves.
+ */
+WB_MUST_CHECK enum wb_status
+wb_bending3p_set_curvature(struct wb_bending3p *bending,
+                           double (*natural_curvature)(void *context, double from_middle),
+                           void *context);
 
 /* Moves the nose to a deflection from wherever it is, in as many sub-steps as convergence needs.
  * Where the force comes down to zero on the way up, the nose leaves the wire there: the point is

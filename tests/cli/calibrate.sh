@@ -210,5 +210,17 @@ sed -i 's/^wire: .*/wire: .\/parts.yaml/; s/follower_N: .*, rows: 40/deflection_
 expect 0 'the four numbers are the Ludwik equivalent of a law of parallel parts; loading within' \
     "$wirebench" solve wire1d ./rod.yaml
 
+# Three-point bending: properties of a test predict both ways of another.
+for sample in 1 2; do
+    "$wirebench" solve bending3p ./parts.yaml --span-mm 20 --deflection-mm 3 --points 80 --cycles 1 \
+        --roller-radius-mm 2 --nose-radius-mm 2 --roller-friction 0.2 -o bent-$sample >/dev/null ||
+        fail 'solve bending3p'
+done
+expect 0 'with the way back' "$wirebench" calibrate bent-1 -o bent.yaml
+expect 0 'unloading      RMS' "$wirebench" validate bent.yaml bent-2 -o bent-scores
+grep -q 'parts,20,unloading,' bent-scores/scores.csv || fail 'no score of the way back'
+[ -s bent-scores/parts-L20-three-point-unloading.csv ] || fail 'no table of the way back'
+expect 0 '"kind": "three-point"' "$wirebench" validate bent.yaml bent-2 --json
+
 [ $failures -eq 0 ] && echo 'all as expected'
 exit $((failures > 0))

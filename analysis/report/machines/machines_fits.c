@@ -19,9 +19,10 @@ static bool goes_on(void *context, int done, int all)
     return !wb_interrupted();
 }
 
-static void fit_wire(struct wb_machines_fit *fit, const struct wb_dataset *const *datasets)
+static void fit_wire(struct wb_machines_fit *fit, const struct wb_dataset *const *datasets,
+                     int n_threads)
 {
-    struct wb_bend3p_calibrate_settings settings = {.progress = goes_on};
+    struct wb_bend3p_calibrate_settings settings = {.threads = n_threads, .progress = goes_on};
     wb_setting_fill(&wb_bend3p_calibrate_tables[0], &settings.data);
     wb_setting_fill(&wb_bend3p_calibrate_tables[1], &settings.fit);
     fit->is_fitted =
@@ -32,7 +33,7 @@ static void fit_wire(struct wb_machines_fit *fit, const struct wb_dataset *const
 }
 
 static enum wb_status compute_wire(struct wb_machines_fit *fit, const struct wb_machines *campaign,
-                                   const struct wb_machines_group_results *groups)
+                                   const struct wb_machines_group_results *groups, int n_threads)
 {
     int most = 0;
     for (int g = fit->first; g < campaign->n_groups; g++)
@@ -47,7 +48,7 @@ static enum wb_status compute_wire(struct wb_machines_fit *fit, const struct wb_
         }
     }
     if (fit->n > 0)
-        fit_wire(fit, datasets);
+        fit_wire(fit, datasets, n_threads);
     free(datasets);
     return WB_OK;
 }
@@ -61,9 +62,18 @@ static bool is_first_of_its_wire(const struct wb_machines *campaign, int group)
     return true;
 }
 
+int wb_machines_fits_count_wires(const struct wb_machines *campaign)
+{
+    int n = 0;
+    for (int g = 0; g < campaign->n_groups; g++)
+        n += campaign->calibrates && is_first_of_its_wire(campaign, g);
+    return n;
+}
+
 enum wb_status wb_machines_fits_compute(struct wb_machines_fits *fits,
                                         const struct wb_machines *campaign,
-                                        const struct wb_machines_group_results *groups)
+                                        const struct wb_machines_group_results *groups,
+                                        const struct wb_machines_fits_order *order)
 {
     memset(fits, 0, sizeof *fits);
     if (!campaign->calibrates)
@@ -76,7 +86,9 @@ enum wb_status wb_machines_fits_compute(struct wb_machines_fits *fits,
             continue;
         struct wb_machines_fit *const fit = &fits->fits[fits->n++];
         fit->first = g;
-        WB_TRY(compute_wire(fit, campaign, groups));
+        WB_TRY(compute_wire(fit, campaign, groups, order->n_threads));
+        if (order->told)
+            order->told(order->context, fits->n, campaign->groups[g].piece.wire);
     }
     return WB_OK;
 }

@@ -21,10 +21,20 @@ struct wb_machines_fits {
     struct wb_machines_fit *fits; /* (n), owned */
 };
 
+/* How many wires there are to calibrate. */
+int wb_machines_fits_count_wires(const struct wb_machines *campaign);
+
+struct wb_machines_fits_order {
+    int n_threads; /* 0: as many as there are processors */
+    void (*told)(void *context, int n_done, const char *wire); /* after each wire; NULL: none */
+    void *context;
+};
+
 /* Ctrl-C leaves the rest out. */
 WB_MUST_CHECK enum wb_status
 wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
-                         const struct wb_machines_group_results *groups);
+                         const struct wb_machines_group_results *groups,
+                         const struct wb_machines_fits_order *order);
 void wb_machines_fits_release(struct wb_machines_fits *fits); /* accepts a zeroed one */
 
 #endif

@@ -83,7 +83,7 @@ enum wb_status wb_machines_results_load(void *context, const void *of)
             results->outcome.n_usable += test->is_usable;
         }
     }
-    results->outcome.n_steps = campaign->n_groups;
+    results->outcome.n_steps = campaign->n_groups + wb_machines_fits_count_wires(campaign);
     return WB_OK;
 }
 
@@ -155,12 +155,27 @@ static void compute_group(const struct wb_machines_group *group,
     }
 }
 
+struct telling {
+    int n_before;
+    wb_kind_progress *progress;
+    void *context;
+};
+
+static void tell_wire(void *context, int n_done, const char *wire)
+{
+    const struct telling *const telling = context;
+    char what[100];
+    snprintf(what, sizeof what, "calibrated %.64s", wire);
+    telling->progress(telling->context, telling->n_before + n_done, what);
+}
+
 enum wb_status wb_machines_results_compute(void *context, int n_threads, wb_kind_progress *progress,
                                            void *progress_context)
 {
     struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = results->campaign;
-    (void)n_threads; /* some milliseconds a group */
+    struct telling telling = {campaign->n_groups, progress, progress_context};
+    const struct wb_machines_fits_order order = {n_threads, progress ? tell_wire : NULL, &telling};
     results->outcome.n_usable = 0;
     for (int g = 0; g < campaign->n_groups; g++) {
         if (wb_interrupted()) {
@@ -173,7 +188,7 @@ enum wb_status wb_machines_results_compute(void *context, int n_threads, wb_kind
             progress(progress_context, g + 1, campaign->groups[g].label);
     }
     WB_TRY(wb_machines_cable_compute(&results->cable, campaign, results->groups));
-    WB_TRY(wb_machines_fits_compute(&results->fits, campaign, results->groups));
+    WB_TRY(wb_machines_fits_compute(&results->fits, campaign, results->groups, &order));
     if (wb_interrupted()) {
         results->outcome.interrupted = true;
         return WB_OK;

@@ -1,109 +1,11 @@
 #include "analysis/calibration/bend3p_calibrate.h"
 
-#include <gsl/gsl_errno.h>
 #include <stdlib.h>
 
 #include "analysis/calibration/bending.h"
-#include "fe/trial/bending3p.h"
-#include "tests/check.h"
-#include "tests/fe/rod/wires.h"
-
-/* A machine's test of a wire of type 2, computed: what the calibration should find again. */
-struct test_made {
-    double modulus_factor; /* on E and K */
-    double friction, nose_radius, compliance;
-    double contact; /* m of travel before the wire is touched */
-    double zero;    /* N */
-    double noise;   /* N, alternating */
-    double slip;    /* m of deflection at which the force drops by a tenth; 0: none */
-    bool with_way_back;
-};
-
-static const double span = 20e-3, deepest = 5e-3;
-
-static struct wb_material material_of(const struct test_made *made)
-{
-    struct wb_material material = test_wire_type(2).material;
-    material.youngs_modulus *= made->modulus_factor;
-    material.yield_stress *= made->modulus_factor;
-    material.strength_coefficient *= made->modulus_factor;
-    return material;
-}
-
-static void add_row(struct wb_dataset *dataset, const struct test_made *made, double travel,
-                    double force, enum wb_phase phase)
-{
-    static uint64_t random = 20261123;
-    const struct wb_row row = {
-        .t = (double)NAN,
-        .cycle = 1,
-        .phase = phase,
-        .deflection = travel,
-        .tension = force,
-        .force = force + made->zero + made->noise * (2.0 * test_random(&random) - 1.0),
-        .stage = (double)NAN,
-        .tip_x = (double)NAN,
-        .tip_angle = (double)NAN,
-    };
-    assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
-}
-
-static void make(struct wb_dataset *dataset, const struct test_made *made, const char *series)
-{
-    const double d = test_wire_type(2).diameter;
-    const struct wb_band unknown = {false, (double)NAN, (double)NAN, (double)NAN};
-    const struct wb_material material = material_of(made);
-    struct wb_section section;
-    struct wb_bending3p *bending;
-
-    assert_int_equal(wb_dataset_init(dataset), WB_OK);
-    dataset->info = (struct wb_test_info){
-        .wire = "type2",
-        .sample = 1,
-        .length = span,
-        .outer_diameter = d,
-        .poissons_ratio = 0.39,
-        .rest_level = (double)NAN,
-        .kind = WB_TEST_THREE_POINT,
-        .has_machine = true,
-        .machine = {.name = "made",
-                    .kind = WB_TEST_THREE_POINT,
-                    .span = span,
-                    .roller_radius = 2e-3,
-                    .nose_radius = {true, made->nose_radius, made->nose_radius, made->nose_radius},
-                    .friction = {true, made->friction, made->friction, made->friction},
-                    .compliance = {true, made->compliance, made->compliance, made->compliance},
-                    .speed = unknown},
-        .piece = {.usable_travel = unknown, .outer_diameter = d},
-    };
-    snprintf(dataset->info.piece.series, sizeof dataset->info.piece.series, "%s", series);
-    assert_int_equal(wb_section_init_circle(&section, d, &material, 40), WB_OK);
-    const struct wb_bending3p_model model = {
-        .section = &section,
-        .diameter = d,
-        .span = span,
-        .support_radius = 2e-3,
-        .nose_radius = made->nose_radius,
-        .friction = made->friction,
-        .compliance = made->compliance,
-    };
-    assert_int_equal(wb_bending3p_create(&bending, &model), WB_OK);
-    for (int i = 0; i < 20 && made->contact > 0.0; i++)
-        add_row(dataset, made, made->contact * i / 20.0, 0.0, WB_PHASE_LOAD);
-    const int n = 200;
-    for (int i = 0; i <= (made->with_way_back ? 2 * n : n); i++) {
-        struct wb_bending3p_point point;
-        const double w = deepest * (i <= n ? i : 2 * n - i) / n;
-        assert_int_equal(wb_bending3p_move(bending, w, &point), WB_OK);
-        assert_int_equal(point.end, WB_BENDING3P_CONVERGED);
-        const bool slipped = made->slip > 0.0 && w >= made->slip;
-        add_row(dataset, made, made->contact + point.travel,
-                slipped ? 0.9 * point.force : point.force,
-                i <= n ? WB_PHASE_LOAD : WB_PHASE_UNLOAD);
-    }
-    wb_bending3p_destroy(bending);
-    wb_section_release(&section);
-}
+#include "analysis/calibration/properties.h"
+#include "tests/analysis/calibration/properties_path.h"
+#include "tests/analysis/three_point_data.h"
 
 static struct wb_bend3p_calibrate_settings settings_of_defaults(void)
 {
@@ -129,9 +31,10 @@ static struct wb_bend3p_calibration calibrate(struct wb_dataset *datasets, int n
 }
 
 /* The calibrated moments and rigidity against the truth, which lies in the intervals too. */
-static void compare_with_truth(const struct wb_bend3p_calibration *c, const struct test_made *made)
+static void compare_with_truth(const struct wb_bend3p_calibration *c,
+                               const struct three_point_made *made)
 {
-    const struct wb_material material = material_of(made);
+    const struct wb_material material = three_point_material(made);
     const double d = test_wire_type(2).diameter;
     double moment[WB_BEND3P_MOMENTS];
     struct wb_law law;
@@ -152,21 +55,21 @@ static void compare_with_truth(const struct wb_bend3p_calibration *c, const stru
 static void law_and_first_contact_are_found_again(void **unused)
 {
     (void)unused;
-    const struct test_made made = {.modulus_factor = 1.0,
-                                   .friction = 0.3,
-                                   .nose_radius = 2e-3,
-                                   .compliance = 0.05e-3,
-                                   .contact = 0.4e-3,
-                                   .zero = 0.02,
-                                   .noise = 2e-3};
+    const struct three_point_made made = {.modulus_factor = 1.0,
+                                          .friction = 0.3,
+                                          .nose_radius = 2e-3,
+                                          .compliance = 0.05e-3,
+                                          .contact = 0.4e-3,
+                                          .zero = 0.02,
+                                          .noise = 2e-3};
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     struct wb_bend3p_calibration c = calibrate(&dataset, 1);
     const struct wb_bend3p_member *const m = &c.members[0];
     assert_true(m->is_fitted && m->fit.is_converged && m->data.is_zeroed);
     assert_close(m->data.zero_force, made.zero, 1e-3);
     assert_close(m->fit.first_contact, made.contact,
-                 fmax(2.0 * m->fit.first_contact_error, 2e-3 * span));
+                 fmax(2.0 * m->fit.first_contact_error, 2e-3 * three_point_span));
     assert_true(m->fit.first_contact_error > 0.0);
     assert_true(c.misfit < 2e-3);
     assert_false(c.is_rigidity_identifiable);
@@ -177,33 +80,111 @@ static void law_and_first_contact_are_found_again(void **unused)
 static void way_back_tells_the_hardening_rule(void **unused)
 {
     (void)unused;
-    const struct test_made made = {
+    const struct three_point_made made = {
         .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3, .with_way_back = true};
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     struct wb_bend3p_calibration c = calibrate(&dataset, 1);
     assert_true(c.members[0].data.has_unloading);
     assert_true(c.is_rigidity_identifiable);
     assert_true(c.law.isotropic_share > 0.8); /* the wire's is isotropic */
+    struct wb_properties read;
+    assert_int_equal(wb_properties_write_bend3p(path, &c, NULL, 0, true), WB_OK);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    assert_true(read.is_rule_tested && read.is_rule_supported);
+    assert_close_relative(read.rigidity.value, c.rigidity.value, 1e-9);
     compare_with_truth(&c, &made);
     wb_bend3p_calibrate_release(&c);
+}
+
+/* Its last part has next to no modulus, so that no reading tells how much. */
+static void wire_that_hardly_hardens_is_found_with_its_errors(void **unused)
+{
+    (void)unused;
+    const struct three_point_made made = {
+        .modulus_factor = 1.0, .softness = 50.0, .friction = 0.3, .nose_radius = 2e-3};
+    struct wb_dataset dataset;
+    three_point_make(&dataset, &made, "");
+    struct wb_bend3p_calibration c = calibrate(&dataset, 1);
+    const struct wb_bend3p_member *const m = &c.members[0];
+    assert_int_equal(m->fit.n_moved, WB_BEND3P_PARTS + 1);
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++)
+        assert_true(m->moment_error[k] > 0.0 && m->moment_error[k] < 0.2);
+    compare_with_truth(&c, &made);
+    wb_bend3p_calibrate_release(&c);
+}
+
+static double moment_of(const struct three_point_made *made, double curvature)
+{
+    const struct wb_material material = three_point_material(made);
+    struct wb_law law;
+    double moment;
+    wb_law_init_ludwik(&law, &material);
+    assert_int_equal(wb_bending_moments(&law, test_wire_type(2).diameter, 1, &curvature, &moment),
+                     WB_OK);
+    return moment;
+}
+
+/* 0.3 mm is 0.015 of the span. The curve hardly tells it, and the moment hangs on it. */
+static void bow_of_the_specimen_is_taken_into_account(void **unused)
+{
+    (void)unused;
+    const struct three_point_made made = {.modulus_factor = 1.0,
+                                          .friction = 0.3,
+                                          .nose_radius = 2e-3,
+                                          .contact = 0.2e-3,
+                                          .noise = 2e-3,
+                                          .bow = 0.3e-3};
+    const struct wb_band says[] = {{false, (double)NAN, (double)NAN, (double)NAN},
+                                   {true, 0.3e-3, 0.3e-3, 0.3e-3},
+                                   {true, 0.2e-3, 0.0, 0.4e-3},
+                                   {true, 0.0, -1e-3, 1e-3}};
+    double misfit[4];
+    for (int i = 0; i < 4; i++) {
+        struct wb_dataset dataset;
+        three_point_make(&dataset, &made, "");
+        dataset.info.piece.natural_bow = says[i];
+        struct wb_bend3p_calibration c = calibrate(&dataset, 1);
+        const struct wb_bend3p_fit *const fit = &c.members[0].fit;
+        misfit[i] = fit->misfit;
+        print_message("bow %+.3f +- %.3f mm (prior %+.3f +- %.3f), told: %d, correlation with the "
+                      "contact %+.2f, misfit %.2g\n",
+                      1e3 * fit->bow, 1e3 * fit->bow_error, 1e3 * says[i].value,
+                      250.0 * (says[i].most - says[i].least), fit->is_bow_told,
+                      fit->bow_contact_correlation, fit->misfit);
+        const double truth = moment_of(&made, c.largest_curvature);
+        print_message("    M at the largest curvature %+.2f %%, interval %.3g to %.3g of it\n",
+                      100.0 * (c.moment[4].value / truth - 1.0), c.moment[4].low / truth,
+                      c.moment[4].high / truth);
+        /* Straight is wrong; a number and a band hold the truth. */
+        assert_int_equal(c.moment[4].low < truth && truth<c.moment[4].high, i> 0);
+        if (i == 1)
+            compare_with_truth(&c, &made);
+        if (i < 2)
+            assert_true(fit->bow_error == 0.0 && !fit->is_bow_told);
+        else
+            assert_close(fit->bow, made.bow, 2.5 * fit->bow_error);
+        assert_close(fit->bow, i == 0 ? 0.0 : made.bow, i < 2 ? 1e-12 : 0.3e-3);
+        wb_bend3p_calibrate_release(&c);
+    }
+    assert_true(misfit[1] < misfit[0]);
 }
 
 static void kink_and_given_travel_end_the_range(void **unused)
 {
     (void)unused;
-    const struct test_made made = {
+    const struct three_point_made made = {
         .modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3, .noise = 1e-3, .slip = 3.2e-3};
     struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
     struct wb_bend3p_data data;
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     assert_int_equal(wb_bend3p_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
     assert_int_equal(data.limit, WB_BEND3P_LIMIT_KINK);
     assert_close(data.usable, made.slip, 0.1e-3);
     for (int i = 1; i < data.n_points; i++)
         assert_true(data.points[i].travel > data.points[i - 1].travel);
-    assert_true(data.points[0].travel >= data.first_contact + 0.00999 * span);
+    assert_true(data.points[0].travel >= data.first_contact + 0.00999 * three_point_span);
     wb_bend3p_data_release(&data);
     settings.data.usable = 2e-3;
     assert_int_equal(wb_bend3p_data_make(&data, &dataset, &settings.data, NULL), WB_OK);
@@ -216,9 +197,10 @@ static void kink_and_given_travel_end_the_range(void **unused)
 static void friction_is_not_told_by_the_curve_but_is_in_the_band(void **unused)
 {
     (void)unused;
-    const struct test_made made = {.modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3};
+    const struct three_point_made made = {
+        .modulus_factor = 1.0, .friction = 0.3, .nose_radius = 2e-3};
     struct wb_dataset dataset;
-    make(&dataset, &made, "");
+    three_point_make(&dataset, &made, "");
     dataset.info.machine.friction.known = false;
     struct wb_bend3p_calibration c = calibrate(&dataset, 1);
     assert_close(c.bench.friction, 0.3, 1e-12);
@@ -241,11 +223,11 @@ static void series_are_not_averaged_away(void **unused)
     (void)unused;
     struct wb_dataset datasets[4];
     for (int i = 0; i < 4; i++) {
-        const struct test_made made = {.modulus_factor = i < 2 ? 1.15 : 0.87,
-                                       .friction = 0.2,
-                                       .nose_radius = 2e-3,
-                                       .noise = 2e-3};
-        make(&datasets[i], &made, i < 2 ? "1" : "1b");
+        const struct three_point_made made = {.modulus_factor = i < 2 ? 1.15 : 0.87,
+                                              .friction = 0.2,
+                                              .nose_radius = 2e-3,
+                                              .noise = 2e-3};
+        three_point_make(&datasets[i], &made, i < 2 ? "1" : "1b");
     }
     struct wb_bend3p_calibration c = calibrate(datasets, 4);
     assert_int_equal(c.n_series, 2);
@@ -253,24 +235,80 @@ static void series_are_not_averaged_away(void **unused)
     assert_close(c.series_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
     /* Two means: t of one degree of freedom. */
     assert_true(c.moment[4].high / c.moment[4].low > 2.0);
+    /* The properties keep how far series differ, not how far tests do; so does the file. */
+    struct wb_properties properties, read;
+    wb_properties_from_bend3p(&c, &properties);
+    assert_int_equal(wb_properties_units(&properties), 2);
+    assert_close(properties.stiffness_deviation, log(1.15 / 0.87) / sqrt(2.0), 0.06);
+    assert_int_equal(wb_properties_write_bend3p(path, &c, NULL, 0, true), WB_OK);
+    assert_int_equal(wb_properties_read(path, &read), WB_OK);
+    assert_int_equal(read.n_series, 2);
+    assert_int_equal(read.n_samples, 4);
+    assert_close_relative(read.stiffness_deviation, properties.stiffness_deviation, 1e-9);
+    assert_false(read.is_rule_tested);
     wb_bend3p_calibrate_release(&c);
+}
+
+static bool stop_at_the_second(void *context, int done, int all)
+{
+    *(int *)context = done;
+    assert_int_equal(all, 2 * (1 + WB_BEND3P_VARIANTS));
+    return done < 2;
+}
+
+static void threads_change_nothing_and_a_stop_ends(void **unused)
+{
+    (void)unused;
+    struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
+    struct wb_dataset datasets[2];
+    const struct wb_dataset *const pointers[2] = {&datasets[0], &datasets[1]};
+    struct wb_bend3p_calibration one, three;
+    struct wb_reason why;
+    int done = 0;
+    for (int i = 0; i < 2; i++) {
+        const struct three_point_made made = {
+            .modulus_factor = 1.0 + 0.1 * i, .friction = 0.2, .nose_radius = 2e-3, .noise = 2e-3};
+        three_point_make(&datasets[i], &made, "");
+        datasets[i].info.machine.friction.known = false;
+    }
+    settings.fit.max_iterations = 3;
+    settings.threads = 1;
+    assert_int_equal(wb_bend3p_calibrate_run(&one, pointers, 2, &settings, NULL), WB_OK);
+    settings.threads = 3;
+    assert_int_equal(wb_bend3p_calibrate_run(&three, pointers, 2, &settings, NULL), WB_OK);
+    assert_close(one.rigidity.low, three.rigidity.low, 0.0);
+    for (int k = 0; k < WB_BEND3P_MOMENTS; k++) {
+        assert_close(one.moment[k].value, three.moment[k].value, 0.0);
+        assert_close(one.moment[k].candidates_low, three.moment[k].candidates_low, 0.0);
+        assert_true(one.moment[k].candidates_low < one.moment[k].value);
+    }
+    wb_bend3p_calibrate_release(&one);
+    wb_bend3p_calibrate_release(&three);
+    settings.threads = 1;
+    settings.progress = stop_at_the_second;
+    settings.progress_context = &done;
+    assert_int_equal(wb_bend3p_calibrate_run(&one, pointers, 2, &settings, &why), WB_ERR_TIMEOUT);
+    assert_int_equal(done, 2);
+    wb_dataset_release(&datasets[0]);
+    wb_dataset_release(&datasets[1]);
 }
 
 static void other_tests_are_refused(void **unused)
 {
     (void)unused;
-    const struct test_made made = {.modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3};
+    const struct three_point_made made = {
+        .modulus_factor = 1.0, .friction = 0.2, .nose_radius = 2e-3};
     const struct wb_bend3p_calibrate_settings settings = settings_of_defaults();
     struct wb_dataset datasets[2];
     const struct wb_dataset *pointers[2] = {&datasets[0], &datasets[1]};
     struct wb_bend3p_calibration c;
     struct wb_reason why;
-    make(&datasets[0], &made, "");
-    make(&datasets[1], &made, "");
-    datasets[1].info.length = 2.0 * span;
+    three_point_make(&datasets[0], &made, "");
+    three_point_make(&datasets[1], &made, "");
+    datasets[1].info.length = 2.0 * three_point_span;
     assert_int_equal(wb_bend3p_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "different benches"));
-    datasets[1].info.length = span;
+    datasets[1].info.length = three_point_span;
     snprintf(datasets[1].info.wire, sizeof datasets[1].info.wire, "other");
     assert_int_equal(wb_bend3p_calibrate_run(&c, pointers, 2, &settings, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "expected one wire"));
@@ -284,14 +322,16 @@ static void other_tests_are_refused(void **unused)
 
 int main(void)
 {
-    gsl_set_error_handler_off();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(law_and_first_contact_are_found_again),
         cmocka_unit_test(way_back_tells_the_hardening_rule),
+        cmocka_unit_test(wire_that_hardly_hardens_is_found_with_its_errors),
+        cmocka_unit_test(bow_of_the_specimen_is_taken_into_account),
         cmocka_unit_test(kink_and_given_travel_end_the_range),
         cmocka_unit_test(friction_is_not_told_by_the_curve_but_is_in_the_band),
         cmocka_unit_test(series_are_not_averaged_away),
+        cmocka_unit_test(threads_change_nothing_and_a_stop_ends),
         cmocka_unit_test(other_tests_are_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_path, remove_folder);
 }

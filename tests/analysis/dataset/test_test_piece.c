@@ -81,6 +81,10 @@ static void bad_files_are_refused_with_the_reason(void **state)
          "expected the area"},
         {WB_TEST_TENSILE, "wire: w\nsample: 1\nconstituent: jacket\ninner_diameter_mm: 3\n",
          "s.yaml:4: inner_diameter_mm: expected less than outer_diameter_mm, which is missing"},
+        {WB_TEST_THREE_POINT, "wire: w\nouter_diameter_mm: 1\nsample: 1\nnatural_bow_mm: [1, 0]",
+         "s.yaml:4: natural_bow_mm: expected the least first"},
+        {WB_TEST_TENSILE, "wire: w\nsample: 1\nconstituent: tape\narea_mm2: 1\nnatural_bow_mm: 1",
+         "natural_bow_mm: only specimens of three-point bending have one"},
         {WB_TEST_THREE_POINT, "wire: w\nouter_diameter_mm: 1\nsample: 1\nusable_travel_mm: [4, 3]",
          "s.yaml:4: usable_travel_mm: expected the least first"},
     };
@@ -117,6 +121,23 @@ static void a_document_gives_the_same_piece_back(void **state)
     wb_json_destroy(document);
 }
 
+static void a_natural_bow_may_be_of_either_sign(void **state)
+{
+    (void)state;
+    struct wb_test_piece piece, back;
+    struct wb_json *const document = wb_json_create();
+    assert_int_equal(wb_test_piece_parse("wire: w\nsample: 1\nouter_diameter_mm: 1\n"
+                                         "natural_bow_mm: [-0.3, 0.1]\n",
+                                         "s.yaml", WB_TEST_THREE_POINT, &piece, NULL),
+                     WB_OK);
+    wb_test_piece_set_json(&piece, document);
+    assert_int_equal(wb_test_piece_get_json(&back, document, "d", NULL), WB_OK);
+    assert_true(back.natural_bow.known);
+    assert_close(back.natural_bow.least, -0.3e-3, 1e-15);
+    assert_close(back.natural_bow.value, -0.1e-3, 1e-15);
+    wb_json_destroy(document);
+}
+
 static void a_damaged_document_is_refused(void **state)
 {
     (void)state;
@@ -149,6 +170,7 @@ int main(void)
         cmocka_unit_test(areas_follow_from_what_is_given),
         cmocka_unit_test(bad_files_are_refused_with_the_reason),
         cmocka_unit_test(a_document_gives_the_same_piece_back),
+        cmocka_unit_test(a_natural_bow_may_be_of_either_sign),
         cmocka_unit_test(a_damaged_document_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

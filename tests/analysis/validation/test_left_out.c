@@ -61,7 +61,7 @@ static void make_tests(const double times[TESTS])
 {
     calibration = (struct wb_bend3p_calibration){.n_members = TESTS, .n_fitted = TESTS};
     calibration.members = members;
-    calibration.bench = (struct wb_bend3p_bench){.friction = 0.2, .nose_radius = 2e-3};
+    calibration.bench = (struct wb_three_point_bench){.friction = 0.2, .nose_radius = 2e-3};
     for (int i = 0; i < TESTS; i++)
         make_member(&members[i], times[i], 0.3 * WB_MM * i);
 }

@@ -1,0 +1,82 @@
+#include "cli/validate_three_point.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/units.h"
+
+static void print_bench(const struct wb_validate_three_point *r)
+{
+    printf("  bench          rollers %g mm, nose %g mm, friction %g, compliance %g mm/N%s\n",
+           r->info.machine.roller_radius / WB_MM, r->bench.nose_radius / WB_MM, r->bench.friction,
+           r->bench.compliance / WB_MM, r->is_compliance_known ? "" : " (not known)");
+    for (int i = 0; i < WB_BEND3P_VARIANTS; i++) {
+        if (isfinite(r->bench_rms[i]))
+            printf("    if %-11s %g%s: loading RMS %.3g\n", r->ends[i].name,
+                   r->ends[i].value / (i < 2 ? 1.0 : WB_MM), i < 2 ? "" : " mm", r->bench_rms[i]);
+    }
+}
+
+static void print_unloading(const struct wb_validate_three_point *r)
+{
+    if (r->n_unloading == 0) {
+        printf("  unloading      not scored: no way back was measured, or the beam does not follow "
+               "it\n");
+        return;
+    }
+    printf("  unloading      RMS %.3g, largest error %.3g, of each test by itself %.3g%s\n",
+           r->unloading.rms, r->unloading.largest_error, r->unloading_rms_of_tests,
+           r->is_rule_untested ? "; the rule of these properties is untested" : "");
+    const double left = r->left_measured, predicted = r->left_computed;
+    if (isfinite(left))
+        printf("  left deflected %.3f mm measured, %.3f mm predicted (%+.3f mm)\n", left / WB_MM,
+               predicted / WB_MM, (predicted - left) / WB_MM);
+}
+
+static void print_scatter(const struct wb_validate_three_point *r)
+{
+    const struct wb_expected *const e = &r->expected;
+    if (r->n_used > 1)
+        printf("  scatter        between tests %.3g\n", r->scatter_rms);
+    if (isfinite(e->rms_95))
+        printf("  perfect model  with %s that differ by %.1f %% in stiffness: RMS about %.2g on "
+               "loading, above %.2g in one of twenty validations\n"
+               "                 found %.2g: %s\n",
+               r->is_by_series ? "series" : "specimens", 100.0 * e->deviation, e->rms, e->rms_95,
+               r->loading.rms,
+               r->loading.rms > e->rms_95 ? "more than the scatter explains"
+                                          : "no more than the scatter explains");
+}
+
+void wb_validate_three_point_print(const struct wb_validate_three_point *r)
+{
+    printf("wire %s, three-point bending, span %g mm, %d of %d test%s%s\n", r->info.wire,
+           r->info.length / WB_MM, r->n_used, r->n_tests, r->n_tests == 1 ? "" : "s",
+           r->info.is_simulation ? ", simulation" : "");
+    printf(
+        "  loading        RMS %.3g, largest error %.3g (over F_max = %.4g N of the mean), %.3g to "
+        "%.3g mm beyond the first contact\n",
+        r->loading.rms, r->loading.largest_error, r->max_force, r->loading.deflection[0] / WB_MM,
+        r->loading.deflection[r->loading.n - 1] / WB_MM);
+    printf("                 RMS %.3g with the first contacts as the readings show them\n",
+           r->rms_as_read);
+    if (isfinite(r->elastic_rms))
+        printf("    if elastic   RMS %.3g\n", r->elastic_rms);
+    print_unloading(r);
+    print_bench(r);
+    print_scatter(r);
+    for (int i = 0; i < r->n_tests; i++) {
+        const struct wb_validate_three_point_test *const test = &r->tests[i];
+        if (test->is_used)
+            printf("  sample %d%s%s: first contact %.3f mm (as read %.3f), RMS %.3g\n",
+                   test->data.info.sample, test->data.info.piece.series[0] ? ", series " : "",
+                   test->data.info.piece.series, test->first_contact / WB_MM,
+                   test->data.first_contact / WB_MM, test->rms);
+        else
+            printf("  sample %d: left out: %s\n", test->data.info.sample, test->why.text);
+    }
+    if (r->is_beyond)
+        printf("  beyond         the middle is bent to %.3g /m, further than these properties are "
+               "known\n",
+               r->largest_curvature);
+}
