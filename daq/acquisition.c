@@ -490,6 +490,7 @@ static void read_line(struct line *line)
         note_kernel_drops(line, t_ns);
         state->chunks++;
         state->bytes += n;
+        wb_diagnosis_add(&state->heard, a->buffer, n);
         if (a->writer)
             (void)wb_writer_push_chunk(a->writer, line->id, t_ns, a->buffer, n);
         line->driver->receive(line->state, t_ns, a->buffer, n, &sink);

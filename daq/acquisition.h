@@ -18,6 +18,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
+#include "daq/diagnosis.h"
 #include "daq/driver.h"
 #include "daq/interlock.h"
 #include "daq/loss.h"
@@ -99,6 +100,7 @@ struct wb_acquisition_stream_state {
     double rate;      /* valid samples/s, smoothed over about a second */
     uint64_t samples; /* decoded, valid or not */
     uint64_t chunks, bytes;
+    struct wb_diagnosis heard;  /* its first bytes, for what to say when nothing is understood */
     uint64_t drops;             /* reads lost by the writer, and datagrams lost in the kernel */
     struct wb_loss_counts loss; /* samples that the instrument sent and that never came */
     bool is_losing;             /* and they are more than chance */

@@ -149,23 +149,22 @@ static void complain_silence(struct wb_bend_test *test)
     const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
     const struct wb_acquisition_stream_state *const mocap = &latest->stream[WB_ROLE_MOCAP];
     const struct wb_acquisition_stream_state *const stage = &latest->stream[WB_ROLE_STAGE];
-    if (!latest->has_load && load->bytes > 0)
-        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
-                            "the load cell at %s sent %" PRIu64
-                            " bytes, but no reading that can be decoded: "
-                            "check load_cell.protocol, its line settings and its unit",
-                            test->run.rig.load_cell.address, load->bytes);
-    else if (!latest->has_load)
-        wb_sequence_give_up(
-            &test->run, WB_INTERLOCK_STREAM_LOST,
-            "the load cell at %s sent nothing within %g s: check power, cable and baud rate",
-            test->run.rig.load_cell.address, waited);
-    else if (!latest->has_stage)
+    char sent[96], cause[WB_DIAGNOSIS_TEXT];
+    if (!latest->has_load) {
+        snprintf(sent, sizeof sent, "nothing within %g s", waited);
+        if (load->bytes > 0)
+            snprintf(sent, sizeof sent, "%" PRIu64 " bytes, but no reading that can be decoded",
+                     load->bytes);
+        wb_diagnosis_load(&load->heard, &stage->heard, &test->run.rig, cause);
+        wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST, "the load cell at %s sent %s: %s",
+                            test->run.rig.load_cell.address, sent, cause);
+    } else if (!stage->ready) {
+        wb_diagnosis_stage(&stage->heard, &test->run.rig, cause);
         wb_sequence_give_up(&test->run, WB_INTERLOCK_STREAM_LOST,
                             "the stage at %s gave no status within %g s (%" PRIu64
-                            " bytes came): check power, cable and stage.protocol",
-                            test->run.rig.stage.address, waited, stage->bytes);
-    else if (mocap->bytes == 0)
+                            " bytes came): %s",
+                            test->run.rig.stage.address, waited, stage->bytes, cause);
+    } else if (mocap->bytes == 0)
         wb_sequence_give_up(
             &test->run, WB_INTERLOCK_STREAM_LOST,
             "no NatNet answer from %s within %g s: check that the server streams, its address "

@@ -76,6 +76,7 @@ static void watch(struct wb_mass_check *check, int64_t now_ns)
         &wb_acquisition_latest(check->acquisition)->stream[WB_ROLE_LOAD];
     const int64_t waited_ns = now_ns - check->phase_ns;
     const char *const address = check->rig.load_cell.address;
+    char cause[WB_DIAGNOSIS_TEXT];
     if (wb_interrupted())
         FAIL(check, "stopped by the operator");
     else if (load->gone)
@@ -83,13 +84,13 @@ static void watch(struct wb_mass_check *check, int64_t now_ns)
     else if (check->overload)
         FAIL(check, "the load cell reports overload: the mass is beyond its range");
     else if (check->phase == WB_MASS_CHECK_CONNECTING && !isfinite(check->reading) &&
-             waited_ns > CONNECT_NS + check->rig.load_cell.settle_ns)
-        FAIL(check,
-             "the load cell at %s sent no reading within %d s (%" PRIu64 " bytes came): check "
-             "power, cable and load_cell.protocol",
-             address, (int)(CONNECT_NS / WB_NS_PER_S), load->bytes);
-    else if ((check->phase == WB_MASS_CHECK_ZERO || check->phase == WB_MASS_CHECK_LOADED) &&
-             waited_ns > check->duration_ns + CONNECT_NS)
+             waited_ns > CONNECT_NS + check->rig.load_cell.settle_ns) {
+        const struct wb_diagnosis no_stage = {0};
+        wb_diagnosis_load(&load->heard, &no_stage, &check->rig, cause);
+        FAIL(check, "the load cell at %s sent no reading within %d s (%" PRIu64 " bytes came): %s",
+             address, (int)(CONNECT_NS / WB_NS_PER_S), load->bytes, cause);
+    } else if ((check->phase == WB_MASS_CHECK_ZERO || check->phase == WB_MASS_CHECK_LOADED) &&
+               waited_ns > check->duration_ns + CONNECT_NS)
         FAIL(check, "the load cell at %s sends too few readings: at least 10 are needed", address);
 }
 

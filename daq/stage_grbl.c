@@ -25,7 +25,8 @@
 #define UNTOLD_ACCELERATION (10.0 * WB_MM) /* m/s2, of a stage that hides its settings: GRBL's */
 #define UNTOLD_ROUNDING (0.05 * WB_MM)     /* m */
 #define PRINTED (0.002 * WB_MM)            /* m: positions have three decimals in mm */
-#define REPLY_NS (2000 * WB_NS_PER_MS)     /* a line is answered in far less, but for homing */
+#define PROBE_NS (2500 * WB_NS_PER_MS)
+#define REPLY_NS (2000 * WB_NS_PER_MS) /* a line is answered in far less, but for homing */
 
 struct grbl_state {
     struct wb_rig rig;
@@ -54,6 +55,8 @@ struct grbl_state {
     char pending[96];
     bool waits;
     /* For sending. */
+    int64_t started_ns;
+    bool is_probed; /* with a line end: firmware that reads whole lines only then says something */
     int64_t now_ns, sent_ns, next_poll_ns, fast_until_ns;
 };
 
@@ -344,7 +347,7 @@ static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
 {
     struct grbl_state *const state = opaque;
     const uint8_t poll = WB_GRBL_STATUS;
-    state->now_ns = now_ns;
+    state->now_ns = state->started_ns = now_ns;
     wb_outbox_add(outbox, &poll, 1);
     state->next_poll_ns = now_ns + POLL_PERIOD_NS;
 }
@@ -436,6 +439,10 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     }
     if (must_ask_settings(state) && send_line(state, LIST_SETTINGS "\n", outbox) == WB_OK)
         state->asked_settings = true;
+    if (!state->answered && !state->is_probed && now_ns - state->started_ns > PROBE_NS) {
+        (void)wb_outbox_add_text(outbox, "\n");
+        state->is_probed = true;
+    }
     /* A line that does not fit is offered again. */
     (void)send_block(state, outbox);
     if (now_ns < state->next_poll_ns || !wb_outbox_add(outbox, &poll, 1))

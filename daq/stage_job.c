@@ -241,6 +241,7 @@ static void step_connect(struct wb_stage_job *job)
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     const struct wb_acquisition_stream_state *const load = &latest->stream[WB_ROLE_LOAD];
+    char cause[WB_DIAGNOSIS_TEXT];
     const bool load_speaks = !load->open || load->samples > 0;
     const bool stage_speaks = latest->has_stage && latest->stream[WB_ROLE_STAGE].ready;
     if (stage_speaks && load_speaks && wb_sequence_lasts_ns(&job->run) > STALE_NS) {
@@ -284,17 +285,18 @@ static void step_connect(struct wb_stage_job *job)
         wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
                             "the load cell's port %s went away: check its cable and power",
                             job->run.rig.load_cell.address);
-    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns && !latest->has_stage)
-        wb_sequence_give_up(
-            &job->run, WB_INTERLOCK_STREAM_LOST,
-            "the stage at %s gave no status within %g s: check power, cable and stage.protocol",
-            job->run.rig.stage.address, job->request.connect_timeout);
-    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns)
-        wb_sequence_give_up(
-            &job->run, WB_INTERLOCK_STREAM_LOST,
-            "the load cell at %s sent no reading within %g s: check it, or move blindly with "
-            "--without-load-cell",
-            job->run.rig.load_cell.address, job->request.connect_timeout);
+    else if (wb_sequence_lasts_ns(&job->run) > allowed_ns && !stage_speaks) {
+        wb_diagnosis_stage(&latest->stream[WB_ROLE_STAGE].heard, &job->run.rig, cause);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                            "the stage at %s gave no status within %g s: %s",
+                            job->run.rig.stage.address, job->request.connect_timeout, cause);
+    } else if (wb_sequence_lasts_ns(&job->run) > allowed_ns) {
+        wb_diagnosis_load(&load->heard, &latest->stream[WB_ROLE_STAGE].heard, &job->run.rig, cause);
+        wb_sequence_give_up(&job->run, WB_INTERLOCK_STREAM_LOST,
+                            "the load cell at %s sent no reading within %g s: %s; or move blindly "
+                            "with --without-load-cell",
+                            job->run.rig.load_cell.address, job->request.connect_timeout, cause);
+    }
 }
 
 /* True when a report came that cannot be older than the command of this phase. */

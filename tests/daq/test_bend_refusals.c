@@ -49,6 +49,16 @@ static void a_silent_stage_is_told(void **state)
     assert_refused(fixture, "the stage at pty:", false);
 }
 
+static void swapped_ports_are_told(void **state)
+{
+    struct fixture *const fixture = *state;
+    struct fake_bench swapped = *fixture->bench;
+    memcpy(swapped.load_path, fixture->bench->stage_path, sizeof swapped.load_path);
+    memcpy(swapped.stage_path, fixture->bench->load_path, sizeof swapped.stage_path);
+    fake_write_rig(&swapped, fixture->rig, 40.0, 60.0);
+    assert_refused(fixture, "load_cell.address and stage.address seem to be swapped", false);
+}
+
 static void a_stage_set_slower_than_the_test_is_told(void **state)
 {
     struct fixture *const fixture = *state;
@@ -212,6 +222,7 @@ int main(void)
         TEST(a_silent_load_cell_is_told),
         TEST(a_load_cell_of_another_protocol_is_told),
         TEST(a_silent_stage_is_told),
+        TEST(swapped_ports_are_told),
         TEST(a_stage_set_slower_than_the_test_is_told),
         TEST(a_missing_marker_is_named),
         TEST(a_stray_reflection_does_not_hurt),

@@ -1,0 +1,29 @@
+/* What an instrument that cannot be understood seems to be, from the first bytes it sent, and which
+ * key of the rig file to change: a wrong baud rate, no line ends, other firmware, the ports of load
+ * cell and stage swapped. Pure functions on bytes. */
+#ifndef WB_DAQ_DIAGNOSIS_H
+#define WB_DAQ_DIAGNOSIS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "daq/rig.h"
+
+#define WB_DIAGNOSIS_TEXT 320
+
+/* The beginning of a stream. All zero is empty. */
+struct wb_diagnosis {
+    size_t n;
+    char bytes[512];
+};
+
+void wb_diagnosis_add(struct wb_diagnosis *diagnosis, const void *bytes, size_t n);
+
+/* The likely cause and the key to change, "its bytes are no text: ...", for an instrument that gave
+ * no reading, or no status. */
+void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosis *stage,
+                       const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT]);
+void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *rig,
+                        char text[WB_DIAGNOSIS_TEXT]);
+
+#endif
