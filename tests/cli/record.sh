@@ -159,6 +159,25 @@ rig_killed() {
     readable killed 'stream_lost'
 }
 
+# Nothing can be done any more by a recorder that is killed: the stage comes to rest by itself. Its
+# way down takes 13 s; a jog is refused while it moves.
+recorder_killed() {
+    sed 's/speed_mm_s: 1/speed_mm_s: 0.2/' "$folder/bench.yaml" >"$folder/slow.yaml"
+    start_rig alone "$folder/slow.yaml"
+    begin alone
+    wait_for_motion alone $recorder
+    kill -KILL $recorder
+    wait $recorder 2>/dev/null
+    sleep 1
+    "$wirebench" stage "$folder/alone/rig.yaml" jog 0.1 >"$folder/alone.out" 2>&1 ||
+        fail "alone: $(cat "$folder/alone.out")"
+    grep -q 'the stage stands at -[1-6]' "$folder/alone.out" ||
+        fail "alone: $(cat "$folder/alone.out")"
+    "$wirebench" stage "$folder/alone/rig.yaml" release >"$folder/alone.out" 2>&1 ||
+        fail "alone: $(cat "$folder/alone.out")"
+    end_rig "$rig"
+}
+
 rig_stalls() {
     start_rig stalled
     "$wirebench" record "$folder/stalled/rig.yaml" --specimen "$specimen" \
@@ -325,7 +344,7 @@ wrong_usage() {
 }
 
 # Side by side, as rigs may run.
-cases=(whole_test ctrl_c ctrl_c_too_early force_limit rig_killed rig_stalls dead_reader hung_reader
+cases=(whole_test ctrl_c ctrl_c_too_early force_limit rig_killed recorder_killed rig_stalls dead_reader hung_reader
     keys_of_the_terminal full_disk bad_ports cell_check wrong_usage)
 pids=()
 for case in "${cases[@]}"; do
