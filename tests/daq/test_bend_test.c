@@ -335,7 +335,7 @@ static void hold_a_deaf_stage(struct fixture *fixture, struct fake_latency *late
     struct wb_bend_test *test;
     struct wb_bend_test_result result;
     open_and_get_down(fixture, &test);
-    bench->stage_deaf = bench->stage_overshoots = true;
+    bench->stage_deaf = bench->stage_overshoots = true; /* or it would come to rest by itself */
     bench->overload = true;
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
