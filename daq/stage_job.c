@@ -44,7 +44,6 @@ struct wb_stage_job {
     struct wb_sequence run;
     struct wb_stage_job_request request;
     double most, reach; /* m, release: of one step, and of all of them */
-    double way_up;      /* m, release: from the start to the stage's soft limit; infinite: none */
     double first_force; /* N; NaN before the first reading */
     struct wb_release release;
     bool standing;
@@ -165,8 +164,12 @@ static double longest_test(const struct wb_rig *rig)
 /* Release: the next step up, or the end of them. */
 static void step_up(struct wb_stage_job *job, double travel)
 {
+    const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     const double left = job->reach + travel;
-    const double way_up = job->way_up + travel; /* to the stage's soft limit */
+    const double way_up =
+        latest->has_settings
+            ? wb_stage_check_way_up(&latest->settings, &job->run.rig, latest->stage.position)
+            : HUGE_VAL;
     const double step = fmin(fmin(wb_release_step(&job->release), job->most), way_up);
     char now[40];
     const double force = wb_release_force(&job->release) / WB_MN;
@@ -214,9 +217,6 @@ static void begin_motion(struct wb_stage_job *job)
         return;
     }
     if (job->request.kind == WB_STAGE_JOB_RELEASE) {
-        job->way_up = latest->has_settings ? wb_stage_check_way_up(&latest->settings, &job->run.rig,
-                                                                   job->run.start_position)
-                                           : HUGE_VAL;
         job->reach = fabs(distance) > 0.0 ? fmin(fabs(distance), job->run.rig.stage.travel)
                                           : longest_test(&job->run.rig);
         job->most = job->reach;

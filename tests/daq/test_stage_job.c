@@ -288,6 +288,7 @@ static void release_ends_at_the_soft_limit(void **state)
     bench->slack_mm = -60;
     bench->has_soft_limits = true;
     bench->soft_travel_mm = 27;
+    bench->state = "Hold:0"; /* deaf: its settings come later */
     const struct wb_stage_job_result result = run(fixture, WB_STAGE_JOB_RELEASE, 0.0);
     assert_int_equal(result.end, WB_SEQUENCE_STILL_LOADED);
     assert_non_null(strstr(result.text, "went up by 7.00 mm to the end of the machine"));
