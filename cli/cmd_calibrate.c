@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "base/units.h"
 #include "cli/calibrate_bend3p.h"
+#include "cli/calibrate_compliance.h"
 #include "cli/calibrate_constituents.h"
 #include "cli/calibrate_cycle.h"
 #include "cli/calibrate_tensile.h"
@@ -43,9 +44,10 @@ struct options {
 
 enum {
     KEY_METHOD = WB_KEY_OWN,
-    /* In the help only: cli/calibrate_tensile.c and calibrate_constituents.c take them. */
+    /* In the help only: cli/calibrate_tensile.c and its siblings take them. */
     KEY_TENSILE,
-    KEY_CONSTITUENTS
+    KEY_CONSTITUENTS,
+    KEY_COMPLIANCE
 };
 
 static const struct argp_option other_options[] = {
@@ -58,6 +60,10 @@ static const struct argp_option other_options[] = {
     {"constituents", KEY_CONSTITUENTS, NULL, 0,
      "A wire's rigidity and moments from conductor and jacket; see `wirebench calibrate "
      "--constituents --help`",
+     0},
+    {"compliance", KEY_COMPLIANCE, NULL, 0,
+     "How much a machine gives way, from a stiff bar; see `wirebench calibrate --compliance "
+     "--help`",
      0},
     {"output", 'o', "PROPERTIES.yaml", 0, "Write the properties here", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties", 0},
@@ -466,6 +472,8 @@ int wb_cmd_calibrate(int argc, char **argv)
     struct options options = {.common = {.noun = "at least one dataset", .least = 1}};
     if (wb_calibrate_is_tensile(argc, argv))
         return wb_calibrate_tensile(argc, argv);
+    if (wb_calibrate_is_compliance(argc, argv))
+        return wb_calibrate_compliance(argc, argv);
     if (wb_calibrate_is_constituents(argc, argv))
         return wb_calibrate_constituents(argc, argv);
     wb_calibrate_default_settings(&options.settings);

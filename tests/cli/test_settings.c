@@ -11,6 +11,7 @@
 #include "analysis/calibration/calibrate.h"
 #include "analysis/calibration/cycle_calibrate.h"
 #include "analysis/calibration/layers.h"
+#include "analysis/calibration/machine_compliance.h"
 #include "analysis/calibration/tensile.h"
 #include "analysis/calibration/tensile_material.h"
 #include "analysis/import/mocap_import.h"
@@ -43,6 +44,8 @@ static const struct command {
     {"calibrate", "none", "calibrate", wb_cycle_calibrate_tables, WB_CYCLE_CALIBRATE_TABLES, 0},
     {"calibrate --tensile", "none", "calibrate --tensile", &wb_tensile_table, 1, 1},
     {"calibrate --tensile", "none", "calibrate --tensile", &wb_tensile_material_table, 1, 1},
+    {"calibrate --compliance", "none --rigidity-n-mm2 1", "calibrate --compliance",
+     &wb_machine_compliance_table, 1, 1},
     {"calibrate --constituents",
      "--conductor ./none --jacket none --conductor-diameter-mm 1 --outer-diameter-mm 1",
      "calibrate --constituents", &wb_layers_table, 1, 1},
