@@ -7,7 +7,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/calibration/bend3p_calibrate.h"
+#include "analysis/calibration/three_point_calibrate.h"
 #include "analysis/calibration/three_point_model.h"
 #include "analysis/dataset/fit.h"
 #include "base/units.h"
@@ -209,7 +209,7 @@ static enum wb_status find_mean(struct mean *mean, const struct readings *all, i
                             "a bar of %.4g N mm2 under %.4g N bends beyond %.3g mm (%s): it is no "
                             "stiff one",
                             rigidity / 1e-6, largest, run.travel / WB_MM,
-                            wb_bending3p_end_name(run.end));
+                            wb_three_point_bending_end_name(run.end));
     for (int i = 0; i < n && status == WB_OK; i++) {
         struct readings r = all[i];
         struct slope slope;
@@ -237,10 +237,10 @@ static enum wb_status find(struct wb_machine_compliance *result, const struct re
                            const struct wb_test_info *info,
                            const struct wb_machine_compliance_settings *s, struct wb_reason *why)
 {
-    struct wb_bend3p_variant ends[WB_BEND3P_VARIANTS];
+    struct wb_three_point_variant ends[WB_THREE_POINT_VARIANTS];
     struct wb_three_point_bench bench;
     struct mean mean, low, high;
-    wb_bend3p_calibrate_bench(&info->machine, &bench, ends);
+    wb_three_point_calibrate_bench(&info->machine, &bench, ends);
     bench.compliance = 0.0;
     WB_TRY(find_mean(&mean, all, n, info, &bench, s->rigidity, why));
     bench.friction = ends[0].value;

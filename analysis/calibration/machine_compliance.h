@@ -1,10 +1,10 @@
 /* How much a three-point bending machine gives way, from tests of a stiff elastic bar.
  *
  * The travel is contact + w(F) + C F, where w is the deflection of a bar of known flexural rigidity
- * on this bench (fe/trial/bending3p.h, with shear, rollers and large deflections). So travel - w(F)
- * over F is a line of slope C; where the bar was first touched is in its height. The smallest
- * reading is the zero of the force. Only readings above a part of the largest force count, past the
- * seating.
+ * on this bench (fe/trial/three_point_bending.h, with shear, rollers and large deflections). So
+ * travel - w(F) over F is a line of slope C; where the bar was first touched is in its height. The
+ * smallest reading is the zero of the force. Only readings above a part of the largest force count,
+ * past the seating.
  *
  * What is known of C: the scatter of the slope over several tests (Student's t, 95 %), or of one
  * alone two standard errors, with neighbouring residuals of one sign counted once; and joined with

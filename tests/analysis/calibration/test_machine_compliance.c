@@ -5,7 +5,7 @@
 
 #include "base/units.h"
 #include "fe/rod/section.h"
-#include "fe/trial/bending3p.h"
+#include "fe/trial/three_point_bending.h"
 #include "tests/check.h"
 #include "tests/fe/rod/wires.h"
 
@@ -43,7 +43,7 @@ static void make(struct wb_dataset *dataset, const struct bar *bar, int index)
     };
     const struct wb_band unknown = {false, (double)NAN, (double)NAN, (double)NAN};
     struct wb_section section;
-    struct wb_bending3p *bending;
+    struct wb_three_point_bending *bending;
     assert_int_equal(wb_dataset_init(dataset), WB_OK);
     dataset->info = (struct wb_test_info){.wire = "bar",
                                           .sample = index + 1,
@@ -59,7 +59,7 @@ static void make(struct wb_dataset *dataset, const struct bar *bar, int index)
                                                       .compliance = unknown,
                                                       .speed = unknown}};
     assert_int_equal(wb_section_init_circle(&section, bar->diameter, &steel, 40), WB_OK);
-    const struct wb_bending3p_model model = {
+    const struct wb_three_point_bending_model model = {
         .section = &section,
         .diameter = bar->diameter,
         .span = span,
@@ -68,19 +68,20 @@ static void make(struct wb_dataset *dataset, const struct bar *bar, int index)
         .friction = 0.2,
         .compliance = true_compliance * (1.0 + bar->scatter * (index - 1)),
     };
-    assert_int_equal(wb_bending3p_create(&bending, &model), WB_OK);
+    assert_int_equal(wb_three_point_bending_create(&bending, &model), WB_OK);
     wb_section_release(&section);
     for (int i = 0; i <= READINGS; i++) {
-        struct wb_bending3p_point point;
-        assert_int_equal(wb_bending3p_move(bending, 0.1e-3 * i / READINGS, &point), WB_OK);
-        assert_int_equal(point.end, WB_BENDING3P_CONVERGED);
+        struct wb_three_point_bending_point point;
+        assert_int_equal(wb_three_point_bending_move(bending, 0.1e-3 * i / READINGS, &point),
+                         WB_OK);
+        assert_int_equal(point.end, WB_THREE_POINT_BENDING_CONVERGED);
         const struct wb_row row = {.cycle = 1,
                                    .deflection = 0.3e-3 + point.travel +
                                                  bar->noise * (2.0 * test_random(&random) - 1.0),
                                    .force = point.force + 5.0}; /* the cell is not zeroed */
         assert_int_equal(wb_dataset_add_row(dataset, &row), WB_OK);
     }
-    wb_bending3p_destroy(bending);
+    wb_three_point_bending_destroy(bending);
 }
 
 static enum wb_status find(struct wb_machine_compliance *c, const struct bar *bar, int n,
