@@ -470,8 +470,8 @@ static bool has_tested_rule(const struct wb_three_point_calibration *c)
     return c->is_rigidity_identifiable;
 }
 
-void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
-                                    struct wb_properties *properties)
+static void from_three_point(const struct wb_three_point_calibration *c,
+                             struct wb_properties *properties)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     make_unknown(properties);
@@ -495,7 +495,6 @@ void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
         properties->curvature[k] = c->curvature[k];
         properties->moment[k] = c->moment[k];
     }
-    find_deviation(properties);
 }
 
 static void put_bench(struct wb_text *text, const struct wb_three_point_calibration *c)
@@ -550,7 +549,7 @@ static void format_three_point(struct wb_text *text, const struct wb_three_point
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     struct wb_properties p;
-    wb_properties_from_three_point(c, &p);
+    from_three_point(c, &p);
     put_wire(text, info);
     wb_text_append(text,
                    "# These four numbers are derived from the law below: Ludwik's, isotropic, "

@@ -110,7 +110,5 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties);
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties);
-void wb_properties_from_three_point(const struct wb_three_point_calibration *calibration,
-                                    struct wb_properties *properties);
 
 #endif
