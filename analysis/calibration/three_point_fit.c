@@ -388,9 +388,11 @@ static enum wb_status search(struct problem *p, const struct wb_three_point_benc
         return p->status;
     if (started != GSL_SUCCESS || !p->run.reached)
         return wb_fail_to(why, WB_ERR_CONVERGENCE,
-                          "wire '%s', sample %d: the beam does not come to %.3g mm of deflection "
-                          "with a nose of %.3g mm and friction %.2g from the first guess",
-                          p->data->info.wire, p->data->info.sample, p->deepest / WB_MM,
+                          "wire '%s', sample %d: the beam comes to %.3g of %.3g mm of deflection "
+                          "(%s) with a nose of %.3g mm and friction %.2g from the first guess: use "
+                          "less of the test (usable_travel_mm, --usable-mm)",
+                          p->data->info.wire, p->data->info.sample, p->run.travel / WB_MM,
+                          p->deepest / WB_MM, wb_three_point_bending_end_name(p->run.end),
                           bench->nose_radius / WB_MM, bench->friction);
     const struct wb_least_squares_search how = {
         .max_iterations = p->settings->max_iterations,
